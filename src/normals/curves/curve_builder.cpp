@@ -21,12 +21,12 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Elements that a thread makes at a time: enough that windows of faces and moves at the end cost little, and several
-// for each thread. Of the size alone, and so the same for any number of threads.
+// Elements that a thread makes at a time: few enough that their blocks stay in a cache until they are moved, and that all
+// threads are busy to the end. Of the size alone, and so the same for any number of threads.
 std::size_t part_size(std::size_t size) {
   constexpr std::size_t kParts = 16;
   const std::size_t chunks = (size / kParts + kChunk - 1) / kChunk;
-  return std::clamp<std::size_t>(chunks, 16, 128) * kChunk;
+  return std::clamp<std::size_t>(chunks, 4, 32) * kChunk;
 }
 
 // A copy of a segment in which both positions of a vertex share a cache line: 32 bytes a vertex. Half the misses where
@@ -191,7 +191,8 @@ template <class MakeSource>
 CurveData build(std::size_t size, const CurveOptions& options, Threads threads, CurveData* reuse,
                 MakeSource make_source) {
   Build build(size, options, reuse);
-  if (threads == Threads::kAll && size > part_size(size)) {
+  // Another thread takes as long to begin as a few hundred elements.
+  if (threads == Threads::kAll && size > 2 * part_size(size)) {
     build.make_parts(make_source);
   } else if (size > 0) {
     auto source = make_source();

@@ -2,8 +2,8 @@
 ///
 ///     source --tiles--> how precise each must be --> runs of blocks of one kind --> packed, one after the other
 ///
-/// Elements go by chunks of 32 tiles, which stay in cache from the first step to the last. Parts of 16 to
-/// 128 chunks may be made by several threads at once; where they end does not depend on the threads, and so neither do
+/// Elements go by chunks of 32 tiles, which stay in cache from the first step to the last. Parts of 4 to
+/// 32 chunks may be made by several threads at once; where they end does not depend on the threads, and so neither do
 /// the bits.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_

@@ -99,7 +99,7 @@ TEST(CurvePreparation, memory_of_curves_before_is_used_again) {
 }
 
 TEST(CurvePreparation, many_threads_place_parts_as_one_does) {
-  const Motion motion = fixtures::smooth_morph(300);  // 22 parts of faces
+  const Motion motion = fixtures::smooth_morph(300);  // sixteen parts of faces
   const NormalCurves expected = NormalCurves::of_faces(motion.segment(0), {kCompactTolerance});
   for (const std::size_t threads : {1U, 2U, 3U, 8U, 64U}) {
     const ThreadLimit limit(threads);

@@ -288,7 +288,7 @@ std::vector<std::uint32_t> everything(const NormalCurves& curves, Say say = Say:
 }
 
 TEST(ThreadsOfCurves, prepare_the_same_curves) {
-  const Motion motion = test::integer_grid(260);  // 135,200 faces: three parts
+  const Motion motion = test::integer_grid(260);  // 135,200 faces: sixteen parts
   const Segment segment = motion.segment(0);
   std::vector<ControlNormals> normals(motion.topology.face_count());
   face_control_normals(segment, {0, normals.size()}, normals);
