@@ -95,24 +95,35 @@ template <class T>
   if constexpr (std::is_same_v<T, float>) return draco::DT_FLOAT32;
 }
 
-/// A triangle mesh coded by Draco; attribute 0 is POSITION, 1 is NORMAL, where there are any. Without loss, unless
-/// positions are quantised to so many bits.
+/// Joints and weights, four for each vertex.
+struct DracoShares {
+  std::vector<std::uint8_t> joints = {};
+  std::vector<float> weights = {};
+};
+
+/// A triangle mesh coded by Draco; the attributes are POSITION, NORMAL, JOINTS and WEIGHTS, numbered from 0 as far as
+/// they are there. Without loss, unless positions are quantised to so many bits.
 template <class T>
 [[nodiscard]] std::string draco_mesh(const std::vector<T>& positions, const std::vector<std::uint32_t>& corners,
-                                     DracoOrder order, const std::vector<float>& normals = {}, int bits = 0) {
+                                     DracoOrder order, const std::vector<float>& normals = {}, int bits = 0,
+                                     const DracoShares& shares = {}) {
   draco::Mesh mesh;
   const auto vertex_count = static_cast<std::uint32_t>(positions.size() / 3);
   mesh.set_num_points(vertex_count);
   const auto add = [&](draco::GeometryAttribute::Type type, const auto& values) {
     using Value = typename std::decay_t<decltype(values)>::value_type;
+    const std::size_t width = values.size() / vertex_count;
     draco::GeometryAttribute attribute;
-    attribute.Init(type, nullptr, 3, draco_type<Value>(), false, 3 * sizeof(Value), 0);
+    attribute.Init(type, nullptr, static_cast<std::uint8_t>(width), draco_type<Value>(), false,
+                   static_cast<std::int64_t>(width * sizeof(Value)), 0);
     const int id = mesh.AddAttribute(attribute, true, vertex_count);
     for (std::uint32_t i = 0; i < vertex_count; ++i)
-      mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), &values[std::size_t{3} * i]);
+      mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), &values[width * i]);
   };
   add(draco::GeometryAttribute::POSITION, positions);
   if (!normals.empty()) add(draco::GeometryAttribute::NORMAL, normals);
+  if (!shares.joints.empty()) add(draco::GeometryAttribute::GENERIC, shares.joints);
+  if (!shares.weights.empty()) add(draco::GeometryAttribute::GENERIC, shares.weights);
   mesh.SetNumFaces(corners.size() / 3);
   for (std::uint32_t f = 0; f < mesh.num_faces(); ++f) {
     draco::Mesh::Face face;

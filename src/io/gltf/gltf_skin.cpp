@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
+#include "io/gltf/decode/gltf_draco.h"
 #include "io/gltf/gltf_document_state.h"
 
 namespace chronormal::inline internal {
@@ -133,13 +135,33 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
           state.bytes.place(pointer));
       !status)
     return status;
-  std::vector<std::vector<float>> joints, weights;
-  for (const gltf::InfluenceSource& set : sets) {
-    for (const auto& [accessor, all] : {std::pair(set.joints, &joints), {set.weights, &weights}}) {
-      Result<std::vector<float>> numbers = state.bytes.floats(accessor);
+  std::vector<std::vector<float>> joints(sets.size()), weights(sets.size());
+  // What a compressed mesh holds is decoded at once.
+  std::vector<gltf::AttributeSource> compressed;
+  std::vector<std::pair<std::string, std::vector<float>*>> of_compressed;
+  for (std::size_t n = 0; n < sets.size(); ++n) {
+    for (const auto& [key, attribute, result] :
+         {std::tuple("JOINTS_", sets[n].joints, &joints[n]), {"WEIGHTS_", sets[n].weights, &weights[n]}}) {
+      if (attribute.draco) {
+        compressed.push_back(attribute);
+        of_compressed.emplace_back(key + std::to_string(n), result);
+        continue;
+      }
+      Result<std::vector<float>> numbers = state.bytes.floats(attribute.accessor);
       if (!numbers) return numbers.error();
-      all->push_back(std::move(numbers).value());
+      *result = std::move(numbers).value();
     }
+  }
+  if (!compressed.empty()) {
+    const Result<gltf::View> view = state.bytes.view(source.draco->view);
+    if (!view) return view.error();
+    const std::string extension =
+        state.bytes.place(gltf::primitive_pointer(mesh, primitive) + "/extensions/KHR_draco_mesh_compression");
+    Result<std::vector<std::vector<float>>> decoded = gltf::decode_draco_attributes(
+        view.value().bytes, state.model, vertices, compressed, state.bytes.expansion(), extension,
+        [&](std::size_t n) { return extension + "/attributes/" + of_compressed[n].first; });
+    if (!decoded) return decoded.error();
+    for (std::size_t n = 0; n < compressed.size(); ++n) *of_compressed[n].second = std::move(decoded.value()[n]);
   }
   for (std::size_t v = 0; v < vertices; ++v) {
     first.push_back(shares.size());

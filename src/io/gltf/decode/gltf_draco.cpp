@@ -95,12 +95,10 @@ std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
   return count(is_varint) ? count(is_varint) : std::nullopt;
 }
 
-}  // namespace
-
-Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, const PrimitiveSource& source,
-                                  bool with_shading, const Expansion& expansion, const std::string& place) {
+// Decodes a mesh of as many vertices as its accessors declare.
+Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::size_t vertex_count,
+                                                 const Expansion& expansion, const std::string& place) {
   constexpr std::uint64_t kBytesPerFace = 64;  // of the library's tables, and ours
-  const std::size_t vertex_count = model.accessors[*source.base.position].count;
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::unique_ptr<draco::Mesh> mesh;
@@ -125,11 +123,21 @@ Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, co
   if (mesh->num_points() != vertex_count)
     return invalid_input(place, "the compressed mesh has " + std::to_string(mesh->num_points()) +
                                     " vertices, but its accessors declare " + std::to_string(vertex_count));
+  return mesh;
+}
 
+}  // namespace
+
+Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, const PrimitiveSource& source,
+                                  bool with_shading, const Expansion& expansion, const std::string& place) {
+  const std::size_t vertex_count = model.accessors[*source.base.position].count;
+  const Result<std::unique_ptr<draco::Mesh>> decoded = decode_mesh(bytes, vertex_count, expansion, place);
+  if (!decoded) return decoded.error();
+  const draco::Mesh& mesh = *decoded.value();
   GltfGeometry geometry;
-  geometry.corners.reserve(std::size_t{3} * mesh->num_faces());
-  for (std::uint32_t f = 0; f < mesh->num_faces(); ++f) {
-    for (const draco::PointIndex& corner : mesh->face(draco::FaceIndex(f))) {
+  geometry.corners.reserve(std::size_t{3} * mesh.num_faces());
+  for (std::uint32_t f = 0; f < mesh.num_faces(); ++f) {
+    for (const draco::PointIndex& corner : mesh.face(draco::FaceIndex(f))) {
       if (corner.value() >= vertex_count)
         return invalid_input(place, "face " + std::to_string(f) + " of the compressed mesh names vertex " +
                                         std::to_string(corner.value()));
@@ -140,13 +148,28 @@ Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, co
   const auto read = [&](const std::optional<std::size_t>& id, const std::optional<std::size_t>& accessor,
                         std::vector<float>& result) -> Status {
     if (!id || !accessor) return Success{};
-    return read_attribute(*mesh, *id, model.accessors[*accessor], place, result);
+    return read_attribute(mesh, *id, model.accessors[*accessor], place, result);
   };
   if (Status status = read(ids.position, source.base.position, geometry.positions); !status) return status.error();
   if (!with_shading) return geometry;
   if (Status status = read(ids.normal, source.base.normal, geometry.normals); !status) return status.error();
   if (Status status = read(ids.tangent, source.base.tangent, geometry.tangents); !status) return status.error();
   return geometry;
+}
+
+Result<std::vector<std::vector<float>>> decode_draco_attributes(
+    std::string_view bytes, const Model& model, std::size_t vertex_count, std::span<const AttributeSource> attributes,
+    const Expansion& expansion, const std::string& place, const std::function<std::string(std::size_t n)>& place_of) {
+  const Result<std::unique_ptr<draco::Mesh>> mesh = decode_mesh(bytes, vertex_count, expansion, place);
+  if (!mesh) return mesh.error();
+  std::vector<std::vector<float>> result(attributes.size());
+  for (std::size_t n = 0; n < attributes.size(); ++n) {
+    const auto& [accessor, id] = attributes[n];
+    if (const Status status = read_attribute(*mesh.value(), *id, model.accessors[accessor], place_of(n), result[n]);
+        !status)
+      return status.error();
+  }
+  return result;
 }
 
 }  // namespace chronormal::inline internal::gltf

@@ -2,8 +2,12 @@
 #ifndef CHRONORMAL_IO_GLTF_DECODE_GLTF_DRACO_H_
 #define CHRONORMAL_IO_GLTF_DECODE_GLTF_DRACO_H_
 
+#include <cstddef>
+#include <functional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/expansion.h"
@@ -19,6 +23,13 @@ namespace chronormal::inline internal::gltf {
 [[nodiscard]] Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model,
                                                 const PrimitiveSource& source, bool with_shading,
                                                 const Expansion& expansion, const std::string& place);
+
+/// Decodes some attributes of a mesh of so many vertices, each with an id in it, in the order of
+/// vertices that decode_draco() has.
+/// Errors: as above; those of an attribute at place_of(n)
+[[nodiscard]] Result<std::vector<std::vector<float>>> decode_draco_attributes(
+    std::string_view bytes, const Model& model, std::size_t vertex_count, std::span<const AttributeSource> attributes,
+    const Expansion& expansion, const std::string& place, const std::function<std::string(std::size_t n)>& place_of);
 
 }  // namespace chronormal::inline internal::gltf
 

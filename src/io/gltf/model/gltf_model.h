@@ -79,9 +79,15 @@ struct Draco {
   Attributes attributes;
 };
 
-/// Accessors of a set of JOINTS_n and WEIGHTS_n.
+/// An attribute of a primitive.
+struct AttributeSource {
+  std::size_t accessor = 0;
+  std::optional<std::size_t> draco = {};  ///< its id in the compressed mesh, where that holds it
+};
+
+/// A set of JOINTS_n and WEIGHTS_n.
 struct InfluenceSource {
-  std::size_t joints = 0, weights = 0;
+  AttributeSource joints, weights;
 };
 
 struct PrimitiveSource {

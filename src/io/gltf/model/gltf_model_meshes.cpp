@@ -171,16 +171,16 @@ void Parser::parse_influences(const JsonView& item, PrimitiveSource& source) {
                                  (has_joints ? weights_key : joints_key));
     }
     const auto read = [&](const std::string& key, Use use) {
-      if (compressed && compressed->has(key.c_str()))
-        attributes.complain(key.c_str(), "joints and weights that KHR_draco_mesh_compression holds cannot be read");
-      const std::optional<std::size_t> index = parse_use(attributes, key.c_str(), use);
+      const std::optional<std::size_t> id =
+          compressed ? compressed->find_index(key.c_str(), kAnyId, "attributes") : std::nullopt;
+      const std::optional<std::size_t> index = parse_use(attributes, key.c_str(), use, id.has_value());
       if (index && source.base.position &&
           model_.accessors[*index].count != model_.accessors[*source.base.position].count)
         attributes.complain(key.c_str(), "there are " + number(model_.accessors[*index].count) + " of these for " +
                                              number(model_.accessors[*source.base.position].count) + " positions");
-      return index.value_or(0);
+      return AttributeSource{index.value_or(0), id};
     };
-    const std::size_t joints = read(joints_key, Use::kJoints), weights = read(weights_key, Use::kJointWeights);
+    const AttributeSource joints = read(joints_key, Use::kJoints), weights = read(weights_key, Use::kJointWeights);
     if (!complaint_.first()) source.influences.push_back({joints, weights});
   }
 }
