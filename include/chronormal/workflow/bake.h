@@ -113,7 +113,8 @@ struct BakeChoice {
   std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas and tangents, and those by which tracks grow
   /// In the worst of the named hosts, along the animations of the file, between its keys, and in its standing weights,
   /// or where it has no animation of weights, each target alone and in poses that the mesh is made for, which nothing
-  /// was fitted to: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0).
+  /// was fitted to: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0). They are seen
+  /// through the skins of the nodes that show the mesh.
   ShownErrors played;
   /// What each named host shows. It is empty where bake looked at no other form than "as it is", and for the numbers of
   /// "quadratics" that bake tried on all vertices alike.
@@ -121,6 +122,7 @@ struct BakeChoice {
   bool within = false;  ///< its worst is within the tolerance, and it within the limits
   bool chosen = false;
   bool animations_only = false;  ///< its deltas are fitted to the animations, and mean nothing alone
+  bool skinned = false;  ///< some skin does more than turn and scale evenly, so that played is other than without
   /// Degrees, of the chosen form: the worst where compressors among the named hosts round what they keep, which no form
   /// can help and no choice looks at; 0 where none of them does.
   double rounded = 0;

@@ -186,6 +186,15 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
   return Success{};
 }
 
+std::vector<double> GltfSkin::key_times() const {
+  std::vector<double> result;
+  for (const Curve& moving : curves_)
+    result.insert(result.end(), moving.curve.times().begin(), moving.curve.times().end());
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
 std::vector<AffineTransform> GltfSkin::pose(double time, bool just_before) const {
   std::vector<gltf::Placement> placements;
   placements.reserve(bones_.size());

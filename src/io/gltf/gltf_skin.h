@@ -45,6 +45,9 @@ class GltfSkin {
   /// Whether the joints move in the animation.
   [[nodiscard]] bool moves() const noexcept { return !curves_.empty(); }
 
+  /// The times of the keys of all its curves, ascending, each once.
+  [[nodiscard]] std::vector<double> key_times() const;
+
   /// The joint matrices at a time; where the joints jump, those just after it or just before it. O(joints and nodes
   /// above them).
   [[nodiscard]] std::vector<AffineTransform> pose(double time, bool just_before) const;

@@ -21,7 +21,9 @@
 #include "workflow/bake/exact/plan.h"
 #include "workflow/bake/exact/shared_parts.h"
 #include "workflow/bake/forms/chosen_form.h"
+#include "workflow/bake/forms/form_poses.h"
 #include "workflow/bake/forms/smallest_form.h"
+#include "workflow/bake/mesh_skins.h"
 #include "workflow/bake/mesh_weights.h"
 #include "workflow/bake/tangents.h"
 #include "workflow/bake/terms.h"
@@ -216,6 +218,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   if (Status status = writer.write_base(base.is_replaced, base.normals); !status) return status;
 
   const DeltaSource source{shading, terms, plan, base.normals.empty() ? shading.normals : base.normals};
+  if (plan.encoding == BakeEncoding::kSmallest)
+    read_skins(document, shading, judged_vertices(source, stored_deltas(shading)), weights.value());
   BakeOptions within = options;
   within.progress = course.of_choice();
   baked.report.has_lone_weight = find_lone_weight(document, shading.mesh, edit).has_value();
@@ -297,13 +301,14 @@ Status judge_again(const GltfDocument& document, const BakeOptions& options, Glt
     return Success{};
   baked.report.weighting = weighting_of(shading, options);
   if (baked.report.weighting == Weighting::kArea) shading.groups.forget_corners();
-  const Result<MeshWeights> weights = read_weights(document, shading);
+  Result<MeshWeights> weights = read_weights(document, shading);
   if (!weights) return weights.error();
   const NormalTerms terms(shading, baked.report.weighting);
   const Result<MeshPlan> plan =
       plan_mesh(document, shading, terms, weights.value().use, weights.value().is_driven, options);
   if (!plan) return plan.error();
   const DeltaSource source{shading, terms, plan.value(), shading.normals};
+  read_skins(document, shading, judged_vertices(source, stored_deltas(shading)), weights.value());
   baked.report.choices.push_back(judge_baked(source, weights.value(), options));
   warn_of_choice(document.meshes()[shading.mesh], options, baked.report, baked.warnings);
   return Success{};

@@ -1,9 +1,17 @@
 #include "workflow/bake/mesh_weights.h"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
 namespace chronormal::inline internal {
+
+bool MeshSkins::any() const {
+  return standing || std::any_of(of_tracks.begin(), of_tracks.end(), [](const auto& skins) {
+           return std::any_of(skins.begin(), skins.end(), [](const auto& skin) { return skin.has_value(); });
+         });
+}
+
 Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading) {
   const std::size_t mesh = shading.mesh, targets = document.meshes()[mesh].target_count;
   MeshWeights weights{{}, {}, {}, {}, 0, WeightUse(targets), false, {}};

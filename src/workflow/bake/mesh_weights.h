@@ -10,6 +10,7 @@
 #include "workflow/bake/undriven/rig_poses.h"
 #include "workflow/hosts/played_track.h"
 #include "workflow/shading/gltf_shading.h"
+#include "workflow/shading/mesh_skin.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal::inline internal {
@@ -18,6 +19,16 @@ namespace chronormal::inline internal {
 struct TrackName {
   std::size_t animation = 0, keys = 0;
   friend auto operator<=>(const TrackName&, const TrackName&) = default;
+};
+
+/// The skins through which nodes show a mesh, but for those that turn and scale evenly (mesh_skins.h).
+struct MeshSkins {
+  /// Of each track, those of all nodes that it drives; nothing stands for nodes without such a skin. Empty: nobody has
+  /// looked, and there is none.
+  std::vector<std::vector<std::optional<MeshSkin>>> of_tracks;
+  std::optional<MeshSkin> standing;  ///< of the first node that has a skin, as the file poses it
+
+  [[nodiscard]] bool any() const;
 };
 
 struct MeshWeights {
@@ -29,6 +40,7 @@ struct MeshWeights {
   WeightUse use;
   bool is_driven = false;       ///< an animation gives some moving target a weight
   std::optional<RigPoses> rig;  ///< where nothing drives it and a bake looks for extra targets: what it is made for
+  MeshSkins skins = {};         ///< read_skins() reads them
 };
 
 /// Reads them. Tracks with the same keys, which drive the mesh through several nodes, count once. Errors: of

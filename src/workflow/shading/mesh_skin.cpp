@@ -1,35 +1,64 @@
 // Blends the joint matrices of vertices.
 #include "workflow/shading/mesh_skin.h"
 
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
 #include <utility>
 
+#include "core/blocks.h"
+
 namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kEvenBlock = 1024;
+// Of the square of a scale: what the rounding of matrices in files leaves of axes that are perpendicular and alike. It
+// changes an angle by half of that part of itself.
+constexpr double kEven = 1e-4;
+
+bool keeps_angles(const std::array<Vec3d, 3>& columns) {
+  const auto& [x, y, z] = columns;
+  const double xx = dot(x, x), yy = dot(y, y), zz = dot(z, z), most = std::max({xx, yy, zz});
+  const double off =
+      std::max({most - std::min({xx, yy, zz}), std::fabs(dot(x, y)), std::fabs(dot(y, z)), std::fabs(dot(z, x))});
+  return most > 0 && std::isfinite(most) && off <= kEven * most;
+}
+
+}  // namespace
 
 Result<MeshSkin> MeshSkin::read(const GltfDocument& document, const GltfShading& shading, std::size_t node,
                                 std::optional<std::size_t> animation) {
   Result<GltfSkin> skin = GltfSkin::read(document, node, animation);
   if (!skin) return skin.error();
-  MeshSkin result(std::move(skin).value());
+  const auto read = std::make_shared<Read>(Read{std::move(skin).value()});
   for (const GltfPart& part : shading.parts) {
-    const Status status =
-        result.skin_.read_shares(document, shading.mesh, part.primitive, result.first_, result.shares_);
+    const Status status = read->skin.read_shares(document, shading.mesh, part.primitive, read->first, read->shares);
     if (!status) return status.error();
   }
-  result.first_.push_back(result.shares_.size());
-  return result;
+  read->first.push_back(read->shares.size());
+  return MeshSkin(read);
 }
 
 bool MeshSkin::pose(double time, bool just_before) {
-  if (!skin_.moves()) return false;
-  matrices_ = skin_.pose(time, just_before);
+  if (!moves()) return false;
+  matrices_ = read_->skin.pose(time, just_before);
   return true;
+}
+
+bool MeshSkin::is_even(std::span<const std::uint32_t> vertices) const {
+  std::atomic<bool> are_all_even = true;
+  parallel_each(vertices.size(), kEvenBlock, [&](std::size_t n) {
+    if (are_all_even && !keeps_angles(of_vertex(vertices[n]).columns)) are_all_even = false;
+  });
+  return are_all_even;
 }
 
 AffineTransform MeshSkin::of_vertex(std::size_t vertex) const noexcept {
   AffineTransform sum{{Vec3d{}, Vec3d{}, Vec3d{}}, {}};
-  for (std::size_t i = first_[vertex]; i < first_[vertex + 1]; ++i) {
-    const AffineTransform& matrix = matrices_[shares_[i].joint];
-    const double share = shares_[i].share;
+  for (std::size_t i = read_->first[vertex]; i < read_->first[vertex + 1]; ++i) {
+    const AffineTransform& matrix = matrices_[read_->shares[i].joint];
+    const double share = read_->shares[i].share;
     for (std::size_t c = 0; c < 3; ++c) sum.columns[c] = sum.columns[c] + share * matrix.columns[c];
     sum.offset = sum.offset + share * matrix.offset;
   }
@@ -42,10 +71,10 @@ Vec3d MeshSkin::carried(SkinRule rule, std::size_t vertex, const AffineTransform
   if (rule == SkinRule::kBlended)
     return unit(normal.x * matrix.columns[0] + normal.y * matrix.columns[1] + normal.z * matrix.columns[2]);
   Vec3d sum;
-  for (std::size_t i = first_[vertex]; i < first_[vertex + 1]; ++i) {
-    const NormalMatrix of_joint = normal_matrix(matrices_[shares_[i].joint]);
+  for (std::size_t i = read_->first[vertex]; i < read_->first[vertex + 1]; ++i) {
+    const NormalMatrix of_joint = normal_matrix(matrices_[read_->shares[i].joint]);
     // The cofactors themselves look to the other side where the joint mirrors.
-    sum = sum + (of_joint.mirrored ? -shares_[i].share : shares_[i].share) * unit(of_joint(normal));
+    sum = sum + (of_joint.mirrored ? -read_->shares[i].share : read_->shares[i].share) * unit(of_joint(normal));
   }
   return unit(sum);
 }

@@ -6,12 +6,17 @@
 /// No target can mend that. So normals are held against each other as L carries them, and what L itself does wrong is
 /// told apart.
 ///
+/// Copies     share what was read of the file, and each has a pose of its own.
 /// Threads    const functions may run at once.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
 #define CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "chronormal/core/result.h"
@@ -34,6 +39,16 @@ class MeshSkin {
   /// have moved anything.
   bool pose(double time, bool just_before);
 
+  /// Whether the joints move in the animation.
+  [[nodiscard]] bool moves() const noexcept { return read_->skin.moves(); }
+
+  /// The times of all keys by which joints move, ascending.
+  [[nodiscard]] std::vector<double> key_times() const { return read_->skin.key_times(); }
+
+  /// Whether the blended matrices of these vertices turn and scale evenly in this pose, each for itself, but for what is
+  /// too fine to matter: then they keep the angle between any two normals of a vertex.
+  [[nodiscard]] bool is_even(std::span<const std::uint32_t> vertices) const;
+
   /// The blended matrix of a vertex in this pose.
   [[nodiscard]] AffineTransform of_vertex(std::size_t vertex) const noexcept;
 
@@ -43,11 +58,15 @@ class MeshSkin {
                               const Vec3d& normal) const noexcept;
 
  private:
-  explicit MeshSkin(GltfSkin skin) : skin_(std::move(skin)), matrices_(skin_.pose(0, false)) {}
+  struct Read {
+    GltfSkin skin;
+    std::vector<std::size_t> first = {};  // (V + 1)
+    std::vector<JointShare> shares = {};
+  };
 
-  GltfSkin skin_;
-  std::vector<std::size_t> first_;  // (V + 1)
-  std::vector<JointShare> shares_;
+  explicit MeshSkin(std::shared_ptr<const Read> read) : read_(std::move(read)), matrices_(read_->skin.pose(0, false)) {}
+
+  std::shared_ptr<const Read> read_;
   std::vector<AffineTransform> matrices_;  // of joints
 };
 

@@ -62,7 +62,7 @@ TEST(PlayedErrors, are_those_of_a_sorted_list_of_all_pairs) {
   const double most = errors[errors.size() - 1 - errors.size() / 1000];
 
   const ShownErrors found =
-      played_errors(rights, vertices, shading.element_of_vertex, by_vertex(columns, vertices), poses);
+      played_errors(rights, vertices, shading.element_of_vertex, by_vertex(columns, vertices), without_skins(poses));
   EXPECT_EQ(found.judged, errors.size());
   EXPECT_NEAR(found.mean, sum / static_cast<double>(errors.size()), 1e-9);
   EXPECT_NEAR(found.worst, errors.back(), 1e-9);
@@ -74,7 +74,7 @@ TEST(PlayedErrors, are_those_of_a_sorted_list_of_all_pairs) {
 TEST(PlayedErrors, look_at_each_target_alone_where_it_ends) {
   const test::GltfFixture file(test::still_hills_document(kTargets, kSeed));
   const MeshWeights nothing = read_weights(*file, read_gltf_shading(*file, 0).value()).value();
-  const PoseList poses = played_poses(nothing, {}, kTargets, 1000);
+  const PoseList poses = weights_of(played_poses(nothing, {}, kTargets, 1000));
   for (std::size_t k = 0; k < kTargets; ++k) {
     std::vector<double> end(kTargets, 0.0);
     end[k] = 1;

@@ -42,6 +42,11 @@ constexpr double kAlike = 1e-3;
 
 constexpr std::string_view kQuadratics = "quadratics";
 
+// Where forms miss the tolerance only because of a skin, they are made again, so often at most: for such a part of what
+// should do, but for no less than so much of the tolerance.
+constexpr int kMostTightened = 6;
+constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
+
 // At how many weights of each target alone a mesh is judged that was baked before.
 constexpr std::size_t kAloneSteps = 8;
 
@@ -157,6 +162,7 @@ class Choice {
         options_(options),
         rights_(shading_, source.terms, source.base_normals, source.plan.largest),
         tolerance_(options.tolerance.value_or(kHarmlessTolerance)),
+        made_within_(tolerance_),
         tangent_bytes_(tangent_bytes) {}
 
   // Looks at a form, and returns the bytes that it takes.
@@ -193,7 +199,7 @@ class Choice {
   [[nodiscard]] bool is_far(const OwnForm& own) const {
     const std::array<VertexColumns, 2> forms = {by_vertex(columns_of(own.stored), own.vertices),
                                                 by_vertex(columns_of(own.deltas), own.vertices)};
-    const PoseList poses = played_poses(weights_, {}, shading_.set.targets.size(), kMostPlayed);
+    const std::vector<SeenPose> poses = played_poses(weights_, {}, shading_.set.targets.size(), kMostPlayed);
     return least_worst(rights_, own.vertices, shading_.element_of_vertex, forms, poses) > tolerance_;
   }
   // How many bytes deltas and tracks may take.
@@ -206,6 +212,17 @@ class Choice {
   [[nodiscard]] bool is_found() const { return is_found_below(std::numeric_limits<std::size_t>::max()); }
   [[nodiscard]] bool is_found_below(std::size_t bytes) const {
     return is_within() && of_best_.bytes - tangent_bytes_ <= bytes && !options_.plan;
+  }
+
+  // Where skins keep all forms beyond the tolerance, and some of these were within what they were made for before skinning:
+  // what forms should be made for next. That is less by as much as the nearest of them missed the tolerance by, and
+  // less than what this one left before skinning, so that it does not come again.
+  [[nodiscard]] std::optional<double> tightened() {
+    const Missed missed = std::exchange(missed_, Missed());
+    if (is_within() || missed.seen == INFINITY) return std::nullopt;
+    const double next = std::fmin(missed.before, made_within_ * tolerance_ / missed.seen);
+    made_within_ = std::fmax(kPartOfMissed * next, kLeastPart * tolerance_);
+    return made_within_;
   }
 
   // Notes what was tried and not made.
@@ -226,7 +243,8 @@ class Choice {
     }
     for (BakeChoice& choice : choices_)
       choice.chosen = !is_draft(choice) && choice.form == of_best_.form && choice.targets == of_best_.targets &&
-                      choice.bytes == of_best_.bytes && choice.animations_only == of_best_.animations_only;
+                      choice.bytes == of_best_.bytes && choice.played.worst == of_best_.played.worst &&
+                      choice.played.mean == of_best_.played.mean && choice.animations_only == of_best_.animations_only;
     for (BakeChoice& choice : choices_)
       if (choice.chosen) choice.rounded = rounded_worst_of_best();
     best_->choices = std::move(choices_);
@@ -235,7 +253,8 @@ class Choice {
 
  private:
   [[nodiscard]] double rounded_worst_of_best() const {
-    const PoseList poses = played_poses(weights_, best_->drivers, shading_.set.targets.size(), kMostPlayed);
+    const std::vector<SeenPose> poses =
+        played_poses(weights_, best_->drivers, shading_.set.targets.size(), kMostPlayed);
     return rounded_worst(rights_, shading_, options_.hosts, best_->judged(), best_->columns(shading_), poses);
   }
   static bool is_draft(const BakeChoice& choice) { return choice.form == kQuadratics && choice.hosts.empty(); }
@@ -244,28 +263,40 @@ class Choice {
     return choice.bytes - tangent_bytes_ <= most_bytes() && choice.targets - targets <= most_extras(options_, targets);
   }
 
-  [[nodiscard]] BakeChoice measured(std::string_view name, const ChosenForm& form) const {
+  [[nodiscard]] BakeChoice measured(std::string_view name, const ChosenForm& form) {
     const std::size_t targets = shading_.set.targets.size();
     BakeChoice choice{name, targets + form.drivers.size(), form.bytes(shading_), {}, form.hosts, false, false};
     choice.bytes += bytes_of_tracks(weights_, form.drivers) + tangent_bytes_;
     choice.animations_only = form.animations_only;
+    choice.skinned = weights_.skins.any();
     const VertexColumns columns = form.columns(shading_);
-    const auto errors_at = [&](const PoseList& poses) {
+    const auto errors_at = [&](std::span<const SeenPose> poses) {
       return errors_in_hosts(rights_, shading_, options_.hosts, form.judged(), columns, poses);
     };
     const std::size_t vertices = std::max<std::size_t>(1, form.judged().size());
-    const PoseList poses = played_poses(weights_, form.drivers, targets,
-                                        std::clamp(kPlayedPairs / vertices, kMostPlayed, kMostPlayedOfSmall));
+    const std::vector<SeenPose> poses = played_poses(
+        weights_, form.drivers, targets, std::clamp(kPlayedPairs / vertices, kMostPlayed, kMostPlayedOfSmall));
     choice.played = errors_at(poses);
     choice.within = is_affordable(choice) && choice.played.worst <= tolerance_;
-    if (!choice.within) return choice;
-    const PoseList all = played_poses(weights_, form.drivers, targets,
-                                      std::clamp(kVerifiedPairs / vertices, 2 * kMostPlayed, kMostVerified));
-    if (all.size() <= poses.size()) return choice;
-    choice.played = errors_at(all);
-    choice.within = choice.played.worst <= tolerance_;
+    if (choice.within) {
+      const std::vector<SeenPose> all = played_poses(
+          weights_, form.drivers, targets, std::clamp(kVerifiedPairs / vertices, 2 * kMostPlayed, kMostVerified));
+      if (all.size() <= poses.size()) return choice;
+      choice.played = errors_at(all);
+      choice.within = choice.played.worst <= tolerance_;
+    }
+    if (choice.skinned && is_affordable(choice) && choice.played.worst > tolerance_) {
+      const double before = errors_at(without_skins(weights_of(poses))).worst;
+      if (before <= made_within_ && choice.played.worst < missed_.seen) missed_ = {before, choice.played.worst};
+    }
     return choice;
   }
+
+  // The worst of a form that is within what it was made for before skinning, and beyond the tolerance when it is seen: of
+  // all in this round, the one that is nearest then.
+  struct Missed {
+    double before = 0, seen = INFINITY;
+  };
 
   // The smallest that is near enough is better, and before there is one, the nearest.
   static bool is_better(const BakeChoice& choice, const BakeChoice& than) {
@@ -276,6 +307,12 @@ class Choice {
   }
 
   void take(BakeChoice choice, ChosenForm form) {
+    const bool is_known =
+        made_within_ < tolerance_ && std::any_of(choices_.begin(), choices_.end(), [&](const BakeChoice& known) {
+          return known.form == choice.form && known.targets == choice.targets && known.bytes == choice.bytes &&
+                 known.played.worst == choice.played.worst;
+        });
+    if (is_known) return;
     choices_.push_back(choice);
     if (best_ && (!is_affordable(choice) || !is_better(choice, of_best_))) return;
     best_ = std::move(form);
@@ -286,7 +323,8 @@ class Choice {
   const MeshWeights& weights_;
   const BakeOptions& options_;
   RightNormals rights_;
-  double tolerance_;
+  double tolerance_, made_within_;  // of what is seen, and that which forms are made for before skinning
+  Missed missed_;
   std::size_t tangent_bytes_;
   std::optional<ChosenForm> best_;
   BakeChoice of_best_;
@@ -447,11 +485,9 @@ void look_at_forms(const DeltaSource& source, const MeshWeights& weights, const 
     choice.look_at("harmless", choose_harmless(source, weights, options));
 }
 
-ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
-                           std::size_t tangent_bytes) {
-  Choice choice(source, weights, options, tangent_bytes);
-  if (!has_new_base(source)) choice.look_at("as it is", keep_stored(source));
-  if (choice.is_found_below(0)) return choice.take_best();
+// Looks at all forms but what is stored, with deltas fitted to animations and without.
+void look_at_all_forms(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
+                       Choice& choice) {
   // Only hosts that add up deltas of any length gain by deltas that are fitted to animations. What targets alone allow
   // may be smaller or nearer all the same, but for extra targets of low rank, which fitted deltas need fewer of.
   if (options.animations_only && source.plan.is_driven && lengths_for(options.hosts) == FormLengths::kFree)
@@ -460,6 +496,19 @@ ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights
   BakeOptions for_all = options;
   for_all.animations_only = false;
   look_at_forms(source, weights, for_all, !has_fitted || options.plan, choice);
+}
+
+ChosenForm choose_smallest(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
+                           std::size_t tangent_bytes) {
+  Choice choice(source, weights, options, tangent_bytes);
+  if (!has_new_base(source)) choice.look_at("as it is", keep_stored(source));
+  if (choice.is_found_below(0)) return choice.take_best();
+  BakeOptions made_for = options;
+  for (int tries = 0; tries <= kMostTightened; ++tries) {
+    look_at_all_forms(source, weights, made_for, choice);
+    made_for.tolerance = choice.tightened();
+    if (!made_for.tolerance) break;
+  }
   return choice.take_best();
 }
 

@@ -3,36 +3,54 @@
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_PLAYED_ERRORS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_PLAYED_ERRORS_H_
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "chronormal/workflow/bake.h"
 #include "workflow/bake/judge/host_judge.h"
 #include "workflow/bake/judge/right_normals.h"
 #include "workflow/bake/low_rank/extra_curves.h"
 #include "workflow/bake/mesh_weights.h"
+#include "workflow/shading/mesh_skin.h"
 
 namespace chronormal::inline internal {
+
+/// A pose, and the skin through which it is seen.
+struct SeenPose {
+  std::vector<double> weights;
+  const MeshSkin* skin = nullptr;  ///< nullptr: there is none, or it turns and scales evenly
+  double time = 0;                 ///< of the pose of its joints, where they move
+};
+
+/// Poses that are seen as they are.
+[[nodiscard]] std::vector<SeenPose> without_skins(PoseList poses);
+/// The weights of poses, once where only the joints of a skin move.
+[[nodiscard]] PoseList weights_of(std::span<const SeenPose> poses);
 
 /// Poses between the keys of all tracks, as they will be written with these extra targets, at instants that no form is
 /// fitted or chosen by, and the poses that stand still; where nothing moves a weight, each target alone, at its end
 /// too, where alone a normal may add up to zero, and poses that the rig is made for. No more than `most` of each kind:
-/// of the tracks, those that tell most (telling_keys()), of the others evenly.
-[[nodiscard]] PoseList played_poses(const MeshWeights& weights, const ExtraDrivers& drivers, std::size_t targets,
-                                    std::size_t most);
+/// of the tracks, those that tell most (telling_keys()), of the others evenly. They
+/// are seen through the skins of weights, which must outlive them, also at the keys of joints and at more instants
+/// between keys.
+[[nodiscard]] std::vector<SeenPose> played_poses(const MeshWeights& weights, const ExtraDrivers& drivers,
+                                                 std::size_t targets, std::size_t most);
 
 /// The errors of vertices in a host that adds up what is stored, over pairs of a vertex and a pose in which its normal
-/// n(w) is longer than a thousandth of n(0). form has the deltas as the host keeps them; the base normals become what
-/// it keeps. On all cores; the same bits on any number of them.
+/// n(w) is longer than a thousandth of n(0). Through a skin the shown and the right normal are both carried as the host
+/// does it, and pairs in which this leaves nothing of the right one are left out. form has the deltas as the host keeps
+/// them; the base normals become what it keeps. On all cores; the same bits on any number of them.
 [[nodiscard]] ShownErrors played_errors(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                         std::span<const std::uint32_t> element_of_vertex, const VertexColumns& form,
-                                        const PoseList& poses, const Host& host = {});
+                                        std::span<const SeenPose> poses, const Host& host = {});
 
 /// What no choice of one of these forms for each vertex can be below: the largest of the least errors at worst, over
 /// the same pairs.
 [[nodiscard]] double least_worst(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                  std::span<const std::uint32_t> element_of_vertex, std::span<const VertexColumns> forms,
-                                 const PoseList& poses);
+                                 std::span<const SeenPose> poses);
 
 }  // namespace chronormal::inline internal
 

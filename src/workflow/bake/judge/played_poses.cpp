@@ -93,8 +93,9 @@ std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most
   return {taken.begin(), taken.end()};
 }
 
-void add_played_poses(std::span<const DrivingTrack> tracks, const Host& host, std::size_t between_keys, double phase,
-                      std::size_t most, PoseList& poses) {
+std::vector<PlayedInstant> played_instants(std::span<const DrivingTrack> tracks, const Host& host,
+                                           std::size_t between_keys, double phase, std::size_t most) {
+  std::vector<PlayedInstant> instants;
   std::vector<std::size_t> counts;
   std::size_t total = 0;
   for (const DrivingTrack& driving : tracks) {
@@ -116,12 +117,18 @@ void add_played_poses(std::span<const DrivingTrack> tracks, const Host& host, st
         const double from = track.keys.times[keys[n]];
         const double part = (static_cast<double>(step) + phase) / static_cast<double>(count);
         const double time = moves ? from + part * (track.keys.times[keys[n] + 1] - from) : from;
-        std::vector<double> pose(track.targets);
-        played.at(time, false, pose);
-        if (poses.empty() || poses.back() != pose) poses.push_back(std::move(pose));
+        PlayedInstant& instant = instants.emplace_back(PlayedInstant{t, time, std::vector<double>(track.targets)});
+        played.at(time, false, instant.weights);
       }
     }
   }
+  return instants;
+}
+
+void add_played_poses(std::span<const DrivingTrack> tracks, const Host& host, std::size_t between_keys, double phase,
+                      std::size_t most, PoseList& poses) {
+  for (PlayedInstant& instant : played_instants(tracks, host, between_keys, phase, most))
+    if (poses.empty() || poses.back() != instant.weights) poses.push_back(std::move(instant.weights));
 }
 
 PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count, const ExtraDrivers& extras,

@@ -32,9 +32,20 @@ struct DrivingTrack {
 /// weights is, so that a wink in a long animation is among them; the others are taken evenly.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
 
-/// Adds what a host plays of some tracks: for each telling key, `phase` (in [0, 1)) and as many instants as asked for
-/// in all up to the next key, evenly; where these are more than `most`, fewer instants of each key, and then fewer keys.
-/// Each track gets a share by the number of its telling keys, and one pose at least.
+/// An instant of one of some tracks, with the weights that a host plays there.
+struct PlayedInstant {
+  std::size_t track = 0;
+  double time = 0;
+  std::vector<double> weights;
+};
+
+/// What a host plays of some tracks, one after the other: for each telling key, `phase` (in [0, 1)) and as many instants
+/// as asked for in all up to the next key, evenly; where these are more than `most`, fewer instants of each key, and then
+/// fewer keys. Each track gets a share by the number of its telling keys, and one instant at least.
+[[nodiscard]] std::vector<PlayedInstant> played_instants(std::span<const DrivingTrack> tracks, const Host& host,
+                                                         std::size_t between_keys, double phase, std::size_t most);
+
+/// Adds the weights of these instants, but for those that repeat the pose before.
 void add_played_poses(std::span<const DrivingTrack> tracks, const Host& host, std::size_t between_keys, double phase,
                       std::size_t most, PoseList& poses);
 

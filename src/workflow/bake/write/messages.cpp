@@ -136,7 +136,8 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
     remedies.emplace_back("name the hosts that count by --for");
   remedies.emplace_back("take a larger --tolerance");
   std::string text = "no form that does no harm is within " + tolerance +
-                     " degrees throughout, and the nearest was taken (--plan lists them all): ";
+                     (chosen->skinned ? " degrees throughout, as its skin shows it" : " degrees throughout") +
+                     ", and the nearest was taken (--plan lists them all): ";
   for (std::size_t n = 0; n < remedies.size(); ++n)
     text += (n == 0 ? "" : n + 1 < remedies.size() ? ", " : ", or ") + remedies[n];
   warnings.push_back({label_of(mesh, baked), std::move(text)});

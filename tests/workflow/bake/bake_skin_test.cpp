@@ -1,0 +1,334 @@
+// What smallest chooses is what a skin shows: the tolerance holds behind joints that squash, in hosts that carry normals
+// in ways of their own, and joints that turn and scale evenly change nothing.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/bake_fixture.h"
+#include "tests/support/skinned_mesh.h"
+
+namespace chronormal::bake_skin_test {
+namespace {
+
+using test::Baked;
+using test::Carry;
+using test::GltfBuilder;
+using test::Real;
+using test::Rows;
+using test::Skin;
+using test::Trs;
+using Json = GltfBuilder::Json;
+
+constexpr std::size_t kSide = 5, kVertices = kSide * kSide, kTargets = 2;
+constexpr double kTolerance = 1;
+// Three.js takes normals through the blended matrix, Bevy through its inverse transpose.
+const Host kThree = find_hosts("three").value()[0], kBevy = find_hosts("bevy").value()[0];
+
+BakeOptions smallest(double tolerance = kTolerance, std::vector<Host> hosts = {kThree}) {
+  BakeOptions options;
+  options.encoding = BakeEncoding::kSmallest;
+  options.tolerance = tolerance;
+  options.hosts = std::move(hosts);
+  return options;
+}
+
+const BakeChoice& chosen(const Baked& baked) {
+  for (const BakeChoice& choice : baked.report.meshes.at(0).choices)
+    if (choice.chosen) return choice;
+  ADD_FAILURE() << "nothing is chosen";
+  return baked.report.meshes.at(0).choices.at(0);
+}
+
+// Hills whose targets are played at once, from one of these weights to the next in a second.
+GltfBuilder played_hills(unsigned seed, const std::vector<float>& weights, const char* interpolation = "LINEAR") {
+  GltfBuilder builder = test::hills_document(kTargets, seed);
+  std::vector<float> times, values;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    times.push_back(static_cast<float>(k));
+    values.insert(values.end(), kTargets, weights[k]);
+  }
+  builder.add_track(0, 0, times, values, interpolation);
+  return builder;
+}
+
+// All vertices follow joint 0, or with `bent` the more of joint 1 the larger their x is.
+Skin skin_of(bool bent) {
+  Skin skin;
+  skin.joints.emplace_back();
+  skin.weights.emplace_back();
+  for (std::size_t v = 0; v < kVertices; ++v) {
+    const float part = bent ? static_cast<float>(v % kSide) / static_cast<float>(kSide - 1) : 0;
+    for (const int joint : {0, 1, 0, 0}) skin.joints[0].push_back(static_cast<std::uint8_t>(joint));
+    for (const float share : {1 - part, part, 0.0F, 0.0F}) skin.weights[0].push_back(share);
+  }
+  return skin;
+}
+
+// Two joints, nodes 1 and 2.
+void add_skin(GltfBuilder& builder, const Skin& skin, const Trs& one, const Trs& two = {}) {
+  builder.add("nodes", one.json());
+  builder.add("nodes", two.json());
+  skin.add_to(builder, {1, 2});
+}
+
+Trs scaled(Real x, Real y, Real z) {
+  Trs place;
+  place.scale = {x, y, z};
+  return place;
+}
+
+// Where the joints are at a time.
+using World = std::function<std::vector<Rows>(double time)>;
+World standing(const Trs& one, const Trs& two = {}) {
+  return [one, two](double) { return std::vector<Rows>{one.rows(), two.rows()}; };
+}
+
+// What is seen of the track of node 0 at 101 times.
+test::ShownError seen_error(const Baked& baked, const Skin& skin, const World& world, Carry rule = Carry::kBlended) {
+  const test::GltfTruth truth(*baked.before, 0);
+  const std::vector<test::Pose> poses = test::poses_of(*baked.before, *baked.after, 0, 0);
+  const std::vector<test::Vector> base = truth.normals_at(std::vector<double>(kTargets, 0.0));
+  const Json& sampler = baked.before->json["animations"][0]["samplers"][0];
+  const double last = static_cast<double>(baked.before->accessor(sampler["input"].get<std::size_t>()).back());
+  test::ShownError error;
+  for (std::size_t n = 0; n < poses.size(); ++n) {
+    const std::vector<Rows> at = world(last * static_cast<double>(n) / static_cast<double>(poses.size() - 1));
+    const std::vector<test::Vector> exact = truth.normals_at(poses[n].before);
+    for (std::size_t v = 0; v < kVertices; ++v) {
+      const test::Vector right = test::GltfTruth::turn(base[v], truth.vertices[v].stored, test::unit_of(exact[v]));
+      const test::Vector shown = baked.after->shown(baked.mesh()["primitives"][0], v, poses[n].after);
+      error.add(static_cast<double>(
+          test::degrees_between(carried(rule, skin, at, v, shown), carried(rule, skin, at, v, right))));
+    }
+  }
+  return error;
+}
+
+TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
+  struct Case {
+    unsigned seed;
+    float weight;
+    double tolerance, height;
+  };
+  // In the last four, nothing that is made for the tolerance before skinning is within it behind the joint.
+  for (const Case& c : {Case{2, 0.2F, 1, 0.25},
+                        {3, 0.2F, 1, 0.25},
+                        {5, 0.2F, 1, 0.25},
+                        {1, 0.2F, 0.5, 0.05},
+                        {1, 0.4F, 2, 0.05},
+                        {2, 0.4F, 2, 0.05},
+                        {3, 0.4F, 1, 0.05}}) {
+    SCOPED_TRACE(c.seed);
+    const Trs flat = scaled(1, 1, c.height);
+    GltfBuilder builder = played_hills(c.seed, {0, c.weight});
+    const Baked without = test::bake_document(builder, smallest(c.tolerance));
+    add_skin(builder, skin_of(false), flat);
+    const Baked baked = test::bake_document(builder, smallest(c.tolerance));
+    ASSERT_TRUE(baked.ok()) << baked.error;
+    // The choice without a skin would not do.
+    EXPECT_GT(seen_error(without, skin_of(false), standing(flat)).worst, 1.2 * c.tolerance);
+    const test::ShownError seen = seen_error(baked, skin_of(false), standing(flat));
+    EXPECT_LT(seen.worst, 1.02 * c.tolerance);
+    EXPECT_TRUE(chosen(baked).within);
+    EXPECT_NEAR(chosen(baked).played.worst, seen.worst, 0.02 * seen.worst + 1e-4);
+    EXPECT_GE(chosen(baked).bytes, chosen(without).bytes);
+    EXPECT_TRUE(baked.report.warnings.empty()) << baked.report.warnings.front();
+  }
+}
+
+TEST(BakeSkin, tolerance_holds_where_the_joints_bend_while_the_weights_rest) {
+  // Joint 1 turns about y by 165 degrees within 40 milliseconds, and back.
+  constexpr double kMost = 165 / 180.0 * std::numbers::pi;
+  const auto turned = [](double angle) {
+    Trs place;
+    place.rotation = {0, std::sin(angle / 2), 0, std::cos(angle / 2)};
+    return place;
+  };
+  for (const unsigned seed : {2U, 3U}) {
+    GltfBuilder builder = played_hills(seed, {0, 0.2F, 0.2F});
+    const Baked without = test::bake_document(builder, smallest());
+    const Skin skin = skin_of(true);
+    add_skin(builder, skin, {}, {});
+    const std::vector<float> times = {1.38F, 1.42F, 1.46F};
+    std::vector<float> turns;
+    for (const double angle : {0.0, kMost, 0.0})
+      for (const Real c : turned(angle).rotation) turns.push_back(static_cast<float>(c));
+    Json& animation = builder.json["animations"][0];
+    const std::size_t input = builder.add_accessor("SCALAR", times), output = builder.add_accessor("VEC4", turns);
+    Json& samplers = builder.json["animations"][0]["samplers"];
+    builder.json["animations"][0]["channels"].push_back(
+        {{"sampler", samplers.size()}, {"target", {{"node", 2}, {"path", "rotation"}}}});
+    samplers.push_back({{"input", input}, {"output", output}});
+    ASSERT_EQ(animation["channels"].size(), 2U);
+    const World world = [&](double time) {
+      const double away = std::max(0.0, 1 - std::fabs(time - 1.42) / 0.04);
+      return std::vector<Rows>{Trs().rows(), turned(kMost * away).rows()};
+    };
+    const Baked baked = test::bake_document(builder, smallest());
+    ASSERT_TRUE(baked.ok()) << baked.error;
+    EXPECT_GT(seen_error(without, skin, world).worst, 1.2 * kTolerance) << seed;
+    EXPECT_LT(seen_error(baked, skin, world).worst, 1.05 * kTolerance) << seed;
+    EXPECT_TRUE(chosen(baked).within);
+  }
+}
+
+TEST(BakeSkin, figures_of_forms_are_those_of_the_oracle_behind_the_skin) {
+  const Trs flat = scaled(1, 0.8, 0.25);
+  for (const std::vector<Host>& hosts : {std::vector<Host>{kThree}, {kBevy}, {kThree, kBevy}}) {
+    GltfBuilder builder = test::with_misleading_normals(played_hills(4, {0.2F, 0.3F, 0.4F}, "STEP"));
+    add_skin(builder, skin_of(false), flat);
+    BakeOptions options = smallest(kTolerance, hosts);
+    options.plan = true;
+    const Baked baked = test::bake_document(builder, options);
+    ASSERT_TRUE(baked.ok()) << baked.error;
+    const BakeChoice& before = baked.report.meshes[0].choices.front();
+    ASSERT_EQ(before.form, "as it is");
+    // The poses are the three keys and the weights of the mesh, which are zero.
+    double mean = 0, worst = 0;
+    for (const Host& host : hosts) {
+      const Carry rule = host == kThree ? Carry::kBlended : Carry::kInverseTranspose;
+      test::ShownError error;
+      const test::GltfTruth truth(*baked.before, 0);
+      const std::vector<test::Vector> base = truth.normals_at({0, 0});
+      for (const float weight : {0.2F, 0.3F, 0.4F, 0.0F}) {
+        const double w = static_cast<double>(weight);
+        const std::vector<test::Vector> exact = truth.normals_at({w, w});
+        for (std::size_t v = 0; v < kVertices; ++v) {
+          const test::Vector right = test::GltfTruth::turn(base[v], truth.vertices[v].stored, test::unit_of(exact[v]));
+          const test::Vector shown =
+              baked.before->shown(baked.before->json["meshes"][0]["primitives"][0], v, {weight, weight});
+          const auto seen = [&](const test::Vector& n) {
+            return carried(rule, skin_of(false), {flat.rows(), Trs().rows()}, v, n);
+          };
+          error.add(static_cast<double>(test::degrees_between(seen(shown), seen(right))));
+        }
+      }
+      EXPECT_EQ(before.played.judged, error.judged);
+      mean = std::max(mean, error.mean());
+      worst = std::max(worst, error.worst);
+    }
+    EXPECT_NEAR(before.played.mean, mean, 1e-4);
+    EXPECT_NEAR(before.played.worst, worst, 1e-4);
+  }
+}
+
+TEST(BakeSkin, tolerance_holds_in_each_host_in_its_own_way) {
+  // What flattens for one host raises for the other.
+  const Trs high = scaled(1, 1, 4);
+  GltfBuilder builder = played_hills(2, {0, 0.2F});
+  add_skin(builder, skin_of(false), high);
+  const Baked three = test::bake_document(builder, smallest(kTolerance, {kThree}));
+  const Baked bevy = test::bake_document(builder, smallest(kTolerance, {kBevy}));
+  EXPECT_LT(seen_error(three, skin_of(false), standing(high)).worst, 1.02 * kTolerance);
+  EXPECT_LT(seen_error(bevy, skin_of(false), standing(high), Carry::kInverseTranspose).worst, 1.02 * kTolerance);
+  EXPECT_GT(seen_error(three, skin_of(false), standing(high), Carry::kInverseTranspose).worst, 1.2 * kTolerance);
+}
+
+// What was looked at, and what became of the deltas.
+std::string choices_of(const Baked& baked) {
+  std::string text;
+  for (const BakeChoice& c : baked.report.meshes.at(0).choices)
+    text += std::string(c.form) + " " + std::to_string(c.targets) + " " + std::to_string(c.bytes) + " " +
+            std::to_string(c.played.judged) + " " + std::to_string(c.played.mean) + " " + std::to_string(c.chosen) +
+            "\n";
+  for (const auto& target : baked.mesh()["primitives"][0]["targets"])
+    for (const float c : baked.numbers(target["NORMAL"])) text += std::to_string(c) + " ";
+  return text + std::to_string(baked.report.added_bytes);
+}
+
+TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
+  const Baked without = test::bake_document(played_hills(2, {0, 0.4F}), smallest());
+  ASSERT_TRUE(without.ok());
+  Trs even;
+  even.translation = {1, 2, 3};
+  even.rotation = {0.6, 0, 0, 0.8};
+  even.scale = {0.01, 0.01, 0.01};
+  Skin two = skin_of(false);  // rows of vertices that follow one joint or the other
+  for (std::size_t v = 0; v < kVertices; ++v) two.joints[0][4 * v] = static_cast<std::uint8_t>(v / kSide % 2);
+  GltfBuilder builder = played_hills(2, {0, 0.4F});
+  add_skin(builder, two, even);
+  const std::size_t input = builder.add_accessor("SCALAR", std::vector<float>{0, 0.3F, 1}),
+                    output = builder.add_accessor("VEC4", std::vector<float>{0, 0, 0, 1, 1, 0, 0, 0, 0.6F, 0, 0.8F, 0});
+  builder.json["animations"][0]["channels"].push_back(
+      {{"sampler", 1}, {"target", {{"node", 2}, {"path", "rotation"}}}});
+  builder.json["animations"][0]["samplers"].push_back({{"input", input}, {"output", output}});
+  EXPECT_EQ(choices_of(test::bake_document(builder, smallest())), choices_of(without));
+  // Nor does a skin that cannot be read.
+  builder.json["nodes"][1]["scale"] = {1, 1, 0.1};
+  EXPECT_NE(choices_of(test::bake_document(builder, smallest())), choices_of(without));
+  builder.json["skins"][0]["joints"] = {1, 17};
+  EXPECT_EQ(choices_of(test::bake_document(builder, smallest())), choices_of(without));
+}
+
+TEST(BakeSkin, each_node_that_a_track_drives_is_seen_through_its_own_skin) {
+  // Node 0 has no skin, and node 3 has one that flattens: both keep the tolerance.
+  const Trs flat = scaled(1, 1, 0.25);
+  GltfBuilder builder = played_hills(2, {0, 0.2F});
+  add_skin(builder, skin_of(false), flat);
+  builder.json["nodes"][0].erase("skin");
+  builder.add_node(0, {{"skin", 0}});
+  Json channel = builder.json["animations"][0]["channels"][0];
+  channel["target"]["node"] = 3;
+  builder.json["animations"][0]["channels"].push_back(channel);
+  const Baked baked = test::bake_document(builder, smallest());
+  ASSERT_TRUE(baked.ok()) << baked.error;
+  EXPECT_LT(seen_error(baked, skin_of(false), standing(flat)).worst, 1.02 * kTolerance);
+  EXPECT_LT(seen_error(baked, skin_of(false), standing({})).worst, 1.02 * kTolerance);
+  EXPECT_TRUE(chosen(baked).within);
+  // Where the joint raises, more is seen of the node without a skin.
+  builder.json["nodes"][1]["scale"] = {1, 1, 8};
+  const Baked raised = test::bake_document(builder, smallest());
+  EXPECT_LT(seen_error(raised, skin_of(false), standing({})).worst, 1.02 * kTolerance);
+}
+
+TEST(BakeSkin, targets_without_an_animation_are_seen_in_the_pose_of_the_file) {
+  const Trs flat = scaled(1, 1, 0.2);
+  GltfBuilder builder = test::still_hills_document(1, 3);
+  const Baked without = test::bake_document(builder, smallest(4));
+  add_skin(builder, skin_of(false), flat);
+  const Baked baked = test::bake_document(builder, smallest(4));
+  ASSERT_TRUE(baked.ok() && without.ok());
+  EXPECT_TRUE(chosen(baked).skinned);
+  EXPECT_GT(chosen(baked).played.worst, 1.5 * chosen(without).played.worst);
+  builder.json["nodes"][1]["scale"] = {3, 3, 3};
+  EXPECT_FALSE(chosen(test::bake_document(builder, smallest(4))).skinned);
+}
+
+TEST(BakeSkin, says_where_the_skin_leaves_no_form_within) {
+  GltfBuilder builder = played_hills(2, {0, 0.2F});
+  BakeOptions options = smallest(2);
+  options.most_targets = kTargets;
+  const Baked without = test::bake_document(builder, options);
+  EXPECT_TRUE(chosen(without).within) << chosen(without).played.worst;
+  add_skin(builder, skin_of(false), scaled(1, 1, 0.1));
+  const Baked baked = test::bake_document(builder, options);
+  ASSERT_TRUE(baked.ok()) << baked.error;
+  EXPECT_FALSE(chosen(baked).within) << chosen(baked).played.worst;
+  ASSERT_FALSE(baked.report.warnings.empty());
+  EXPECT_NE(baked.report.warnings.front().find("is within 2 degrees throughout, as its skin shows it, and the nearest"),
+            std::string::npos)
+      << baked.report.warnings.front();
+  const auto& choices = baked.report.meshes[0].choices;
+  EXPECT_EQ(std::count_if(choices.begin(), choices.end(), [](const BakeChoice& c) { return c.chosen; }), 1);
+}
+
+TEST(BakeSkin, file_that_was_baked_before_is_judged_behind_its_skin) {
+  GltfBuilder builder = played_hills(2, {0, 0.2F});
+  add_skin(builder, skin_of(false), scaled(1, 1, 0.25));
+  const Baked once = test::bake_document(builder, smallest());
+  ASSERT_TRUE(once.ok()) << once.error;
+  const Baked again = test::bake_bytes(once.bytes, smallest());
+  ASSERT_TRUE(again.report.meshes.at(0).already_baked);
+  EXPECT_NEAR(chosen(again).played.worst, chosen(once).played.worst, 0.02 * chosen(once).played.worst);
+  EXPECT_TRUE(chosen(again).within);
+}
+
+}  // namespace
+}  // namespace chronormal::bake_skin_test
