@@ -11,6 +11,7 @@
 
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/hosts.h"
+#include "tests/support/audit_fixture.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/gltf_builder.h"
@@ -20,6 +21,7 @@
 namespace chronormal::audit_hosts_test {
 namespace {
 
+using test::audit_of;
 using test::GltfBuilder;
 using test::Real;
 using test::ShadedMesh;
@@ -27,13 +29,6 @@ using test::Triple;
 using test::Vector;
 
 std::vector<Host> all_hosts() { return {kHosts.begin(), kHosts.end()}; }
-
-Audit audit_of(const GltfBuilder& builder, const AuditOptions& options) {
-  const test::GltfFixture file(builder);
-  Result<Audit> result = audit(*file, options);
-  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().text());
-  return result.ok() ? std::move(result).value() : Audit{};
-}
 
 Triple triple(const Vector& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};

@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "chronormal/core/parallel.h"
+#include "tests/support/audit_fixture.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/shaded_mesh.h"
 
 namespace chronormal::audit_test {
 namespace {
 
+using test::audit_of;
 using test::GltfBuilder;
 using test::GltfFixture;
 using test::hinge;
@@ -26,14 +28,6 @@ using test::ShadedMesh;
 using test::Vector;
 using Json = GltfBuilder::Json;
 using Kind = AuditFinding::Kind;
-
-Audit audit_of(const GltfBuilder& builder, const AuditOptions& options = {}) {
-  const GltfFixture fixture(builder);
-  EXPECT_TRUE(fixture.ok()) << fixture.error();
-  Result<Audit> result = audit(*fixture, options);
-  EXPECT_TRUE(result.ok()) << result.error().text();
-  return std::move(result).value();
-}
 
 std::vector<Kind> kinds_of(const Audit& audit) {
   std::vector<Kind> kinds;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,11 +13,14 @@
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/json.h"
+#include "tests/support/audit_fixture.h"
+#include "tests/support/gltf_compressed.h"
 #include "tests/support/skinned_mesh.h"
 
 namespace chronormal::skinned_audit_test {
 namespace {
 
+using test::audit_of;
 using test::GltfBuilder;
 using test::GltfFixture;
 using test::Real;
@@ -29,14 +33,6 @@ using Json = GltfBuilder::Json;
 using Kind = AuditFinding::Kind;
 
 constexpr std::size_t kSide = 5, kTargets = 2;
-
-Audit audit_of(const GltfBuilder& builder, const AuditOptions& options = {}) {
-  const GltfFixture fixture(builder);
-  EXPECT_TRUE(fixture.ok()) << fixture.error();
-  Result<Audit> result = audit(*fixture, options);
-  EXPECT_TRUE(result.ok()) << result.error().text();
-  return std::move(result).value();
-}
 
 const AuditFinding* find(const Audit& audit, Kind kind) {
   const auto found = std::find_if(audit.findings.begin(), audit.findings.end(),
@@ -431,6 +427,47 @@ TEST(SkinnedAudit, nodes_of_one_mesh_are_judged_each_through_its_own_skin) {
   EXPECT_FALSE(result.subjects[3].skinning);
   EXPECT_LT(result.subjects[4].skinning->worst, 1e-6);
   EXPECT_EQ(find(result, Kind::kSkinned)->count, 2U);
+}
+
+TEST(SkinnedAudit, joints_and_weights_that_draco_holds_give_the_same_figures) {
+  const ShadedMesh mesh = test::random_sheet(9, kSide, kTargets, 0.2);
+  fixtures::Random random(9);
+  test::DracoShares shares;
+  for (std::size_t i = 0; i < 4 * mesh.vertices(); ++i) {
+    shares.joints.push_back(static_cast<std::uint8_t>(random.below(2)));
+    shares.weights.push_back(static_cast<float>(random.uniform(0.1, 0.9)));
+  }
+  const auto add_joints = [](GltfBuilder& builder) {
+    builder.add("nodes", {{"scale", {1, 1, 0.4}}});
+    builder.add("nodes", {{"rotation", {0.6, 0, 0, 0.8}}});
+  };
+  GltfBuilder plain = mesh.file();
+  add_joints(plain);
+  Skin skin;
+  skin.joints = {shares.joints};
+  skin.weights = {shares.weights};
+  skin.add_to(plain, {1, 2});
+
+  GltfBuilder compressed;
+  std::vector<Json> targets;
+  for (const ShadedMesh::Target& target : mesh.targets)
+    targets.push_back({{"POSITION", compressed.add_positions(target.positions)},
+                       {"NORMAL", compressed.add_positions(target.normals)}});
+  const std::string coded =
+      test::draco_mesh(mesh.positions, mesh.corners, test::DracoOrder::kKept, mesh.normals, 0, shares);
+  Json primitive = test::draco_primitive(compressed, coded, mesh.vertices(), mesh.corners.size(), true, targets);
+  for (const auto& [key, id, type] : {std::tuple("JOINTS_0", 2, 5121), {"WEIGHTS_0", 3, 5126}}) {
+    primitive["attributes"][key] = compressed.add_accessor_over(std::nullopt, "VEC4", type, mesh.vertices());
+    primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"][key] = id;
+  }
+  compressed.add_node(compressed.add_mesh(primitive), {{"skin", 0}});
+  add_joints(compressed);
+  compressed.add("skins", {{"joints", {1, 2}}});
+
+  const Audit result = audit_of(compressed);
+  EXPECT_EQ(figures(result), figures(audit_of(plain)));
+  EXPECT_NE(figures(result), figures(audit_of(compressed, {.skins = false})));
+  EXPECT_EQ(find(result, Kind::kUnreadSkin), nullptr);
 }
 
 // ---- skins that cannot be read

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "chronormal/workflow/audit.h"
+#include "tests/support/audit_fixture.h"
 #include "tests/support/bake_fixture.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/gltf_builder.h"
@@ -20,6 +21,7 @@
 namespace chronormal::authored_weighting_test {
 namespace {
 
+using test::audit_of;
 using test::GltfBuilder;
 using test::GltfFixture;
 using test::ShadedMesh;
@@ -69,14 +71,6 @@ ShadedMesh sheet(const std::string& weighting, std::uint64_t seed = 1, std::size
   mesh.targets.emplace_back().positions.resize(mesh.positions.size());
   mesh.targets[0].positions.back() = 1;
   return mesh;
-}
-
-Audit audit_of(const GltfBuilder& builder, const AuditOptions& options = {}) {
-  const GltfFixture fixture(builder);
-  EXPECT_TRUE(fixture.ok()) << fixture.error();
-  Result<Audit> result = audit(*fixture, options);
-  EXPECT_TRUE(result.ok()) << result.error().text();
-  return std::move(result).value();
 }
 
 std::string_view detected_in(const ShadedMesh& mesh) {
