@@ -42,6 +42,8 @@ class GltfSkin {
   [[nodiscard]] Status read_shares(const GltfDocument& document, std::size_t mesh, std::size_t primitive,
                                    std::vector<std::size_t>& first, std::vector<JointShare>& shares) const;
 
+  [[nodiscard]] std::size_t joint_count() const noexcept { return joints_.size(); }
+
   /// Whether the joints move in the animation.
   [[nodiscard]] bool moves() const noexcept { return !curves_.empty(); }
 

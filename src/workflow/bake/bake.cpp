@@ -218,7 +218,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   if (Status status = writer.write_base(base.is_replaced, base.normals); !status) return status;
 
   const DeltaSource source{shading, terms, plan, base.normals.empty() ? shading.normals : base.normals};
-  if (plan.encoding == BakeEncoding::kSmallest)
+  if (plan.encoding != BakeEncoding::kExact)
     read_skins(document, shading, judged_vertices(source, stored_deltas(shading)), weights.value());
   BakeOptions within = options;
   within.progress = course.of_choice();

@@ -13,15 +13,10 @@ namespace {
 // Pairs of a vertex and an instant at which a skin is looked at, and the fewest instants.
 constexpr std::size_t kLookedAtPairs = 10000000, kFewestInstants = 64;
 
-// The skin of a node, where it does more than turn and scale these vertices evenly while a track is played; nothing where
-// it does not, or cannot be read.
-std::optional<MeshSkin> uneven_skin(const GltfDocument& document, const GltfShading& shading, std::size_t node,
-                                    std::size_t animation, const WeightTrack& track,
-                                    std::span<const std::uint32_t> vertices) {
-  Result<MeshSkin> skin = MeshSkin::read(document, shading, node, animation);
-  if (!skin) return std::nullopt;
+// Whether a skin does more than turn and scale these vertices evenly while a track is played.
+bool is_uneven(MeshSkin skin, const WeightTrack& track, std::span<const std::uint32_t> vertices) {
   std::vector<double> times;
-  const std::vector<double> keys = keys_of_both(track, skin.value());
+  const std::vector<double> keys = keys_of_both(track, skin);
   for (std::size_t k = 0; k < keys.size(); ++k) {
     if (k > 0) times.push_back((keys[k - 1] + keys[k]) / 2);
     times.push_back(keys[k]);
@@ -29,10 +24,10 @@ std::optional<MeshSkin> uneven_skin(const GltfDocument& document, const GltfShad
   const std::size_t most = std::max(kFewestInstants, kLookedAtPairs / std::max<std::size_t>(1, vertices.size()));
   const std::size_t count = std::min(most, times.size());
   for (std::size_t n = 0; n < count; ++n) {
-    const bool may_have_moved = skin.value().pose(times[n * times.size() / count], false);
-    if ((n == 0 || may_have_moved) && !skin.value().is_even(vertices)) return std::move(skin).value();
+    const bool may_have_moved = skin.pose(times[n * times.size() / count], false);
+    if ((n == 0 || may_have_moved) && !skin.is_even(vertices)) return true;
   }
-  return std::nullopt;
+  return false;
 }
 
 }  // namespace
@@ -49,6 +44,13 @@ std::vector<double> keys_of_both(const WeightTrack& track, const MeshSkin& skin)
 void read_skins(const GltfDocument& document, const GltfShading& shading, std::span<const std::uint32_t> vertices,
                 MeshWeights& weights) {
   const std::vector<GltfNode>& nodes = document.nodes();
+  std::optional<MeshSkin> any;  // that was read
+  const auto read = [&](std::size_t node, std::optional<std::size_t> animation) -> std::optional<MeshSkin> {
+    Result<MeshSkin> skin = MeshSkin::read(document, shading, node, animation, any ? &*any : nullptr);
+    if (!skin) return std::nullopt;
+    if (!any) any = skin.value();
+    return std::move(skin).value();
+  };
   for (std::size_t t = 0; t < weights.tracks.size(); ++t) {
     const auto& [animation, keys] = weights.names[t];
     std::vector<std::optional<MeshSkin>>& skins = weights.skins.of_tracks.emplace_back();
@@ -60,7 +62,8 @@ void read_skins(const GltfDocument& document, const GltfShading& shading, std::s
       std::optional<MeshSkin> skin;
       if (node.has_skin) {
         if (!known.insert(node.skin).second) continue;
-        skin = uneven_skin(document, shading, track.node, animation, weights.tracks[t], vertices);
+        skin = read(track.node, animation);
+        if (skin && !is_uneven(*skin, weights.tracks[t], vertices)) skin.reset();
       }
       if (skin)
         skins.push_back(std::move(skin));
@@ -73,9 +76,8 @@ void read_skins(const GltfDocument& document, const GltfShading& shading, std::s
   const auto first = std::find_if(nodes.begin(), nodes.end(),
                                   [&](const GltfNode& node) { return node.has_skin && node.mesh == shading.mesh; });
   if (first == nodes.end()) return;
-  Result<MeshSkin> skin =
-      MeshSkin::read(document, shading, static_cast<std::size_t>(first - nodes.begin()), std::nullopt);
-  if (skin && !skin.value().is_even(vertices)) weights.skins.standing = std::move(skin).value();
+  std::optional<MeshSkin> skin = read(static_cast<std::size_t>(first - nodes.begin()), std::nullopt);
+  if (skin && !skin->is_even(vertices)) weights.skins.standing = std::move(skin);
 }
 
 }  // namespace chronormal::inline internal

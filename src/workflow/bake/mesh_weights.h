@@ -29,6 +29,8 @@ struct MeshSkins {
   std::optional<MeshSkin> standing;  ///< of the first node that has a skin, as the file poses it
 
   [[nodiscard]] bool any() const;
+  /// That of targets alone, and of all else that no animation plays; nullptr: none.
+  [[nodiscard]] const MeshSkin* as_standing() const { return standing ? &*standing : nullptr; }
 };
 
 struct MeshWeights {
@@ -40,7 +42,7 @@ struct MeshWeights {
   WeightUse use;
   bool is_driven = false;       ///< an animation gives some moving target a weight
   std::optional<RigPoses> rig;  ///< where nothing drives it and a bake looks for extra targets: what it is made for
-  MeshSkins skins = {};         ///< read_skins() reads them
+  MeshSkins skins = {};         ///< once read_skins() has read them
 };
 
 /// Reads them. Tracks with the same keys, which drive the mesh through several nodes, count once. Errors: of

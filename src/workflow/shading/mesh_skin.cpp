@@ -28,21 +28,24 @@ bool keeps_angles(const std::array<Vec3d, 3>& columns) {
 }  // namespace
 
 Result<MeshSkin> MeshSkin::read(const GltfDocument& document, const GltfShading& shading, std::size_t node,
-                                std::optional<std::size_t> animation) {
+                                std::optional<std::size_t> animation, const MeshSkin* of_same_mesh) {
   Result<GltfSkin> skin = GltfSkin::read(document, node, animation);
   if (!skin) return skin.error();
-  const auto read = std::make_shared<Read>(Read{std::move(skin).value()});
+  if (of_same_mesh != nullptr && of_same_mesh->shares_->joints <= skin.value().joint_count())
+    return MeshSkin(std::move(skin).value(), of_same_mesh->shares_);
+  const auto shares = std::make_shared<Shares>();
   for (const GltfPart& part : shading.parts) {
-    const Status status = read->skin.read_shares(document, shading.mesh, part.primitive, read->first, read->shares);
+    const Status status = skin.value().read_shares(document, shading.mesh, part.primitive, shares->first, shares->all);
     if (!status) return status.error();
   }
-  read->first.push_back(read->shares.size());
-  return MeshSkin(read);
+  shares->first.push_back(shares->all.size());
+  for (const JointShare& share : shares->all) shares->joints = std::max(shares->joints, std::size_t{share.joint} + 1);
+  return MeshSkin(std::move(skin).value(), shares);
 }
 
 bool MeshSkin::pose(double time, bool just_before) {
   if (!moves()) return false;
-  matrices_ = read_->skin.pose(time, just_before);
+  matrices_ = skin_->pose(time, just_before);
   return true;
 }
 
@@ -56,9 +59,9 @@ bool MeshSkin::is_even(std::span<const std::uint32_t> vertices) const {
 
 AffineTransform MeshSkin::of_vertex(std::size_t vertex) const noexcept {
   AffineTransform sum{{Vec3d{}, Vec3d{}, Vec3d{}}, {}};
-  for (std::size_t i = read_->first[vertex]; i < read_->first[vertex + 1]; ++i) {
-    const AffineTransform& matrix = matrices_[read_->shares[i].joint];
-    const double share = read_->shares[i].share;
+  for (std::size_t i = shares_->first[vertex]; i < shares_->first[vertex + 1]; ++i) {
+    const AffineTransform& matrix = matrices_[shares_->all[i].joint];
+    const double share = shares_->all[i].share;
     for (std::size_t c = 0; c < 3; ++c) sum.columns[c] = sum.columns[c] + share * matrix.columns[c];
     sum.offset = sum.offset + share * matrix.offset;
   }
@@ -71,10 +74,10 @@ Vec3d MeshSkin::carried(SkinRule rule, std::size_t vertex, const AffineTransform
   if (rule == SkinRule::kBlended)
     return unit(normal.x * matrix.columns[0] + normal.y * matrix.columns[1] + normal.z * matrix.columns[2]);
   Vec3d sum;
-  for (std::size_t i = read_->first[vertex]; i < read_->first[vertex + 1]; ++i) {
-    const NormalMatrix of_joint = normal_matrix(matrices_[read_->shares[i].joint]);
+  for (std::size_t i = shares_->first[vertex]; i < shares_->first[vertex + 1]; ++i) {
+    const NormalMatrix of_joint = normal_matrix(matrices_[shares_->all[i].joint]);
     // The cofactors themselves look to the other side where the joint mirrors.
-    sum = sum + (of_joint.mirrored ? -read_->shares[i].share : read_->shares[i].share) * unit(of_joint(normal));
+    sum = sum + (of_joint.mirrored ? -shares_->all[i].share : shares_->all[i].share) * unit(of_joint(normal));
   }
   return unit(sum);
 }

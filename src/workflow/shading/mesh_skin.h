@@ -31,19 +31,21 @@ namespace chronormal::inline internal {
 
 class MeshSkin {
  public:
-  /// Reads what the skin of a node does to the mesh of the shading, and poses it as the file has it. Errors: of GltfSkin
+  /// Reads what the skin of a node does to the mesh of the shading, and poses it as the file has it. What a skin knows of
+  /// the vertices of the same mesh is not read again. Errors: of GltfSkin
   [[nodiscard]] static Result<MeshSkin> read(const GltfDocument& document, const GltfShading& shading, std::size_t node,
-                                             std::optional<std::size_t> animation);
+                                             std::optional<std::size_t> animation,
+                                             const MeshSkin* of_same_mesh = nullptr);
 
   /// Poses the joints as they are at a time; where they jump, just after it or just before it. Returns whether that may
   /// have moved anything.
   bool pose(double time, bool just_before);
 
   /// Whether the joints move in the animation.
-  [[nodiscard]] bool moves() const noexcept { return read_->skin.moves(); }
+  [[nodiscard]] bool moves() const noexcept { return skin_->moves(); }
 
   /// The times of all keys by which joints move, ascending.
-  [[nodiscard]] std::vector<double> key_times() const { return read_->skin.key_times(); }
+  [[nodiscard]] std::vector<double> key_times() const { return skin_->key_times(); }
 
   /// Whether the blended matrices of these vertices turn and scale evenly in this pose, each for itself, but for what is
   /// too fine to matter: then they keep the angle between any two normals of a vertex.
@@ -58,15 +60,20 @@ class MeshSkin {
                               const Vec3d& normal) const noexcept;
 
  private:
-  struct Read {
-    GltfSkin skin;
-    std::vector<std::size_t> first = {};  // (V + 1)
-    std::vector<JointShare> shares = {};
+  // Which joints each vertex follows, whatever nodes these are.
+  struct Shares {
+    std::vector<std::size_t> first;  // (V + 1)
+    std::vector<JointShare> all;
+    std::size_t joints = 0;  // that a skin must have at least
   };
 
-  explicit MeshSkin(std::shared_ptr<const Read> read) : read_(std::move(read)), matrices_(read_->skin.pose(0, false)) {}
+  MeshSkin(GltfSkin skin, std::shared_ptr<const Shares> shares)
+      : skin_(std::make_shared<const GltfSkin>(std::move(skin))),
+        shares_(std::move(shares)),
+        matrices_(skin_->pose(0, false)) {}
 
-  std::shared_ptr<const Read> read_;
+  std::shared_ptr<const GltfSkin> skin_;
+  std::shared_ptr<const Shares> shares_;
   std::vector<AffineTransform> matrices_;  // of joints
 };
 

@@ -78,6 +78,16 @@ void add_skin(GltfBuilder& builder, const Skin& skin, const Trs& one, const Trs&
   skin.add_to(builder, {1, 2});
 }
 
+// A channel that turns joint 1.
+void add_turns(GltfBuilder& builder, const std::vector<float>& times, const std::vector<float>& turns,
+               const char* interpolation = "LINEAR") {
+  const std::size_t input = builder.add_accessor("SCALAR", times), output = builder.add_accessor("VEC4", turns);
+  Json& animation = builder.json["animations"][0];
+  animation["channels"].push_back(
+      {{"sampler", animation["samplers"].size()}, {"target", {{"node", 2}, {"path", "rotation"}}}});
+  animation["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", interpolation}});
+}
+
 Trs scaled(Real x, Real y, Real z) {
   Trs place;
   place.scale = {x, y, z};
@@ -137,7 +147,7 @@ TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
     const test::ShownError seen = seen_error(baked, skin_of(false), standing(flat));
     EXPECT_LT(seen.worst, 1.02 * c.tolerance);
     EXPECT_TRUE(chosen(baked).within);
-    EXPECT_NEAR(chosen(baked).played.worst, seen.worst, 0.02 * seen.worst + 1e-4);
+    EXPECT_NEAR(chosen(baked).played.worst, seen.worst, 0.04 * seen.worst + 1e-4);
     EXPECT_GE(chosen(baked).bytes, chosen(without).bytes);
     EXPECT_TRUE(baked.report.warnings.empty()) << baked.report.warnings.front();
   }
@@ -160,22 +170,21 @@ TEST(BakeSkin, tolerance_holds_where_the_joints_bend_while_the_weights_rest) {
     std::vector<float> turns;
     for (const double angle : {0.0, kMost, 0.0})
       for (const Real c : turned(angle).rotation) turns.push_back(static_cast<float>(c));
-    Json& animation = builder.json["animations"][0];
-    const std::size_t input = builder.add_accessor("SCALAR", times), output = builder.add_accessor("VEC4", turns);
-    Json& samplers = builder.json["animations"][0]["samplers"];
-    builder.json["animations"][0]["channels"].push_back(
-        {{"sampler", samplers.size()}, {"target", {{"node", 2}, {"path", "rotation"}}}});
-    samplers.push_back({{"input", input}, {"output", output}});
-    ASSERT_EQ(animation["channels"].size(), 2U);
+    add_turns(builder, times, turns);
     const World world = [&](double time) {
       const double away = std::max(0.0, 1 - std::fabs(time - 1.42) / 0.04);
       return std::vector<Rows>{Trs().rows(), turned(kMost * away).rows()};
     };
-    const Baked baked = test::bake_document(builder, smallest());
-    ASSERT_TRUE(baked.ok()) << baked.error;
     EXPECT_GT(seen_error(without, skin, world).worst, 1.2 * kTolerance) << seed;
-    EXPECT_LT(seen_error(baked, skin, world).worst, 1.05 * kTolerance) << seed;
-    EXPECT_TRUE(chosen(baked).within);
+    const Host filament = find_hosts("filament").value()[0];
+    for (const auto& [host, rule] : {std::pair(kThree, Carry::kBlended), {filament, Carry::kByJoint}}) {
+      const Baked baked = test::bake_document(builder, smallest(kTolerance, {host}));
+      ASSERT_TRUE(baked.ok()) << baked.error;
+      const test::ShownError seen = seen_error(baked, skin, world, rule);
+      EXPECT_LT(seen.worst, 1.05 * std::max(kTolerance, chosen(baked).played.worst)) << seed << host.title;
+      EXPECT_NEAR(chosen(baked).played.worst, seen.worst, 0.05 * seen.worst) << seed << host.title;
+      EXPECT_TRUE(chosen(baked).within || !(host == kThree));
+    }
   }
 }
 
@@ -219,6 +228,42 @@ TEST(BakeSkin, figures_of_forms_are_those_of_the_oracle_behind_the_skin) {
   }
 }
 
+TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_rule) {
+  const std::vector<float> weights = {0.1F, 0.2F, 0.4F};
+  std::vector<std::vector<Rows>> worlds;  // at the keys
+  std::vector<float> turns;
+  for (const double degrees : {0.0, 70.0, 140.0}) {
+    Trs turned;
+    const double half = degrees / 360 * std::numbers::pi;
+    turned.rotation = {0, std::sin(half), 0, std::cos(half)};
+    worlds.push_back({Trs().rows(), turned.rows()});
+    for (const Real c : turned.rotation) turns.push_back(static_cast<float>(c));
+  }
+  GltfBuilder builder = played_hills(4, weights, "STEP");
+  const Skin skin = skin_of(true);
+  add_skin(builder, skin, {});
+  add_turns(builder, {0, 1, 2}, turns, "STEP");
+  for (const auto& [name, rule] :
+       {std::pair("three", Carry::kBlended), {"bevy", Carry::kInverseTranspose}, {"filament", Carry::kByJoint}}) {
+    const Baked baked = test::bake_document(builder, smallest(kTolerance, find_hosts(name).value()));
+    ASSERT_TRUE(baked.ok()) << baked.error;
+    const test::GltfTruth truth(*baked.before, 0);
+    const std::vector<test::Vector> base = truth.normals_at({0, 0});
+    double worst = 0;
+    for (std::size_t key = 0; key < 3; ++key) {
+      const double w = static_cast<double>(weights[key]);
+      const std::vector<test::Vector> exact = truth.normals_at({w, w});
+      for (std::size_t v = 0; v < kVertices; ++v) {
+        const test::Vector& stored = truth.vertices[v].stored;
+        const test::Vector right = test::GltfTruth::turn(base[v], stored, test::unit_of(exact[v]));
+        const auto seen = [&](const test::Vector& n) { return carried(rule, skin, worlds[key], v, n); };
+        worst = std::max(worst, static_cast<double>(test::degrees_between(seen(stored), seen(right))));
+      }
+    }
+    EXPECT_NEAR(baked.report.meshes[0].choices.front().played.worst, worst, 1e-3) << name;
+  }
+}
+
 TEST(BakeSkin, tolerance_holds_in_each_host_in_its_own_way) {
   // What flattens for one host raises for the other.
   const Trs high = scaled(1, 1, 4);
@@ -229,6 +274,28 @@ TEST(BakeSkin, tolerance_holds_in_each_host_in_its_own_way) {
   EXPECT_LT(seen_error(three, skin_of(false), standing(high)).worst, 1.02 * kTolerance);
   EXPECT_LT(seen_error(bevy, skin_of(false), standing(high), Carry::kInverseTranspose).worst, 1.02 * kTolerance);
   EXPECT_GT(seen_error(three, skin_of(false), standing(high), Carry::kInverseTranspose).worst, 1.2 * kTolerance);
+}
+
+TEST(BakeSkin, what_hosts_show_before_and_after_is_seen_in_their_own_ways) {
+  // The inverse transpose of what lowers is what raises.
+  const auto hosts_of = [](Real height, const std::vector<Host>& hosts) {
+    GltfBuilder builder = played_hills(3, {0, 0.4F});
+    add_skin(builder, skin_of(false), scaled(1, 1, height));
+    BakeOptions options = smallest(kTolerance, hosts);
+    options.encoding = BakeEncoding::kEndpoint;
+    return test::bake_document(builder, options).report.meshes.at(0).hosts;
+  };
+  const std::vector<HostChange> both = hosts_of(0.25, {kThree, kBevy});
+  const HostChange raised = hosts_of(4, {kThree}).at(0), even = hosts_of(1, {kThree}).at(0);
+  ASSERT_EQ(both.size(), 2U);
+  for (std::size_t kind = 0; kind < 2; ++kind) {  // of the file, and at random
+    const ShownErrors &lowered = both[0].poses[kind].before, &bevy = both[1].poses[kind].before;
+    EXPECT_GT(even.poses[kind].before.judged, 0U);
+    EXPECT_GT(lowered.mean, 1.2 * even.poses[kind].before.mean);
+    EXPECT_NEAR(bevy.mean, raised.poses[kind].before.mean, 1e-3);
+    EXPECT_NEAR(bevy.worst, raised.poses[kind].before.worst, 1e-3);
+    EXPECT_LT(bevy.mean, even.poses[kind].before.mean);
+  }
 }
 
 // What was looked at, and what became of the deltas.
@@ -254,11 +321,7 @@ TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
   for (std::size_t v = 0; v < kVertices; ++v) two.joints[0][4 * v] = static_cast<std::uint8_t>(v / kSide % 2);
   GltfBuilder builder = played_hills(2, {0, 0.4F});
   add_skin(builder, two, even);
-  const std::size_t input = builder.add_accessor("SCALAR", std::vector<float>{0, 0.3F, 1}),
-                    output = builder.add_accessor("VEC4", std::vector<float>{0, 0, 0, 1, 1, 0, 0, 0, 0.6F, 0, 0.8F, 0});
-  builder.json["animations"][0]["channels"].push_back(
-      {{"sampler", 1}, {"target", {{"node", 2}, {"path", "rotation"}}}});
-  builder.json["animations"][0]["samplers"].push_back({{"input", input}, {"output", output}});
+  add_turns(builder, {0, 0.3F, 1}, {0, 0, 0, 1, 1, 0, 0, 0, 0.6F, 0, 0.8F, 0});
   EXPECT_EQ(choices_of(test::bake_document(builder, smallest())), choices_of(without));
   // Nor does a skin that cannot be read.
   builder.json["nodes"][1]["scale"] = {1, 1, 0.1};
@@ -288,6 +351,18 @@ TEST(BakeSkin, each_node_that_a_track_drives_is_seen_through_its_own_skin) {
   EXPECT_LT(seen_error(raised, skin_of(false), standing({})).worst, 1.02 * kTolerance);
 }
 
+TEST(BakeSkin, skin_with_too_few_joints_is_not_read_whatever_another_skin_of_the_mesh_has) {
+  GltfBuilder builder = played_hills(2, {0, 0.2F});
+  add_skin(builder, skin_of(true), scaled(1, 1, 0.25));
+  builder.add_node(0, {{"skin", builder.add("skins", {{"joints", {2}}})}});
+  Json channel = builder.json["animations"][0]["channels"][0];
+  channel["target"]["node"] = 3;
+  builder.json["animations"][0]["channels"].push_back(channel);
+  const Baked baked = test::bake_document(builder, smallest());
+  builder.json["nodes"][3].erase("skin");
+  EXPECT_EQ(choices_of(baked), choices_of(test::bake_document(builder, smallest())));
+}
+
 TEST(BakeSkin, targets_without_an_animation_are_seen_in_the_pose_of_the_file) {
   const Trs flat = scaled(1, 1, 0.2);
   GltfBuilder builder = test::still_hills_document(1, 3);
@@ -299,6 +374,56 @@ TEST(BakeSkin, targets_without_an_animation_are_seen_in_the_pose_of_the_file) {
   EXPECT_GT(chosen(baked).played.worst, 1.5 * chosen(without).played.worst);
   builder.json["nodes"][1]["scale"] = {3, 3, 3};
   EXPECT_FALSE(chosen(test::bake_document(builder, smallest(4))).skinned);
+}
+
+TEST(BakeSkin, no_normal_gets_worse_behind_the_skin) {
+  // Deltas of the file are right but for noise, so that for some vertices a better one before skinning is worse after it.
+  const Trs flat = scaled(1, 1, 0.1);
+  for (const BakeEncoding encoding : {BakeEncoding::kEndpoint, BakeEncoding::kHarmless, BakeEncoding::kSmallest}) {
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      GltfBuilder builder = played_hills(seed, {0, 1});
+      const test::GltfPlayer player(builder.glb());
+      const test::GltfTruth truth(player, 0);
+      const std::vector<test::Vector> base = truth.normals_at({0, 0});
+      test::Hills noise(seed + 50);
+      for (std::size_t k = 0; k < kTargets; ++k) {
+        const std::vector<test::Vector> end = truth.normals_at({k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0});
+        std::vector<float> deltas;
+        for (std::size_t v = 0; v < kVertices; ++v) {
+          const test::Vector right = test::unit_of(test::GltfTruth::turn(base[v], truth.vertices[v].stored, end[v]));
+          for (std::size_t c = 0; c < 3; ++c)
+            deltas.push_back(static_cast<float>(right[c] - truth.vertices[v].stored[c]) + noise.uniform(-0.1, 0.1));
+        }
+        builder.json["meshes"][0]["primitives"][0]["targets"][k]["NORMAL"] = builder.add_positions(deltas);
+      }
+      add_skin(builder, skin_of(false), flat);
+      BakeOptions options = smallest(0.1);
+      options.encoding = encoding;
+      options.most_targets = kTargets;
+      const Baked baked = test::bake_document(builder, options);
+      ASSERT_TRUE(baked.ok()) << baked.error;
+      std::size_t worse = 0;
+      const std::vector<test::Pose> poses = test::poses_of(*baked.before, *baked.after, 0, 0);
+      for (const test::Pose& pose : poses) {
+        const std::vector<test::Vector> exact = truth.normals_at(pose.before);
+        for (std::size_t v = 0; v < kVertices; ++v) {
+          const auto seen = [&](const test::Vector& n) {
+            return carried(Carry::kBlended, skin_of(false), {flat.rows(), Trs().rows()}, v, n);
+          };
+          const test::Vector right =
+              seen(test::unit_of(test::GltfTruth::turn(base[v], truth.vertices[v].stored, exact[v])));
+          const auto error_of = [&](const test::GltfPlayer& host, const std::vector<float>& weights) {
+            return static_cast<double>(
+                test::degrees_between(seen(host.shown(host.json["meshes"][0]["primitives"][0], v, weights)), right));
+          };
+          const double before = error_of(*baked.before, {pose.before.begin(), pose.before.end()});
+          const double after = error_of(*baked.after, pose.after);
+          if (after > std::max(1.03 * before + 0.1, 0.11)) ++worse;
+        }
+      }
+      EXPECT_EQ(worse, 0U) << name_of(encoding) << " " << seed;
+    }
+  }
 }
 
 TEST(BakeSkin, says_where_the_skin_leaves_no_form_within) {

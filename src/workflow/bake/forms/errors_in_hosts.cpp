@@ -12,8 +12,7 @@ namespace chronormal::inline internal {
 ShownErrors errors_in_hosts(const RightNormals& rights, const GltfShading& shading, std::span<const Host> hosts,
                             std::span<const std::uint32_t> vertices, const VertexColumns& form,
                             std::span<const SeenPose> poses) {
-  const bool is_skinned =
-      std::any_of(poses.begin(), poses.end(), [](const SeenPose& pose) { return pose.skin != nullptr; });
+  const bool is_skinned = any_skinned(poses);
   const auto carry_alike = [&](const Host& a, const Host& b) { return !is_skinned || a.skins == b.skins; };
   std::vector<Host> kinds;
   for (const Host& host : hosts) {

@@ -259,9 +259,10 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
     }
     PoseSet& set = sets.emplace_back();
     set.hosts = {h};
-    add_played_poses(tracks, hosts[h], sampling.between_keys, sampling.phase, sampling.most, set.poses);
+    set.poses = seen_tracks(tracks, weights.skins, hosts[h], sampling.between_keys, sampling.phase, sampling.most);
   }
-  sets.push_back({PoseSet::Kind::kFile, all, extras.standing(weights.poses)});
+  const MeshSkin* const skin = weights.skins.as_standing();
+  sets.push_back({PoseSet::Kind::kFile, all, seen_through(extras.standing(weights.poses), skin)});
   if (sampling.animations_only) return sets;
   const std::vector<std::size_t> changing = changing_targets(shading);
   const std::size_t steps = std::clamp(sampling.most / (changing.size() + 1), kFewestSteps, kMostSteps);
@@ -270,8 +271,8 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t i = changing[n * changing.size() / count];
     if (!numbers[i].empty())
-      sets.push_back(
-          {PoseSet::Kind::kFile, all, alone_poses({&i, 1}, targets, extras, steps, sampling.phase), numbers[i]});
+      sets.push_back({PoseSet::Kind::kFile, all,
+                      seen_through(alone_poses({&i, 1}, targets, extras, steps, sampling.phase), skin), numbers[i]});
   }
   const std::size_t mixed = std::clamp(sampling.most / kPartOfMixed, kFewestMixed, kMostMixed);
   PoseList random;
@@ -281,8 +282,8 @@ std::vector<PoseSet> pose_sets(const GltfShading& shading, const MeshWeights& we
   } else {
     random = random_poses(changing, targets, extras, mixed, sampling.seed);
   }
-  sets.push_back({PoseSet::Kind::kRandom, all, std::move(random), {}});
-  sets.push_back({PoseSet::Kind::kFades, all, cross_fades(tracks, mixed, sampling.seed), {}});
+  sets.push_back({PoseSet::Kind::kRandom, all, seen_through(std::move(random), skin), {}});
+  sets.push_back({PoseSet::Kind::kFades, all, seen_through(cross_fades(tracks, mixed, sampling.seed), skin), {}});
   return sets;
 }
 

@@ -286,7 +286,7 @@ class Choice {
       choice.within = choice.played.worst <= tolerance_;
     }
     if (choice.skinned && is_affordable(choice) && choice.played.worst > tolerance_) {
-      const double before = errors_at(without_skins(weights_of(poses))).worst;
+      const double before = errors_at(seen_through(different_weights_of(poses), nullptr)).worst;
       if (before <= made_within_ && choice.played.worst < missed_.seen) missed_ = {before, choice.played.worst};
     }
     return choice;

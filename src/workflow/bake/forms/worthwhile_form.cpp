@@ -209,8 +209,8 @@ class WorthwhileForms {
     for (const auto& [between, phase] : {std::pair(std::size_t{4}, 0.0), std::pair(std::size_t{3}, 0.37)})
       for (const PoseSet& set :
            pose_sets(source_.shading, weights_, {}, options_.hosts, numbers_, {between, most / 4, phase, kSeed, true}))
-        add_poses(set.poses, source_.plan.is_driven, most / 4);
-    add_poses(weights_of(played_poses(weights_, {}, targets(), most / 4)), true, most / 2);
+        add_poses(different_weights_of(set.poses), source_.plan.is_driven, most / 4);
+    add_poses(different_weights_of(played_poses(weights_, {}, targets(), most / 4)), true, most / 2);
     std::vector<std::size_t> all;
     for (std::size_t i = 0; i < targets(); ++i)
       if (!numbers_[i].empty()) all.push_back(i);

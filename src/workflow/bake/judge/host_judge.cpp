@@ -53,6 +53,16 @@ class Sums {
     }
   }
 
+  // Makes of the sums what is seen of them.
+  void carry(const SkinsInPoses::Vertex& carrying, SkinRule rule) {
+    for (std::size_t p = 0; p < x_.size(); ++p) {
+      const Vec3f seen = to_float(carrying.seen(rule, p, to_double(at(p))));
+      x_[p] = seen.x;
+      y_[p] = seen.y;
+      z_[p] = seen.z;
+    }
+  }
+
   // Writes the angles to the right normals in degrees; negative where one is not known.
   void angles_to(std::span<const Vec3f> right, std::span<float> degrees) {
     across_.resize(right.size());
@@ -269,12 +279,16 @@ std::vector<float> HostJudge::worst(const VertexColumns& form, const PoseList& p
   return result;
 }
 
+bool HostJudge::is_alike(const PoseSet& set, const Host& a, const Host& b) {
+  return shows_alike(a, b) && (a.skins == b.skins || !any_skinned(set.poses));
+}
+
 std::vector<HostJudge::Kind> HostJudge::kinds_of(const PoseSet& set) const {
   std::vector<Kind> kinds;
   for (const std::size_t h : set.hosts) {
     const Host host = judged_as(hosts_[h]);
     const auto known =
-        std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return shows_alike(k.host, host); });
+        std::find_if(kinds.begin(), kinds.end(), [&](const Kind& k) { return is_alike(set, k.host, host); });
     if (known == kinds.end())
       kinds.push_back({host, is_binding_[h]});
     else
@@ -288,7 +302,9 @@ std::vector<HostJudge::Kind> HostJudge::kinds_of(const PoseSet& set) const {
 template <class Visit>
 void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set, std::span<const Kind> kinds,
                         const Visit& visit) const {
-  const std::vector<float> weights = side_by_side(set.poses);
+  const PoseList poses = weights_of(set.poses);
+  const std::vector<float> weights = side_by_side(poses);
+  const SkinsInPoses skins(set.poses);
   std::vector<std::uint32_t> some;
   for (const std::uint32_t n : set.numbers) some.push_back(vertices_[n]);
   const std::span<const std::uint32_t> vertices = some.empty() ? vertices_ : some;
@@ -299,20 +315,29 @@ void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set
     const auto entries = forms[i / vertices.size()].of(some.empty() ? at : set.numbers[at]);
     are_plain[i] = is_plain(to_float(rights_.stored(vertices[at])), entries) ? 1 : 0;
   });
-  rights_.for_each(vertices, set.poses, [&](std::size_t at, std::size_t first, std::span<const Vec3f> right) {
+  rights_.for_each(vertices, poses, [&](std::size_t at, std::size_t first, std::span<const Vec3f> right) {
     thread_local Sums sums;
     thread_local std::vector<float> errors;
+    thread_local std::vector<Vec3f> is_right;
     const std::size_t n = some.empty() ? at : set.numbers[at];
     const Vec3f normal = to_float(rights_.stored(vertices_[n]));
     errors.resize(forms.size() * right.size());
+    const SkinsInPoses::Vertex carrying(skins, vertices_[n], first, right.size());
+    is_right.assign(right.begin(), right.end());
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      const SkinRule rule = kinds[kind].host.skins;
+      const bool carries_as_before = !skins.any() || (kind > 0 && rule == kinds[kind - 1].host.skins);
+      if (!carries_as_before)
+        for (std::size_t p = 0; p < right.size(); ++p)
+          is_right[p] = to_float(carrying.seen(rule, p, to_double(right[p])));
       for (std::size_t f = 0; f < forms.size(); ++f) {
         // Where these show what the kind before showed, it has been added up.
-        const bool is_known = kind > 0 && !is_rounding(kinds[kind].host) && !is_rounding(kinds[kind - 1].host) &&
-                              are_plain[f * vertices.size() + at] != 0;
+        const bool is_known = kind > 0 && carries_as_before && !is_rounding(kinds[kind].host) &&
+                              !is_rounding(kinds[kind - 1].host) && are_plain[f * vertices.size() + at] != 0;
         if (is_known) continue;
         sums.add_up(kinds[kind].host, normal, forms[f].of(n), weights, set.poses.size(), first, right.size());
-        sums.angles_to(right, std::span(errors).subspan(f * right.size(), right.size()));
+        if (skins.any()) sums.carry(carrying, rule);
+        sums.angles_to(is_right, std::span(errors).subspan(f * right.size(), right.size()));
       }
       visit(n, kind, std::span<const float>(errors));
     }
@@ -407,7 +432,7 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
           note_what_makes_worse(gathered.before[kind], gathered.after[kind], tolerance_, noted);
         const Spread then = gathered.before[kind].spread(), now = gathered.after[kind].spread();
         for (const std::size_t h : set.hosts) {
-          if (!shows_alike(judged_as(hosts_[h]), kinds[kind].host)) continue;
+          if (!is_alike(set, judged_as(hosts_[h]), kinds[kind].host)) continue;
           Errors& errors = of_hosts[static_cast<std::size_t>(set.kind)][h];
           errors.before.add(then);
           errors.after.add(now);

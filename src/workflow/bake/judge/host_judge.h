@@ -8,6 +8,8 @@
 ///                compressor adds to either; over mixed poses (random ones, cross-fades) neither the mean nor the worst
 ///                nor that of 99.9 % is above that of the stored form, all vertices together
 ///
+///     error      the angle between what is shown and what is right, both as the skin of the pose carries them in the host
+///
 /// Shapes     n = number of a vertex in the list of those that are judged; columns = the mesh's own targets, then extra
 ///            ones.
 /// Units      degrees.
@@ -24,6 +26,7 @@
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/hosts.h"
 #include "workflow/bake/judge/right_normals.h"
+#include "workflow/bake/judge/seen_pose.h"
 
 namespace chronormal::inline internal {
 
@@ -72,7 +75,7 @@ struct PoseSet {
   enum class Kind { kFile, kRandom, kFades };
   Kind kind = Kind::kFile;
   std::vector<std::size_t> hosts;
-  PoseList poses;
+  std::vector<SeenPose> poses;
   std::vector<std::uint32_t> numbers = {};  ///< of the vertices that these poses move, ascending; none: all of them
 };
 
@@ -109,6 +112,8 @@ class HostJudge {
     Host host;
     bool is_binding = false;
   };
+  // Whether two hosts, as they are judged, show the same in these poses.
+  [[nodiscard]] static bool is_alike(const PoseSet& set, const Host& a, const Host& b);
   [[nodiscard]] std::vector<Kind> kinds_of(const PoseSet& set) const;
   [[nodiscard]] bool is_harmed(float before, float after) const noexcept;
   // Returns whether that changes anything.

@@ -11,30 +11,17 @@
 #include "chronormal/workflow/bake.h"
 #include "workflow/bake/judge/host_judge.h"
 #include "workflow/bake/judge/right_normals.h"
+#include "workflow/bake/judge/seen_pose.h"
 #include "workflow/bake/low_rank/extra_curves.h"
 #include "workflow/bake/mesh_weights.h"
-#include "workflow/shading/mesh_skin.h"
 
 namespace chronormal::inline internal {
-
-/// A pose, and the skin through which it is seen.
-struct SeenPose {
-  std::vector<double> weights;
-  const MeshSkin* skin = nullptr;  ///< nullptr: there is none, or it turns and scales evenly
-  double time = 0;                 ///< of the pose of its joints, where they move
-};
-
-/// Poses that are seen as they are.
-[[nodiscard]] std::vector<SeenPose> without_skins(PoseList poses);
-/// The weights of poses, once where only the joints of a skin move.
-[[nodiscard]] PoseList weights_of(std::span<const SeenPose> poses);
 
 /// Poses between the keys of all tracks, as they will be written with these extra targets, at instants that no form is
 /// fitted or chosen by, and the poses that stand still; where nothing moves a weight, each target alone, at its end
 /// too, where alone a normal may add up to zero, and poses that the rig is made for. No more than `most` of each kind:
-/// of the tracks, those that tell most (telling_keys()), of the others evenly. They
-/// are seen through the skins of weights, which must outlive them, also at the keys of joints and at more instants
-/// between keys.
+/// of the tracks, those that tell most (telling_keys()), of the others evenly. They are
+/// seen through the skins of weights (seen_tracks()), which must outlive them.
 [[nodiscard]] std::vector<SeenPose> played_poses(const MeshWeights& weights, const ExtraDrivers& drivers,
                                                  std::size_t targets, std::size_t most);
 

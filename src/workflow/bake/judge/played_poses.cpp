@@ -5,16 +5,18 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <utility>
 
 #include "workflow/bake/judge/random_numbers.h"
+#include "workflow/bake/mesh_skins.h"
 
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kMostActive = 16, kMostProducts = 24;
+constexpr std::size_t kMostActive = 16, kMostProducts = 24, kBetweenSkinnedKeys = 8;
 
 bool moves_after(const WeightTrack& track, std::size_t key) {
   if (key + 1 >= track.size() || track.interpolation == GltfInterpolation::kStep) return false;
@@ -93,6 +95,15 @@ std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most
   return {taken.begin(), taken.end()};
 }
 
+namespace {
+
+// An instant of one of some tracks, with the weights that a host plays there.
+struct PlayedInstant {
+  std::size_t track = 0;
+  double time = 0;
+  std::vector<double> weights;
+};
+
 std::vector<PlayedInstant> played_instants(std::span<const DrivingTrack> tracks, const Host& host,
                                            std::size_t between_keys, double phase, std::size_t most) {
   std::vector<PlayedInstant> instants;
@@ -125,10 +136,55 @@ std::vector<PlayedInstant> played_instants(std::span<const DrivingTrack> tracks,
   return instants;
 }
 
-void add_played_poses(std::span<const DrivingTrack> tracks, const Host& host, std::size_t between_keys, double phase,
-                      std::size_t most, PoseList& poses) {
-  for (PlayedInstant& instant : played_instants(tracks, host, between_keys, phase, most))
-    if (poses.empty() || poses.back() != instant.weights) poses.push_back(std::move(instant.weights));
+// Adds a pose, but where it looks as the one before.
+void add_seen(std::vector<double> weights, const MeshSkin* skin, double time, std::vector<SeenPose>& poses) {
+  SeenPose pose{std::move(weights), skin, skin != nullptr && skin->moves() ? time : 0};
+  if (poses.empty() || !(poses.back() == pose)) poses.push_back(std::move(pose));
+}
+
+// Adds what is seen of a track through a skin: at the keys of both and at some instants between, but for those that are
+// too many. Returns whether none are.
+bool add_skinned(const DrivingTrack& driving, const MeshSkin& skin, const Host& host, double phase, std::size_t most,
+                 std::vector<SeenPose>& poses) {
+  const std::vector<double> keys = keys_of_both(driving.track, skin);
+  const std::size_t between =
+      std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(kBetweenSkinnedKeys) / driving.cuts));
+  std::vector<double> times;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    times.push_back(keys[k]);
+    for (std::size_t step = 0; k + 1 < keys.size() && step < between; ++step) {
+      const double part = (static_cast<double>(step) + phase) / static_cast<double>(between);
+      times.push_back(keys[k] + part * (keys[k + 1] - keys[k]));
+    }
+  }
+  const WeightTrack& track = driving.track;
+  const PlayedTrack played(host, track.keys, track.interpolation, track.targets, driving.animation);
+  const std::size_t count = std::min(most, times.size());
+  for (std::size_t n = 0; n < count; ++n) {
+    const double time = times[n * times.size() / count];
+    std::vector<double> weights(track.targets);
+    played.at(time, false, weights);
+    add_seen(std::move(weights), &skin, time, poses);
+  }
+  return count == times.size();
+}
+
+}  // namespace
+
+std::vector<SeenPose> seen_tracks(std::span<const DrivingTrack> tracks, const MeshSkins& skins, const Host& host,
+                                  std::size_t between_keys, double phase, std::size_t most) {
+  const std::vector<PlayedInstant> instants = played_instants(tracks, host, between_keys, phase, most);
+  const std::vector<std::optional<MeshSkin>> as_they_are(1);
+  std::vector<SeenPose> poses;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    for (const auto& skin : skins.of_tracks.empty() ? as_they_are : skins.of_tracks[t]) {
+      const std::size_t share = std::max<std::size_t>(1, most / tracks.size());
+      if (skin && add_skinned(tracks[t], *skin, host, phase, share, poses)) continue;
+      for (const PlayedInstant& instant : instants)
+        if (instant.track == t) add_seen(instant.weights, skin ? &*skin : nullptr, instant.time, poses);
+    }
+  }
+  return poses;
 }
 
 PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count, const ExtraDrivers& extras,

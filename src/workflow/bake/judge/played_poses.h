@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "chronormal/workflow/hosts.h"
-#include "workflow/bake/judge/right_normals.h"
+#include "workflow/bake/judge/seen_pose.h"
 #include "workflow/bake/low_rank/extra_curves.h"
+#include "workflow/bake/mesh_weights.h"
 #include "workflow/bake/write/tracks.h"
 #include "workflow/hosts/played_track.h"
 #include "workflow/shading/target_weights.h"
@@ -32,22 +33,14 @@ struct DrivingTrack {
 /// weights is, so that a wink in a long animation is among them; the others are taken evenly.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
 
-/// An instant of one of some tracks, with the weights that a host plays there.
-struct PlayedInstant {
-  std::size_t track = 0;
-  double time = 0;
-  std::vector<double> weights;
-};
-
-/// What a host plays of some tracks, one after the other: for each telling key, `phase` (in [0, 1)) and as many instants
-/// as asked for in all up to the next key, evenly; where these are more than `most`, fewer instants of each key, and then
-/// fewer keys. Each track gets a share by the number of its telling keys, and one instant at least.
-[[nodiscard]] std::vector<PlayedInstant> played_instants(std::span<const DrivingTrack> tracks, const Host& host,
-                                                         std::size_t between_keys, double phase, std::size_t most);
-
-/// Adds the weights of these instants, but for those that repeat the pose before.
-void add_played_poses(std::span<const DrivingTrack> tracks, const Host& host, std::size_t between_keys, double phase,
-                      std::size_t most, PoseList& poses);
+/// What a host plays of some tracks, one after the other, but for poses that look as the one before: for each telling key,
+/// `phase` (in [0, 1)) and as many instants as asked for in all up to the next key, evenly; where these are more than
+/// `most`, fewer instants of each key, and then fewer keys. Each track gets a share by the number of its telling keys, and
+/// one pose at least. Through each of the skins of its nodes, which must outlive the poses, a track is seen at its keys,
+/// those of the joints and instants between, and only where these are more than `most` at some of them and as above.
+[[nodiscard]] std::vector<SeenPose> seen_tracks(std::span<const DrivingTrack> tracks, const MeshSkins& skins,
+                                                const Host& host, std::size_t between_keys, double phase,
+                                                std::size_t most);
 
 /// Each of these targets alone, at `steps` weights up to 1, the first of which is 1 / steps minus phase / steps.
 [[nodiscard]] PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count,
