@@ -61,8 +61,8 @@ TEST(PlayedErrors, are_those_of_a_sorted_list_of_all_pairs) {
   for (const double error : errors) sum += error;
   const double most = errors[errors.size() - 1 - errors.size() / 1000];
 
-  const ShownErrors found =
-      played_errors(rights, vertices, shading.element_of_vertex, by_vertex(columns, vertices), seen_through(poses, nullptr));
+  const ShownErrors found = played_errors(rights, vertices, shading.element_of_vertex, by_vertex(columns, vertices),
+                                          seen_through(poses, nullptr));
   EXPECT_EQ(found.judged, errors.size());
   EXPECT_NEAR(found.mean, sum / static_cast<double>(errors.size()), 1e-9);
   EXPECT_NEAR(found.worst, errors.back(), 1e-9);

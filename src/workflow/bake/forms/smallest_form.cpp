@@ -10,9 +10,8 @@
 
 #include "workflow/bake/forms/alone_deltas.h"
 #include "workflow/bake/forms/errors_in_hosts.h"
+#include "workflow/bake/forms/extra_shares.h"
 #include "workflow/bake/forms/form_poses.h"
-#include "workflow/bake/forms/opposite_targets.h"
-#include "workflow/bake/forms/unit_targets.h"
 #include "workflow/bake/forms/worthwhile_columns.h"
 #include "workflow/bake/forms/worthwhile_form.h"
 #include "workflow/bake/judge/played_errors.h"
@@ -65,52 +64,6 @@ std::size_t pairs_of_rig(const DeltaSource& source) {
          moves(source.shading, i) && j < source.shading.set.targets.size() && count <= kMostSmallestPairs; ++j)
       if (moves(source.shading, j) && (i == j || source.terms.overlap(i, j))) ++count;
   return count;
-}
-
-// One extra target made of another: its weight is `factor` times that one's, or what of this is above zero.
-struct Share {
-  std::size_t of = 0;
-  double factor = 1;
-  bool above_zero = false;
-  VertexVectors vectors;
-};
-
-// Vectors of any length as those that hosts keep.
-std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras, FormLengths lengths) {
-  std::vector<Share> shares;
-  if (lengths == FormLengths::kFree) {
-    for (std::size_t k = 0; k < extras.size(); ++k) shares.push_back({k, 1, false, std::move(extras[k])});
-  } else if (lengths == FormLengths::kOpposite) {
-    std::vector<ExtraWeight> factors;
-    for (std::size_t k = 0; k < extras.size(); ++k) factors.push_back({k, k, 1, 0});
-    split_into_opposites(rights, factors, extras);
-    for (std::size_t k = 0; k < extras.size(); ++k)
-      shares.push_back({factors[k].i, factors[k].linear, false, std::move(extras[k])});
-  } else {
-    for (std::size_t k = 0; k < extras.size(); ++k) {
-      for (const double sign : {1.0, -1.0}) {
-        Share share{k, sign, true, extras[k]};
-        for (std::size_t n = 0; n < share.vectors.vertices.size(); ++n) {
-          const BaseNormal base(rights.stored(share.vectors.vertices[n]));
-          const Vec3d vector = (sign / base.length) * to_double(share.vectors.vectors[n]);
-          share.vectors.vectors[n] = to_float(base.length * unit_delta(base.direction, vector));
-        }
-        shares.push_back(std::move(share));
-      }
-    }
-  }
-  return shares;
-}
-
-void take_shares(std::span<const Share> shares, std::size_t extras, std::vector<double>& values) {
-  std::vector<double> result;
-  for (std::size_t first = 0; first < values.size(); first += extras) {
-    for (const Share& share : shares) {
-      const double value = share.factor * values[first + share.of];
-      result.push_back(share.above_zero ? std::fmax(value, 0) : value);
-    }
-  }
-  values = std::move(result);
 }
 
 // Keeps of the extra targets what some vertex takes part in, and the targets of which something is left.

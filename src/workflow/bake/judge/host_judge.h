@@ -27,6 +27,7 @@
 #include "chronormal/workflow/hosts.h"
 #include "workflow/bake/judge/right_normals.h"
 #include "workflow/bake/judge/seen_pose.h"
+#include "workflow/bake/judge/vertex_columns.h"
 
 namespace chronormal::inline internal {
 
@@ -38,34 +39,6 @@ inline constexpr double kHarmless = 0.02;
 [[nodiscard]] Host judged_as(Host host);
 /// Whether two such hosts show the same of all deltas.
 [[nodiscard]] bool shows_alike(const Host& a, const Host& b);
-
-/// Vectors of some vertices, ascending; all others are zero.
-struct VertexVectors {
-  std::vector<std::uint32_t> vertices;
-  std::vector<Vec3f> vectors;
-
-  [[nodiscard]] Vec3f at(std::size_t vertex) const noexcept;
-};
-
-/// What a vertex adds up in one form: deltas other than zero with their columns.
-struct VertexColumns {
-  struct Entry {
-    std::uint32_t column = 0;
-    Vec3f delta;
-
-    friend bool operator==(const Entry&, const Entry&) = default;
-  };
-  std::vector<std::size_t> first;  ///< (n + 1)
-  std::vector<Entry> entries;
-
-  [[nodiscard]] std::span<const Entry> of(std::size_t n) const {
-    return std::span(entries).subspan(first[n], first[n + 1] - first[n]);
-  }
-};
-
-/// Turns columns of vectors, of which each may have its own vertices, into columns of vertices.
-[[nodiscard]] VertexColumns by_vertex(std::span<const VertexVectors* const> columns,
-                                      std::span<const std::uint32_t> vertices);
 
 /// The kinds of poses that HostChange tells apart.
 inline constexpr std::size_t kPoseKinds = 3;

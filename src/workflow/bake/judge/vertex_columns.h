@@ -1,0 +1,45 @@
+/// Vectors of vertices in columns, each of which has a weight: by column, as files store them, or by vertex, as they are
+/// added up. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal::inline internal {
+
+/// Vectors of some vertices, ascending; all others are zero.
+struct VertexVectors {
+  std::vector<std::uint32_t> vertices;
+  std::vector<Vec3f> vectors;
+
+  [[nodiscard]] Vec3f at(std::size_t vertex) const noexcept;
+};
+
+/// What a vertex adds up in one form: deltas other than zero with their columns.
+struct VertexColumns {
+  struct Entry {
+    std::uint32_t column = 0;
+    Vec3f delta;
+
+    friend bool operator==(const Entry&, const Entry&) = default;
+  };
+  std::vector<std::size_t> first;  ///< (n + 1)
+  std::vector<Entry> entries;
+
+  [[nodiscard]] std::span<const Entry> of(std::size_t n) const {
+    return std::span(entries).subspan(first[n], first[n + 1] - first[n]);
+  }
+};
+
+/// Turns columns of vectors, of which each may have its own vertices, into columns of vertices.
+[[nodiscard]] VertexColumns by_vertex(std::span<const VertexVectors* const> columns,
+                                      std::span<const std::uint32_t> vertices);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
