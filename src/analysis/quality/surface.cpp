@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "chronormal/core/parallel.h"
+
 namespace chronormal {
 namespace {
 
@@ -78,6 +80,14 @@ void survey_edges(const Topology& topology, const Points& points, Surface& surfa
   }
 }
 
+// Whether a face has a point twice. `sorted` is memory for that.
+bool has_twice(std::span<const std::uint32_t> outline, std::vector<std::uint32_t>& sorted) {
+  if (outline.size() == 3) return outline[0] == outline[1] || outline[1] == outline[2] || outline[2] == outline[0];
+  sorted.assign(outline.begin(), outline.end());
+  std::sort(sorted.begin(), sorted.end());
+  return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+}
+
 // Turns the points of a face, which are all different, so that the lowest comes first, and reverses them if need be so
 // that the lower one of its neighbours is next. Faces with the same outline are equal then, and wound the same way if
 // they agree in the result: whether it was not reversed.
@@ -100,9 +110,7 @@ void survey_faces(const Topology& topology, const Points& points, Surface& surfa
     const auto face = topology.face(f);
     for (const std::uint32_t vertex : face) corners.push_back(points.point_of_vertex[vertex]);
     const std::span<std::uint32_t> outline = std::span(corners).subspan(starts.back());
-    sorted.assign(outline.begin(), outline.end());
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+    if (has_twice(outline, sorted)) {
       repeats[f] = true;
       surface.repeating_faces.add(f);
     } else {
@@ -186,9 +194,9 @@ Found find_copies(const Points& points) {
 Surface survey(const Topology& topology, const Points& points) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
   Surface surface;
-  survey_edges(topology, points, surface);
-  survey_faces(topology, points, surface);
-  survey_pieces(topology, points, surface);
+  // Each writes members of its own.
+  constexpr std::array kSurveys = {survey_edges, survey_faces, survey_pieces};
+  parallel_for(kSurveys.size(), [&](std::size_t i) { kSurveys[i](topology, points, surface); });
   return surface;
 }
 

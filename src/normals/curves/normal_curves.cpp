@@ -16,6 +16,7 @@
 #include "normals/control/local_time.h"
 #include "normals/curves/certificate.h"
 #include "normals/curves/curve_builder.h"
+#include "normals/curves/curve_count.h"
 #include "normals/curves/curve_data.h"
 #include "normals/curves/kernels/curve_blocks.h"
 #include "normals/curves/kernels/flagged_normals.h"
@@ -328,18 +329,7 @@ bool NormalCurves::keeps_lengths() const noexcept { return data().keeps_lengths;
 const std::array<std::size_t, 3>& NormalCurves::degree_counts() const noexcept { return data().degree_counts; }
 std::size_t NormalCurves::flagged_count() const noexcept { return data().flagged.size(); }
 
-std::size_t NormalCurves::bytes() const noexcept {
-  const CurveData& curves = data();
-  const std::size_t filling = curves.runs.empty() ? 0 : (kTile - curves.size % kTile) % kTile;
-  const std::size_t unused = filling == 0 ? 0 : filling * bytes_of(curves.runs.back().kind);
-  // Indices count as 8 bytes on every machine, so that reports are the same on those of 32 bits.
-  constexpr std::size_t kIndex = 8, kRun = 4 * kIndex, kExact = 2 * kIndex;
-  static_assert(sizeof(std::size_t) != kIndex ||
-                (sizeof(CurveData::Run) == kRun && sizeof(CurveData::ExactElement) == kExact));
-  return curves.blocks.size() - unused + curves.runs.size() * kRun + curves.exponents.size() * sizeof(std::int16_t) +
-         curves.flagged.size() * (kIndex + sizeof(FlaggedNormals)) + curves.exact.size() * kExact +
-         curves.exact_digits.size() * sizeof(std::int32_t);
-}
+std::size_t NormalCurves::bytes() const noexcept { return CurveCount::of(data()).bytes(data().size); }
 
 std::vector<NormalCurves::ByteCount> NormalCurves::byte_counts() const {
   std::vector<ByteCount> counts;

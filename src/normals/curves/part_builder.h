@@ -99,7 +99,7 @@ inline std::vector<NeedRun> runs_of(std::span<const Need> needs) {
 // The part that one thread makes at a time.
 struct CurvePart {
   IndexRange elements;
-  std::byte* begin = nullptr;  // of its blocks
+  std::byte* begin = nullptr;  // of its blocks; nullptr where they are counted and not made
   std::size_t bytes = 0;
   std::vector<CurveData::Run> runs;  // offsets from begin
   std::vector<std::size_t> flagged;
@@ -223,7 +223,7 @@ class PartBuilder {
     std::size_t k = 0;
     for (const NeedRun& run : runs_of(std::span(needs, tile_count))) {
       const BlockKind kind = kind_for(run.need.precision, run.need.degree, limits_.with_lengths);
-      pack_tiles(tiles.subspan(k, run.blocks), kind, part_.begin + part_.bytes);
+      if (part_.begin != nullptr) pack_tiles(tiles.subspan(k, run.blocks), kind, part_.begin + part_.bytes);
       append_run(elements.first / kTile + k, run.blocks, kind);
       k += run.blocks;
     }
@@ -268,6 +268,7 @@ class PartBuilder {
   // requested than can be in flight.
   void fetch_destination(std::size_t tile, std::size_t count) const {
 #if defined(__GNUC__)
+    if (part_.begin == nullptr) return;
     constexpr std::size_t kCacheLine = 64;
     const std::size_t each = chunk_bytes_ / kChunkTiles;
     const std::byte* const destination = part_.begin + part_.bytes + tile * each;

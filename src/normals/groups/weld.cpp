@@ -1,11 +1,13 @@
-// Finds vertices that coincide in all keyframes: it sorts them by place in one keyframe after the other.
-#include "chronormal/normals/normal_groups.h"
+// Finds vertices that coincide in all keyframes: it sorts them by place in one keyframe after the other, many of them by
+// a hash of their place first, on all cores.
+#include "normals/groups/weld.h"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 
 #include "core/bits.h"
+#include "core/blocks.h"
 
 namespace chronormal {
 namespace {
@@ -21,10 +23,11 @@ PlaceKey place_key(const Motion::Keyframe& keyframe, std::uint32_t vertex) {
   return {key(p[0]), key(p[1]), key(p[2])};
 }
 
-// Sorts vertices from first to end by their places at a keyframe, and by their numbers where these are equal. Calls
-// each(first, end) for those of one place.
-template <class Each>
-void split_by_place(const Motion::Keyframe& keyframe, std::span<std::uint32_t> vertices, const Each& each) {
+using Coinciding = std::span<std::uint32_t>;
+
+// Sorts vertices by their places at a keyframe, and by their numbers where these are equal. Appends those that share a
+// place with another to `found`.
+void split_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::vector<Coinciding>& found) {
   std::sort(vertices.begin(), vertices.end(), [&](std::uint32_t a, std::uint32_t b) {
     const PlaceKey p = place_key(keyframe, a), q = place_key(keyframe, b);
     return p != q ? p < q : a < b;
@@ -32,8 +35,62 @@ void split_by_place(const Motion::Keyframe& keyframe, std::span<std::uint32_t> v
   for (std::size_t first = 0, end = 0; first < vertices.size(); first = end) {
     const PlaceKey place = place_key(keyframe, vertices[first]);
     for (end = first + 1; end < vertices.size() && place_key(keyframe, vertices[end]) == place;) ++end;
-    each(vertices.subspan(first, end - first));
+    if (end - first > 1) found.push_back(vertices.subspan(first, end - first));
   }
+}
+
+// A vertex and a hash of its place. Vertices at one place have the same, and few others have.
+struct Hashed {
+  std::uint32_t hash = 0, vertex = 0;
+
+  friend bool operator<(const Hashed& a, const Hashed& b) {
+    return a.hash != b.hash ? a.hash < b.hash : a.vertex < b.vertex;
+  }
+};
+
+std::uint32_t hash_of(const PlaceKey& place) {
+  std::uint64_t hash = 0;
+  for (const std::uint32_t coordinate : place) {
+    hash = (hash ^ coordinate) * 0x9E3779B97F4A7C15U;
+    hash ^= hash >> 29;
+  }
+  return static_cast<std::uint32_t>(hash >> 32);
+}
+
+// The same for many vertices: in buckets by the first bits of their hashes, each of which is sorted on its own.
+void split_many_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::vector<Coinciding>& found) {
+  constexpr std::size_t kBuckets = 1024, kShift = 22, kHashedBlock = std::size_t{1} << 14;
+  std::vector<Hashed> hashed(vertices.size()), in_buckets(vertices.size());
+  parallel_each(vertices.size(), kHashedBlock, [&](std::size_t i) {
+    hashed[i] = {hash_of(place_key(keyframe, vertices[i])), vertices[i]};
+  });
+  std::array<std::size_t, kBuckets + 1> ends{};
+  for (const Hashed& each : hashed) ++ends[(each.hash >> kShift) + 1];
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  const std::array<std::size_t, kBuckets + 1> starts = ends;
+  for (const Hashed& each : hashed) in_buckets[ends[each.hash >> kShift]++] = each;
+  parallel_for(kBuckets, [&](std::size_t b) {
+    const auto at = [&in_buckets](std::size_t i) { return in_buckets.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::sort(at(starts[b]), at(starts[b + 1]));
+    for (std::size_t i = starts[b]; i < starts[b + 1]; ++i) vertices[i] = in_buckets[i].vertex;
+  });
+  for (std::size_t first = 0, end = 0; first < vertices.size(); first = end) {
+    for (end = first + 1; end < vertices.size() && in_buckets[end].hash == in_buckets[first].hash;) ++end;
+    if (end - first > 1) split_by_place(keyframe, vertices.subspan(first, end - first), found);
+  }
+}
+
+// `found` has the vertices that coincide.
+Points points_of(std::size_t vertex_count, std::span<const Coinciding> found) {
+  Points points = separate_points(vertex_count);
+  std::vector<std::uint32_t>& of_vertex = points.point_of_vertex;  // the first vertex of each at first
+  for (const Coinciding vertices : found) {
+    for (const std::uint32_t vertex : vertices) of_vertex[vertex] = vertices.front();
+  }
+  points.count = 0;
+  for (std::size_t v = 0; v < vertex_count; ++v)
+    of_vertex[v] = of_vertex[v] == v ? static_cast<std::uint32_t>(points.count++) : of_vertex[of_vertex[v]];
+  return points;
 }
 
 }  // namespace
@@ -44,45 +101,48 @@ Points separate_points(std::size_t vertex_count) {
   return points;
 }
 
-Result<Points> weld_coincident(MotionStream& stream) {
+inline namespace internal {
+
+Result<WeldedPoints> weld_from_start(MotionStream& stream) {
+  constexpr std::size_t kMany = std::size_t{1} << 14;
   const Motion& motion = stream.motion();
   std::vector<std::uint32_t> order = separate_points(motion.topology.vertex_count()).point_of_vertex;
   // Vertices that coincide in all keyframes so far are neighbours in the list; each further keyframe tells some of them
   // apart.
-  using Coinciding = std::span<std::uint32_t>;
   std::vector<Coinciding> found = {order}, before;
-  const auto keep = [&found](Coinciding vertices) {
-    if (vertices.size() > 1) found.push_back(vertices);
-  };
   if (const auto& bodies = motion.body_of_vertex; !bodies.empty()) {
     std::stable_sort(order.begin(), order.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return bodies[a] < bodies[b]; });
     found.clear();
     for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
       for (end = first + 1; end < order.size() && bodies[order[end]] == bodies[order[first]];) ++end;
-      keep(Coinciding(order).subspan(first, end - first));
+      if (end - first > 1) found.push_back(Coinciding(order).subspan(first, end - first));
     }
   }
+  WeldedPoints result;
   for (std::size_t k = 0; k < motion.keyframes.size() && !found.empty(); ++k) {
     if (Status status = stream.hold(k, k); !status) return status.error();
     before.swap(found);
     found.clear();
-    for (const Coinciding vertices : before) split_by_place(motion.keyframes[k], vertices, keep);
+    for (const Coinciding vertices : before) {
+      if (vertices.size() < kMany)
+        split_by_place(motion.keyframes[k], vertices, found);
+      else
+        split_many_by_place(motion.keyframes[k], vertices, found);
+    }
+    if (k == 0) result.at_start = points_of(order.size(), found);
   }
+  if (result.at_start.point_of_vertex.empty()) result.at_start = points_of(order.size(), {});
+  result.always = points_of(order.size(), found);
+  return result;
+}
 
-  std::vector<std::uint32_t> first_vertex = separate_points(order.size()).point_of_vertex;
-  for (const Coinciding vertices : found) {
-    for (const std::uint32_t vertex : vertices) first_vertex[vertex] = vertices.front();
-  }
+}  // namespace internal
 
-  Points points;
-  points.point_of_vertex.resize(order.size());
-  for (std::size_t v = 0; v < order.size(); ++v) {
-    const bool first = first_vertex[v] == v;
-    points.point_of_vertex[v] =
-        first ? static_cast<std::uint32_t>(points.count++) : points.point_of_vertex[first_vertex[v]];
-  }
-  return points;
+Result<Points> weld_coincident(MotionStream& stream) {
+  Result<WeldedPoints> welded = weld_from_start(stream);
+  if (!welded) return welded.error();
+  return std::move(welded).value().always;
 }
 
 Points weld_coincident(const Motion& motion) {

@@ -1,9 +1,12 @@
 // Looks at every segment of a motion for whatever may cause wrong normals, block by block and in waves of segments, and
-// adds up what it finds in order.
+// adds up what it finds in order. A wave looks at vertices first, since how small a face may be depends on how large the
+// coordinates of its keyframe are; then a glance at sixteen faces at a time (analysis/signs/kernels/face_glance.h)
+// leaves few of them to be looked at one by one.
 #include "chronormal/workflow/inspect.h"
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -11,14 +14,16 @@
 #include <span>
 #include <vector>
 
+#include "analysis/signs/kernels/face_glance.h"
 #include "analysis/signs/near_collapse.h"
 #include "chronormal/analysis/collapse.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/control_normals.h"
-#include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "core/blocks.h"
 #include "core/portable_math.h"
+#include "normals/curves/curve_count.h"
+#include "normals/groups/weld.h"
 
 namespace chronormal {
 namespace {
@@ -29,7 +34,7 @@ constexpr double kRounding = 4 * 1.7320508075688772 * 0x1p-24;
 
 // So many faces, or vertices, are a block: their control normals stay in the second-level cache. A wave has a segment,
 // or where segments are small as many as keep all threads busy.
-constexpr std::size_t kBlock = 4096, kBlocksPerThread = 4;
+constexpr std::size_t kBlock = 8 * kCountedTogether, kBlocksPerThread = 4;
 
 // What can be wrong with a face, a bit each.
 enum Mark : std::uint8_t {
@@ -67,6 +72,41 @@ struct FaceTally {
   }
 };
 
+// The bounding box of vertices that come one after the other.
+struct Box {
+  bool is_empty = true;
+  Vec3f low, high;
+
+  void add(const Box& next) {
+    if (next.is_empty) return;
+    if (is_empty) *this = next;
+    low = lowest(low, next.low);
+    high = highest(high, next.high);
+  }
+  static Vec3f lowest(const Vec3f& a, const Vec3f& b) {
+    return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+  }
+  static Vec3f highest(const Vec3f& a, const Vec3f& b) {
+    return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+  }
+  // The largest coordinate, regardless of its sign.
+  [[nodiscard]] double most() const { return maximum_number(max_abs(to_double(low)), max_abs(to_double(high))); }
+};
+
+// The vertices of one block of a segment, or of all of its blocks so far.
+struct VertexTally {
+  Box from, to;  // of the keyframes that this segment judges
+  Largest motion;
+  std::size_t moved = 0;
+
+  void add(const VertexTally& next) {
+    from.add(next.from);
+    to.add(next.to);
+    if (next.motion.value > motion.value) motion = next.motion;
+    moved += next.moved;
+  }
+};
+
 struct KeyframeTally {
   FaceTally no_area, slivers;
 
@@ -80,12 +120,12 @@ void keep_larger(Largest& largest, const Largest& other) {
   if (other.value > largest.value) largest = other;
 }
 
-// A tally has what was found in one block of a segment, or in all of its blocks so far.
+// A tally has what was found in one block of faces of a segment, or in all of its blocks so far.
 struct SegmentTally {
   KeyframeTally from, to;  // of the keyframes that this segment judges
   FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
-  Largest motion, turn;
-  std::size_t moved_vertices = 0;
+  Largest turn;
+  CurveCount curves;
 
   void add(const SegmentTally& next) {
     from.add(next.from);
@@ -95,22 +135,21 @@ struct SegmentTally {
     turned_over.add(next.turned_over);
     turned_far.add(next.turned_far);
     without_normals.add(next.without_normals);
-    keep_larger(motion, next.motion);
     keep_larger(turn, next.turn);
-    moved_vertices += next.moved_vertices;
+    curves.add(next.curves);
   }
-  [[nodiscard]] SegmentInspection inspection(const NormalCurves& curves) const {
+  [[nodiscard]] SegmentInspection inspection(const VertexTally& vertices, std::size_t faces) const {
     SegmentInspection result;
-    result.moved_vertices = moved_vertices;
-    result.motion = motion;
+    result.moved_vertices = vertices.moved;
+    result.motion = vertices.motion;
     result.turn = turn;
     result.turned_far = turned_far.count;
     result.collapses = collapses.count;
     result.vanishing = vanishing.count;
     result.turned_over = turned_over.count;
     result.without_normals = without_normals.count;
-    result.flagged = curves.flagged_count();
-    result.bytes = curves.bytes();
+    result.flagged = curves.flagged;
+    result.bytes = curves.bytes(faces);
     return result;
   }
 };
@@ -147,31 +186,39 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
   return kRounding * static_cast<double>(face.size() - 2) * coordinate * edge;
 }
 
-// Judges some faces of one keyframe by the normals that they have there. No coordinate is larger than `most`.
-template <class NormalOf>
-KeyframeTally inspect_keyframe(const Topology& topology, VectorView<const float> positions, double most,
-                               IndexRange faces, NormalOf normal_of, FaceMarks& marks) {
-  KeyframeTally tally;
+// Judges a face of one keyframe by the normal that it has there. No coordinate of the keyframe is larger than `most`.
+void inspect_at_keyframe(std::span<const std::uint32_t> face, std::size_t f, VectorView<const float> positions,
+                         double most, const Vec3d& normal, KeyframeTally& tally, FaceMarks& marks) {
   const double largest_rounding = kRounding * most * 2 * most;  // of a triangle
-  for (std::size_t f = faces.first; f < faces.end(); ++f) {
-    const double size = max_abs(normal_of(f - faces.first));
-    const std::span<const std::uint32_t> face = topology.face(f);
-    if (size > static_cast<double>(face.size() - 2) * largest_rounding) continue;
-    if (size == 0)
-      tally.no_area.add(f, kNoArea, marks);
-    else if (size <= rounding_of(face, positions))
-      tally.slivers.add(f, kSliver, marks);
-  }
-  return tally;
+  const double size = max_abs(normal);
+  if (size > static_cast<double>(face.size() - 2) * largest_rounding) return;
+  if (size == 0)
+    tally.no_area.add(f, kNoArea, marks);
+  else if (size <= rounding_of(face, positions))
+    tally.slivers.add(f, kSliver, marks);
 }
 
-void inspect_vertices(const Segment& segment, IndexRange vertices, SegmentTally& tally) {
+Box box_of(VectorView<const float> positions, IndexRange vertices) {
+  if (vertices.count == 0) return {};
+  Vec3f low = positions[vertices.first], high = low;
+  for (std::size_t v = vertices.first + 1; v < vertices.end(); ++v) {
+    low = Box::lowest(low, positions[v]);
+    high = Box::highest(high, positions[v]);
+  }
+  return {false, low, high};
+}
+
+void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& tally) {
+  double most_of_square = 0;  // a square that is not larger is that of no larger length
   for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
     const Vec3d step = to_double(segment.to[v]) - to_double(segment.from[v]);
     if (max_abs(step) == 0) continue;
-    ++tally.moved_vertices;
-    if (const double distance = length(step); distance > tally.motion.value)
+    ++tally.moved;
+    if (dot(step, step) < most_of_square) continue;
+    if (const double distance = length(step); distance > tally.motion.value) {
       tally.motion = {distance, segment.index, v};
+      most_of_square = distance * distance * (1 - 1e-12);
+    }
   }
 }
 
@@ -182,53 +229,66 @@ double square_of_cosine_above(double angle) {
   return cosine * cosine * (1 + 1e-12);
 }
 
-void inspect_faces(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, FaceMarks& marks,
-                   SegmentTally& tally) {
-  double most_of_square = square_of_cosine_above(0);
-  for (std::size_t f = faces.first; f < faces.end(); ++f) {
-    const ControlNormals& c = normals[f - faces.first];
-    const double along = dot(c.n0, c.n1);
-    const bool turns_less = along > 0 && along * along > most_of_square * (dot(c.n0, c.n0) * dot(c.n1, c.n1));
-    if (!turns_less) {
-      if (const double angle = angle_between(c.n0, c.n1); angle > tally.turn.value) {
-        tally.turn = {angle, segment.index, f};
-        most_of_square = square_of_cosine_above(angle);
-      }
+// most_of_square is square_of_cosine_above() the largest angle so far.
+void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c, double& most_of_square,
+                  FaceMarks& marks, SegmentTally& tally) {
+  const double along = dot(c.n0, c.n1);
+  const bool turns_less = along > 0 && along * along > most_of_square * (dot(c.n0, c.n0) * dot(c.n1, c.n1));
+  if (!turns_less) {
+    if (const double angle = angle_between(c.n0, c.n1); angle > tally.turn.value) {
+      tally.turn = {angle, segment.index, f};
+      most_of_square = square_of_cosine_above(angle);
     }
-    if (along < 0) tally.turned_far.add(f, kTurnsFar, marks);
-    if (is_far_from_collapse(c)) continue;
-    const Collapses exact = find_collapses(segment, f, c);
-    const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
-      return each.before != Vec3d{} && each.after != Vec3d{};  // and not at an end
-    });
-    if (zero != exact.instants().end()) tally.vanishing.add(f, kVanishes, marks, zero->upper);
-    if (exact.always) tally.without_normals.add(f, kWithoutNormal, marks);
-    const NearCollapses collapses = find_near_collapses(c);
-    if (collapses.count == 0) continue;
-    tally.collapses.add(f, kCollapses, marks, collapses.at[0].t);
-    const auto end = collapses.at.begin() + static_cast<std::ptrdiff_t>(collapses.count);
-    const auto over = std::find_if(collapses.at.begin(), end, [](const NearCollapse& each) { return each.turns_over; });
-    if (over != end) tally.turned_over.add(f, kTurnsOver, marks, over->t);
+  }
+  if (along < 0) tally.turned_far.add(f, kTurnsFar, marks);
+  if (is_far_from_collapse(c)) return;
+  const Collapses exact = find_collapses(segment, f, c);
+  const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
+    return each.before != Vec3d{} && each.after != Vec3d{};  // and not at an end
+  });
+  if (zero != exact.instants().end()) tally.vanishing.add(f, kVanishes, marks, zero->upper);
+  if (exact.always) tally.without_normals.add(f, kWithoutNormal, marks);
+  const NearCollapses collapses = find_near_collapses(c);
+  if (collapses.count == 0) return;
+  tally.collapses.add(f, kCollapses, marks, collapses.at[0].t);
+  const auto end = collapses.at.begin() + static_cast<std::ptrdiff_t>(collapses.count);
+  const auto over = std::find_if(collapses.at.begin(), end, [](const NearCollapse& each) { return each.turns_over; });
+  if (over != end) tally.turned_over.add(f, kTurnsOver, marks, over->t);
+}
+
+// The largest coordinates of both keyframes of a segment, of those that it judges.
+struct JudgedEnds {
+  std::optional<double> from, to;
+};
+
+void inspect_faces(const Segment& segment, IndexRange faces, const JudgedEnds& judged, FaceMarks& marks,
+                   SegmentTally& tally) {
+  const Topology& topology = *segment.topology;
+  std::vector<EdgedTile> tiles(block_count(faces.count, kTile));
+  tally.curves = count_curves(segment, faces, tiles);
+  GlanceLimits limits{judged.from ? kRounding * *judged.from : -1, judged.to ? kRounding * *judged.to : -1,
+                      square_of_cosine_above(0)};
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    std::uint32_t unusual = unusual_faces(tiles[i], limits);
+    for (; unusual != 0; unusual &= unusual - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(unusual));
+      const std::size_t f = faces.first + i * kTile + lane;
+      if (f >= faces.end()) break;
+      const ControlNormals c = element_of(tiles[i].normals, lane);
+      if (judged.from) inspect_at_keyframe(topology.face(f), f, segment.from, *judged.from, c.n0, tally.from, marks);
+      if (judged.to) inspect_at_keyframe(topology.face(f), f, segment.to, *judged.to, c.n1, tally.to, marks);
+      inspect_face(segment, f, c, limits.square_of_cosine, marks, tally);
+    }
   }
 }
 
-Status inspect_box(MotionStream& stream, Inspection& result) {
-  const Motion& motion = stream.motion();
-  Vec3f low, high;
-  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
-    if (Status status = stream.hold(k, k); !status) return status;
-    const Motion::Keyframe& keyframe = motion.keyframes[k];
-    if (k == 0 && !keyframe.positions.empty()) low = high = still_segment(motion, 0).from[0];
-    for (std::size_t i = 0; i + 2 < keyframe.positions.size(); i += 3) {
-      const float* const p = keyframe.positions.data() + i;
-      low = {std::min(low.x, p[0]), std::min(low.y, p[1]), std::min(low.z, p[2])};
-      high = {std::max(high.x, p[0]), std::max(high.y, p[1]), std::max(high.z, p[2])};
-    }
-  }
-  result.low = to_double(low);
-  result.high = to_double(high);
-  result.diagonal = length(result.high - result.low);
-  return Success{};
+// Faces at a keyframe without a segment.
+void inspect_still_faces(const Segment& segment, IndexRange faces, double most, FaceMarks& marks, SegmentTally& tally) {
+  std::vector<ControlNormals> normals(faces.count);
+  face_control_normals(segment, faces, normals);
+  for (std::size_t f = faces.first; f < faces.end(); ++f)
+    inspect_at_keyframe(segment.topology->face(f), f, segment.from, most, normals[f - faces.first].n0, tally.from,
+                        marks);
 }
 
 // The block of this number, of so many faces or vertices; empty behind the last.
@@ -257,16 +317,12 @@ Result<Inspection> inspect(MotionStream& stream,
   const auto times = std::minmax_element(motion.keyframes.begin(), motion.keyframes.end(), earlier);
   result.first_time = times.first->time;
   result.last_time = times.second->time;
-  if (const Status status = inspect_box(stream, result); !status) return status.error();
 
-  const Result<Points> welded = weld_coincident(stream);
+  const Result<WeldedPoints> welded = weld_from_start(stream);
   if (!welded) return welded.error();
-  const Points& points = welded.value();
-  result.doubled = find_copies(points);
-  if (const Status status = stream.hold(0, 0); !status) return status.error();
-  result.doubled_at_start =
-      find_copies(weld_coincident({topology, {motion.keyframes.front()}, {}, motion.body_of_vertex}));
-  result.surface = survey(topology, points);
+  result.doubled = find_copies(welded.value().always);
+  result.doubled_at_start = find_copies(welded.value().at_start);
+  result.surface = survey(topology, welded.value().always);
 
   // The first segment at a keyframe judges it; one without a segment is judged as if it stood still.
   const std::size_t segment_count = motion.segments.size();
@@ -279,21 +335,27 @@ Result<Inspection> inspect(MotionStream& stream,
   for (std::size_t k = 0; k < judge.size(); ++k) {
     if (!judge[k]) still.push_back(k);
   }
-  const double most = maximum_number(max_abs(result.low), max_abs(result.high));
   FaceMarks marks(result.faces);
+  std::vector<Box> boxes(result.keyframes);
   std::vector<KeyframeTally> keyframes(result.keyframes);
   std::vector<SegmentTally> segments(segment_count);
   const std::size_t total = segment_count + still.size();
   const std::size_t blocks = block_count(std::max({result.faces, result.vertices, std::size_t{1}}), kBlock);
   const std::size_t wave = block_count(kBlocksPerThread * thread_count(), blocks);
-  std::vector<SegmentTally> of_blocks(std::min(wave, total) * blocks);
-  std::vector<NormalCurves> curves(std::min(wave, total));  // kept, since so much memory takes long to get
+  std::vector<VertexTally> vertex_blocks(std::min(wave, total) * blocks);
+  std::vector<SegmentTally> face_blocks(std::min(wave, total) * blocks);
+  // Segments, and behind them the keyframes that no segment judges.
+  const auto moves = [&](std::size_t s) { return s < segment_count; };
+  const auto keys_of = [&](std::size_t s) {
+    return moves(s) ? motion.segments[s] : Motion::SegmentKeys{still[s - segment_count], still[s - segment_count]};
+  };
+  const auto segment_of = [&](std::size_t s) {
+    return moves(s) ? motion.segment(s) : still_segment(motion, keys_of(s).from);
+  };
+  const auto judges_from = [&](std::size_t s) { return !moves(s) || judge[keys_of(s).from] == s; };
+  const auto judges_to = [&](std::size_t s) { return moves(s) && judge[keys_of(s).to] == s; };
   for (std::size_t first = 0; first < total; first += wave) {
     const std::size_t count = std::min(wave, total - first);
-    const auto keys_of = [&](std::size_t s) {
-      return s < segment_count ? motion.segments[s]
-                               : Motion::SegmentKeys{still[s - segment_count], still[s - segment_count]};
-    };
     Motion::SegmentKeys keys = keys_of(first);
     for (std::size_t s = first; s < first + count; ++s)
       keys = {std::min(keys.from, keys_of(s).from), std::max(keys.to, keys_of(s).to)};
@@ -301,44 +363,48 @@ Result<Inspection> inspect(MotionStream& stream,
 
     parallel_for(count * blocks, [&](std::size_t i) {
       const std::size_t s = first + i / blocks;
-      const bool moves = s < segment_count;
-      const Segment segment = moves ? motion.segment(s) : still_segment(motion, still[s - segment_count]);
-      const IndexRange faces = block_of(i % blocks, result.faces);
-      std::vector<ControlNormals> normals(faces.count);
-      face_control_normals(segment, faces, normals);
-      SegmentTally& tally = of_blocks[i] = {};
-      if (!moves || judge[motion.segments[s].from] == s)
-        tally.from = inspect_keyframe(
-            topology, segment.from, most, faces, [&normals](std::size_t f) { return normals[f].n0; }, marks);
-      if (!moves) return;
-      if (judge[motion.segments[s].to] == s)
-        tally.to = inspect_keyframe(
-            topology, segment.to, most, faces, [&normals](std::size_t f) { return normals[f].n1; }, marks);
-      inspect_vertices(segment, block_of(i % blocks, result.vertices), tally);
-      inspect_faces(segment, faces, normals, marks, tally);
+      const Segment segment = segment_of(s);
+      const IndexRange vertices = block_of(i % blocks, result.vertices);
+      VertexTally& tally = vertex_blocks[i] = {};
+      if (judges_from(s)) tally.from = box_of(segment.from, vertices);
+      if (judges_to(s)) tally.to = box_of(segment.to, vertices);
+      if (moves(s)) inspect_vertices(segment, vertices, tally);
     });
-    const auto make_curves = [&](std::size_t i, Threads threads) {
-      if (first + i < segment_count)
-        curves[i] = NormalCurves::of_faces(motion.segment(first + i), {}, threads, &curves[i]);
-    };
-    if (count == 1) {
-      make_curves(0, Threads::kAll);
-    } else {
-      parallel_for(count, [&](std::size_t i) { make_curves(i, Threads::kOne); });
+    for (std::size_t i = 0; i < count; ++i) {
+      VertexTally& tally = vertex_blocks[i * blocks];
+      for (std::size_t b = 1; b < blocks; ++b) tally.add(vertex_blocks[i * blocks + b]);
+      if (judges_from(first + i)) boxes[keys_of(first + i).from] = tally.from;
+      if (judges_to(first + i)) boxes[keys_of(first + i).to] = tally.to;
     }
+    parallel_for(count * blocks, [&](std::size_t i) {
+      const std::size_t s = first + i / blocks;
+      const Segment segment = segment_of(s);
+      const IndexRange faces = block_of(i % blocks, result.faces);
+      SegmentTally& tally = face_blocks[i] = {};
+      if (!moves(s)) return inspect_still_faces(segment, faces, boxes[keys_of(s).from].most(), marks, tally);
+      JudgedEnds judged;
+      if (judges_from(s)) judged.from = boxes[keys_of(s).from].most();
+      if (judges_to(s)) judged.to = boxes[keys_of(s).to].most();
+      inspect_faces(segment, faces, judged, marks, tally);
+    });
 
     for (std::size_t i = 0; i < count; ++i) {
-      SegmentTally tally;
-      for (std::size_t b = 0; b < blocks; ++b) tally.add(of_blocks[i * blocks + b]);
-      const auto [from, to] = keys_of(first + i);
-      if (first + i >= segment_count || judge[from] == first + i) keyframes[from] = tally.from;
-      if (first + i >= segment_count) continue;
-      if (judge[to] == first + i) keyframes[to] = tally.to;
-      result.segments.push_back(tally.inspection(curves[i]));
-      segments[first + i] = tally;
+      const std::size_t s = first + i;
+      SegmentTally& tally = face_blocks[i * blocks];
+      for (std::size_t b = 1; b < blocks; ++b) tally.add(face_blocks[i * blocks + b]);
+      if (judges_from(s)) keyframes[keys_of(s).from] = tally.from;
+      if (judges_to(s)) keyframes[keys_of(s).to] = tally.to;
+      if (!moves(s)) continue;
+      result.segments.push_back(tally.inspection(vertex_blocks[i * blocks], result.faces));
+      segments[s] = tally;
     }
     if (progress) progress(first + count, total);
   }
+  Box box;
+  for (const Box& of_keyframe : boxes) box.add(of_keyframe);
+  result.low = to_double(box.low);
+  result.high = to_double(box.high);
+  result.diagonal = length(result.high - result.low);
 
   // In order, so that what is first does not depend on the threads.
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
@@ -352,7 +418,7 @@ Result<Inspection> inspect(MotionStream& stream,
     add_tally(result.turned_over, tally.turned_over, s);
     add_tally(result.turned_far, tally.turned_far, s);
     add_tally(result.without_normals, tally.without_normals, s);
-    keep_larger(result.motion, tally.motion);
+    keep_larger(result.motion, result.segments[s].motion);
     keep_larger(result.turn, tally.turn);
     result.flagged += result.segments[s].flagged;
     result.normal_bytes += result.segments[s].bytes;

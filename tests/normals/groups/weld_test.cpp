@@ -1,14 +1,17 @@
 // Which vertices are one point.
 
-#include "chronormal/normals/normal_groups.h"
+#include "normals/groups/weld.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <cstdint>
 #include <limits>
+#include <map>
+#include <utility>
 #include <vector>
 
+#include "chronormal/normals/normal_groups.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference_elements.h"
@@ -55,6 +58,34 @@ RC_GTEST_PROP(Weld, equals_a_comparison_of_all_pairs, ()) {
   const auto expected =
       reference::flood(count, [&](std::size_t a, std::size_t b) { return from[a] == from[b] && to[a] == to[b]; });
   RC_ASSERT(std::vector<std::size_t>(points.point_of_vertex.begin(), points.point_of_vertex.end()) == expected);
+}
+
+TEST(Weld, many_vertices_are_welded_as_a_map_of_places_says) {
+  constexpr std::size_t kCount = 40000;
+  fixtures::Random random(20261125);
+  std::vector<Point> from(kCount), to(kCount);
+  for (std::size_t v = 0; v < kCount; ++v) {
+    // A third of the vertices share a few thousand places, and some of these part.
+    const auto wide = v % 3 == 0 ? std::size_t{15} : std::size_t{1000};
+    for (double& c : from[v]) c = static_cast<double>(random.below(wide));
+    to[v] = from[v];
+    to[v][0] += static_cast<double>(random.below(2));
+  }
+  const Motion motion = two_keyframes(from, to);
+  MotionStream stream(motion);
+  const WeldedPoints welded = weld_from_start(stream).value();
+  std::map<Point, std::uint32_t> at_start;
+  std::map<std::pair<Point, Point>, std::uint32_t> always;
+  for (std::size_t v = 0; v < kCount; ++v) {
+    const auto next_start = static_cast<std::uint32_t>(at_start.size()),
+               next = static_cast<std::uint32_t>(always.size());
+    ASSERT_EQ(welded.at_start.point_of_vertex[v], at_start.try_emplace(from[v], next_start).first->second) << v;
+    ASSERT_EQ(welded.always.point_of_vertex[v], always.try_emplace({from[v], to[v]}, next).first->second) << v;
+  }
+  EXPECT_EQ(welded.at_start.count, at_start.size());
+  EXPECT_EQ(welded.always.count, always.size());
+  EXPECT_LT(at_start.size(), always.size());
+  EXPECT_LT(always.size(), kCount);
 }
 
 TEST(Weld, vertices_of_two_bodies_are_never_one_point) {

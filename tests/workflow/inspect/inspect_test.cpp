@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -116,6 +117,60 @@ TEST(Inspect, sliver_is_what_rounding_can_turn) {
   EXPECT_EQ(found.slivers.pairs, 1U);
   EXPECT_EQ(found.slivers.first_at, 0U);
   EXPECT_EQ(found.no_area.pairs, 0U);
+}
+
+// By the definition in inspect.h, of triangles, in long double.
+bool is_sliver(const Motion& motion, std::size_t keyframe, std::size_t face) {
+  const float* const p = motion.keyframes[keyframe].positions.data() + 9 * face;
+  long double e[3], f[3], coordinate = 0, edge = 0, size = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    e[k] = static_cast<long double>(p[3 + k]) - p[k];
+    f[k] = static_cast<long double>(p[6 + k]) - p[k];
+    edge = std::max({edge, std::fabs(e[k]), std::fabs(f[k])});
+  }
+  for (std::size_t i = 0; i < 9; ++i) coordinate = std::max(coordinate, std::fabs(static_cast<long double>(p[i])));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    size = std::max(size, std::fabs(e[i] * f[j] - e[j] * f[i]));
+  }
+  return size > 0 && size <= 4 * std::sqrt(3.0L) * 0x1p-24L * coordinate * edge;
+}
+
+TEST(Inspect, slivers_are_those_of_their_own_keyframe_and_the_box_is_that_of_all) {
+  // Needles about as wide as rounding allows, nearer and farther from the origin by keyframe and by face.
+  constexpr std::size_t kFaces = 10000;
+  Motion motion = fixtures::soup({.face_count = kFaces, .seed = 77, .motion = 1e-3, .needle = 4e-7});
+  motion.keyframes.push_back(motion.keyframes[0]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    motion.keyframes[k].time = static_cast<double>(k);
+    std::vector<float>& positions = motion.keyframes[k].positions;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const bool is_far = (i / 9) % 5 == k;
+      positions[i] = (k == 1 ? 0x1p-3F : 1) * positions[i] + (is_far ? 4.0F : 0);
+    }
+  }
+  motion.keyframes[1].positions[9 * 7000 + 2] = -40;
+  motion.keyframes[2].positions[9 * 9999 + 7] = 50;
+  motion.segments.clear();
+  motion.connect_as_sequence();
+  std::size_t expected = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t f = 0; f < kFaces; ++f) expected += is_sliver(motion, k, f) ? 1U : 0U;
+  ASSERT_GT(expected, 1000U);
+  ASSERT_LT(expected, 3 * kFaces - 1000U);
+  const Inspection found = inspect(motion);
+  EXPECT_EQ(found.slivers.pairs, expected);
+  EXPECT_EQ(found.low.z, -40);
+  EXPECT_EQ(found.high.y, 50);
+  double low = 0, high = 0;
+  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+    for (std::size_t i = 0; i < keyframe.positions.size(); i += 3) {
+      low = std::min(low, double{keyframe.positions[i]});
+      high = std::max(high, double{keyframe.positions[i]});
+    }
+  }
+  EXPECT_EQ(found.low.x, low);
+  EXPECT_EQ(found.high.x, high);
 }
 
 TEST(Inspect, mesh_without_motion_and_keyframe_without_segment_are_inspected_too) {

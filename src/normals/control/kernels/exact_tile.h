@@ -22,6 +22,12 @@ struct BoundedTile : ExactTile {
   double errors[3][kTile];  ///< how far any component of n0, m and n1 may be from the exact one
 };
 
+/// Sixteen faces with the longest of their edges from the first corner.
+struct EdgedTile : ExactTile {
+  /// Not less than any component of such an edge at either end of the segment; infinity where a face is no triangle.
+  float longest[kTile];
+};
+
 /// Writes an element into a lane of a tile.
 void put(BoundedTile& tile, std::size_t lane, const BoundedNormals& c) noexcept;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/control/kernels/face_tiles.cpp"
@@ -14,17 +15,30 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
+HWY_INLINE void RoundTile(const ExactTile& exact, ControlTile& tile) {
+  for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
+    hn::Store(hn::Load(kFloats, exact.magnitude + lane), kFloats, tile.magnitude + lane);
+    for (std::size_t k = 0; k < 9; ++k) hn::Store(ToFloat(exact.normals[k] + lane), kFloats, tile.normals[k] + lane);
+  }
+  if (!SetDegreesByFloats(tile)) SetDegrees(exact, tile);
+}
+
 void FaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
   const PointAccess access = AccessOf(segment);
   ExactTile exact;
   for (std::size_t f = faces.first; f < faces.end(); f += kTile) {
     FaceTile(segment, access, f, faces.end(), exact);
-    ControlTile& tile = *tiles++;
-    for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
-      hn::Store(hn::Load(kFloats, exact.magnitude + lane), kFloats, tile.magnitude + lane);
-      for (std::size_t k = 0; k < 9; ++k) hn::Store(ToFloat(exact.normals[k] + lane), kFloats, tile.normals[k] + lane);
-    }
-    if (!SetDegreesByFloats(tile)) SetDegrees(exact, tile);
+    RoundTile(exact, *tiles++);
+  }
+}
+
+void EdgedFaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles, EdgedTile* exact) {
+  const PointAccess access = AccessOf(segment);
+  const bool has_edges = segment.topology->all_triangles();
+  for (std::size_t f = faces.first; f < faces.end(); f += kTile, ++exact) {
+    if (!has_edges) std::fill_n(exact->longest, kTile, std::numeric_limits<float>::infinity());
+    FaceTile(segment, access, f, faces.end(), *exact, {.longest = exact->longest});
+    RoundTile(*exact, *tiles++);
   }
 }
 
@@ -45,7 +59,7 @@ void FloatFaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles
 }
 
 void BoundedTriangles(const Segment& segment, IndexRange faces, BoundedTile& tile) {
-  FaceTile(segment, AccessOf(segment), faces.first, faces.end(), tile, tile.errors);
+  FaceTile(segment, AccessOf(segment), faces.first, faces.end(), tile, {.errors = tile.errors});
 }
 
 void TriangleControlNormals(const Segment& segment, IndexRange faces, double* result) {
@@ -74,6 +88,7 @@ namespace chronormal::inline internal {
 
 HWY_EXPORT(FaceTiles);
 HWY_EXPORT(FloatFaceTiles);
+HWY_EXPORT(EdgedFaceTiles);
 HWY_EXPORT(BoundedTriangles);
 HWY_EXPORT(TriangleControlNormals);
 
@@ -81,6 +96,13 @@ void face_control_tiles(const Segment& segment, IndexRange faces, std::span<Cont
   assert(faces.count > 0 && faces.end() <= segment.topology->face_count());
   assert(tiles.size() == (faces.count + kTile - 1) / kTile);
   HWY_DYNAMIC_DISPATCH(FaceTiles)(segment, faces, tiles.data());
+}
+
+void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
+                        std::span<EdgedTile> exact) noexcept {
+  assert(faces.count > 0 && faces.end() <= segment.topology->face_count());
+  assert(tiles.size() == (faces.count + kTile - 1) / kTile && exact.size() == tiles.size());
+  HWY_DYNAMIC_DISPATCH(EdgedFaceTiles)(segment, faces, tiles.data(), exact.data());
 }
 
 void float_triangle_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept {

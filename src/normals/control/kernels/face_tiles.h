@@ -18,6 +18,11 @@ namespace chronormal::inline internal {
 /// tiles must have ceil(faces.count / 16) elements; faces.count > 0
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
 
+/// The same, and beside each tile what it is rounded from: the bits of face_control_normals(), and the longest edges.
+/// exact must have as many elements as tiles
+void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
+                        std::span<EdgedTile> exact) noexcept;
+
 /// Writes the tiles of triangles in float32 throughout, with a bound on their errors: `magnitude` is one of the error of any
 /// component; `degree` is 2 where the curve bends by more than that error, so that its degree is 2 without a doubt, and 1
 /// elsewhere. The same preconditions

@@ -142,6 +142,12 @@ HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-19f), hn::Mul(e, f)), tiny);
 }
 
+// Not less than any component of an edge from the first corner, at either end.
+HWY_INLINE Floats LongestAbove(const TriangleLanes& p) {
+  const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1), f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
+  return hn::Mul(hn::Set(kFloats, 1 + 0x1p-22f), hn::Max(e, f));  // the differences are rounded
+}
+
 // The same of n0, m and n1, each with its own ends; in m, of both products.
 HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
   const Floats e0 = MaxAbs(p.b0 - p.a0), e1 = MaxAbs(p.b1 - p.a1);
@@ -212,9 +218,14 @@ HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t
   }
 }
 
-// Where `errors` is given, it gets those of BoundedTile.
+// What a tile has beside its normals: the errors of a BoundedTile, or the longest edges of an EdgedTile.
+struct TileExtras {
+  double (*errors)[kTile] = nullptr;
+  float* longest = nullptr;
+};
+
 template <PointAccess kAccess>
-void TriangleTile(const Segment& segment, const std::uint32_t* corners, ExactTile& tile, double (*errors)[kTile]) {
+void TriangleTile(const Segment& segment, const std::uint32_t* corners, ExactTile& tile, const TileExtras& extras) {
   bool noise = false;
   for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
     const TriangleLanes p = LoadTriangles<kAccess>(segment, corners + 3 * lane);
@@ -222,11 +233,12 @@ void TriangleTile(const Segment& segment, const std::uint32_t* corners, ExactTil
     hn::Store(magnitude, kFloats, tile.magnitude + lane);
     noise |= HalfOfTriangles<0>(p, magnitude, lane, tile);
     if constexpr (kLanes > 1) noise |= HalfOfTriangles<1>(p, magnitude, lane, tile);
-    if (errors != nullptr) {
+    if (extras.errors != nullptr) {
       const Lanes3 magnitudes = MagnitudesAbove(p);
-      StoreErrors<0>(magnitudes, errors, lane);
-      if constexpr (kLanes > 1) StoreErrors<1>(magnitudes, errors, lane + kDoubleLanes);
+      StoreErrors<0>(magnitudes, extras.errors, lane);
+      if constexpr (kLanes > 1) StoreErrors<1>(magnitudes, extras.errors, lane + kDoubleLanes);
     }
+    if (extras.longest != nullptr) hn::Store(LongestAbove(p), kFloats, extras.longest + lane);
   }
   if (noise) SettleNoise(segment, corners, tile);
 }
@@ -292,16 +304,16 @@ HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::s
   WithAccess(segment, access, repeated, [&](auto known) HWY_ATTR { body(known, repeated); });
 }
 
-// The faces first ... first + 15; those from `end` on repeat the one before. Where `errors` is given, it gets those of
-// BoundedTile, of triangles. first < end
+// The faces first ... first + 15; those from `end` on repeat the one before. Extras are written for triangles alone.
+// first < end
 HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
-                         ExactTile& tile, double (*errors)[kTile] = nullptr) {
+                         ExactTile& tile, const TileExtras& extras = {}) {
   if (!segment.topology->all_triangles()) {
     for (std::size_t i = 0; i < kTile; ++i) set_polygon(segment, std::min(first + i, end - 1), i, tile);
     return;
   }
   WithTriangles(segment, access, first, end, [&](auto known, const std::uint32_t* corners) HWY_ATTR {
-    TriangleTile<known()>(segment, corners, tile, errors);
+    TriangleTile<known()>(segment, corners, tile, extras);
   });
 }
 

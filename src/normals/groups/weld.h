@@ -1,0 +1,21 @@
+/// What weld_coincident() finds on its way. Private to normals and workflow.
+#ifndef CHRONORMAL_NORMALS_GROUPS_WELD_H_
+#define CHRONORMAL_NORMALS_GROUPS_WELD_H_
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion_stream.h"
+#include "chronormal/normals/normal_groups.h"
+
+namespace chronormal::inline internal {
+
+struct WeldedPoints {
+  Points always;    ///< weld_coincident(): of vertices that coincide in all keyframes
+  Points at_start;  ///< of vertices that coincide in keyframe 0
+};
+
+/// Errors: those of the stream.
+[[nodiscard]] Result<WeldedPoints> weld_from_start(MotionStream& stream);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_GROUPS_WELD_H_
