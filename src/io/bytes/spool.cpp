@@ -1,6 +1,9 @@
 // Appends to a file, or to a list of blocks, and reads back from either.
 #include "io/bytes/spool.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
@@ -20,17 +23,30 @@ Result<Spool> Spool::beside(const std::string& target, const std::string& place)
 }
 
 void Spool::add(std::string bytes) {
-  if (bytes.empty() || !status_) return;
+  if (file_) return append(bytes);
+  if (bytes.empty()) return;
   const std::uint64_t at = size_;
   size_ += bytes.size();
-  if (!file_)
-    blocks_.push_back({at, std::move(bytes)});
-  else if (!write_bytes(file_->number(), bytes))
+  blocks_.push_back({at, std::move(bytes)});
+}
+
+void Spool::append(std::string_view bytes) {
+  if (!file_) return add(std::string(bytes));
+  if (bytes.empty() || !status_) return;
+  size_ += bytes.size();
+  if (!write_bytes(file_->number(), bytes)) status_ = failure(place_, errno);
+}
+
+void Spool::clear() {
+  size_ = 0;
+  blocks_.clear();
+  if (!file_ || !status_) return;
+  if (::ftruncate(file_->number(), 0) != 0 || ::lseek(file_->number(), 0, SEEK_SET) != 0)
     status_ = failure(place_, errno);
 }
 
 Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const {
-  constexpr std::uint64_t kPart = std::uint64_t{1} << 20;
+  constexpr std::uint64_t kPart = std::uint64_t{1} << 18;  // stays in a cache near the core
   if (!status_) return status_;
   assert(at <= size_ && size <= size_ - at);
   std::string part;
@@ -54,6 +70,23 @@ Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) 
     at += bytes.size();
   }
   return Success{};
+}
+
+Status Spool::give_away(std::uint64_t at, std::uint64_t size, const Take& take) {
+  constexpr std::uint64_t kForgotten = std::uint64_t{8} << 20;  // at a time, so that there are few calls
+  for (std::uint64_t given = 0; given < size;) {
+    const std::uint64_t part = std::min(size - given, kForgotten);
+    if (Status status = hand_over(at + given, part, take); !status) return status;
+#ifdef __linux__
+    // Pages that were freed just now are those that take gets next, and none of their bytes goes to the disk.
+    if (file_) {
+      (void)::fallocate(file_->number(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(at + given),
+                        static_cast<off_t>(part));
+    }
+#endif
+    given += part;
+  }
+  return status_;
 }
 
 bool Spool::has(std::uint64_t at, std::string_view bytes) {

@@ -40,11 +40,19 @@ class Spool {
 
   /// Puts bytes behind all others. Where that fails, status() has the error from then on, and nothing more is added.
   void add(std::string bytes);
+  /// The same of bytes that remain with the caller: a file needs no copy of them.
+  void append(std::string_view bytes);
+  /// Forgets all bytes.
+  void clear();
   [[nodiscard]] const Status& status() const noexcept { return status_; }
 
   /// Gives the bytes from `at` on to take, until it returns an error. Bytes in memory live as long as the spool.
   /// Errors: that of status(), and those of take. at + size must not exceed size()
   [[nodiscard]] Status hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const;
+
+  /// The same, and forgets each part when take has it: its room on the disk is free again where the system can do that.
+  /// Nobody may ask for these bytes again.
+  [[nodiscard]] Status give_away(std::uint64_t at, std::uint64_t size, const Take& take);
 
   /// Whether these bytes lie at `at`. Where they cannot be read, status() has the error from then on.
   [[nodiscard]] bool has(std::uint64_t at, std::string_view bytes);

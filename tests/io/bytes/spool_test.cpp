@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstddef>
 #include <filesystem>
@@ -102,6 +104,32 @@ TEST_P(Spools, end_where_the_taker_does_not_want_more) {
   EXPECT_EQ(calls, 1U);
 }
 
+TEST_P(Spools, give_everything_away_and_begin_again) {
+  Spool spool = make();
+  std::string whole;
+  for (int time = 0; time < 8; ++time) {
+    for (const std::string& part : parts()) {
+      spool.append(part);
+      whole += part;
+    }
+  }
+  std::string given;
+  const auto take = [&](std::string_view bytes) -> Status {
+    given += bytes;
+    return Success{};
+  };
+  ASSERT_TRUE(spool.give_away(0, 5, take).ok());
+  EXPECT_TRUE(all_of(spool, 5, whole.size() - 5) == whole.substr(5));
+  ASSERT_TRUE(spool.give_away(5, whole.size() - 5, take).ok());
+  EXPECT_TRUE(given == whole);
+  spool.clear();
+  EXPECT_EQ(spool.size(), 0U);
+  spool.add("other");
+  spool.append(" bytes");
+  EXPECT_EQ(all_of(spool, 0, spool.size()), "other bytes");
+  EXPECT_TRUE(spool.status().ok());
+}
+
 INSTANTIATE_TEST_SUITE_P(Spool, Spools, testing::Bool(),
                          [](const auto& tested) { return tested.param ? "in_a_file" : "in_memory"; });
 
@@ -120,17 +148,45 @@ TEST(Spool, in_a_folder_that_is_not_there_says_so) {
   EXPECT_EQ(spool.error().text(), "none/out.glb: can not write in its folder: No such file or directory");
 }
 
-// The system names the file of a descriptor, even where it has no name of its own.
-TEST(Spool, bytes_that_are_gone_from_the_file_are_an_error) {
-  const TemporaryFolder folder;
-  Spool spool = Spool::beside(folder / "out.glb", "out.glb").value();
-  spool.add(std::string(100, 'a'));
+// The name that the system has for the file of a spool in a folder, which has none of its own.
+std::string file_of_spool(const TemporaryFolder& folder) {
   std::string found;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
     std::error_code none;
     const std::string file = std::filesystem::read_symlink(entry.path(), none).string();
     if (file.starts_with(folder / ".chronormal-")) found = entry.path().string();
   }
+  return found;
+}
+
+TEST(Spool, room_of_what_is_given_away_is_free_again) {
+  const TemporaryFolder folder;
+  Spool spool = Spool::beside(folder / "out.glb", "out.glb").value();
+  spool.add(std::string(std::size_t{32} << 20, 'a'));
+  const std::string file = file_of_spool(folder);
+  const auto blocks = [&file] {
+    struct stat status {};
+    EXPECT_EQ(::stat(file.c_str(), &status), 0);
+    return status.st_blocks;
+  };
+  const auto before = blocks();
+  std::size_t given = 0;
+  decltype(blocks()) most = 0;  // while the last quarter is given away
+  const Status status = spool.give_away(0, spool.size(), [&](std::string_view bytes) -> Status {
+    given += bytes.size();
+    if (given > std::size_t{25} << 20) most = std::max(most, blocks());
+    return Success{};
+  });
+  ASSERT_TRUE(status.ok());
+  EXPECT_LT(2 * most, before) << "the rest of the file takes room, or the file system cannot free it";
+  EXPECT_EQ(given, std::size_t{32} << 20);
+}
+
+TEST(Spool, bytes_that_are_gone_from_the_file_are_an_error) {
+  const TemporaryFolder folder;
+  Spool spool = Spool::beside(folder / "out.glb", "out.glb").value();
+  spool.add(std::string(100, 'a'));
+  const std::string found = file_of_spool(folder);
   ASSERT_NE(found, "");
   ASSERT_EQ(::truncate(found.c_str(), 50), 0);
   EXPECT_EQ(all_of(spool, 0, 50), std::string(50, 'a'));

@@ -64,6 +64,31 @@ TEST(GlbBuilder, an_array_is_stored_once_and_no_other_for_it) {
   EXPECT_EQ(accessors, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6, 7, 1, 2, 3, 4, 5, 6, 7, 8}));
 }
 
+TEST(GlbBuilder, arrays_in_another_order_are_those_that_were_added_in_that_order) {
+  const std::vector<std::vector<float>> arrays = {vectors(1, 3 * kVertices), vectors(7, 30), vectors(3, 3 * kVertices),
+                                                  vectors(9, 40), vectors(5, 0)};
+  const std::vector<std::size_t> order = {3, 1, 5, 2, 4};  // accessors
+  GlbBuilder sorted, expected;
+  for (GlbBuilder* const builder : {&sorted, &expected})
+    (void)builder->set_triangles(std::vector<std::uint32_t>{0, 1, 2}, kVertices);
+  for (const std::vector<float>& values : arrays) (void)sorted.add_vectors(values, {true, false});
+  for (const std::size_t accessor : order) (void)expected.add_vectors(arrays[accessor - 1], {true, false});
+  sorted.put_in_order(order);
+  EXPECT_TRUE(sorted.finish().value() == expected.finish().value());
+}
+
+TEST(GlbBuilder, a_spool_can_be_used_again) {
+  const test::TemporaryFolder folder;
+  GlbBuilder first({}, Spool::beside(folder / "out", "out").value()), expected;
+  (void)add_all(first);
+  (void)first.add_vectors(vectors(77, 3 * kVertices), {true, false});
+  Spool spool = std::move(first).take_spool();
+  spool.clear();
+  GlbBuilder second({}, std::move(spool));
+  EXPECT_EQ(add_all(second), add_all(expected));
+  EXPECT_TRUE(second.finish().value() == expected.finish().value());
+}
+
 TEST(GlbBuilder, a_table_is_what_its_rows_are_one_after_the_other) {
   GlbBuilder of_rows, of_scalars;
   std::vector<float> scalars;

@@ -9,7 +9,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <string>
@@ -423,6 +425,45 @@ TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
   EXPECT_EQ(baked.warnings.size(), 1U);
   // Positions are base + delta, and half a millionth of the sphere is left: their rounding is part of the surface.
   expect_exact(glb, smooth_surface(motion));
+}
+
+// The first segment says nothing of what the last keyframe does to elements.
+TEST(BakeSequence, elements_that_shrink_or_appear_at_the_end_are_right_from_the_start) {
+  const test::TemporaryFolder folder;
+  for (const bool appears : {false, true}) {
+    Motion motion = wandering(fixtures::icosphere(1), 6, 0.2, 9);
+    if (appears) {
+      // All faces are a point until the last segment.
+      for (std::size_t k = 0; k < 5; ++k) {
+        std::vector<float>& positions = motion.keyframes[k].positions;
+        std::fill(positions.begin(), positions.end(), 1.0F);
+      }
+    } else {
+      for (std::size_t k = 4; k < 6; ++k)
+        for (float& c : motion.keyframes[k].positions) c *= 0x1p-12F;
+    }
+    std::size_t last = 0, whole = 0;
+    BakeOptions options{.hosts = kAddingUp};
+    options.progress = [&](std::size_t done, std::size_t total) {
+      EXPECT_GT(done, last);
+      last = done;
+      whole = total;
+    };
+    SequenceBake baked;
+    const std::string file = bake(motion, options, &baked);
+    EXPECT_EQ(last, whole);
+    const ShownGlb glb(file);
+    EXPECT_EQ(baked.targets, 6U);
+    EXPECT_EQ(baked.warnings.size(), 1U);
+    EXPECT_EQ(baked.without_normals, 0U);
+    expect_exact(glb, smooth_surface(motion));
+
+    MotionStream stream(motion);
+    options.progress = {};
+    ASSERT_TRUE(bake_sequence(stream, options, folder / "out.glb", true).ok());
+    std::ifstream written(folder / "out.glb", std::ios::binary);
+    EXPECT_TRUE(std::string(std::istreambuf_iterator<char>(written), {}) == file);
+  }
 }
 
 TEST(BakeSequence, elements_without_area_show_something_and_are_counted) {

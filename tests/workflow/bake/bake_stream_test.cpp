@@ -210,7 +210,7 @@ TEST(BakeStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_noth
   for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint, BakeEncoding::kHarmless}) {
     // The steps of the bake tell when arrays are there already: then the file is cut, or before all of it.
     for (const std::size_t step : {0U, 2U, 4U, 12U}) {
-      if (encoding == BakeEncoding::kEndpoint && step == 12) continue;  // it has read all by then
+      if (encoding != BakeEncoding::kHarmless && step == 12) continue;  // they have read all by then
       folder.write("walk.pc2", whole);
       Result<Input> input = open_input(options);
       ASSERT_TRUE(input.ok());

@@ -1,6 +1,7 @@
 #include "io/gltf/edit/gltf_edit_arrays.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/blocks.h"
 #include "io/bytes/binary.h"
 #include "io/json/json_writer.h"
 
@@ -28,16 +30,66 @@ std::string bytes_of(std::span<const float> values) {
   return bytes;
 }
 
-// The smallest or the largest number of each component, as JSON. Readers compare it in double with what they find in
-// the array, so that its digits have to read back as a double.
-template <class Choose>
-std::string bound_of(std::span<const float> values, std::size_t components, const Choose& choose) {
-  std::string json = "[";
-  for (std::size_t c = 0; c < components; ++c) {
-    float bound = values[c];
-    for (std::size_t i = c; i < values.size(); i += components) bound = choose(bound, values[i]);
-    json.append(c > 0 ? "," : "").append(json_number(bound == 0 ? 0.0 : double{bound}));  // no -0
+// What one pass over the values of an array finds.
+struct ArraySurvey {
+  std::array<float, 3> least{}, most{};  // of each component
+  std::size_t used = 0, last_used = 0;   // elements that are not zero
+  std::size_t hash = 0;                  // of the bytes
+};
+
+std::string_view native_bytes(std::span<const float> values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
+}
+
+template <std::size_t kComponents>
+ArraySurvey survey_elements(std::span<const float> values, std::size_t first, std::size_t end) {
+  ArraySurvey result;
+  const float* at = values.data() + kComponents * first;
+  for (std::size_t c = 0; c < kComponents; ++c) result.least[c] = result.most[c] = at[c];
+  for (std::size_t i = first; i < end; ++i, at += kComponents) {
+    bool is_used = false;
+    for (std::size_t c = 0; c < kComponents; ++c) {
+      result.least[c] = std::min(result.least[c], at[c]);
+      result.most[c] = std::max(result.most[c], at[c]);
+      is_used |= at[c] != 0;
+    }
+    result.used += is_used ? 1U : 0U;
+    result.last_used = is_used ? i : result.last_used;
   }
+  const std::span<const float> all = values.subspan(kComponents * first, kComponents * (end - first));
+  result.hash = std::hash<std::string_view>()(native_bytes(all));
+  return result;
+}
+
+std::size_t joined_hash(std::size_t first, std::size_t second) { return first * 1000003 ^ second; }
+
+ArraySurvey survey_array(std::span<const float> values, std::size_t components) {
+  constexpr std::size_t kBlock = 16384;
+  const std::size_t count = values.size() / components;
+  std::vector<ArraySurvey> of_blocks(block_count(count, kBlock));
+  numbered_blocks(count, kBlock, [&](std::size_t b, std::size_t first, std::size_t end) {
+    of_blocks[b] = components == 3 ? survey_elements<3>(values, first, end) : survey_elements<1>(values, first, end);
+  });
+  ArraySurvey all = of_blocks.front();
+  for (std::size_t b = 1; b < of_blocks.size(); ++b) {
+    const ArraySurvey& block = of_blocks[b];
+    for (std::size_t c = 0; c < components; ++c) {
+      all.least[c] = std::min(all.least[c], block.least[c]);
+      all.most[c] = std::max(all.most[c], block.most[c]);
+    }
+    all.used += block.used;
+    if (block.used > 0) all.last_used = block.last_used;
+    all.hash = joined_hash(all.hash, block.hash);
+  }
+  return all;
+}
+
+// A bound of each component, as JSON. Readers compare it in double with what they find in the array, so that its digits
+// have to read back as a double.
+std::string bound_json(std::span<const float> bounds) {
+  std::string json = "[";
+  for (std::size_t c = 0; c < bounds.size(); ++c)
+    json.append(c > 0 ? "," : "").append(json_number(bounds[c] == 0 ? 0.0 : double{bounds[c]}));  // no -0
   return json + "]";
 }
 
@@ -58,33 +110,37 @@ std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t
   return sparse + kSparseJson >= dense ? dense : sparse;
 }
 
-NewArrays::Encoded NewArrays::encode(std::span<const float> values, std::size_t components,
-                                     const GltfVectors& options) {
-  Encoded result;
+void NewArrays::encode(std::span<const float> values, std::size_t components, const GltfVectors& options,
+                       Encoded& result) {
   Array& array = result.array;
   array.components = components;
   array.count = values.size() / components;
+  const ArraySurvey found = survey_array(values, components);
   if (options.bounds) {
-    array.least = bound_of(values, components, [](float a, float b) { return std::min(a, b); });
-    array.most = bound_of(values, components, [](float a, float b) { return std::max(a, b); });
+    array.least = bound_json(std::span(found.least).first(components));
+    array.most = bound_json(std::span(found.most).first(components));
   }
+  result.hash = array.count;
+  for (const std::string* const bound : {&array.least, &array.most})
+    result.hash = joined_hash(result.hash, std::hash<std::string>()(*bound));
 
-  std::size_t used = 0, last_used = 0;
+  const std::size_t used = found.used, last_used = found.last_used;
+  const std::size_t index_size = bytes_of_index(last_used);
+  if (options.dense || bytes_of_floats(used, last_used, array.count, components) >= values.size_bytes()) {
+    result.hash = joined_hash(result.hash, found.hash);
+    if constexpr (std::endian::native == std::endian::little) {
+      result.dense = native_bytes(values);
+    } else {
+      result.swapped = bytes_of(values);
+      result.dense = result.swapped;
+    }
+    return;
+  }
+  if (used == 0) return;
   const auto element = [&](std::size_t i) { return values.subspan(i * components, components); };
   const auto is_zero = [&](std::size_t i) {
     return std::all_of(element(i).begin(), element(i).end(), [](float value) { return value == 0; });
   };
-  for (std::size_t i = 0; i < array.count; ++i) {
-    if (is_zero(i)) continue;
-    ++used;
-    last_used = i;
-  }
-  const std::size_t index_size = bytes_of_index(last_used);
-  if (options.dense || bytes_of_floats(used, last_used, array.count, components) >= values.size_bytes()) {
-    result.dense = bytes_of(values);
-    return result;
-  }
-  if (used == 0) return result;
   array.sparse_count = used;
   array.index_type = index_size == 1 ? 5121 : index_size == 2 ? 5123 : 5125;
   result.indices.reserve(used * index_size + 3);
@@ -100,7 +156,8 @@ NewArrays::Encoded NewArrays::encode(std::span<const float> values, std::size_t 
     for (const float value : element(i)) binary::append(result.values, value, std::endian::little);
   }
   pad(result.indices);
-  return result;
+  for (const std::string* const part : {&result.indices, &result.values})
+    result.hash = joined_hash(result.hash, std::hash<std::string>()(*part));
 }
 
 bool NewArrays::is_same(const Stored& stored, const Encoded& encoded) {
@@ -114,21 +171,27 @@ bool NewArrays::is_same(const Stored& stored, const Encoded& encoded) {
 std::size_t NewArrays::add(std::span<const float> values, std::size_t components, const GltfVectors& options) {
   assert(!values.empty() && values.size() % components == 0);
   assert(std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }));
-  Encoded encoded = encode(values, components, options);
-  const std::hash<std::string_view> hash_of;
-  std::size_t hash = encoded.array.count;
-  for (const std::string* const part :
-       {&encoded.dense, &encoded.indices, &encoded.values, &encoded.array.least, &encoded.array.most})
-    hash = hash * 1000003 ^ hash_of(*part);
-  const auto [first, end] = by_hash_.equal_range(hash);
+  Encoded encoded;
+  encode(values, components, options, encoded);
+  const auto [first, end] = by_hash_.equal_range(encoded.hash);
   const auto found =
       std::find_if(first, end, [&](const auto& entry) { return is_same(arrays_[entry.second], encoded); });
   if (found != end) return found->second;
-  by_hash_.emplace(hash, arrays_.size());
+  by_hash_.emplace(encoded.hash, arrays_.size());
   arrays_.push_back(
       {std::move(encoded.array), spool_.size(), encoded.dense.size(), encoded.indices.size(), encoded.values.size()});
-  for (std::string* const part : {&encoded.dense, &encoded.indices, &encoded.values}) spool_.add(std::move(*part));
+  spool_.append(encoded.dense);
+  spool_.add(std::move(encoded.indices));
+  spool_.add(std::move(encoded.values));
   return arrays_.size() - 1;
+}
+
+void NewArrays::put_in_order(std::span<const std::size_t> order) {
+  assert(order.size() == arrays_.size());
+  std::vector<Stored> arrays;
+  for (const std::size_t index : order) arrays.push_back(std::move(arrays_[index]));
+  arrays_ = std::move(arrays);
+  by_hash_.clear();
 }
 
 std::size_t NewArrays::add_table(std::size_t rows, std::size_t width,
@@ -170,26 +233,31 @@ std::size_t NewArrays::view_count() const noexcept {
   return (all.vectors > 0 ? 1U : 0U) + (all.scalars > 0 ? 1U : 0U) + (all.sparse > 0 ? 1U : 0U);
 }
 
-Status NewArrays::hand_over(const Spool::Take& take) const {
+template <class Body>
+Status NewArrays::each_place(const Body& body) const {
   for (const std::size_t components : {std::size_t{3}, std::size_t{1}}) {
     for (const Stored& stored : arrays_) {
       if (stored.array.components != components) continue;
-      if (Status status = spool_.hand_over(stored.at, stored.dense, take); !status) return status;
+      if (Status status = body(stored.at, stored.dense); !status) return status;
     }
   }
   for (const Stored& stored : arrays_) {
-    if (Status status = spool_.hand_over(stored.at + stored.dense, stored.indices + stored.values, take); !status)
-      return status;
+    if (Status status = body(stored.at + stored.dense, stored.indices + stored.values); !status) return status;
   }
   return status();
 }
 
+Status NewArrays::give_away(const Spool::Take& take) {
+  return each_place([&](std::uint64_t at, std::uint64_t size) { return spool_.give_away(at, size, take); });
+}
+
 std::vector<std::string_view> NewArrays::pieces() const {
   std::vector<std::string_view> result;
-  (void)hand_over([&](std::string_view bytes) -> Status {
+  const auto take = [&](std::string_view bytes) -> Status {
     result.push_back(bytes);
     return Success{};
-  });
+  };
+  (void)each_place([&](std::uint64_t at, std::uint64_t size) { return spool_.hand_over(at, size, take); });
   return result;
 }
 

@@ -37,6 +37,13 @@ class NewArrays {
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
+  /// Puts the arrays into another order: place i gets the array that was order[i], and has the index i from now on. No
+  /// array may be added after that. order must have each index once
+  void put_in_order(std::span<const std::size_t> order);
+
+  /// Takes the spool out, so that it can be cleared and used again.
+  [[nodiscard]] Spool take_spool() && { return std::move(spool_); }
+
   /// Whether all bytes could be put aside. Errors: those of Spool.
   [[nodiscard]] const Status& status() const noexcept { return spool_.status(); }
 
@@ -44,9 +51,9 @@ class NewArrays {
   /// Of all bytes, a multiple of 4.
   [[nodiscard]] std::uint64_t byte_count() const noexcept;
   [[nodiscard]] std::size_t view_count() const noexcept;
-  /// Gives all bytes to take, in the order of the buffer. Errors: those of Spool::hand_over().
-  [[nodiscard]] Status hand_over(const Spool::Take& take) const;
-  /// The same as views, which live as long as this. The spool must be in memory
+  /// Gives all bytes to take, in the order of the buffer, and forgets them. Errors: those of Spool::give_away().
+  [[nodiscard]] Status give_away(const Spool::Take& take);
+  /// All bytes, in the order of the buffer, as views, which live as long as this. The spool must be in memory
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
   /// The JSON of buffer views and of accessors, in the order of their indices, for bytes that begin at `offset` of a
@@ -68,8 +75,13 @@ class NewArrays {
   // The bytes of an array, each padded to a multiple of 4.
   struct Encoded {
     Array array;
-    std::string dense;
+    std::string_view dense;       // of the values themselves, or of `swapped` where the machine has another order
     std::string indices, values;  // of the sparse_count elements that are not zero
+    std::string swapped;
+    std::size_t hash = 0;
+
+    Encoded() = default;
+    Encoded(Encoded&&) = delete;  // since views would not follow
   };
   // The same bytes in the spool, one after the other from `at` on.
   struct Stored {
@@ -80,10 +92,13 @@ class NewArrays {
     std::uint64_t vectors = 0, scalars = 0, sparse = 0;
   };
 
-  [[nodiscard]] static Encoded encode(std::span<const float> values, std::size_t components,
-                                      const GltfVectors& options);
+  static void encode(std::span<const float> values, std::size_t components, const GltfVectors& options,
+                     Encoded& result);
   [[nodiscard]] bool is_same(const Stored& stored, const Encoded& encoded);
   [[nodiscard]] Sizes sizes() const noexcept;
+  // Calls body(at, size) for the bytes in the spool, in the order of the buffer, until it returns an error.
+  template <class Body>
+  [[nodiscard]] Status each_place(const Body& body) const;
 
   Spool spool_;
   std::vector<Stored> arrays_;

@@ -21,6 +21,10 @@ constexpr std::size_t kTriangles = 0, kFirstArray = 1;
 
 std::vector<std::uint32_t> fan_triangles(const Topology& topology, std::span<const std::uint32_t> vertex_of_corner) {
   std::vector<std::uint32_t> triangles;
+  if (topology.all_triangles()) {
+    triangles.assign(vertex_of_corner.begin(), vertex_of_corner.end());
+    return triangles;
+  }
   std::size_t first = 0;
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
     const std::size_t corners = topology.face(f).size();
@@ -53,12 +57,15 @@ std::size_t GlbBuilder::set_triangles(std::span<const std::uint32_t> corners, st
   const bool is_short = vertex_count <= 0xFFFF;
   indices_.clear();
   indices_.reserve((is_short ? 2 : 4) * corners.size() + 2);
-  for (const std::uint32_t corner : corners) {
-    if (is_short)
-      binary::append(indices_, static_cast<std::uint16_t>(corner), std::endian::little);
-    else
-      binary::append(indices_, corner, std::endian::little);
-  }
+  const auto append_each = [&](auto narrowed) {
+    for (const std::uint32_t corner : corners) binary::append(indices_, narrowed(corner), std::endian::little);
+  };
+  if (is_short)
+    append_each([](std::uint32_t corner) { return static_cast<std::uint16_t>(corner); });
+  else if (std::endian::native == std::endian::little)
+    indices_.assign(reinterpret_cast<const char*>(corners.data()), corners.size_bytes());
+  else
+    append_each([](std::uint32_t corner) { return corner; });
   index_accessor_ = {{"bufferView", kTriangles},
                      {"componentType", is_short ? kUnsignedShort : kUnsignedInt},
                      {"count", corners.size()},
@@ -77,6 +84,12 @@ std::size_t GlbBuilder::add_scalars(std::span<const float> scalars, const GltfVe
 std::size_t GlbBuilder::add_table(std::size_t rows, std::size_t width,
                                   const std::function<void(std::size_t row, std::span<float> values)>& fill) {
   return kFirstArray + arrays_.add_table(rows, width, fill);
+}
+
+void GlbBuilder::put_in_order(std::span<const std::size_t> order) {
+  std::vector<std::size_t> arrays;
+  for (const std::size_t accessor : order) arrays.push_back(accessor - kFirstArray);
+  arrays_.put_in_order(arrays);
 }
 
 Result<std::size_t> GlbBuilder::finish(const Take& take) {
@@ -105,7 +118,7 @@ Result<std::size_t> GlbBuilder::finish(const Take& take) {
                                        std::string_view(frame.behind_json), std::string_view(indices_)}) {
     if (const Status status = take(piece, size); !status) return status.error();
   }
-  Status status = arrays_.hand_over([&](std::string_view bytes) { return take(bytes, size); });
+  Status status = arrays_.give_away([&](std::string_view bytes) { return take(bytes, size); });
   if (status) status = take(frame.behind_bin, size);
   if (!status) return status.error();
   return size;

@@ -59,6 +59,13 @@ class GlbBuilder {
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
+  /// Numbers the accessors of arrays anew: the one that was order[i] becomes the i-th behind that of the triangles, and
+  /// bytes are in this order too. Nothing may be added after that. order must have each accessor of an array once
+  void put_in_order(std::span<const std::size_t> order);
+
+  /// Takes the spool out, so that it can be cleared and used again.
+  [[nodiscard]] Spool take_spool() && { return std::move(arrays_).take_spool(); }
+
   /// Whether all arrays could be put aside. Errors: those of the spool.
   [[nodiscard]] const Status& status() const noexcept { return arrays_.status(); }
   /// Bytes of the arrays so far.
@@ -66,8 +73,8 @@ class GlbBuilder {
   [[nodiscard]] std::size_t most_bytes() const noexcept { return most_bytes_; }
   [[nodiscard]] nlohmann::ordered_json& document() noexcept { return document_; }
 
-  /// Puts the file together and gives its bytes to take. Returns how many there are. Errors: kInvalidInput where there
-  /// would be too many, before take gets any; those of the spool and of take.
+  /// Puts the file together, gives its bytes to take and forgets them. Returns how many there are. Errors:
+  /// kInvalidInput where there would be too many, before take gets any; those of the spool and of take.
   [[nodiscard]] Result<std::size_t> finish(const Take& take);
   /// The same in memory.
   [[nodiscard]] Result<std::string> finish();

@@ -1,9 +1,10 @@
 // Bakes a sequence. A host shows normalize(N + sum_k w_k D_k). With hat weights over the keys and t (1 - t) on one more
 // target for each segment that is eq. 41, so that the normals are exact (docs/theory.md, section 15).
 //
+//     AreaSums            sums of the areas of faces around elements, in blocks                area_sums
 //     SequenceNormals     normals at keys, and their bends between, from a stream             sequence_normals
 //     sequence_elements   base normals, and which of them the first key cannot have           sequence_deltas
-//     *_deltas            what each target adds to the base, as arrays                        sequence_deltas
+//     *_deltas, each_exact_segment   what each target adds to the base, as arrays             sequence_deltas
 //     unit_*              the same of what every host shows alike                             harmless_sequence
 //     fewest_keys         at which instants there have to be keys                             fewest_keys
 //     each_curved_*       the same of curved paths, whose weights are cubics                  curved_sequence
@@ -110,24 +111,49 @@ void report_elements(const std::vector<SequenceElement>& elements, BakeEncoding 
                               "that keyframe 0 has a target too, whose weight is 1 at rest");
 }
 
-// Adds the targets of exact to the file, and notes which segments bend.
-Status write_exact(const SequenceNormals& normals, const std::vector<SequenceElement>& elements, const Step& step,
-                   SequenceTargets& targets, SequenceFile& file) {
-  const std::size_t total = 2 * normals.keys() - 1;
-  for (std::size_t k = targets.has_key_0 ? 0 : 1; k < normals.keys(); ++k) {
-    if (Status status = normals.hold(k, k); !status) return status;
-    file.add_key(k, k == 0 ? std::vector<float>() : normals.deltas(k), key_deltas(elements, normals.at_key(k)));
-    step(k + 1, total);
-    if (Status status = file.check(); !status) return status;
-  }
-  return each_segment(normals, [&](std::size_t s, const SegmentForm& form) {
-    if (const std::vector<Vec3d> deltas = bend_deltas(elements, form); !deltas.empty()) {
+// Adds the targets of exact to the file, and notes which segments bend. Returns false where the elements are not final,
+// and a segment says that they should be others.
+Result<bool> try_exact(const SequenceNormals& normals, const std::vector<SequenceElement>& elements, bool are_final,
+                       const Step& step, SequenceTargets& targets, SequenceFile& file) {
+  return each_exact_segment(normals, elements, are_final, [&](std::size_t s, const ExactSegment& values) {
+    if (s == 0 && targets.has_key_0) file.add_key(0, {}, values.start);
+    file.add_key(s + 1, values.positions, values.key);
+    if (values.bends) {
       targets.bent_segments.push_back(s);
-      file.add_bend(s, deltas);
+      file.add_bend(s, values.bend);
     }
-    step(normals.keys() + s + 1, total);
+    step(s + 1, normals.keys() - 1);
     return file.check();
   });
+}
+
+bool any_frees_base(const std::vector<SequenceElement>& elements) {
+  return std::any_of(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
+}
+
+// The same in one pass over the keyframes where the first segment says what the elements are, which it does of almost
+// every sequence; else in three.
+Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>& elements, const Step& step,
+                   SequenceTargets& targets, SequenceFile& file) {
+  std::size_t furthest = 0;
+  const Step forward = [&](std::size_t done, std::size_t total) {
+    if (done > furthest) step(furthest = done, total);
+  };
+  if (!any_frees_base(elements)) {
+    const Result<bool> written = try_exact(normals, elements, false, forward, targets, file);
+    if (!written) return written.error();
+    if (written.value()) return Success{};
+  }
+  if (Status status = normals.check_deltas(normals.keys()); !status) return status;
+  Result<std::vector<SequenceElement>> all = sequence_elements(normals);
+  if (!all) return all.error();
+  elements = std::move(all).value();
+  targets.has_key_0 = any_frees_base(elements);
+  targets.bent_segments.clear();
+  file.restart(normals.base(), elements);
+  const Result<bool> written = try_exact(normals, elements, true, forward, targets, file);
+  if (!written) return written.error();
+  return Success{};
 }
 
 // Adds the targets of endpoint to the file. Returns the largest angle that is left, in degrees.
@@ -351,25 +377,27 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& option
   Result<std::vector<float>> times = file_times(motion, report.warnings);
   if (!times) return times.error();
 
+  const bool is_exact = encoding == BakeEncoding::kExact;
+  if (!is_exact && normals.bounds().empty()) {  // exact does it as it goes, and fits did
+    if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
+  }
   const bool are_units = encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kKeys;
   const CurvedSource curved{&stream, &groups.value(), options.path};
-  const Result<HarmlessElements> found = is_curved   ? without_limits(curved_elements(curved))
-                                         : are_units ? harmless_elements(normals)
-                                                     : without_limits(sequence_elements(normals));
+  Result<HarmlessElements> found = is_curved   ? without_limits(curved_elements(curved))
+                                   : are_units ? harmless_elements(normals)
+                                   : is_exact  ? without_limits(elements_of_start(normals))
+                                               : without_limits(sequence_elements(normals));
   if (!found) return found.error();
-  const std::vector<SequenceElement>& elements = found.value().elements;
+  std::vector<SequenceElement>& elements = found.value().elements;
+  SequenceTargets targets{are_units ? BakeEncoding::kHarmless : encoding, false, normals.keys(), {}};
+  SequenceFile file(motion.topology, groups.value(), normals.base(), elements, options, std::move(spool));
+  if (is_exact) {
+    if (Status status = write_exact(normals, elements, step, targets, file); !status) return status.error();
+  }
   report_elements(elements, encoding, report);
   report.largest_error = largest_bound(normals);
-  const bool any_freed =
-      std::any_of(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
-  SequenceTargets targets{are_units ? BakeEncoding::kHarmless : encoding,
-                          encoding == BakeEncoding::kExact && any_freed,
-                          normals.keys(),
-                          {}};
   if (const std::size_t bent = count_not_convex(motion.topology, normals.base()); bent > 0)
     report.warnings.push_back(std::to_string(bent) + " polygons are not convex: their triangles overlap in the file");
-
-  SequenceFile file(motion.topology, groups.value(), normals.base(), elements, options, std::move(spool));
   report.keyframes = normals.keys();
   report.vertices = file.vertex_count();
   if (is_curved) {
@@ -378,13 +406,11 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& option
     warn_of_hosts(encoding, options.hosts, report.targets + report.extra_targets, 0, options.path, report.warnings);
     return report;
   }
-  if (encoding == BakeEncoding::kExact) {
-    if (Status status = write_exact(normals, elements, step, targets, file); !status) return status.error();
-  } else if (encoding == BakeEncoding::kKeys) {
+  if (encoding == BakeEncoding::kKeys) {
     times = write_keys(motion, normals, elements, times.value(), tolerance, step, file, report);
     if (!times) return times.error();
     targets.keys = times.value().size();
-  } else {
+  } else if (!is_exact) {
     const Result<double> error = encoding == BakeEncoding::kEndpoint
                                      ? write_endpoint(normals, elements, step, file)
                                      : write_harmless(normals, elements, options.hosts, step, targets, file);

@@ -2,8 +2,10 @@
 #include "workflow/bake/sequence/sequence_deltas.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "analysis/fits/end_delta.h"
 #include "core/blocks.h"
@@ -14,65 +16,137 @@ namespace {
 
 constexpr std::size_t kBlock = 256;
 
-}  // namespace
+// Of the length of its normal at key 0: an element whose normals are smaller, or larger, frees the base.
+constexpr double kMuchSmaller = 0x1p-10, kMuchLarger = 0x1p40;
+
+// The lengths of the control normals of an element, over segments.
+struct Sizes {
+  double at_key_0 = 0, smallest = std::numeric_limits<double>::infinity(), largest = 0;
+};
+
+double size_of(const ControlNormals& n) { return std::max({length(n.n0), length(n.m), length(n.n1)}); }
+
+void look_at(const ControlNormals& n, bool is_first, SequenceElement& element, Sizes& sizes) {
+  if (element.has_none) {
+    element.normal = rounded_to_float(unit_normal_at(n, 0).vector);
+    element.has_none = element.normal == Vec3d{};
+  }
+  const double size = size_of(n);
+  if (is_first) sizes.at_key_0 = length(n.n0);
+  if (size > 0) sizes.smallest = std::min(sizes.smallest, size);
+  sizes.largest = std::max(sizes.largest, size);
+}
 
 // With N = n_0 / |n_0|, float32 keeps the directions at other keys only where the normals there are not much smaller;
 // and where n_0 = 0 there is no such N.
-Result<std::vector<SequenceElement>> sequence_elements(const SequenceNormals& normals) {
-  constexpr double kMuchSmaller = 0x1p-10, kMuchLarger = 0x1p40, kWidest = 0x1p-60;
-  struct Sizes {
-    double at_key_0 = 0, smallest = std::numeric_limits<double>::infinity(), largest = 0;  // over the segments
-  };
+void settle(const Sizes& sizes, SequenceElement& element) {
+  constexpr double kWidest = 0x1p-60;
+  const auto& [at_key_0, smallest, largest] = sizes;
+  if (element.has_none) {
+    element.normal = kAnyNormal;
+    return;
+  }
+  element.frees_base = at_key_0 == 0 || smallest < kMuchSmaller * at_key_0 || largest > kMuchLarger * at_key_0;
+  element.scale = element.frees_base ? std::max(smallest, kWidest * largest) : at_key_0;
+}
+
+// Whether a segment leaves an element as settle() made it from segments before.
+bool is_as_supposed(const SequenceElement& element, const ControlNormals& n) {
+  if (element.has_none) return rounded_to_float(unit_normal_at(n, 0).vector) == Vec3d{};
+  if (element.frees_base) return false;
+  // A length is at least the largest component, and less than twice that.
+  const double largest = std::max({max_abs(n.n0), max_abs(n.m), max_abs(n.n1)});
+  if (largest >= kMuchSmaller * element.scale && 2 * largest <= kMuchLarger * element.scale) return true;
+  const double size = size_of(n);
+  return size == 0 || !(size < kMuchSmaller * element.scale || size > kMuchLarger * element.scale);
+}
+
+Vec3d key_delta(const SequenceElement& element, const Vec3d& at_key) {
+  // What is left of rounding N would only fill the file.
+  constexpr double kNothing = 0x1p-23;
+  const Vec3d delta = (1 / element.scale) * at_key - element.normal;
+  return !element.has_none && !(max_abs(delta) < kNothing) ? delta : Vec3d{};
+}
+
+Vec3d bend_delta(const SequenceElement& element, const Vec3d& from, const Vec3d& to, const Vec3d& bend) {
+  // A bend that turns nothing by more than 1e-8 rad is none (degree() has the same limit).
+  constexpr double kNothing = 0x1p-28;
+  const double size = std::max(max_abs(from), max_abs(to));
+  return !(max_abs(bend) <= kNothing * size) ? (-1 / element.scale) * bend : Vec3d{};
+}
+
+VectorView<float> view_of(std::vector<float>& values) {
+  return VectorView<float>::packed(values.data(), values.size() / 3);
+}
+
+// The elements that the first `segments` of all segments say.
+Result<std::vector<SequenceElement>> elements_of(const SequenceNormals& normals, std::size_t segments) {
   std::vector<SequenceElement> elements(normals.elements());
   std::vector<Sizes> sizes(normals.elements());
-  const Status status = each_segment(normals, [&](std::size_t s, const SegmentForm& form) -> Status {
-    parallel_each(elements.size(), kBlock, [&](std::size_t e) {
-      const ControlNormals n = form.control_normals(e);
-      if (elements[e].has_none) {
-        elements[e].normal = rounded_to_float(unit_normal_at(n, 0).vector);
-        elements[e].has_none = elements[e].normal == Vec3d{};
-      }
-      const double size = std::max({length(n.n0), length(n.m), length(n.n1)});
-      if (s == 0) sizes[e].at_key_0 = length(n.n0);
-      if (size > 0) sizes[e].smallest = std::min(sizes[e].smallest, size);
-      sizes[e].largest = std::max(sizes[e].largest, size);
-    });
+  const Status status = each_segment(normals, segments, [&](std::size_t s, const SegmentForm& form) -> Status {
+    parallel_each(elements.size(), kBlock,
+                  [&](std::size_t e) { look_at(form.control_normals(e), s == 0, elements[e], sizes[e]); });
     return Success{};
   });
   if (!status) return status.error();
-  for (std::size_t e = 0; e < elements.size(); ++e) {
-    const auto& [at_key_0, smallest, largest] = sizes[e];
-    if (elements[e].has_none) {
-      elements[e].normal = kAnyNormal;
-      continue;
-    }
-    elements[e].frees_base = at_key_0 == 0 || smallest < kMuchSmaller * at_key_0 || largest > kMuchLarger * at_key_0;
-    elements[e].scale = elements[e].frees_base ? std::max(smallest, kWidest * largest) : at_key_0;
-  }
+  parallel_each(elements.size(), kBlock, [&](std::size_t e) { settle(sizes[e], elements[e]); });
   return elements;
 }
 
-std::vector<Vec3d> key_deltas(std::span<const SequenceElement> elements, std::span<const Vec3d> at_key) {
-  // What is left of rounding N would only fill the file.
-  constexpr double kNothing = 0x1p-23;
-  std::vector<Vec3d> deltas(elements.size());
-  parallel_each(elements.size(), kBlock, [&](std::size_t e) {
-    const Vec3d delta = (1 / elements[e].scale) * at_key[e] - elements[e].normal;
-    if (!elements[e].has_none && !(max_abs(delta) < kNothing)) deltas[e] = delta;
-  });
-  return deltas;
+}  // namespace
+
+Result<std::vector<SequenceElement>> sequence_elements(const SequenceNormals& normals) {
+  return elements_of(normals, normals.keys() - 1);
 }
 
-std::vector<Vec3d> bend_deltas(std::span<const SequenceElement> elements, const SegmentForm& form) {
-  // A bend that turns nothing by more than 1e-8 rad is none (degree() has the same limit).
-  constexpr double kNothing = 0x1p-28;
-  std::vector<Vec3d> deltas(elements.size());
-  parallel_each(elements.size(), kBlock, [&](std::size_t e) {
-    const double size = std::max(max_abs(form.from[e]), max_abs(form.to[e]));
-    if (!(max_abs(form.bends[e]) <= kNothing * size)) deltas[e] = (-1 / elements[e].scale) * form.bends[e];
-  });
-  if (std::all_of(deltas.begin(), deltas.end(), [](const Vec3d& d) { return d == Vec3d{}; })) deltas.clear();
-  return deltas;
+Result<std::vector<SequenceElement>> elements_of_start(const SequenceNormals& normals) {
+  const std::size_t segments = std::min<std::size_t>(normals.keys() - 1, 1);
+  if (const Status status = normals.check_deltas(segments + 1); !status) return status.error();
+  return elements_of(normals, segments);
+}
+
+Result<bool> each_exact_segment(const SequenceNormals& normals, std::span<const SequenceElement> elements,
+                                bool are_final,
+                                const std::function<Status(std::size_t segment, const ExactSegment& values)>& body) {
+  ExactSegment values;
+  values.key.resize(3 * elements.size());
+  values.bend.resize(3 * elements.size());
+  std::vector<Vec3d> at_key;
+  SequenceNormals::Rows rows;
+  for (std::size_t s = 0; s + 1 < normals.keys(); ++s) {
+    if (const Status status = normals.hold(s, s + 1); !status) return status.error();
+    normals.deltas(s + 1, values.positions);
+    if (const Status status = SequenceNormals::check_deltas(s + 1, values.positions); !status) return status.error();
+    values.start.clear();
+    if (s == 0) {
+      at_key = normals.at_key(0);
+      values.start.resize(3 * elements.size());
+      const VectorView<float> start = view_of(values.start);
+      parallel_each(elements.size(), kBlock,
+                    [&](std::size_t e) { start.set(e, to_float(key_delta(elements[e], at_key[e]))); });
+    }
+    std::atomic<bool> bends = false, as_supposed = true;
+    normals.each_block(s, rows, [&](IndexRange some, std::span<const Vec3d> of_key, std::span<const Vec3d> of_bend) {
+      const VectorView<float> key = view_of(values.key), bend = view_of(values.bend);
+      bool block_bends = false, block_as_supposed = true;
+      for (std::size_t e = some.first; e < some.end(); ++e) {
+        const SequenceElement& element = elements[e];
+        const Vec3d from = at_key[e], to = of_key[e - some.first], d = of_bend[e - some.first];
+        at_key[e] = to;
+        const Vec3d of_segment = bend_delta(element, from, to, d);
+        block_as_supposed = block_as_supposed && is_as_supposed(element, control_normals_of(from, to, d));
+        block_bends = block_bends || !(of_segment == Vec3d{});
+        key.set(e, to_float(key_delta(element, to)));
+        bend.set(e, to_float(of_segment));
+      }
+      if (block_bends) bends = true;
+      if (!block_as_supposed) as_supposed = false;
+    });
+    if (!are_final && !as_supposed) return false;
+    values.bends = bends;
+    if (const Status status = body(s, values); !status) return status.error();
+  }
+  return true;
 }
 
 // The direction in a segment depends on the ratio of the lengths at its two keys alone, so that every segment can have

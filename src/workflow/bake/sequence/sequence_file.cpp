@@ -2,10 +2,13 @@
 #include "workflow/bake/sequence/sequence_file.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "chronormal/core/views.h"
+#include "core/blocks.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 #include "workflow/bake/sequence/harmless_sequence.h"
 
@@ -14,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-SequenceVertices make_vertices(const Topology& topology, const NormalGroups& groups) {
+SequenceVertices split_vertices(const Topology& topology, const NormalGroups& groups) {
   const std::span<const std::uint32_t> corners = topology.corners();
   SequenceVertices result;
   result.vertex.resize(topology.vertex_count());
@@ -44,11 +47,23 @@ SequenceVertices make_vertices(const Topology& topology, const NormalGroups& gro
   return result;
 }
 
-std::vector<Vec3d> normals_of(std::span<const SequenceElement> elements) {
-  std::vector<Vec3d> normals;
-  normals.reserve(elements.size());
-  for (const SequenceElement& element : elements) normals.push_back(element.normal);
-  return normals;
+SequenceVertices make_vertices(const Topology& topology, const NormalGroups& groups) {
+  SequenceVertices result = split_vertices(topology, groups);
+  result.are_of_motion = result.size() == topology.vertex_count();
+  std::uint32_t next = 0;
+  result.are_elements = result.size() == groups.size() && std::all_of(result.element.begin(), result.element.end(),
+                                                                      [&next](std::uint32_t e) { return e == next++; });
+  return result;
+}
+
+// A vector for each vertex of a file.
+template <class VectorAt>
+std::span<const float> fill_vectors(std::size_t count, std::vector<float>& room, const VectorAt& vector_at) {
+  constexpr std::size_t kVectorBlock = 8192;
+  room.resize(3 * count);
+  const auto view = VectorView<float>::packed(room.data(), count);
+  parallel_each(count, kVectorBlock, [&](std::size_t i) { view.set(i, vector_at(i)); });
+  return room;
 }
 
 // The bend of a segment, as an index into bent_segments; nothing where it has none.
@@ -137,35 +152,46 @@ GltfBakeMark mark_of(const SequenceTargets& targets) {
 
 }  // namespace
 
-std::vector<float> SequenceVertices::positions(std::span<const float> of_motion) const {
-  std::vector<float> result(3 * size());
-  for (std::size_t i = 0; i < size(); ++i)
-    std::copy_n(of_motion.data() + 3 * std::size_t{vertex[i]}, 3, result.data() + 3 * i);
-  return result;
+std::span<const float> SequenceVertices::positions(std::span<const float> of_motion, std::vector<float>& room) const {
+  if (are_of_motion) return of_motion;
+  const auto view = VectorView<const float>::packed(of_motion.data(), of_motion.size() / 3);
+  return fill_vectors(size(), room, [&](std::size_t i) { return view[vertex[i]]; });
 }
 
-std::vector<float> SequenceVertices::vectors(std::span<const Vec3d> of_elements, const Vec3d& none) const {
-  std::vector<float> result(3 * size());
-  const auto view = VectorView<float>::packed(result.data(), size());
-  for (std::size_t i = 0; i < size(); ++i) view.set(i, to_float(element[i] == kNone ? none : of_elements[element[i]]));
-  return result;
+std::span<const float> SequenceVertices::vectors(std::span<const float> of_elements, const Vec3f& none,
+                                                 std::vector<float>& room) const {
+  if (are_elements) return of_elements;
+  const auto view = VectorView<const float>::packed(of_elements.data(), of_elements.size() / 3);
+  return fill_vectors(size(), room, [&](std::size_t i) { return element[i] == kNone ? none : view[element[i]]; });
 }
 
 SequenceFile::SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
                            std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool)
     : vertices_(make_vertices(topology, groups)),
+      topology_(&topology),
+      most_bytes_(options.most_bytes),
       dense_zeros_(options.dense_zeros),
       expansion_(options.expansion),
       builder_(options.most_bytes, std::move(spool)) {
-  triangles_ = builder_.set_triangles(fan_triangles(topology, vertices_.of_corner), vertices_.size());
-  base_ = {
-      {"POSITION", builder_.add_vectors(vertices_.positions(base), {true, true})},
-      {"NORMAL", builder_.add_vectors(vertices_.vectors(normals_of(elements), kAnyNormal), {false, true})},
-  };
+  begin(base, elements);
 }
 
-std::size_t SequenceFile::zero_normals() {
-  return builder_.add_vectors(std::vector<float>(3 * vertices_.size()), {false, dense_zeros_});
+void SequenceFile::begin(std::span<const float> base, std::span<const SequenceElement> elements) {
+  triangles_ = builder_.set_triangles(fan_triangles(*topology_, vertices_.of_corner), vertices_.size());
+  base_positions_ = builder_.add_vectors(vertices_.positions(base, room_), {true, true});
+  const std::span<const float> normals =
+      fill_vectors(elements.size(), rounded_, [elements](std::size_t e) { return to_float(elements[e].normal); });
+  base_normals_ = builder_.add_vectors(vertices_.vectors(normals, to_float(kAnyNormal), room_), {false, true});
+}
+
+void SequenceFile::restart(std::span<const float> base, std::span<const SequenceElement> elements) {
+  Spool spool = std::move(builder_).take_spool();
+  spool.clear();
+  builder_ = GlbBuilder(most_bytes_, std::move(spool));
+  zero_positions_.reset();
+  targets_.clear();
+  bends_.clear();
+  begin(base, elements);
 }
 
 std::size_t SequenceFile::zero_positions() {
@@ -174,28 +200,38 @@ std::size_t SequenceFile::zero_positions() {
   return *zero_positions_;
 }
 
+std::size_t SequenceFile::add_positions(std::span<const float> of_motion) {
+  return builder_.add_vectors(vertices_.positions(of_motion, room_), {true, dense_zeros_});
+}
+
+std::span<const float> SequenceFile::rounded(std::span<const Vec3d> of_elements) {
+  return fill_vectors(of_elements.size(), rounded_, [of_elements](std::size_t e) { return to_float(of_elements[e]); });
+}
+
+void SequenceFile::add_key(std::size_t key, std::span<const float> positions, std::span<const float> normals) {
+  targets_.push_back(
+      target("key " + std::to_string(key), positions.empty() ? zero_positions() : add_positions(positions), normals));
+}
+
 void SequenceFile::add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals) {
-  add_target(
-      "key " + std::to_string(key),
-      positions.empty() ? zero_positions() : builder_.add_vectors(vertices_.positions(positions), {true, dense_zeros_}),
-      normals);
+  add_key(key, positions, rounded(normals));
+}
+
+void SequenceFile::add_bend(std::size_t segment, std::span<const float> normals) {
+  bends_.push_back(target("bend " + std::to_string(segment), zero_positions(), normals));
 }
 
 void SequenceFile::add_bend(std::size_t segment, std::span<const Vec3d> normals) {
-  add_target("bend " + std::to_string(segment), zero_positions(), normals);
+  add_bend(segment, rounded(normals));
 }
 
 void SequenceFile::add_velocities(std::size_t key, std::span<const float> velocities, std::span<const Vec3d> normals) {
-  add_target("velocities " + std::to_string(key),
-             builder_.add_vectors(vertices_.positions(velocities), {true, dense_zeros_}), normals);
+  targets_.push_back(target("velocities " + std::to_string(key), add_positions(velocities), rounded(normals)));
 }
 
-void SequenceFile::add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals) {
-  names_.push_back(std::move(name));
-  targets_.push_back(
-      {{"POSITION", positions},
-       {"NORMAL", normals.empty() ? zero_normals()
-                                  : builder_.add_vectors(vertices_.vectors(normals, Vec3d{}), {false, dense_zeros_})}});
+SequenceFile::Target SequenceFile::target(std::string name, std::size_t positions, std::span<const float> normals) {
+  return {std::move(name), positions,
+          builder_.add_vectors(vertices_.vectors(normals, Vec3f{}, room_), {false, dense_zeros_})};
 }
 
 Status SequenceFile::check(std::uint64_t more) const {
@@ -212,7 +248,7 @@ Result<std::size_t> SequenceFile::finish(const SequenceTargets& targets, const s
   const std::uint64_t keys = targets.keys + std::uint64_t{targets.bent_segments.size()} * (exact ? 0 : kBendPieces - 1),
                       weights = keys * targets.count() * (exact ? 3 : 1);
   if (Status status = check(sizeof(float) * (keys + weights)); !status) return status.error();
-  std::vector<int> rest(targets_.size(), 0);
+  std::vector<int> rest(targets_.size() + bends_.size(), 0);
   if (targets.has_key_0) rest[0] = 1;
   return exact ? finish(spline_track(targets, times), "CUBICSPLINE", mark_of(targets), rest, take)
                : finish(linear_track(targets, times), "LINEAR", mark_of(targets), rest, take);
@@ -223,6 +259,24 @@ Result<std::size_t> SequenceFile::finish(const SequenceTrack& track, std::string
                                          const GlbBuilder::Take& take) {
   const std::size_t input = builder_.add_scalars(track.times, {true, true}),
                     output = builder_.add_table(track.rows, track.width, track.fill);
+  std::move(bends_.begin(), bends_.end(), std::back_inserter(targets_));
+  // Accessors are numbered in the order in which the document names them.
+  std::vector<std::size_t> order;
+  std::unordered_map<std::size_t, std::size_t> number_of;
+  const auto number = [&](std::size_t accessor) {
+    const auto [entry, is_new] = number_of.try_emplace(accessor, order.size() + 1);
+    if (is_new) order.push_back(accessor);
+    return entry->second;
+  };
+  const Json attributes = {{"POSITION", number(base_positions_)}, {"NORMAL", number(base_normals_)}};
+  Json targets = Json::array(), names = Json::array();
+  for (const Target& each : targets_) {
+    const std::size_t positions = number(each.positions), normals = number(each.normals);
+    targets.push_back({{"POSITION", positions}, {"NORMAL", normals}});
+    names.push_back(each.name);
+  }
+  const Json sampler = {{"input", number(input)}, {"interpolation", interpolation}, {"output", number(output)}};
+  builder_.put_in_order(order);
   Json& document = builder_.document();
   document["scene"] = 0;
   document["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
@@ -230,12 +284,11 @@ Result<std::size_t> SequenceFile::finish(const SequenceTrack& track, std::string
   Json node = {{"mesh", 0}};
   if (!bake_mark.extras.empty()) node["extras"] = {{"chronormal", mark}};
   document["nodes"] = Json::array({std::move(node)});
-  Json primitive = {{"attributes", base_}, {"indices", triangles_}, {"targets", std::move(targets_)}};
+  Json primitive = {{"attributes", attributes}, {"indices", triangles_}, {"targets", std::move(targets)}};
   Json mesh = {{"primitives", Json::array({std::move(primitive)})},
                {"weights", rest},
-               {"extras", {{"targetNames", names_}, {"chronormal", mark}}}};
+               {"extras", {{"targetNames", std::move(names)}, {"chronormal", mark}}}};
   document["meshes"] = Json::array({std::move(mesh)});
-  const Json sampler = {{"input", input}, {"interpolation", interpolation}, {"output", output}};
   const Json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
   document["animations"] =
       Json::array({{{"name", "motion"}, {"samplers", Json::array({sampler})}, {"channels", Json::array({channel})}}});

@@ -44,11 +44,15 @@ struct SequenceVertices {
   std::vector<std::uint32_t> element;    ///< of each: whose normal it shows; kNone where it has no face
   std::vector<std::uint32_t> of_corner;  ///< of each corner of the motion
 
+  bool are_of_motion = false;  ///< whether there are no copies
+  bool are_elements = false;   ///< whether vertex i shows the normal of element i, and there are no other elements
+
   [[nodiscard]] std::size_t size() const noexcept { return vertex.size(); }
-  /// Positions of the motion, (V, 3), for each vertex of the file.
-  [[nodiscard]] std::vector<float> positions(std::span<const float> of_motion) const;
-  /// Vectors of elements for each vertex of the file, and `none` for those without a face.
-  [[nodiscard]] std::vector<float> vectors(std::span<const Vec3d> of_elements, const Vec3d& none) const;
+  /// Positions of the motion, (V, 3), for each vertex of the file: those that were given, or new ones in `room`.
+  [[nodiscard]] std::span<const float> positions(std::span<const float> of_motion, std::vector<float>& room) const;
+  /// Vectors of elements, (E, 3), for each vertex of the file, and `none` for those without a face. As above.
+  [[nodiscard]] std::span<const float> vectors(std::span<const float> of_elements, const Vec3f& none,
+                                               std::vector<float>& room) const;
 };
 
 /// The keys of an animation, and the values of its weights in rows, with one value for each target. Each key has a row;
@@ -64,16 +68,22 @@ struct SequenceTrack {
 class SequenceFile {
  public:
   /// Writes key 0, whose positions are `base`, with the normals of the elements, and polygons as fans of triangles.
-  /// (Their normals are those of the polygons all the same.)
+  /// (Their normals are those of the polygons all the same.) The topology must outlive this.
   SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
                std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool);
+
+  /// Begins again with other elements, as if nothing had been added.
+  void restart(std::span<const float> base, std::span<const SequenceElement> elements);
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
 
   /// Adds a target for a key, with the deltas of its positions against key 0 as SequenceNormals has them; none for
-  /// key 0 itself.
+  /// key 0 itself. Normals are those of elements, (E, 3) in float32.
+  void add_key(std::size_t key, std::span<const float> positions, std::span<const float> normals);
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
-  /// Adds a target for the bend of a segment; there may be several.
+  /// Adds a target for the bend of a segment; there may be several. They stand behind all other targets, whenever they
+  /// are added.
+  void add_bend(std::size_t segment, std::span<const float> normals);
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
   /// Adds a target that moves vertices by the velocities of a key, (V, 3), and normals by how fast they turn there.
   void add_velocities(std::size_t key, std::span<const float> velocities, std::span<const Vec3d> normals);
@@ -91,19 +101,28 @@ class SequenceFile {
                                            const GlbBuilder::Take& take);
 
  private:
-  void add_target(std::string name, std::size_t positions, std::span<const Vec3d> normals);
+  struct Target {
+    std::string name;
+    std::size_t positions = 0, normals = 0;  // accessors
+  };
+
+  void begin(std::span<const float> base, std::span<const SequenceElement> elements);
+  [[nodiscard]] Target target(std::string name, std::size_t positions, std::span<const float> normals);
+  [[nodiscard]] std::size_t add_positions(std::span<const float> of_motion);
   // The accessor that targets share which move nothing.
   [[nodiscard]] std::size_t zero_positions();
-  [[nodiscard]] std::size_t zero_normals();
+  [[nodiscard]] std::span<const float> rounded(std::span<const Vec3d> of_elements);
 
   SequenceVertices vertices_;
+  const Topology* topology_;
+  std::optional<std::size_t> most_bytes_;
   bool dense_zeros_;
   Expansion expansion_;
   GlbBuilder builder_;
-  std::size_t triangles_ = 0;  // accessor
+  std::size_t triangles_ = 0, base_positions_ = 0, base_normals_ = 0;  // accessors
   std::optional<std::size_t> zero_positions_;
-  nlohmann::ordered_json base_, targets_ = nlohmann::ordered_json::array();
-  std::vector<std::string> names_;
+  std::vector<Target> targets_, bends_;
+  std::vector<float> rounded_, room_;  // memory for what goes into the file
 };
 
 }  // namespace chronormal::inline internal

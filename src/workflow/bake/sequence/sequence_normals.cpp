@@ -4,28 +4,37 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "chronormal/normals/weighting.h"
+#include "core/bits.h"
 #include "core/blocks.h"
-#include "core/rounding.h"
-#include "core/vector_area.h"
 
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kTaskBlock = 1024;  // faces or elements that one task takes
+constexpr std::size_t kVertexBlock = 8192;  // that one task takes
 
-// The normal of a polygon, with components that are nothing but the rounding of its products set to zero.
-Vec3d polygon_normal(std::span<const std::uint32_t> face, const std::vector<Vec3d>& positions) {
-  CrossSum sum;
-  const Vec3d a = positions[face[0]];
-  const auto edge_to = [&](std::size_t c) { return positions[face[c]] - a; };
-  for_fan(face.size(), edge_to, [&sum](const Vec3d& e, const Vec3d& f) { sum.add(e, f); });
-  return sum.without_rounding();
+// Writes coordinate_at(i) for the three coordinates of each vertex: i is the place of the coordinate.
+template <class CoordinateAt>
+void write_rows(std::size_t vertices, PointRows& rows, const CoordinateAt& coordinate_at) {
+  constexpr std::size_t kRow = 4;
+  if (rows.size() != kRow * vertices) rows = PointRows(kRow * vertices);
+  double* const to = rows.data();
+  parallel_each(vertices, kVertexBlock, [=, &coordinate_at](std::size_t v) {
+    for (std::size_t k = 0; k < 3; ++k) to[kRow * v + k] = coordinate_at(3 * v + k);
+    to[kRow * v + 3] = 0;
+  });
+}
+
+// The float32 delta of a coordinate, as a file has it.
+float delta_of(float position, float base) { return position - base; }
+
+bool is_far(float delta) {
+  constexpr std::uint32_t kExponent = 0x7F800000;
+  return (bit_cast<std::uint32_t>(delta) & kExponent) == kExponent;
 }
 
 }  // namespace
@@ -34,18 +43,35 @@ Result<SequenceNormals> SequenceNormals::make(MotionStream& stream, const Normal
   SequenceNormals normals(stream, groups);
   if (const Status status = normals.hold(0, 0); !status) return status.error();
   normals.base_ = normals.motion().keyframes[0].positions;
-  for (std::size_t k = 1; k < normals.keys(); ++k) {
-    if (const Status status = normals.hold(k, k); !status) return status.error();
-    const std::vector<float> deltas = normals.deltas(k);
-    const auto far = std::find_if(deltas.begin(), deltas.end(), [](float delta) { return !std::isfinite(delta); });
-    if (far != deltas.end())
-      return invalid_input("keyframe " + std::to_string(k) + ", vertex " + std::to_string((far - deltas.begin()) / 3),
-                           "it is too far from where it was in keyframe 0 for float32");
-  }
   if (weighting != Weighting::kArea) {
+    if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
     if (const Status status = normals.fit(weighting); !status) return status.error();
   }
   return normals;
+}
+
+Status SequenceNormals::check_deltas(std::size_t keys) const {
+  std::vector<float> of_key;
+  for (std::size_t k = 1; k < keys; ++k) {
+    if (Status status = hold(k, k); !status) return status;
+    deltas(k, of_key);
+    if (Status status = check_deltas(k, of_key); !status) return status;
+  }
+  return Success{};
+}
+
+Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> deltas) {
+  constexpr std::size_t kTogether = 4096;  // without a branch for each
+  for (std::size_t first = 0; first < deltas.size(); first += kTogether) {
+    const std::span<const float> some = deltas.subspan(first, std::min(kTogether, deltas.size() - first));
+    bool any_far = false;
+    for (const float delta : some) any_far |= is_far(delta);
+    if (!any_far) continue;
+    const auto at = static_cast<std::size_t>(std::find_if(some.begin(), some.end(), is_far) - some.begin());
+    return invalid_input("keyframe " + std::to_string(key) + ", vertex " + std::to_string((first + at) / 3),
+                         "it is too far from where it was in keyframe 0 for float32");
+  }
+  return Success{};
 }
 
 Status SequenceNormals::fit(Weighting weighting) {
@@ -74,49 +100,64 @@ Status SequenceNormals::fit(Weighting weighting) {
 }
 
 std::vector<float> SequenceNormals::deltas(std::size_t key) const {
+  std::vector<float> result;
+  deltas(key, result);
+  return result;
+}
+
+void SequenceNormals::deltas(std::size_t key, std::vector<float>& result) const {
   const std::vector<float>& positions = motion().keyframes[key].positions;
   assert(positions.size() == base_.size());
-  std::vector<float> result(base_.size());
-  for (std::size_t i = 0; i < base_.size(); ++i) result[i] = positions[i] - base_[i];
-  return result;
+  result.resize(base_.size());
+  parallel_each(result.size(), 3 * kVertexBlock, [&](std::size_t i) { result[i] = delta_of(positions[i], base_[i]); });
 }
 
-std::vector<Vec3d> SequenceNormals::moved(std::size_t key) const {
-  const std::vector<float> delta = deltas(key);
-  std::vector<Vec3d> result(delta.size() / 3);
-  for (std::size_t v = 0; v < result.size(); ++v)
-    result[v] = {double{delta[3 * v]}, double{delta[3 * v + 1]}, double{delta[3 * v + 2]}};
-  return result;
+void SequenceNormals::write_positions(std::size_t key, PointRows& rows) const {
+  const float *const positions = motion().keyframes[key].positions.data(), *const base = base_.data();
+  write_rows(base_.size() / 3, rows,
+             [=](std::size_t i) { return double{delta_of(positions[i], base[i])} + double{base[i]}; });
 }
 
-std::vector<Vec3d> SequenceNormals::vector_areas(const std::vector<Vec3d>& positions) const {
-  const Topology& topology = motion().topology;
-  std::vector<Vec3d> faces(topology.face_count()), result(elements());
-  parallel_each(faces.size(), kTaskBlock,
-                [&](std::size_t f) { faces[f] = polygon_normal(topology.face(f), positions); });
-  parallel_each(result.size(), kTaskBlock, [&](std::size_t e) {
-    VectorSum sum;
-    for (const std::uint32_t f : groups_->faces(e)) sum.add(faces[f]);
-    result[e] = sum.without_rounding();
+void SequenceNormals::write_displacements(std::size_t segment, PointRows& rows) const {
+  const float *const from = motion().keyframes[segment].positions.data(),
+                     *const to = motion().keyframes[segment + 1].positions.data(), *const base = base_.data();
+  write_rows(base_.size() / 3, rows,
+             [=](std::size_t i) { return double{delta_of(to[i], base[i])} - double{delta_of(from[i], base[i])}; });
+}
+
+std::vector<Vec3d> SequenceNormals::vector_areas(const PointRows& points) const {
+  std::vector<Vec3d> result(elements());
+  sums_.each_block(points, nullptr, [&](IndexRange elements, std::span<const Vec3d> sums, std::span<const Vec3d>) {
+    std::copy(sums.begin(), sums.end(), result.begin() + static_cast<std::ptrdiff_t>(elements.first));
   });
   return result;
 }
 
 std::vector<Vec3d> SequenceNormals::at_key(std::size_t key) const {
   if (!fitted_keys_.empty()) return fitted_keys_[key];
-  std::vector<Vec3d> positions = moved(key);
-  for (std::size_t v = 0; v < positions.size(); ++v)
-    positions[v] = positions[v] + Vec3d{double{base_[3 * v]}, double{base_[3 * v + 1]}, double{base_[3 * v + 2]}};
+  PointRows positions;
+  write_positions(key, positions);
   return vector_areas(positions);
 }
 
 // d = sum of de x df is twice the vector area of the polygon that the displacements of the corners make.
 std::vector<Vec3d> SequenceNormals::bends(std::size_t segment) const {
   if (!fitted_bends_.empty()) return fitted_bends_[segment];
-  std::vector<Vec3d> displacements = moved(segment + 1);
-  const std::vector<Vec3d> before = moved(segment);
-  for (std::size_t v = 0; v < displacements.size(); ++v) displacements[v] = displacements[v] - before[v];
+  PointRows displacements;
+  write_displacements(segment, displacements);
   return vector_areas(displacements);
+}
+
+void SequenceNormals::each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const {
+  if (!fitted_keys_.empty()) {
+    const std::span<const Vec3d> n = fitted_keys_[segment + 1], d = fitted_bends_[segment];
+    return parallel_blocks(elements(), kVertexBlock, [&](IndexRange some) {
+      body(some, n.subspan(some.first, some.count), d.subspan(some.first, some.count));
+    });
+  }
+  write_positions(segment + 1, rows.positions);
+  write_displacements(segment, rows.displacements);
+  sums_.each_block(rows.positions, &rows.displacements, body);
 }
 
 }  // namespace chronormal::inline internal

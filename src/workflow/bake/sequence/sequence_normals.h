@@ -6,7 +6,9 @@
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_
 
+#include <algorithm>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "chronormal/core/result.h"
@@ -15,15 +17,15 @@
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
+#include "workflow/bake/sequence/area_sums.h"
 
 namespace chronormal::inline internal {
 
 class SequenceNormals {
  public:
-  /// Reads all keyframes once, and fits all segments where the weighting is not that of areas. Stream and groups must
-  /// outlive this. Errors: kInvalidInput where a delta is too large for float32; kUsage where the fits of two
-  /// neighbouring segments do not agree at their key, which a hat cannot show; those of the stream. Memory: that of key
-  /// 0, and of the fits.
+  /// Reads key 0, and all keyframes to fit all segments where the weighting is not that of areas. Stream and groups must
+  /// outlive this. Errors: kUsage where the fits of two neighbouring segments do not agree at their key, which a hat
+  /// cannot show; those of check_deltas(), where there are fits, and of the stream. Memory: that of key 0, and of the fits.
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting);
 
@@ -31,14 +33,29 @@ class SequenceNormals {
   /// that are held. Errors: those of the stream.
   [[nodiscard]] Status hold(std::size_t first, std::size_t last) const { return stream_->hold(first, last); }
 
+  /// Reads the first `keys` keyframes. Errors: kInvalidInput where a delta is too large for float32; those of the stream.
+  [[nodiscard]] Status check_deltas(std::size_t keys) const;
+  /// The same error of one key, from its deltas.
+  [[nodiscard]] static Status check_deltas(std::size_t key, std::span<const float> deltas);
+
   /// The positions of key 0: (V, 3).
   [[nodiscard]] const std::vector<float>& base() const noexcept { return base_; }
   /// The float32 deltas of a key against key 0, as a file has them: (V, 3).
   [[nodiscard]] std::vector<float> deltas(std::size_t key) const;
+  /// The same into memory that is there.
+  void deltas(std::size_t key, std::vector<float>& result) const;
 
   /// n of every element at a key, and d of every element in a segment. O(corners), on all cores; or a copy.
   [[nodiscard]] std::vector<Vec3d> at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> bends(std::size_t segment) const;
+
+  /// Memory that is used again from one segment to the next.
+  struct Rows {
+    PointRows positions, displacements;
+  };
+  /// Calls body(elements, n, d) for blocks of elements on all cores: their normals at the second key of a segment, and
+  /// their bends in the segment.
+  void each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
 
   [[nodiscard]] std::size_t keys() const noexcept { return motion().keyframes.size(); }
   [[nodiscard]] std::size_t elements() const noexcept { return groups_->size(); }
@@ -47,44 +64,63 @@ class SequenceNormals {
   [[nodiscard]] const std::vector<std::vector<double>>& bounds() const noexcept { return bounds_; }
 
  private:
-  SequenceNormals(MotionStream& stream, const NormalGroups& groups) : stream_(&stream), groups_(&groups) {}
+  SequenceNormals(MotionStream& stream, const NormalGroups& groups)
+      : stream_(&stream), groups_(&groups), sums_(stream.motion().topology, groups) {}
 
   [[nodiscard]] const Motion& motion() const noexcept { return stream_->motion(); }
   [[nodiscard]] Status fit(Weighting weighting);
-  [[nodiscard]] std::vector<Vec3d> moved(std::size_t key) const;
-  [[nodiscard]] std::vector<Vec3d> vector_areas(const std::vector<Vec3d>& positions) const;
+  // The points at a key, and how far they move in a segment.
+  void write_positions(std::size_t key, PointRows& rows) const;
+  void write_displacements(std::size_t segment, PointRows& rows) const;
+  [[nodiscard]] std::vector<Vec3d> vector_areas(const PointRows& points) const;
 
   MotionStream* stream_;
   const NormalGroups* groups_;
+  AreaSums sums_;
   std::vector<float> base_;
   std::vector<std::vector<Vec3d>> fitted_keys_, fitted_bends_;
   std::vector<std::vector<double>> bounds_;
 };
 
+/// The control normals of an element, from its normals at both keys of a segment and its bend there (eq. 5).
+[[nodiscard]] inline ControlNormals control_normals_of(const Vec3d& from, const Vec3d& to, const Vec3d& bend) noexcept {
+  return {from, 0.5 * (from + to - bend), to};
+}
+
 /// The normals of all elements in one segment.
 struct SegmentForm {
   std::vector<Vec3d> from, to, bends;
 
-  /// The control normals of one element, from both of its keys and its bend (eq. 5).
   [[nodiscard]] ControlNormals control_normals(std::size_t element) const noexcept {
-    return {from[element], 0.5 * (from[element] + to[element] - bends[element]), to[element]};
+    return control_normals_of(from[element], to[element], bends[element]);
   }
 };
 
-/// Calls body(segment, form) for every segment, one after the other, until it returns an error. Holds the keys of one
-/// segment at a time. Errors: those of body, and of the stream.
+/// Calls body(segment, form) for the first `segments`, one after the other, until it returns an error. Holds the keys of
+/// one segment at a time. Errors: those of body, and of the stream.
 template <class Body>
-[[nodiscard]] Status each_segment(const SequenceNormals& normals, const Body& body) {
+[[nodiscard]] Status each_segment(const SequenceNormals& normals, std::size_t segments, const Body& body) {
   SegmentForm form;
-  for (std::size_t s = 0; s + 1 < normals.keys(); ++s) {
+  SequenceNormals::Rows rows;
+  for (std::size_t s = 0; s < segments; ++s) {
     if (Status status = normals.hold(s, s + 1); !status) return status;
     if (s == 0) form.to = normals.at_key(0);
     form.from.swap(form.to);
-    form.to = normals.at_key(s + 1);
-    form.bends = normals.bends(s);
+    form.to.resize(normals.elements());
+    form.bends.resize(normals.elements());
+    normals.each_block(s, rows, [&form](IndexRange elements, std::span<const Vec3d> n, std::span<const Vec3d> d) {
+      std::copy(n.begin(), n.end(), form.to.begin() + static_cast<std::ptrdiff_t>(elements.first));
+      std::copy(d.begin(), d.end(), form.bends.begin() + static_cast<std::ptrdiff_t>(elements.first));
+    });
     if (Status status = body(s, form); !status) return status;
   }
   return Success{};
+}
+
+/// The same for all segments.
+template <class Body>
+[[nodiscard]] Status each_segment(const SequenceNormals& normals, const Body& body) {
+  return each_segment(normals, normals.keys() - 1, body);
 }
 
 }  // namespace chronormal::inline internal

@@ -1,0 +1,30 @@
+/// Vector areas of triangles, and their sums over the faces around elements, in lanes of double.
+///
+/// Points and areas are rows of four doubles: x y z, and a fourth that counts for nothing in points and is 0 in areas.
+/// Both give the bits of their scalar forms, without_rounding() of CrossSum and VectorSum (core/rounding.h).
+#ifndef CHRONORMAL_WORKFLOW_BAKE_KERNELS_VECTOR_AREAS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_KERNELS_VECTOR_AREAS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/core/views.h"
+#include "chronormal/normals/normal_groups.h"
+
+namespace chronormal::inline internal {
+
+inline constexpr std::size_t kAreaRow = 4;
+
+/// Writes twice the vector area of each triangle. corners has the three points of each, and areas a row for each.
+void triangle_areas(const double* points, std::span<const std::uint32_t> corners, double* areas) noexcept;
+
+/// Writes the sum of the areas of the faces around each of some elements. areas has the row of face first_face, and
+/// those behind it.
+void sums_of_areas(const double* areas, std::size_t first_face, const NormalGroups& groups, IndexRange elements,
+                   Vec3d* sums) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_KERNELS_VECTOR_AREAS_H_

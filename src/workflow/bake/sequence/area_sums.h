@@ -1,0 +1,48 @@
+/// Normals of elements as sums of the vector areas of the faces around them. Private to workflow.
+///
+/// Elements go in blocks, and each block computes the areas of the faces around it on its own, so that they stay in a
+/// cache near the core. Neighbouring blocks have some faces in common, which are computed twice. Where that would be too
+/// many, since faces and elements are in no common order, all areas are computed first.
+///
+/// Threads    each function uses all (core/parallel.h); the same bits on any number of them.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_AREA_SUMS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_AREA_SUMS_H_
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/core/views.h"
+#include "chronormal/motion/topology.h"
+#include "chronormal/normals/normal_groups.h"
+#include "core/memory.h"
+
+namespace chronormal::inline internal {
+
+/// A point, or how far it moves, for each vertex: rows of four doubles of which three count.
+using PointRows = AlignedArray<double>;
+
+class AreaSums {
+ public:
+  /// The topology and the groups must outlive this.
+  AreaSums(const Topology& topology, const NormalGroups& groups);
+
+  /// Calls body(elements, sums_of_a, sums_of_b) for blocks of elements, each with the sums of the areas that the points
+  /// a and b give. The sums are good until body returns. b may be nullptr: it has no sums then.
+  using Body = std::function<void(IndexRange elements, std::span<const Vec3d> of_a, std::span<const Vec3d> of_b)>;
+  void each_block(const PointRows& a, const PointRows* b, const Body& body) const;
+
+ private:
+  void write_areas(const PointRows& points, IndexRange faces, double* areas) const;
+
+  const Topology* topology_;
+  const NormalGroups* groups_;
+  std::vector<IndexRange> faces_of_block_;  // that lie around its elements, and those between them
+  bool are_scattered_ = false;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_AREA_SUMS_H_
