@@ -200,6 +200,7 @@ struct Subject {
         normals(BlendNormals::of_groups(set, groups)),
         terms(BlendNormals::of_groups(set, groups, {.forced = BlendPath::kTerms})),
         touched(BlendNormals::of_groups(set, groups, {0, BlendPath::kTouched})),
+        chosen_in_float32(BlendNormals::of_groups(set, groups, {.in_float32 = true})),
         linear(normals, vertices, set.targets.size()),
         segment{&set.topology, VectorView<const float>::packed(positions.data(), vertices),
                 VectorView<const float>::packed(positions.data(), vertices)},
@@ -212,7 +213,7 @@ struct Subject {
   NormalGroups groups;
   std::size_t vertices;
   std::vector<float> positions, face_normals;
-  BlendNormals normals, terms, touched;
+  BlendNormals normals, terms, touched, chosen_in_float32;
   LinearSum linear;
   Segment segment;
   NormalRecompute recompute;
@@ -251,6 +252,8 @@ void run_set(Suite& suite, const Size& size, const std::string& group, BlendSet 
     add("terms", kExactError, "", [weights](Subject& on) { (void)on.terms.unit_normals(weights, on.result); });
     add("touched part", kExactError, "", [weights](Subject& on) { (void)on.touched.unit_normals(weights, on.result); });
     // Blended positions are off by their last bit in float32, over the length of an edge.
+    add("chosen in float32", kFloatError, "",
+        [weights](Subject& on) { (void)on.chosen_in_float32.unit_normals(weights, on.result); });
     add("recompute", kFloatError, "the whole mesh, positions in float32", [weights](Subject& on) {
       blend(on.set, weights, on.positions);
       (void)on.recompute.unit_normals(0, on.result);

@@ -18,7 +18,8 @@
 ///            eight times as long.
 /// Memory     Known before anything is multiplied (predict_blend_cost()), and limited by max_bytes: terms that do not
 ///            fit are not kept, the largest first, and their elements are made from blended positions.
-/// Accuracy   Within 1e-6 rad of the normals of the blended positions in exact arithmetic, on every path. Terms are
+/// Accuracy   Within 1e-6 rad of the normals of the blended positions in exact arithmetic, on every path (but see
+///            BlendNormalsOptions::in_float32). Terms are
 ///            kept in float32 with a bound each; an element whose n(w) is small against the sum of its terms is made in
 ///            double from blended positions. Where even double does not promise 1e-6 rad it is counted as uncertain.
 /// Degenerate n(w) below its own rounding error, and an element without faces, gives (0, 0, 0), which is counted.
@@ -61,6 +62,11 @@ struct BlendNormalsOptions {
   std::size_t max_bytes = kUsualBlendBytes;
   /// Takes this path whatever it costs.
   std::optional<BlendPath> forced = {};
+  /// Blends positions and makes normals of them in float32 on the path kWhole, as FloatRecompute does. That takes about
+  /// half as long, so that it is the cheapest way more often, and promises nothing: positions are off by a unit in their
+  /// last place, which turns a normal by as much as that is of an edge. Enough for shading; the other paths are as exact
+  /// as ever. Without effect where an element has a ring of more than 64 points.
+  bool in_float32 = false;
 };
 
 /// What the normals of a set take, from counts alone. Bytes are beyond those of the set and the groups.

@@ -12,12 +12,14 @@
 #include "core/rounding.h"
 #include "core/vector_area.h"
 #include "normals/blend/kernels/blend_rows.h"
+#include "normals/recompute/kernels/float_rings.h"
 
 namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlockOfWords = 256;  // for a thread: 16,384 elements
-constexpr std::size_t kBlockOfVertices = 16384, kBlockOfLargeFaces = 64;
+constexpr std::size_t kBlockOfVertices = 16384, kBlockOfLargeFaces = 64, kBlockOfSlices = 256;
+constexpr std::size_t kNearVertices = 4096;  // 128 KiB of points in double
 
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
 constexpr double kLargestAngle = 8e-7;  // of double, before the rounding of the result
@@ -35,6 +37,7 @@ constexpr double kFinishedElement = 5.5;  // from the base to length 1
 constexpr double kMovedVertex = 1.7;      // of a target, and back again
 constexpr double kPathPoint = 1.8;        // of the path around an element
 constexpr double kWrittenElement = 5;     // from the sum over its path
+constexpr double kWholeInFloat32 = 0.4;   // of the time that the whole mesh takes in double
 
 // What of an ascending list lies inside a range of indices.
 IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
@@ -72,6 +75,12 @@ class Call {
 
   BlendEvaluation run() {
     BlendEvaluation done{choose_path(source_, weights_, scratch_)};
+    if (done.path == BlendPath::kWhole && source_.in_float32) {
+      recompute_in_float32();
+      done.recomputed_elements = result_.count;
+      done.zeros = zeros_;
+      return done;
+    }
     if (done.path == BlendPath::kWhole) {
       scratch_.again.fill(result_.count);
     } else {
@@ -162,15 +171,42 @@ class Call {
     restore_points();
   }
 
+  void recompute_in_float32() {
+    float* const points = scratch_.float_points.data();
+    in_blocks(source_.set.topology.vertex_count(), kBlockOfVertices, [this, points](IndexRange all) {
+      for_near(all, [this, points](IndexRange vertices) {
+        reset_points(source_.set.base, vertices, points);
+        for_moved(vertices, [this, points](std::size_t i, const BlendTarget& target, IndexRange part) {
+          move_points(in(part, target.vertices), target.deltas.data() + 3 * part.first, static_cast<float>(weights_[i]),
+                      points);
+        });
+      });
+    });
+    const RingSlices rings = source_.storage.rings().view();
+    in_blocks(rings.count, kBlockOfSlices, [this, points, rings](IndexRange slices) {
+      const std::size_t first = kRingLanes * slices.first, end = std::min(kRingLanes * slices.end(), result_.count);
+      zeros_ += ring_unit_normals({points, false}, rings, slices, result_.part({first, end - first}), false);
+    });
+  }
+
+  // Calls body for vertices whose points stay in a cache near the core while all targets move them.
+  template <class Body>
+  static void for_near(IndexRange vertices, const Body& body) {
+    for (std::size_t first = vertices.first; first < vertices.end(); first += kNearVertices)
+      body(IndexRange{first, std::min(kNearVertices, vertices.end() - first)});
+  }
+
   // Points at the weights, with the rounding of each in point_noise_.
   void blend_points() {
     double reach = source_.base.reach;
     for (const std::uint32_t i : scratch_.active) reach += std::fabs(weights_[i]) * source_.storage.targets()[i].reach;
     point_noise_ = kUnitRoundoff * static_cast<double>(1 + 2 * scratch_.active.size()) * reach;
-    in_blocks(source_.set.topology.vertex_count(), kBlockOfVertices, [this](IndexRange vertices) {
-      for_moved(vertices, [this](std::size_t i, const BlendTarget& target, IndexRange part) {
-        move_points(in(part, target.vertices), target.deltas.data() + 3 * part.first, weights_[i],
-                    scratch_.points.data());
+    in_blocks(source_.set.topology.vertex_count(), kBlockOfVertices, [this](IndexRange all) {
+      for_near(all, [this](IndexRange vertices) {
+        for_moved(vertices, [this](std::size_t i, const BlendTarget& target, IndexRange part) {
+          move_points(in(part, target.vertices), target.deltas.data() + 3 * part.first, weights_[i],
+                      scratch_.points.data());
+        });
       });
     });
   }
@@ -326,7 +362,7 @@ BlendChoice choose_path(const BlendInput& source, std::span<const double> weight
                     kFinishedElement * of(choice.touched_elements - choice.unstored_elements);
   if (choice.unstored_elements > 0) choice.terms_ns += moved + anew * of(lanes_of(scratch.again));
   choice.touched_ns = copied + moved + anew * of(lanes_of(scratch.touched));
-  choice.whole_ns = moved + whole;
+  choice.whole_ns = (source.in_float32 ? kWholeInFloat32 : 1) * (moved + whole);
   if (source.forced)
     choice.path = *source.forced;
   else if (choice.terms_ns <= std::min(choice.touched_ns, choice.whole_ns))

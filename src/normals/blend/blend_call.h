@@ -21,6 +21,7 @@ struct BlendInput {
   const BlendStorage& storage;
   const BlendBase& base;
   std::optional<BlendPath> forced;
+  bool in_float32;  ///< whether the path kWhole is one in float32
 };
 
 /// Which path the weights take. Leaves the active targets, the touched elements, and those without their terms in the

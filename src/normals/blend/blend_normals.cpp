@@ -42,9 +42,13 @@ struct BlendNormals::Parts {
   }
 
   [[nodiscard]] BlendShape shape() const {
-    return {storage.terms().size(), set.topology.vertex_count(), set.targets.size(), storage.large_faces().size()};
+    return {storage.terms().size(), set.topology.vertex_count(), set.targets.size(), storage.large_faces().size(),
+            in_float32()};
   }
-  [[nodiscard]] BlendInput source() const { return {set, groups ? &*groups : nullptr, storage, base, options.forced}; }
+  [[nodiscard]] bool in_float32() const { return options.in_float32 && storage.rings().left_out().empty(); }
+  [[nodiscard]] BlendInput source() const {
+    return {set, groups ? &*groups : nullptr, storage, base, options.forced, in_float32()};
+  }
 
   BlendSet set;
   std::optional<NormalGroups> groups;  // nothing: faces
@@ -97,7 +101,7 @@ std::vector<BlendEvaluation> BlendNormals::unit_normals(std::span<const double> 
 BlendChoice BlendNormals::choose(std::span<const double> weights) const {
   assert(weights.size() == set().targets.size());
   const BlendShape shape = parts_->shape();
-  BlendScratch scratch({}, {shape.elements, 0, shape.targets, 0});
+  BlendScratch scratch({}, {shape.elements, 0, shape.targets, 0, false});
   return choose_path(parts_->source(), weights, scratch);
 }
 

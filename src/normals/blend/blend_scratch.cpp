@@ -43,6 +43,7 @@ BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
     : sums(kBlendLanes * shape.elements),
       large(shape.large_faces),
       points(kBlendLanes * shape.vertices),
+      float_points(shape.in_float32 ? kBlendLanes * shape.vertices : 0),
       touched(shape.elements),
       again(shape.elements),
       is_active(shape.targets) {
@@ -51,8 +52,10 @@ BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
 }
 
 std::size_t scratch_bytes(const BlendShape& shape) noexcept {
-  return kBlendLanes * (shape.elements + shape.vertices) * sizeof(double) + 2 * bits_bytes(shape.elements) +
-         shape.large_faces * sizeof(BlendedFace) + shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
+  const std::size_t in_float32 = shape.in_float32 ? kBlendLanes * shape.vertices * sizeof(float) : 0;
+  return in_float32 + kBlendLanes * (shape.elements + shape.vertices) * sizeof(double) +
+         2 * bits_bytes(shape.elements) + shape.large_faces * sizeof(BlendedFace) +
+         shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
 }
 
 }  // namespace chronormal::inline internal

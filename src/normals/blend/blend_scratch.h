@@ -8,6 +8,7 @@
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/blend_set.h"
+#include "core/memory.h"
 #include "normals/blend/index_bits.h"
 
 namespace chronormal::inline internal {
@@ -16,6 +17,7 @@ class BlendTerms;
 
 struct BlendShape {
   std::size_t elements = 0, vertices = 0, targets = 0, large_faces = 0;
+  bool in_float32 = false;  ///< whether points are blended in float32, too
 };
 
 struct BlendBase {
@@ -40,6 +42,7 @@ struct BlendScratch {
   std::vector<double> sums;           ///< of terms, as those of the base
   std::vector<BlendedFace> large;     ///< large_faces() of the storage
   std::vector<double> points;         ///< rows of vertices, those of the base between two calls
+  AlignedArray<float> float_points;   ///< rows of vertices in float32; empty where nobody asks for them
   IndexBits touched;                  ///< elements that active targets touch
   IndexBits again;                    ///< elements that are made from positions
   std::vector<std::uint32_t> active;  ///< targets

@@ -74,6 +74,38 @@ void ResetPoints(std::span<const float> base, IndexRange vertices, double* point
   StoreDoubleRow(LoadLastThree(base.data() + 3 * last), RowAt(points, last));
 }
 
+// One row in float32.
+HWY_INLINE void MoveFloatPoint(const float* delta, float weight, float* point) {
+  for (std::size_t k = 0; k < 3; ++k) point[k] += weight * delta[k];
+}
+
+void MoveFloatPoints(std::span<const std::uint32_t> vertices, const float* deltas, float weight, float* points) {
+  if (vertices.empty()) return;
+  const std::size_t last = vertices.size() - 1;
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t i = 0; i < last; ++i)
+    MoveFloatPoint(deltas + 3 * i, weight, points + kBlendLanes * std::size_t{vertices[i]});
+#else
+  // The fourth component stays what it is: that of the row of deltas belongs to the next three floats.
+  const hn::FixedTag<float, 4> tag;
+  const float factors[4] = {weight, weight, weight, 0};
+  const auto w = hn::LoadU(tag, factors);
+  for (std::size_t i = 0; i < last; ++i) {
+    float* const point = points + kBlendLanes * std::size_t{vertices[i]};
+    hn::Store(hn::Add(hn::Load(tag, point), hn::Mul(w, hn::LoadU(tag, deltas + 3 * i))), tag, point);
+  }
+#endif
+  MoveFloatPoint(deltas + 3 * last, weight, points + kBlendLanes * std::size_t{vertices[last]});
+}
+
+void ResetFloatPoints(std::span<const float> base, IndexRange vertices, float* points) {
+  for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
+    float* const point = points + kBlendLanes * v;
+    for (std::size_t k = 0; k < 3; ++k) point[k] = base[3 * v + k];
+    point[3] = 0;
+  }
+}
+
 HWY_INLINE Doubles Squared(Doubles v) { return hn::Mul(v, v); }
 
 // Writes n / |n| of the elements from `first` on whose bits are set in `elements`, and returns the bits of those that
@@ -182,6 +214,8 @@ HWY_EXPORT(AddTargetRows);
 HWY_EXPORT(AddPairRows);
 HWY_EXPORT(MovePoints);
 HWY_EXPORT(ResetPoints);
+HWY_EXPORT(MoveFloatPoints);
+HWY_EXPORT(ResetFloatPoints);
 HWY_EXPORT(UnitNormalsOfRows);
 HWY_EXPORT(UnitNormalsOfRings);
 
@@ -201,6 +235,14 @@ void move_points(std::span<const std::uint32_t> vertices, const float* deltas, d
 
 void reset_points(std::span<const float> base, IndexRange vertices, double* points) noexcept {
   HWY_DYNAMIC_DISPATCH(ResetPoints)(base, vertices, points);
+}
+
+void move_points(std::span<const std::uint32_t> vertices, const float* deltas, float weight, float* points) noexcept {
+  HWY_DYNAMIC_DISPATCH(MoveFloatPoints)(vertices, deltas, weight, points);
+}
+
+void reset_points(std::span<const float> base, IndexRange vertices, float* points) noexcept {
+  HWY_DYNAMIC_DISPATCH(ResetFloatPoints)(base, vertices, points);
 }
 
 std::uint64_t unit_normals_of_rows(std::uint64_t elements, std::size_t place, const double* rows,

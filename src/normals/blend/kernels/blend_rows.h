@@ -32,6 +32,10 @@ void move_points(std::span<const std::uint32_t> vertices, const float* deltas, d
 /// Puts a range of points back to the base, (V, 3). base must not end before the last of them
 void reset_points(std::span<const float> base, IndexRange vertices, double* points) noexcept;
 
+/// The same two in float32: points are rows of four floats.
+void move_points(std::span<const std::uint32_t> vertices, const float* deltas, float weight, float* points) noexcept;
+void reset_points(std::span<const float> base, IndexRange vertices, float* points) noexcept;
+
 /// Which rows become unit normals.
 struct UnitLimits {
   double smallest_square, largest_square;  ///< of n
