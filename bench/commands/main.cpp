@@ -1,6 +1,6 @@
 // chronormal_bench_commands (./run bench --commands) measures how long commands of the program take on one large
 // sequence, beside the least that is possible: looking at the bytes of its files (cat), moving them in memory (memcpy),
-// and reading them as a motion. It also measures the reading of one frame of OBJ, beside a loop that finds its numbers
+// reading them as a motion, and for a command that writes a large file, copying that until it is on the disk. It also measures the reading of one frame of OBJ, beside a loop that finds its numbers
 // with std::from_chars, and beside other libraries where they are installed; all of them must find the same positions
 // before they are timed. With --json FILE it also writes what it prints, for docs/benchmarks.md.
 
@@ -120,6 +120,19 @@ Times time_command(const std::string& program, const std::vector<std::string>& a
   });
 }
 
+// Copies a file until it is on the disk, as the program does with its outputs, and removes the copy.
+int copy_to_disk(const std::string& file) {
+  const std::string copy = file + ".copy";
+  const int from = ::open(file.c_str(), O_RDONLY), to = ::open(copy.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
+  std::vector<char> buffer(1 << 18);
+  ssize_t count = from < 0 || to < 0 ? -1 : ::read(from, buffer.data(), buffer.size());
+  while (count > 0 && ::write(to, buffer.data(), static_cast<std::size_t>(count)) == count)
+    count = ::read(from, buffer.data(), buffer.size());
+  const bool is_whole = count == 0 && ::fsync(to) == 0;
+  ::unlink(copy.c_str());
+  return is_whole ? 0 : 1;
+}
+
 // Prints a row and keeps it.
 void add_row(Json& rows, const std::string& name, const Times& times, double reading) {
   fmt::print("{:<34}{:>10.2f}{:>10.2f}{:>12.2f}\n", name, times.wall, times.cpu, times.cpu / reading);
@@ -164,6 +177,10 @@ Json measure_input(const std::string& program, const std::string& title, const s
     arguments.insert(arguments.end(), files.begin(), files.end());
     arguments.insert(arguments.end(), command.begin() + 1, command.end());
     add_row(rows, command[0], time_command(program, arguments), reading.cpu);
+    const auto output = std::find(command.begin(), command.end(), "-o");
+    if (output == command.end() || fs::file_size(*(output + 1)) < bytes) continue;
+    const Times copied = time_child("copying", [&] { return copy_to_disk(*(output + 1)); });
+    add_row(rows, fmt::format("a copy of what {} wrote", command[0]), copied, reading.cpu);
   }
   return {{"title", title}, {"bytes", bytes}, {"rows", rows}};
 }
