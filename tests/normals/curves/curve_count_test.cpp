@@ -53,6 +53,19 @@ TEST(CurveCount, has_the_bytes_and_flagged_elements_of_curves_that_are_made) {
   }
 }
 
+TEST(CurveCount, fills_the_last_block_with_what_the_last_faces_take) {
+  // Faces that stand still, and behind them faces that move.
+  Motion motion = fixtures::soup({.face_count = 1030, .seed = 11, .motion = 0.02});
+  for (std::size_t i = 0; i < 9 * 900; ++i) motion.keyframes[1].positions[i] = motion.keyframes[0].positions[i];
+  ASSERT_NE(motion.topology.face_count() % kTile, 0U);
+  for (const std::size_t together : {kCountedTogether, 4 * kCountedTogether})
+    expect_same(motion.segment(0), together, "still first");
+  const NormalCurves curves = NormalCurves::of_faces(motion.segment(0));
+  ASSERT_EQ(curves.flagged_count(), 0U);
+  EXPECT_EQ(curves.bytes(), 56U * 16 * 16 + (1030U - 56 * 16) * 36 + 2 * 32)
+      << "56 blocks of 16 bytes a face, and 36 for others";
+}
+
 TEST(CurveCount, is_right_of_the_hardest_elements_and_of_polygons) {
   fixtures::Random random(20261127);
   for (int round = 0; round < 30; ++round) {

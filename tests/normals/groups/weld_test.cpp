@@ -88,6 +88,19 @@ TEST(Weld, many_vertices_are_welded_as_a_map_of_places_says) {
   EXPECT_LT(always.size(), kCount);
 }
 
+// So many places that the 32 bits by which they are sorted first are the same for some.
+TEST(Weld, places_that_only_look_alike_stay_apart) {
+  constexpr std::size_t kCount = 500000;
+  Motion motion;
+  motion.topology = fixtures::make_triangles(kCount, {0, 1, 2});
+  motion.keyframes.resize(1);
+  std::vector<float>& positions = motion.keyframes[0].positions;
+  for (std::size_t v = 0; v < kCount; ++v) {
+    for (const std::size_t c : {v % 1000, v / 1000, 7 * v % 999}) positions.push_back(static_cast<float>(c));
+  }
+  EXPECT_EQ(weld_coincident(motion).count, kCount);
+}
+
 TEST(Weld, vertices_of_two_bodies_are_never_one_point) {
   Motion motion =
       two_keyframes({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{2, 0, 0}, {3, 0, 0}, {2, 0, 0}, {2, 0, 0}});

@@ -173,6 +173,32 @@ TEST(Inspect, slivers_are_those_of_their_own_keyframe_and_the_box_is_that_of_all
   EXPECT_EQ(found.high.x, high);
 }
 
+TEST(Inspect, largest_motion_is_that_of_the_first_vertex_that_goes_so_far) {
+  Motion motion = fixtures::moderate_soup(9000);
+  std::vector<float>&from = motion.keyframes[0].positions, &to = motion.keyframes[1].positions;
+  // Each goes a little farther than the one before it, and the last but one as far as the last.
+  for (std::size_t v = 0; v < from.size() / 3; ++v) to[3 * v] = from[3 * v] + 1 + static_cast<float>(v) * 0x1p-13F;
+  std::copy_n(from.end() - 3, 3, from.end() - 6);
+  std::copy_n(to.end() - 3, 3, to.end() - 6);
+  long double largest = 0;
+  std::size_t first = 0;
+  for (std::size_t v = 0; v < from.size() / 3; ++v) {
+    long double square = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const long double step = static_cast<long double>(to[3 * v + k]) - from[3 * v + k];
+      square += step * step;
+    }
+    if (square > largest) {
+      largest = square;
+      first = v;
+    }
+  }
+  const Inspection found = inspect(motion);
+  EXPECT_EQ(found.motion.element, first);
+  EXPECT_NEAR(found.motion.value, static_cast<double>(std::sqrt(largest)), 1e-14);
+  EXPECT_EQ(found.segments[0].moved_vertices, from.size() / 3);
+}
+
 TEST(Inspect, mesh_without_motion_and_keyframe_without_segment_are_inspected_too) {
   const Inspection mesh = inspect(triangle_motion({kLine}));
   EXPECT_EQ(mesh.no_area.pairs, 1U);
