@@ -75,9 +75,10 @@ std::size_t CurveCount::bytes(std::size_t size) const noexcept {
 }
 
 CurveCount count_curves(const Segment& segment, IndexRange faces, std::span<EdgedTile> exact) {
-  assert(faces.first % kCountedTogether == 0 && exact.size() == block_count(faces.count, kTile));
+  assert(exact.size() == block_count(faces.count, kTile));
   CurveCount count;
   if (faces.count == 0) return count;
+  assert(faces.first % kCountedTogether == 0);
   CurvePart part;
   part.elements = faces;
   const BuildLimits limits(CurveOptions().tolerance);

@@ -36,8 +36,8 @@ struct CurveCount {
 inline constexpr std::size_t kCountedTogether = 512;
 
 /// Counts what exact curves of some faces take, and writes their control normals and longest edges, sixteen faces each.
-/// faces.first must be a multiple of kCountedTogether, and faces.end() too, or that of the faces of the segment; exact
-/// must have ceil(faces.count / 16) elements
+/// faces.first must be a multiple of kCountedTogether, and faces.end() too, or that of the faces of the segment, unless
+/// there are none; exact must have ceil(faces.count / 16) elements
 [[nodiscard]] CurveCount count_curves(const Segment& segment, IndexRange faces, std::span<EdgedTile> exact);
 
 }  // namespace chronormal::inline internal
