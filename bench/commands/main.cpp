@@ -1,8 +1,9 @@
 // chronormal_bench_commands (./run bench --commands) measures how long commands of the program take on one large
 // sequence, beside the least that is possible: looking at the bytes of its files (cat), moving them in memory (memcpy),
-// reading them as a motion, and for a command that writes a large file, copying that until it is on the disk. It also measures the reading of one frame of OBJ, beside a loop that finds its numbers
-// with std::from_chars, and beside other libraries where they are installed; all of them must find the same positions
-// before they are timed. With --json FILE it also writes what it prints, for docs/benchmarks.md.
+// reading them as a motion, and for a command that writes a large file, copying that until it is on the disk. It also
+// measures the reading of one frame of OBJ, beside a loop that finds its numbers with std::from_chars, and beside other
+// libraries where they are installed; all of them must find the same positions before they are timed. With --json FILE
+// it also writes what it prints, for docs/benchmarks.md.
 
 #include <fcntl.h>
 #include <fmt/core.h>

@@ -63,9 +63,9 @@ struct BlendNormalsOptions {
   /// Takes this path whatever it costs.
   std::optional<BlendPath> forced = {};
   /// Blends positions and makes normals of them in float32 on the path kWhole, as FloatRecompute does. That takes about
-  /// half as long, so that it is the cheapest way more often, and promises nothing: positions are off by a unit in their
-  /// last place, which turns a normal by as much as that is of an edge. Enough for shading; the other paths are as exact
-  /// as ever. Without effect where an element has a ring of more than 64 points.
+  /// half as long, so that it is the cheapest way more often, and promises nothing: positions are off by a unit in
+  /// their last place, which turns a normal by as much as that is of an edge. Enough for shading; the other paths are
+  /// as exact as ever. Without effect where an element has a ring of more than 64 points.
   bool in_float32 = false;
 };
 

@@ -86,8 +86,8 @@ struct Inspection {
 ///
 /// Threads    uses all (core/parallel.h); the result is the same on any number of them.
 /// Memory     some 100 bytes a face, for the edges between faces; nothing grows with faces x segments.
-/// Cost       control normals of every segment, once, and a look at what its NormalCurves would take, which are not made;
-///            the rest is near linear.
+/// Cost       control normals of every segment, once, and a look at what its NormalCurves would take, which are not
+///            made; the rest is near linear.
 /// Precondition: the motion is valid (validate() in motion/motion.h), but that it may have no segment
 [[nodiscard]] Inspection inspect(const Motion& motion,
                                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});

@@ -1,5 +1,5 @@
-// Finds vertices that coincide in all keyframes: it sorts them by place in one keyframe after the other, many of them by
-// a hash of their place first, on all cores.
+// Finds vertices that coincide in all keyframes: it sorts them by place in one keyframe after the other, many of them
+// by a hash of their place first, on all cores.
 #include "normals/groups/weld.h"
 
 #include <algorithm>

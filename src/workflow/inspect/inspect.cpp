@@ -1,6 +1,6 @@
 // Looks at every segment of a motion for whatever may cause wrong normals, block by block and in waves of segments, and
-// adds up what it finds in order. A wave looks at vertices first, since how small a face may be depends on how large the
-// coordinates of its keyframe are; then a glance at sixteen faces at a time (analysis/signs/kernels/face_glance.h)
+// adds up what it finds in order. A wave looks at vertices first, since how small a face may be depends on how large
+// the coordinates of its keyframe are; then a glance at sixteen faces at a time (analysis/signs/kernels/face_glance.h)
 // leaves few of them to be looked at one by one.
 #include "chronormal/workflow/inspect.h"
 

@@ -1,4 +1,5 @@
-/// A glance at sixteen faces between two keyframes, which shows of almost all of them that nothing about them is unusual.
+/// A glance at sixteen faces between two keyframes, which shows of almost all of them that nothing about them is
+/// unusual.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 
@@ -15,8 +16,8 @@ struct GlanceLimits {
   double square_of_cosine = 0;
 };
 
-/// Returns the faces, as bits, of which this is not certain at a glance: the largest component of their normals is above
-/// the limit at both ends, they turn less than the angle, and is_far_from_collapse() is true of them.
+/// Returns the faces, as bits, of which this is not certain at a glance: the largest component of their normals is
+/// above the limit at both ends, they turn less than the angle, and is_far_from_collapse() is true of them.
 [[nodiscard]] std::uint32_t unusual_faces(const EdgedTile& tile, const GlanceLimits& limits) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,8 +1,8 @@
 /// Normals of elements as sums of the vector areas of the faces around them. Private to workflow.
 ///
 /// Elements go in blocks, and each block computes the areas of the faces around it on its own, so that they stay in a
-/// cache near the core. Neighbouring blocks have some faces in common, which are computed twice. Where that would be too
-/// many, since faces and elements are in no common order, all areas are computed first.
+/// cache near the core. Neighbouring blocks have some faces in common, which are computed twice. Where that would be
+/// too many, since faces and elements are in no common order, all areas are computed first.
 ///
 /// Threads    each function uses all (core/parallel.h); the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_AREA_SUMS_H_

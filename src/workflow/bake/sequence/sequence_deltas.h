@@ -26,8 +26,8 @@ struct SequenceElement {
 
 /// Looks at all segments, whose deltas must have been checked. Errors: those of reading keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> sequence_elements(const SequenceNormals& normals);
-/// What the first segment alone says: for almost every sequence that is the same. Errors: kInvalidInput where a delta is too large for
-/// float32; those of reading keyframes.
+/// What the first segment alone says: for almost every sequence that is the same. Errors: kInvalidInput where a delta
+/// is too large for float32; those of reading keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> elements_of_start(const SequenceNormals& normals);
 
 /// Of exact: what the targets of one segment have, float32 vectors one after the other.

@@ -23,9 +23,10 @@ namespace chronormal::inline internal {
 
 class SequenceNormals {
  public:
-  /// Reads key 0, and all keyframes to fit all segments where the weighting is not that of areas. Stream and groups must
-  /// outlive this. Errors: kUsage where the fits of two neighbouring segments do not agree at their key, which a hat
-  /// cannot show; those of check_deltas(), where there are fits, and of the stream. Memory: that of key 0, and of the fits.
+  /// Reads key 0, and all keyframes to fit all segments where the weighting is not that of areas. Stream and groups
+  /// must outlive this. Errors: kUsage where the fits of two neighbouring segments do not agree at their key, which a
+  /// hat cannot show; those of check_deltas(), where there are fits, and of the stream. Memory: that of key 0, and of
+  /// the fits.
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting);
 
@@ -33,7 +34,8 @@ class SequenceNormals {
   /// that are held. Errors: those of the stream.
   [[nodiscard]] Status hold(std::size_t first, std::size_t last) const { return stream_->hold(first, last); }
 
-  /// Reads the first `keys` keyframes. Errors: kInvalidInput where a delta is too large for float32; those of the stream.
+  /// Reads the first `keys` keyframes. Errors: kInvalidInput where a delta is too large for float32; those of the
+  /// stream.
   [[nodiscard]] Status check_deltas(std::size_t keys) const;
   /// The same error of one key, from its deltas.
   [[nodiscard]] static Status check_deltas(std::size_t key, std::span<const float> deltas);
@@ -96,8 +98,8 @@ struct SegmentForm {
   }
 };
 
-/// Calls body(segment, form) for the first `segments`, one after the other, until it returns an error. Holds the keys of
-/// one segment at a time. Errors: those of body, and of the stream.
+/// Calls body(segment, form) for the first `segments`, one after the other, until it returns an error. Holds the keys
+/// of one segment at a time. Errors: those of body, and of the stream.
 template <class Body>
 [[nodiscard]] Status each_segment(const SequenceNormals& normals, std::size_t segments, const Body& body) {
   SegmentForm form;
