@@ -150,8 +150,11 @@ struct ShadedMesh {
     for (std::size_t v = 0; v < n * n; ++v) {
       const bool moves = random.below(3) > 0;
       const double side = moves ? 0.35 : 0, up = moves ? 0.7 : 0;
-      push(target.positions, random.uniform(-side, side), random.uniform(-side, side), random.uniform(-up, up));
-      push(target.normals, random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.3, 0.3));
+      // One after the other: the order of arguments is that of the compiler.
+      const double x = random.uniform(-side, side), y = random.uniform(-side, side);
+      push(target.positions, x, y, random.uniform(-up, up));
+      const double nx = random.uniform(-0.5, 0.5), ny = random.uniform(-0.5, 0.5);
+      push(target.normals, nx, ny, random.uniform(-0.3, 0.3));
     }
   }
   const std::vector<double> none(target_count);

@@ -154,7 +154,7 @@ TEST(SkinnedAudit, targets_are_seen_through_the_skin_as_the_file_poses_it) {
     EXPECT_EQ(note->count, 1U);
     EXPECT_NEAR(note->degrees, most, 1e-6);
     // Without the skin the figures are others.
-    EXPECT_GT(std::fabs(audit_of(builder, {.skins = false}).error.mean() - result.error.mean()), 0.1) << seed;
+    EXPECT_GT(std::fabs(audit_of(builder, {.skins = false}).error.mean() - result.error.mean()), 0.05) << seed;
   }
 }
 
