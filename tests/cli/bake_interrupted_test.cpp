@@ -33,7 +33,7 @@ class InterruptedBake : public testing::Test {
     const ProcessResult result = run("bake 'cloth_*.obj' --force --no-audit -o " + folder + "/old.glb");
     EXPECT_EQ(result.exit_code, 1) << result.err;
     EXPECT_NE(result.err.find(folder + "/old.glb"), std::string::npos) << result.err;
-    EXPECT_EQ(test::read_whole(folder_ / (folder + "/old.glb")), kOld);
+    EXPECT_TRUE(test::read_whole(folder_ / (folder + "/old.glb")) == kOld);
     EXPECT_EQ(entries(folder), 1) << "a temporary file is left";
   }
   // The same where the disk has so little room. Only root may mount one, so that the test is skipped for other users.

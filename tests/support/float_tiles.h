@@ -1,4 +1,4 @@
-/// What tiles that were made in float32 promise, held against control normals in double.
+/// Holds what tiles that were made in float32 promise against control normals in double.
 #ifndef CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 #define CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 
@@ -26,7 +26,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// What was seen of some elements; `fault` is the last thing that was wrong, or nothing.
+/// Collects what was seen of some elements; `fault` is the last thing that was wrong, or nothing.
 struct FloatTileFaults {
   std::size_t elements = 0;
   std::size_t bending = 0;   ///< elements whose degree is said to be 2

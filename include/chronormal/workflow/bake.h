@@ -95,7 +95,7 @@ struct ShownErrors {
   double worst = 0;
 };
 
-/// What a host shows of a mesh before and after a bake, through the skins of the nodes that show it.
+/// The errors that a host shows of a mesh before and after a bake, seen through the skins of the nodes that carry it.
 struct HostChange {
   struct Errors {
     ShownErrors before, after;

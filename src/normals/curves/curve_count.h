@@ -18,7 +18,7 @@
 
 namespace chronormal::inline internal {
 
-/// Of some neighbouring elements of curves.
+/// Counts what the curves of some neighbouring elements take.
 struct CurveCount {
   std::size_t block_bytes = 0, runs = 0, flagged = 0, exact = 0, digits = 0;
   bool has_exponents = false;

@@ -74,7 +74,7 @@ Level level_of(double bytes) {
 
 double cost(const Row& row, Level level) { return row.at[level]; }
 
-// What is done in one of two ways, a share of it in the second.
+// Mixes the costs of two ways, of which the second does this share of the work.
 Row mixed(double share, const Row& first, const Row& second) {
   Row row{};
   for (std::size_t i = 0; i < row.at.size(); ++i) row.at[i] = (1 - share) * first.at[i] + share * second.at[i];

@@ -30,7 +30,7 @@ std::string bytes_of(std::span<const float> values) {
   return bytes;
 }
 
-// What one pass over the values of an array finds.
+// The facts about an array that one pass over its values finds.
 struct ArraySurvey {
   std::array<float, 3> least{}, most{};  // of each component
   std::size_t used = 0, last_used = 0;   // elements that are not zero

@@ -1,4 +1,4 @@
-// What a glance says of faces, against long double and against the search for collapses, on every instruction set.
+// Compares what a glance says of faces with long double, and with the search for collapses, on every instruction set.
 
 #include "analysis/signs/kernels/face_glance.h"
 
