@@ -198,6 +198,22 @@ TEST(Layers, public_headers_include_only_public_headers) {
   }
 }
 
+// Only the library chronormal has Highway: chronormal_io and the program are built without its headers, in wasm too.
+TEST(Layers, kernels_stand_in_the_library_that_has_highway) {
+  std::size_t kernels = 0;
+  for (const fs::path& file : product_files()) {
+    const std::string path = file.string();
+    const bool has_highway =
+        !path.starts_with("src/io/") && !path.starts_with("src/workflow/") && !path.starts_with("cli/");
+    for (const std::string& line : lines_of(read(kRoot / file))) {
+      if (line.find("#include <hwy/") == std::string::npos) continue;
+      EXPECT_TRUE(has_highway) << file << " includes Highway";
+      ++kernels;
+    }
+  }
+  EXPECT_GT(kernels, 20U);
+}
+
 TEST(Layers, the_reference_includes_no_scheme_and_no_control_normals) {
   for (const char* file : {"src/analysis/quality/reference_normals.cpp", "include/chronormal/analysis/quality.h",
                            "src/analysis/quality/quality.cpp"}) {

@@ -1,4 +1,4 @@
-// Rows of points become areas and sums in blocks (workflow/bake/kernels/vector_areas.h); polygons that are no triangles
+// Rows of points become areas and sums in blocks (normals/groups/kernels/vector_areas.h); polygons that are no triangles
 // go one by one.
 #include "workflow/bake/sequence/area_sums.h"
 
@@ -8,7 +8,7 @@
 #include "core/blocks.h"
 #include "core/rounding.h"
 #include "core/vector_area.h"
-#include "workflow/bake/kernels/vector_areas.h"
+#include "normals/groups/kernels/vector_areas.h"
 
 namespace chronormal::inline internal {
 namespace {

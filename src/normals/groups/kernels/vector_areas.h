@@ -2,8 +2,8 @@
 ///
 /// Points and areas are rows of four doubles: x y z, and a fourth that counts for nothing in points and is 0 in areas.
 /// Both give the bits of their scalar forms, without_rounding() of CrossSum and VectorSum (core/rounding.h).
-#ifndef CHRONORMAL_WORKFLOW_BAKE_KERNELS_VECTOR_AREAS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_KERNELS_VECTOR_AREAS_H_
+#ifndef CHRONORMAL_NORMALS_GROUPS_KERNELS_VECTOR_AREAS_H_
+#define CHRONORMAL_NORMALS_GROUPS_KERNELS_VECTOR_AREAS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -27,4 +27,4 @@ void sums_of_areas(const double* areas, std::size_t first_face, const NormalGrou
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_KERNELS_VECTOR_AREAS_H_
+#endif  // CHRONORMAL_NORMALS_GROUPS_KERNELS_VECTOR_AREAS_H_

@@ -1,12 +1,12 @@
 // Triangles are computed a few at a time, a lane each. Sums are made one by one, each row in as few registers as the
 // machine has for four doubles.
-#include "workflow/bake/kernels/vector_areas.h"
+#include "normals/groups/kernels/vector_areas.h"
 
 #include <algorithm>
 #include <cassert>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "workflow/bake/kernels/vector_areas.cpp"
+#define HWY_TARGET_INCLUDE "normals/groups/kernels/vector_areas.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
