@@ -256,7 +256,7 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
       for (std::size_t v = 0; v < kVertices; ++v) {
         const test::Vector& stored = truth.vertices[v].stored;
         const test::Vector right = test::GltfTruth::turn(base[v], stored, test::unit_of(exact[v]));
-        const auto seen = [&](const test::Vector& n) { return carried(rule, skin, worlds[key], v, n); };
+        const auto seen = [&, rule = rule](const test::Vector& n) { return carried(rule, skin, worlds[key], v, n); };
         worst = std::max(worst, static_cast<double>(test::degrees_between(seen(stored), seen(right))));
       }
     }
