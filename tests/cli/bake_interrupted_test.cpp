@@ -84,8 +84,9 @@ TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
 
 TEST_F(InterruptedBake, full_disk_keeps_its_file) { expect_refused_on_a_disk_of(64); }
 
-// The arrays wait in a file of their own until the JSON in front of them is known, and are given back to the disk one after
-// the other as they are copied: the largest has 214 KB, and there the disk has room for all of them, and not for one more.
+// The arrays wait in a file of their own until the JSON in front of them is known, and are given back to the disk one
+// after the other as they are copied: the largest has 214 KB, and there the disk has room for all of them, and not for
+// one more.
 TEST_F(InterruptedBake, disk_that_is_full_at_the_end_keeps_its_file) {
   expect_refused_on_a_disk_of(whole_.size() / 1024 + 100);
 }

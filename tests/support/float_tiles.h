@@ -14,8 +14,8 @@
 
 namespace chronormal::test {
 
-/// The motion with another end, so that normals are of degree 1 or 0: each point moves along z; all move alike; they grow
-/// along x; or nothing moves.
+/// The motion with another end, so that normals are of degree 1 or 0: each point moves along z; all move alike; they
+/// grow along x; or nothing moves.
 [[nodiscard]] inline Motion of_low_degree(Motion motion, int kind) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -34,8 +34,8 @@ struct FloatTileFaults {
   double largest_bound = 0;  ///< as a share of the absolute products
   std::string fault;
 
-  /// Looks at one element. `right` are its control normals, `products` at least the sum of the absolute products in any of their
-  /// components, and `count` how many cross products were added up.
+  /// Looks at one element. `right` are its control normals, `products` at least the sum of the absolute products in any
+  /// of their components, and `count` how many cross products were added up.
   void look_at(const ControlTile& tile, std::size_t lane, const ControlNormals& right, double products,
                std::size_t count) {
     const std::string place = "element " + std::to_string(elements++);
@@ -49,7 +49,8 @@ struct FloatTileFaults {
       for (const double component : {v.x, v.y, v.z}) {
         const double off = std::fabs(double{tile.normals[k++][lane]} - component);
         if (off > 0 && in_range) largest_share = std::max(largest_share, off / bound);
-        // What underflows is too little for any curve to have it. NaN is beyond a bound, and needs none that is infinite.
+        // What underflows is too little for any curve to have it. NaN is beyond a bound, and needs none that is
+        // infinite.
         if (!(off <= bound + 0x1p-140) && bound <= std::numeric_limits<float>::max())
           fault = place + " is off by " + std::to_string(off / bound) + " of its bound";
       }

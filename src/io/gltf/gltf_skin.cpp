@@ -136,7 +136,7 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
       !status)
     return status;
   std::vector<std::vector<float>> joints(sets.size()), weights(sets.size());
-  // What a compressed mesh holds is decoded at once.
+  // All joints and weights that a compressed mesh holds are decoded together.
   std::vector<gltf::AttributeSource> compressed;
   std::vector<std::pair<std::string, std::vector<float>*>> of_compressed;
   for (std::size_t n = 0; n < sets.size(); ++n) {

@@ -21,8 +21,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Elements that a thread makes at a time: few enough that their blocks stay in a cache until they are moved, and that all
-// threads are busy to the end. Of the size alone, and so the same for any number of threads.
+// Elements that a thread makes at a time: few enough that their blocks stay in a cache until they are moved, and that
+// all threads are busy to the end. Of the size alone, and so the same for any number of threads.
 std::size_t part_size(std::size_t size) {
   constexpr std::size_t kParts = 16;
   const std::size_t chunks = (size / kParts + kChunk - 1) / kChunk;
@@ -248,8 +248,8 @@ CurveData build_curves(const Segment& segment, const NormalGroups& groups, const
   return build_curves(segment, &groups, options, threads, reuse);
 }
 
-// There are two steps: copying both ends of each vertex side by side, which is for meshes in no order only, and making the
-// curves.
+// There are two steps: copying both ends of each vertex side by side, which is for meshes in no order only, and making
+// the curves.
 struct CurveSlices::State {
   State(const Segment& of_segment, const NormalGroups* of_groups, const CurveOptions& options, CurveData* reuse)
       : segment(of_segment),

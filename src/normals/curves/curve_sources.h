@@ -1,9 +1,9 @@
 /// Where the control normals of curves come from: each source writes tiles for a glance, and what a closer look needs.
 ///
 ///     write(elements, tiles)   sixteen by sixteen, in double, rounded to float32
-///     write_in_float(elements, tiles)   the same in float32 throughout, with bounds on the errors, of a source for which
-///                              has_float() is true; not every source has these two
-///     in_double(elements, tile)   up to sixteen, and how far off those may be; returns which it leaves to the next, as bits
+///     write_in_float(elements, tiles)   the same in float32 throughout, with bounds on the errors, of a source for
+///                              which has_float() is true; not every source has these two
+///     in_double(elements, tile)   up to sixteen, and how far off those may be; returns what it leaves out, as bits
 ///     in_double(i)             one element, and how far off that may be
 ///     exact(i)                 the same without any rounding, where there are positions to make it from
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_

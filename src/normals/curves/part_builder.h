@@ -139,8 +139,8 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   return result;
 }
 
-// What blocks must keep: whether lengths, and how precise elements have to be, in tiles that are made in double and, where
-// the tolerance allows it, in float32.
+// Says what a tolerance asks of blocks: whether they keep lengths, and how precise elements have to be, in tiles that
+// are made in double and, where the tolerance allows it, in float32.
 struct BuildLimits {
   explicit BuildLimits(double tolerance)
       : with_lengths(!(tolerance > kExactTolerance)),
@@ -158,8 +158,8 @@ concept WritesInFloat = requires(const Source& source, std::span<ControlTile> ti
   source.write_in_float(IndexRange{}, tiles);
 };
 
-// Whether float32 is tried for the next tiles. Where it was in vain it is left alone for a while, and for twice as long
-// where it is in vain once more.
+// Decides whether float32 is tried for the next tiles. Where it was in vain it is left alone for a while, and for twice
+// as long where it is in vain once more.
 class FloatTrials {
  public:
   [[nodiscard]] bool is_tried() {
@@ -230,7 +230,8 @@ class PartBuilder {
     chunk_bytes_ = part_.bytes - bytes_before;
   }
 
-  // Writes the tiles of a chunk, and summarizes them: in float32 where that may do, and in double what it does not do for.
+  // Writes the tiles of a chunk, and summarizes them: in float32 where that may do, and in double what it does not do
+  // for.
   template <class Source>
   void write_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles,
                    std::span<TileSummary> summaries) {
@@ -276,8 +277,8 @@ class PartBuilder {
 #endif
   }
 
-  // Examines in double the elements of a tile that the quick test did not settle: sixteen at a time, and one by one what
-  // that leaves. Returns the flagged ones as bits.
+  // Examines in double the elements of a tile that the quick test did not settle: sixteen at a time, and one by one
+  // what that leaves. Returns the flagged ones as bits.
   template <class Source>
   std::uint32_t examine(Source& source, IndexRange elements, const TileSummary& summary, ControlTile& tile,
                         Need& need) {
@@ -331,8 +332,8 @@ class PartBuilder {
     for (; lanes != 0; lanes &= lanes - 1) body(static_cast<std::size_t>(std::countr_zero(lanes)));
   }
 
-  // Gives a tile an exponent of its own, which takes a look at all elements of it that are not flagged. Returns those that
-  // are too small for it beside the others.
+  // Gives a tile an exponent of its own, which takes a look at all elements of it that are not flagged. Returns those
+  // that are too small for it beside the others.
   template <class Source>
   std::uint32_t rescale(const Source& source, IndexRange elements, std::uint32_t flagged, ControlTile& tile,
                         std::array<std::optional<Examined>, kTile>& alone) {

@@ -26,8 +26,8 @@ class RowsInBounds {
  public:
   explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}
 
-  /// Adds the bytes of another part, the `done`th of `total`. Errors: of Expansion::check(), once all that was added so far
-  /// is too much.
+  /// Adds the bytes of another part, the `done`th of `total`. Errors: of Expansion::check(), once all that was added so
+  /// far is too much.
   [[nodiscard]] Status add(std::uint64_t bytes, std::size_t done, std::size_t total) {
     bytes_ += bytes;
     return expansion_.check(bytes_,

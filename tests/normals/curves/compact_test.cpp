@@ -156,8 +156,8 @@ TEST(CompactCurves, keep_the_tolerance_at_every_scale_that_double_has) {
   }
 }
 
-// The normals of all vertices of a mesh of triangles at one t, face after face in long double; and the sums of the lengths
-// that went into them.
+// The normals of all vertices of a mesh of triangles at one t, face after face in long double; and the sums of the
+// lengths that went into them.
 struct VerticesAt {
   std::vector<std::array<long double, 3>> normals;
   std::vector<long double> lengths;

@@ -1,5 +1,5 @@
-// What smallest chooses is what a skin shows: the tolerance holds behind joints that squash, in hosts that carry normals
-// in ways of their own, and joints that turn and scale evenly change nothing.
+// What smallest chooses is what a skin shows: the tolerance holds behind joints that squash, in hosts that carry
+// normals in ways of their own, and joints that turn and scale evenly change nothing.
 
 #include <gtest/gtest.h>
 
@@ -100,7 +100,7 @@ World standing(const Trs& one, const Trs& two = {}) {
   return [one, two](double) { return std::vector<Rows>{one.rows(), two.rows()}; };
 }
 
-// What is seen of the track of node 0 at 101 times.
+// Returns the error that is seen while the track of node 0 is played, at 101 times.
 test::ShownError seen_error(const Baked& baked, const Skin& skin, const World& world, Carry rule = Carry::kBlended) {
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<test::Pose> poses = test::poses_of(*baked.before, *baked.after, 0, 0);
@@ -265,7 +265,7 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
 }
 
 TEST(BakeSkin, tolerance_holds_in_each_host_in_its_own_way) {
-  // What flattens for one host raises for the other.
+  // A joint that flattens normals for one host raises them for the other.
   const Trs high = scaled(1, 1, 4);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), high);
@@ -298,7 +298,7 @@ TEST(BakeSkin, what_hosts_show_before_and_after_is_seen_in_their_own_ways) {
   }
 }
 
-// What was looked at, and what became of the deltas.
+// Describes the choices that were looked at, and what became of the deltas.
 std::string choices_of(const Baked& baked) {
   std::string text;
   for (const BakeChoice& c : baked.report.meshes.at(0).choices)
@@ -377,7 +377,8 @@ TEST(BakeSkin, targets_without_an_animation_are_seen_in_the_pose_of_the_file) {
 }
 
 TEST(BakeSkin, no_normal_gets_worse_behind_the_skin) {
-  // Deltas of the file are right but for noise, so that for some vertices a better one before skinning is worse after it.
+  // Deltas of the file are right but for noise, so that for some vertices a better one before skinning is worse after
+  // it.
   const Trs flat = scaled(1, 1, 0.1);
   for (const BakeEncoding encoding : {BakeEncoding::kEndpoint, BakeEncoding::kHarmless, BakeEncoding::kSmallest}) {
     for (unsigned seed = 1; seed <= 4; ++seed) {

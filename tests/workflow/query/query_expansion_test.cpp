@@ -1,5 +1,5 @@
-// Answers whose rows have to be found are held to what the file behind the motion may make of itself while they grow, and
-// not only when all of them are in memory.
+// Answers whose rows have to be found are held to what the file behind the motion may make of itself while they grow,
+// and not only when all of them are in memory.
 
 #include <gtest/gtest.h>
 

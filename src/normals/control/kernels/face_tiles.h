@@ -23,9 +23,9 @@ void face_control_tiles(const Segment& segment, IndexRange faces, std::span<Cont
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
                         std::span<EdgedTile> exact) noexcept;
 
-/// Writes the tiles of triangles in float32 throughout, with a bound on their errors: `magnitude` is one of the error of any
-/// component; `degree` is 2 where the curve bends by more than that error, so that its degree is 2 without a doubt, and 1
-/// elsewhere. The same preconditions
+/// Writes the tiles of triangles in float32 throughout, with a bound on their errors: `magnitude` is one of the error
+/// of any component; `degree` is 2 where the curve bends by more than that error, so that its degree is 2 without a
+/// doubt, and 1 elsewhere. The same preconditions
 void float_triangle_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
 
 /// Writes up to sixteen triangles in double, with bounds on their errors, for a closer look. Lanes behind the last one

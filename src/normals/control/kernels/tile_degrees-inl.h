@@ -41,8 +41,8 @@ HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
   return all;
 }
 
-// What a sum of so many products in float32 is off by, as a share of the absolute products in it (docs/theory.md, section
-// 13): the roundings of a product, and those of its way into the sum.
+// What a sum of so many products in float32 is off by, as a share of the absolute products in it (docs/theory.md,
+// section 13): the roundings of a product, and those of its way into the sum.
 HWY_INLINE Floats RoundingsInFloat(std::size_t products) {
   return hn::Set(kFloats, 0x1p-24f * static_cast<float>(products + 5));
 }
@@ -52,8 +52,8 @@ struct FloatControlLanes {
   Lanes3 n0, m, n1;
 };
 
-// Stores what was made in float32, with the error of its components as magnitude; and 2 as the degree where the curve bends
-// by more than four errors and the roundings of the bend itself, or else 1.
+// Stores what was made in float32, with the error of its components as magnitude; and 2 as the degree where the curve
+// bends by more than four errors and the roundings of the bend itself, or else 1.
 HWY_INLINE void StoreInFloat(const FloatControlLanes& c, Floats error, std::size_t lane, ControlTile& tile) {
   std::size_t k = 0;
   for (const Lanes3* v : {&c.n0, &c.m, &c.n1}) {

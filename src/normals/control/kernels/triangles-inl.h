@@ -255,8 +255,8 @@ HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vert
 template <PointAccess kAccess>
 using AccessConstant = std::integral_constant<PointAccess, kAccess>;
 
-// Calls body(access) with the access that sixteen triangles allow, as a constant; corners: their 48 vertices. Whether those
-// are far from each other in memory.
+// Calls body(access) with the access that sixteen triangles allow, as a constant; corners: their 48 vertices. Whether
+// those are far from each other in memory.
 template <class Body>
 HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std::uint32_t* corners, const Body& body) {
   if (access == PointAccess::kAny) {
@@ -285,8 +285,8 @@ HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std
 }
 
 // Calls body(access, corners) for the triangles first ... first + 15, with the access that they allow as a constant and
-// their 48 vertices; those from `end` on repeat the one before. Those that come soon are asked for where they are far from
-// each other. first < end
+// their 48 vertices; those from `end` on repeat the one before. Those that come soon are asked for where they are far
+// from each other. first < end
 template <class Body>
 HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                               const Body& body) {

@@ -20,16 +20,17 @@ struct PrecisionLimits {
   /// kScaled16 and k32: of sum w_k |c_k| / |n(t)|.
   double sum_ratio_scaled16 = 0, sum_ratio32 = 0;
 
-  /// Of `magnitude` / |n(t)|, where `magnitude` is not less than the largest component. In tiles that were made in double
-  /// noise is below 2^-45 of it (12 u for a face, and u for each of up to 100 that are added), so that it turns n(t) by
-  /// less than 2^-24, and no control normal is below 2^-21 of the largest.
+  /// Of `magnitude` / |n(t)|, where `magnitude` is not less than the largest component. In tiles that were made in
+  /// double noise is below 2^-45 of it (12 u for a face, and u for each of up to 100 that are added), so that it turns
+  /// n(t) by less than 2^-24, and no control normal is below 2^-21 of the largest.
   double largest_magnitude = 0x1p21;
 
   /// Above kLargestTolerance, in radians, what lies between a chord and its angle would need a closer look.
   static constexpr double kLargestTolerance = 0.2;
   [[nodiscard]] static PrecisionLimits for_tolerance(double radians) noexcept;
-  /// The limits for tiles that were made in float32, where `magnitude` is a bound on the error of a component: it may take a
-  /// small part of the tolerance, and the blocks have the rest. Nothing where the tolerance is too small for that.
+  /// The limits for tiles that were made in float32, where `magnitude` is a bound on the error of a component: it may
+  /// take a small part of the tolerance, and the blocks have the rest. Nothing where the tolerance is too small for
+  /// that.
   [[nodiscard]] static std::optional<PrecisionLimits> for_float_tiles(double radians) noexcept;
 };
 

@@ -15,8 +15,8 @@
 
 namespace chronormal::inline internal {
 
-/// Writes tiles of elements, from the points on the paths around them (groups/rings.h). The first object for some groups
-/// makes these paths, which the groups keep.
+/// Writes tiles of elements, from the points on the paths around them (groups/rings.h). The first object for some
+/// groups makes these paths, which the groups keep.
 class GroupTiles {
  public:
   /// Throws std::bad_alloc only. groups must outlive the object, belong to the topology of the segment, and have their
@@ -27,18 +27,18 @@ class GroupTiles {
   /// Writes the tiles of a range of elements (see ControlTile). The values are those of group_control_normals() but for
   /// the rounding of sums in another order: they are within 2^-47 of the magnitude of the sum, rounded to float32, and
   /// zero where that is all they are. Elements with many faces are added up as group_control_normals() does.
-  /// elements must begin at a multiple of 16, and end at one or at the last element; elements.count > 0; tiles must have
-  /// ceil(elements.count / 16) elements
+  /// elements must begin at a multiple of 16, and end at one or at the last element; elements.count > 0; tiles must
+  /// have ceil(elements.count / 16) elements
   void write(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
-  /// Writes the tiles of a range of elements in float32 throughout, in about half the time, with a bound on their errors:
-  /// `magnitude` is one of the error of any component, and infinite for elements with many faces; `degree` is 2 where
-  /// the curve bends by more than that error, so that its degree is 2 without a doubt, and 1 elsewhere.
+  /// Writes the tiles of a range of elements in float32 throughout, in about half the time, with a bound on their
+  /// errors: `magnitude` is one of the error of any component, and infinite for elements with many faces; `degree` is 2
+  /// where the curve bends by more than that error, so that its degree is 2 without a doubt, and 1 elsewhere.
   /// The same preconditions as write()
   void write_in_float(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
-  /// Writes up to sixteen elements in double, with bounds on their errors, for a closer look. Returns the elements that it
-  /// leaves to others, as bits: those with many faces. elements.first must be a multiple of 16
+  /// Writes up to sixteen elements in double, with bounds on their errors, for a closer look. Returns the elements that
+  /// it leaves to others, as bits: those with many faces. elements.first must be a multiple of 16
   [[nodiscard]] std::uint32_t write_bounded(IndexRange elements, BoundedTile& tile) const noexcept;
 
  private:

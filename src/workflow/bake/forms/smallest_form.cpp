@@ -167,9 +167,9 @@ class Choice {
     return is_within() && of_best_.bytes - tangent_bytes_ <= bytes && !options_.plan;
   }
 
-  // Where skins keep all forms beyond the tolerance, and some of these were within what they were made for before skinning:
-  // what forms should be made for next. That is less by as much as the nearest of them missed the tolerance by, and
-  // less than what this one left before skinning, so that it does not come again.
+  // Where skins keep all forms beyond the tolerance, and some of these were within what they were made for before
+  // skinning: what forms should be made for next. That is less by as much as the nearest of them missed the tolerance
+  // by, and less than what this one left before skinning, so that it does not come again.
   [[nodiscard]] std::optional<double> tightened() {
     const Missed missed = std::exchange(missed_, Missed());
     if (is_within() || missed.seen == INFINITY) return std::nullopt;
@@ -245,8 +245,8 @@ class Choice {
     return choice;
   }
 
-  // The worst of a form that is within what it was made for before skinning, and beyond the tolerance when it is seen: of
-  // all in this round, the one that is nearest then.
+  // The worst of a form that is within what it was made for before skinning, and beyond the tolerance when it is seen:
+  // of all in this round, the one that is nearest then.
   struct Missed {
     double before = 0, seen = INFINITY;
   };

@@ -4,11 +4,12 @@
 /// harmless at all vertices of a normal, the one that is nearest to the right normals is taken:
 ///
 ///     harmless   in every pose of the file (its animations as hosts play them, its targets alone) and in every named
-///                host, error <= max(error of the stored form + 0.02 degrees, tolerance), but for what the rounding of a
-///                compressor adds to either; over mixed poses (random ones, cross-fades) neither the mean nor the worst
-///                nor that of 99.9 % is above that of the stored form, all vertices together
+///                host, error <= max(error of the stored form + 0.02 degrees, tolerance), but for what the rounding of
+///                a compressor adds to either; over mixed poses (random ones, cross-fades) neither the mean nor the
+///                worst nor that of 99.9 % is above that of the stored form, all vertices together
 ///
-///     error      the angle between what is shown and what is right, both as the skin of the pose carries them in the host
+///     error      the angle between what is shown and what is right, both as the skin of the pose carries them in
+///                the host
 ///
 /// Shapes     n = number of a vertex in the list of those that are judged; columns = the mesh's own targets, then extra
 ///            ones.

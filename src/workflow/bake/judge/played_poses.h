@@ -33,11 +33,12 @@ struct DrivingTrack {
 /// weights is, so that a wink in a long animation is among them; the others are taken evenly.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
 
-/// What a host plays of some tracks, one after the other, but for poses that look as the one before: for each telling key,
-/// `phase` (in [0, 1)) and as many instants as asked for in all up to the next key, evenly; where these are more than
-/// `most`, fewer instants of each key, and then fewer keys. Each track gets a share by the number of its telling keys, and
-/// one pose at least. Through each of the skins of its nodes, which must outlive the poses, a track is seen at its keys,
-/// those of the joints and instants between, and only where these are more than `most` at some of them and as above.
+/// What a host plays of some tracks, one after the other, but for poses that look as the one before: for each telling
+/// key, `phase` (in [0, 1)) and as many instants as asked for in all up to the next key, evenly; where these are more
+/// than `most`, fewer instants of each key, and then fewer keys. Each track gets a share by the number of its telling
+/// keys, and one pose at least. Through each of the skins of its nodes, which must outlive the poses, a track is seen
+/// at its keys, those of the joints and instants between, and only where these are more than `most` at some of them and
+/// as above.
 [[nodiscard]] std::vector<SeenPose> seen_tracks(std::span<const DrivingTrack> tracks, const MeshSkins& skins,
                                                 const Host& host, std::size_t between_keys, double phase,
                                                 std::size_t most);

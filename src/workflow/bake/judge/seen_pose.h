@@ -46,8 +46,8 @@ class SkinsInPoses {
   class Vertex {
    public:
     Vertex(const SkinsInPoses& skins, std::uint32_t vertex, std::size_t first, std::size_t count);
-    /// What is seen of a normal of any length in a pose: the normal itself where no skin carries it, else a unit vector, or
-    /// (0, 0, 0) where nothing is left of it.
+    /// What is seen of a normal of any length in a pose: the normal itself where no skin carries it, else a unit
+    /// vector, or (0, 0, 0) where nothing is left of it.
     [[nodiscard]] Vec3d seen(SkinRule rule, std::size_t pose, const Vec3d& normal) const;
 
    private:

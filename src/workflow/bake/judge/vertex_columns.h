@@ -1,5 +1,5 @@
-/// Vectors of vertices in columns, each of which has a weight: by column, as files store them, or by vertex, as they are
-/// added up. Private to workflow.
+/// Vectors of vertices in columns, each of which has a weight: by column, as files store them, or by vertex, as they
+/// are added up. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
 

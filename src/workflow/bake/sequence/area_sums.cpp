@@ -1,5 +1,5 @@
-// Rows of points become areas and sums in blocks (normals/groups/kernels/vector_areas.h); polygons that are no triangles
-// go one by one.
+// Rows of points become areas and sums in blocks (normals/groups/kernels/vector_areas.h); polygons that are no
+// triangles go one by one.
 #include "workflow/bake/sequence/area_sums.h"
 
 #include <algorithm>
