@@ -11,6 +11,7 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 #include "normals/control/kernels/control_tile.h"
+#include "tests/support/fixtures.h"
 
 namespace chronormal::test {
 
@@ -26,12 +27,23 @@ namespace chronormal::test {
   return motion;
 }
 
+/// The motion with another end: every coordinate goes a share of its way, and a little of its own.
+[[nodiscard]] inline Motion of_small_steps(Motion motion, double share, fixtures::Random& random) {
+  const auto& from = motion.keyframes[0].positions;
+  auto& to = motion.keyframes[1].positions;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    to[i] = static_cast<float>(from[i] + share * (double{to[i]} - from[i] + random.uniform(-1, 1)));
+  return motion;
+}
+
 /// Collects what was seen of some elements; `fault` is the last thing that was wrong, or nothing.
 struct FloatTileFaults {
   std::size_t elements = 0;
-  std::size_t bending = 0;   ///< elements whose degree is said to be 2
-  double largest_share = 0;  ///< of an error in its bound
-  double largest_bound = 0;  ///< as a share of the absolute products
+  std::size_t bending = 0;           ///< elements whose degree is said to be 2
+  std::size_t straight = 0;          ///< those whose degree is said to be less
+  double largest_share = 0;          ///< of an error in its bound
+  double largest_share_of_line = 0;  ///< the same of the lines that stand for curves
+  double largest_bound = 0;          ///< as a share of the absolute products
   std::string fault;
 
   /// Looks at one element. `right` are its control normals, `products` at least the sum of the absolute products in any
@@ -58,9 +70,32 @@ struct FloatTileFaults {
     if (tile.degree[lane] == 2) {
       ++bending;
       if (in_range && degree(right) != 2) fault = "a line is taken for a curve, " + place;
-    } else if (tile.degree[lane] != 1) {
+    } else if (tile.degree[lane] == 0 || tile.degree[lane] == 1) {
+      ++straight;
+      const double share = share_of_line(tile, lane, right);
+      if (in_range) largest_share_of_line = std::max(largest_share_of_line, share);
+      if (in_range && !(share <= 1)) fault = place + ", kept as a line, is off by " + std::to_string(share);
+    } else {
       fault = "there is no degree, " + place;
     }
+  }
+
+ private:
+  /// How far what is kept without m gets from n(t), as a share of the bound: the line between the ends, or n0 alone.
+  [[nodiscard]] static double share_of_line(const ControlTile& tile, std::size_t lane, const ControlNormals& right) {
+    const double n0[3] = {right.n0.x, right.n0.y, right.n0.z}, m[3] = {right.m.x, right.m.y, right.m.z},
+                 n1[3] = {right.n1.x, right.n1.y, right.n1.z};
+    constexpr int kSteps = 64;
+    double off = 0;
+    for (int step = 0; step <= kSteps; ++step) {
+      const double t = tile.degree[lane] == 0 ? 0 : static_cast<double>(step) / kSteps;
+      const double s = static_cast<double>(step) / kSteps, r = 1 - s;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double kept = (1 - t) * tile.normals[k][lane] + t * tile.normals[6 + k][lane];
+        off = std::max(off, std::fabs(kept - (r * r * n0[k] + 2 * r * s * m[k] + s * s * n1[k])));
+      }
+    }
+    return off > 0 ? off / double{tile.magnitude[lane]} : 0;
   }
 };
 

@@ -108,7 +108,8 @@ class NormalCurves {
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] bool keeps_lengths() const noexcept;
-  /// How many elements have true degree 0, 1 and 2.
+  /// How many elements have true degree 0, 1 and 2. A tolerance of 2^-12 or more may count those that bend by less than
+  /// their rounding errors in float32 as straight, which is how they are kept then, within the tolerance.
   [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept;
   /// How many elements at t are uncertain: n(t) is so small a part of what it is the sum of, in double, that 1e-6 rad
   /// is not promised there. Only where control normals are all that is known; curves made from positions have none.

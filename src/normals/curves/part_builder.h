@@ -252,7 +252,7 @@ class PartBuilder {
           summarize_tiles(tiles.subspan(k, count), *limits_.in_float, summaries.subspan(k, count));
           std::size_t in_vain = 0;
           for (std::size_t i = k; i < k + count; ++i) {
-            if (summaries[i].uncertain == 0 && summaries[i].bending == lanes_of(kTile)) continue;
+            if (summaries[i].uncertain == 0) continue;
             in_double(i, 1);
             ++in_vain;
           }

@@ -21,6 +21,7 @@
 #include "normals/curves/kernels/pack.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/float_tiles.h"
 #include "tests/support/hard_normals.h"
 
 namespace chronormal::compact_test {
@@ -223,6 +224,37 @@ TEST(CompactCurves, keep_the_tolerance_of_vertices_whatever_they_are_added_up_in
       }
     }
   }
+}
+
+// What hardly moves is kept as straight curves, which takes fewer bytes, where float32 cannot tell that they bend.
+TEST(CompactCurves, keep_the_tolerance_of_vertices_that_hardly_move) {
+  fixtures::Random random(20261126);
+  std::cout << "  seed 20261126\n";
+  std::size_t straight = 0, bending = 0;
+  for (int round = 0; round < 24; ++round) {
+    const double flat = std::ldexp(1, -static_cast<int>(random.below(10)));
+    const Motion whole = test::with_positions(fixtures::smooth_morph(16), [&](const fixtures::Point& p) {
+      return fixtures::Point{p[0] + 3, flat * p[1] + p[0] - 5, flat * p[2] - p[0]};
+    });
+    const Motion motion = test::of_small_steps(whole, std::ldexp(1, -2 - round), random);
+    const Segment segment = motion.segment(0);
+    const NormalGroups groups =
+        NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+    for (const double tolerance : {2.5e-4, 1e-3, 1e-2}) {
+      const NormalCurves curves = NormalCurves::of_groups(segment, groups, {tolerance});
+      straight += curves.degree_counts()[0] + curves.degree_counts()[1];
+      bending += curves.degree_counts()[2];
+      for (int step = 0; step <= 16; ++step) {
+        const double t = step / 16.0;
+        const VerticesAt right(segment, t);
+        const std::vector<Vec3f> shown = unit_normals(curves, t);
+        for (std::size_t v = 0; v < shown.size(); ++v)
+          ASSERT_LE(right.angle_to(shown[v], v), tolerance) << "vertex " << v << ", t = " << t << ", round " << round;
+      }
+    }
+  }
+  EXPECT_GT(straight, 5000U);
+  EXPECT_GT(bending, 5000U);
 }
 
 // A tolerance as wide as a shape's turn is still one.

@@ -5,7 +5,10 @@
 ///     magnitude   for each element, at least the sum of the absolute products that went into any one component
 ///     degree      for each element, as degree() in control_normals.h finds it
 ///
-/// Everything is computed in double and rounded once. Where a component is smaller than the rounding error of its
+/// Tiles that are made in float32 throughout have bounds on the errors of components for `magnitude`, and may say less for
+/// `degree`: of what they keep without m, or without m and n1, that error is the one that counts.
+///
+/// In others everything is computed in double and rounded once. Where a component is smaller than the rounding error of its
 /// products (far below 2^-26 of `magnitude`) it may be noise here: the reader must not trust it, and asks for the
 /// element in double instead, where noise is zero. Lanes beyond the last element repeat it.
 #ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_

@@ -52,8 +52,9 @@ struct FloatControlLanes {
   Lanes3 n0, m, n1;
 };
 
-// Stores what was made in float32, with the error of its components as magnitude; and 2 as the degree where the curve
-// bends by more than four errors and the roundings of the bend itself, or else 1.
+// Stores what was made in float32, with the error of its components as magnitude. The degree is 0 where all three are
+// the same, and 2 where the curve bends by more than eight errors. Where it bends by less the degree is 1: a straight
+// curve is off by a quarter of the bend more, and a little for its roundings.
 HWY_INLINE void StoreInFloat(const FloatControlLanes& c, Floats error, std::size_t lane, ControlTile& tile) {
   std::size_t k = 0;
   for (const Lanes3* v : {&c.n0, &c.m, &c.n1}) {
@@ -62,11 +63,14 @@ HWY_INLINE void StoreInFloat(const FloatControlLanes& c, Floats error, std::size
     hn::Store(v->z, kFloats, tile.normals[k + 2] + lane);
     k += 3;
   }
-  hn::Store(error, kFloats, tile.magnitude + lane);
-  const auto bends = hn::Gt(MaxAbs((c.n0 - c.m) + (c.n1 - c.m)), hn::Mul(hn::Set(kFloats, 8.0f), error));
-  const Ints one = hn::Set(kInts, 1);
-  // The mask is -1 where it holds.
-  hn::Store(hn::Sub(one, hn::BitCast(kInts, hn::VecFromMask(kFloats, bends))), kInts, tile.degree + lane);
+  const Lanes3 before = c.n0 - c.m, after = c.n1 - c.m;
+  const Floats zero = hn::Zero(kFloats), one = hn::Set(kFloats, 1.0f), two = hn::Set(kFloats, 2.0f);
+  const auto moves = hn::Gt(MaxAbs(before, after), zero);
+  const auto bends = hn::Gt(MaxAbs(before + after), hn::Mul(hn::Set(kFloats, 8.0f), error));
+  const Floats errors = hn::IfThenElse(hn::AndNot(bends, moves), hn::Set(kFloats, 3.5f), one);
+  hn::Store(hn::Mul(errors, error), kFloats, tile.magnitude + lane);
+  const Floats degree = hn::IfThenElse(bends, two, hn::IfThenElseZero(moves, one));
+  hn::Store(hn::ConvertTo(kInts, degree), kInts, tile.degree + lane);
 }
 
 HWY_NOINLINE inline void SetDegrees(const ExactTile& exact, ControlTile& tile) {
