@@ -14,7 +14,7 @@ std::string side_by_side(const std::vector<Results>& machines) {
   for (const std::string group : {"faces", "vertices"}) {
     for (const std::string size : {"15k", "10M"}) {
       for (const std::string path : {"plain C++ loop", "recompute in float32", "recompute", "prepare exact",
-                                     "exact to float3", "compact to float3", "bare loop as exact"}) {
+                                     "prepare compact", "exact to float3", "compact to float3", "bare loop as exact"}) {
         Cells cells = {fmt::format("{}, {}: {}", group, spelt(size), path)};
         for (const Results& machine : machines) cells.push_back(cell(machine.find(group, size, kGrid, path)));
         rows.push_back(std::move(cells));
