@@ -243,6 +243,23 @@ TEST(BakeSmallest, fits_to_animations_alone_are_taken_only_where_they_are_better
   }
 }
 
+TEST(BakeSmallest, fits_the_deltas_of_targets_to_animations_alone_without_room_for_extra_targets) {
+  for (const unsigned seed : {61U, 62U, 63U}) {
+    GltfBuilder builder = test::hills_document(3, seed);
+    builder.add_track(0, 0, kTimes, random_weights(3 * kTimes.size(), seed));
+    BakeOptions options = smallest(0.5), animations_only;
+    options.hosts = {kHosts[0]};
+    options.most_targets = 3;
+    animations_only = options;
+    animations_only.animations_only = true;
+    const Baked plain = test::bake_document(builder, options), fitted = test::bake_document(builder, animations_only);
+    ASSERT_TRUE(plain.ok() && fitted.ok()) << plain.error << fitted.error;
+    EXPECT_EQ(fitted.report.added_targets, 0U);
+    EXPECT_LT(test::track_error(fitted).mean(), 0.8 * test::track_error(plain).mean()) << "seed " << seed;
+    EXPECT_TRUE(chosen(fitted).animations_only);
+  }
+}
+
 TEST(BakeSmallest, writes_one_array_for_primitives_that_share_theirs) {
   GltfBuilder builder = driven_hills("LINEAR", 3), shared = builder;
   auto& primitives = shared.json["meshes"][0]["primitives"];

@@ -314,8 +314,8 @@ ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights
   std::vector<VertexColumns> forms = {by_vertex(columns_of(own.stored), vertices),
                                       by_vertex(columns_of(own.deltas), vertices)};
   ExtraDrivers& drivers = result.drivers;
-  if (most_extras > 0 && source.plan.is_driven) {
-    const bool refits_own = options.animations_only && lengths == FormLengths::kFree;
+  const bool refits_own = options.animations_only && lengths == FormLengths::kFree && source.plan.products_fit;
+  if ((most_extras > 0 || refits_own) && source.plan.is_driven) {
     const std::size_t for_each = lengths == FormLengths::kFree ? 1 : 2;
     LowRankForm form = low_rank_form(rights, weights, vertices, shading.element_of_vertex, own.deltas,
                                      {most_extras / for_each, tolerance, refits_own});

@@ -240,7 +240,7 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
   const FileInstants instants(weights);
   LowRankLimits limits = asked;
   limits.most_extras = std::min(limits.most_extras, products_of(instants.poses));
-  if (limits.most_extras == 0 || points.empty() || weights.tracks.empty()) return form;
+  if ((limits.most_extras == 0 && !limits.refits_own) || points.empty() || weights.tracks.empty()) return form;
 
   const std::size_t room = kBytes / (6 * sizeof(float) * points.size());
   const Rows rows = choose_rows(instants, weights.tracks, std::clamp(room, kFewestRows, kMostRows));
