@@ -163,6 +163,10 @@ std::string title_of_host(const std::string& name) {
   return name;
 }
 
+std::string form_words(const BakeChoice& choice) {
+  return std::string(choice.form) + (choice.animations_only ? ", animations only" : "");
+}
+
 // Prints a row for each host and form whose deltas are fitted to the animations, or each other form.
 std::string plan_of_hosts(const GltfBake& bake, bool of_animations) {
   Table table;
@@ -178,7 +182,7 @@ std::string plan_of_hosts(const GltfBake& bake, bool of_animations) {
       if (choice.animations_only != of_animations) continue;
       for (const HostChange& host : choice.hosts) {
         const ShownErrors& errors = host.poses[0].after;
-        table.add_row({mesh_name(mesh), std::string(choice.form), title_of_host(host.host), four_decimals(errors.mean),
+        table.add_row({mesh_name(mesh), form_words(choice), title_of_host(host.host), four_decimals(errors.mean),
                        four_decimals(errors.most), four_decimals(errors.worst)});
         any = true;
       }
@@ -297,7 +301,7 @@ std::string plan_text(const GltfBake& bake, const BakeReport& report) {
   for (const BakedMesh& mesh : bake.meshes) {
     for (const BakeChoice& choice : mesh.choices) {
       const char* const word = choice.chosen ? "the smallest" : "";
-      table.add_row({mesh_name(mesh), std::string(choice.form), grouped(choice.targets), grouped(choice.bytes),
+      table.add_row({mesh_name(mesh), form_words(choice), grouped(choice.targets), grouped(choice.bytes),
                      four_decimals(choice.played.mean), four_decimals(choice.played.most),
                      four_decimals(choice.played.worst), choice.chosen && !choice.within ? "the nearest" : word});
     }

@@ -417,6 +417,10 @@ TEST_F(BakeCli, a_plan_lists_the_forms_and_writes_nothing) {
   EXPECT_EQ(plan.exit_code, 0) << plan.err;
   expect_words(plan.out, {"moving.glb: nothing is written", "as it is", "own deltas", "low rank", "the smallest"});
   EXPECT_EQ(Json::parse(json.out)["meshes"][0]["choices"][0]["form"], "as it is");
+  EXPECT_EQ(plan.out.find("animations only"), std::string::npos);
+  const ProcessResult alone = run("moving.glb --plan --for three --animations-only");
+  EXPECT_EQ(alone.exit_code, 0) << alone.err;
+  expect_words(alone.out, {"own deltas  ", "own deltas, animations only", "low rank, animations only"});
   EXPECT_EQ(folder_.entry_count(), entries);
 }
 
