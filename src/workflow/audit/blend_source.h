@@ -68,7 +68,17 @@ class BlendSource {
     std::vector<float> deltas;     // three for each output of a run
   };
 
+  // Weights and positions at both ends of a segment. Tracks are mostly straight in between, and so are the ways of
+  // vertices then, so that the deltas of many targets are added up for the ends alone.
+  struct SegmentEnds {
+    std::size_t segment = 0;
+    std::vector<double> start, end;  // weights
+    std::vector<Vec3d> from, to;
+  };
+
   [[nodiscard]] std::vector<double> weights(std::size_t segment, double t) const;
+  void place_ends(std::size_t segment);
+  [[nodiscard]] bool is_between_ends(double t) const;
   void place_base(std::span<Vec3d> positions) const;
   const std::vector<Delta>& moved(std::size_t k);
   [[nodiscard]] std::size_t number(const JudgedOutput& output) const;
@@ -86,6 +96,7 @@ class BlendSource {
   std::vector<std::optional<std::vector<Delta>>> moved_;  // of each target, once it was asked for
   std::vector<std::optional<TurnedRuns>> turned_;         // likewise
   std::vector<ShownTurn> turns_;                          // of outputs
+  std::optional<SegmentEnds> ends_;
   bool known_ = false;
   double t_ = 0;
   std::vector<double> now_, start_, end_;

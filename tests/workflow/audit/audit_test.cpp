@@ -312,6 +312,51 @@ TEST(Audit, animations_of_every_interpolation_have_the_errors_of_an_oracle) {
   }
 }
 
+// Where many targets are active, positions between two keys are found from those at both.
+TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
+  constexpr std::size_t kTargets = 12;
+  const ShadedMesh mesh = random_sheet(21, 4, kTargets, 0.1);
+  fixtures::Random random(21);
+  const std::vector<float> times = {0, 1, 1.5F, 4};
+  // At each key a tangent in, the weights, and a tangent out. At one key fewer targets are active than are many.
+  std::vector<float> cubic, weights;
+  for (std::size_t key = 0; key < times.size(); ++key) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t k = 0; k < kTargets; ++k) {
+        const auto value = static_cast<float>(row == 1 && key == 2 && k > 3 ? 0 : random.uniform(-1, 1));
+        cubic.push_back(value);
+        if (row == 1) weights.push_back(value);
+      }
+    }
+  }
+  GltfBuilder builder = mesh.file();
+  builder.add_track(builder.add_animation("linear"), 0, times, weights);
+  builder.add_track(builder.add_animation("step"), 0, times, weights, "STEP");
+  builder.add_track(builder.add_animation("cubic"), 0, times, cubic, "CUBICSPLINE");
+  const Audit result = audit_of(builder, {.samples = 6});
+  ASSERT_EQ(result.subjects.size(), kTargets + 3);
+  const auto at_key = [&](std::size_t key, std::size_t row, std::size_t k) {
+    return double{cubic[(3 * key + row) * kTargets + k]};
+  };
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::vector<Real> expected;
+    for (std::size_t s = 0; s + 1 < times.size(); ++s) {
+      for (int i = 0; i < 6; ++i) {
+        const double t = i / 5.0, td = times[s + 1] - times[s];
+        std::vector<double> w(kTargets);
+        for (std::size_t k = 0; k < kTargets; ++k) {
+          const double from = at_key(s, 1, k), to = at_key(s + 1, 1, k);
+          if (a == 0) w[k] = (1 - t) * from + t * to;
+          if (a == 1) w[k] = from;
+          if (a == 2) w[k] = hermite(t, from, at_key(s, 2, k), at_key(s + 1, 0, k), to, td);
+        }
+        for (std::size_t v = 0; v < mesh.vertices(); ++v) expected.push_back(mesh.error(v, w));
+      }
+    }
+    expect_same(result.subjects[kTargets + a].error, expected);
+  }
+}
+
 TEST(Audit, angle_weighting_judges_by_angles) {
   // Around vertex 0 a wide face and a narrow one, of which the target lifts the far corner.
   ShadedMesh mesh;
