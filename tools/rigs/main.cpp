@@ -172,10 +172,10 @@ std::string capture_part(const fs::path& data, const std::string& folder) {
   std::vector<Cells> curve;
   for (const std::size_t extras : kExtraTargets) curve.push_back(row_of_curve(face, extras));
   Page capture("rigs/capture.md.in", folder);
-  capture.table("curve",
-                {"extra targets", "bytes", "mean, 99.9 %, worst", "s", "bytes, `--animations-only`",
-                 "mean, 99.9 %, worst", "s"},
-                curve, 0);
+  capture.table(
+      "curve",
+      {"extra targets", "bytes", "mean, 99.9 %, worst", "s", "bytes, `--animations-only`", "mean, 99.9 %, worst", "s"},
+      curve, 0);
   capture.table("speed", {"file", "options", "extra targets", "before, s", "now, s", "now, s of processors"},
                 rows_of_speed(face), 0);
   return capture.markdown();
