@@ -2,9 +2,13 @@
 #ifndef CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 #define CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <iostream>
 #include <limits>
 #include <string>
 
@@ -98,6 +102,24 @@ struct FloatTileFaults {
     return off > 0 ? off / double{tile.magnitude[lane]} : 0;
   }
 };
+
+/// Elements that hardly move are kept as lines, or as one normal, and the error that a tile tells has that in it.
+/// look(seen, motion) looks at the tiles of a motion.
+template <class Look>
+void expect_lines_within_their_errors(const Motion& motion, const Look& look) {
+  constexpr std::uint64_t kSeed = 20261126;
+  fixtures::Random random(kSeed);
+  FloatTileFaults seen;
+  for (int step = 0; step < 24; ++step) {
+    look(seen, of_small_steps(motion, std::ldexp(1, -3 - step), random));
+    ASSERT_EQ(seen.fault, "") << "step " << step << ", seed " << kSeed;
+  }
+  std::cout << "  seed " << kSeed << ": " << seen.straight << " of " << seen.elements << " as lines, " << seen.bending
+            << " that bend; largest error of a line: " << seen.largest_share_of_line << " of its bound\n";
+  EXPECT_GT(seen.straight, seen.elements / 4);
+  EXPECT_GT(seen.bending, seen.elements / 10);
+  EXPECT_GT(seen.largest_share_of_line, 0.3);
+}
 
 }  // namespace chronormal::test
 

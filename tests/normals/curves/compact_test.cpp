@@ -226,7 +226,8 @@ TEST(CompactCurves, keep_the_tolerance_of_vertices_whatever_they_are_added_up_in
   }
 }
 
-// What hardly moves is kept as straight curves, which takes fewer bytes, where float32 cannot tell that they bend.
+// Vertices that hardly move are kept as straight curves, which take fewer bytes, where float32 cannot tell that they
+// bend.
 TEST(CompactCurves, keep_the_tolerance_of_vertices_that_hardly_move) {
   fixtures::Random random(20261126);
   std::cout << "  seed 20261126\n";

@@ -360,19 +360,9 @@ TEST(FloatFaceTiles, never_take_a_line_for_a_curve) {
   }
 }
 
-// What hardly moves is kept as a line, or as one normal, and the error that a tile tells has that in it.
 TEST(FloatFaceTiles, are_off_by_no_more_than_they_say_where_a_line_stands_for_a_curve) {
-  fixtures::Random random(20261126);
-  test::FloatTileFaults seen;
-  for (int step = 0; step < 24; ++step) {
-    look_at(seen, test::of_small_steps(fixtures::smooth_morph(20), std::ldexp(1, -3 - step), random));
-    ASSERT_EQ(seen.fault, "") << "step " << step;
-  }
-  std::cout << "  " << seen.straight << " of " << seen.elements << " as lines, " << seen.bending
-            << " that bend; largest error of a line: " << seen.largest_share_of_line << " of its bound\n";
-  EXPECT_GT(seen.straight, seen.elements / 4);
-  EXPECT_GT(seen.bending, seen.elements / 10);
-  EXPECT_GT(seen.largest_share_of_line, 0.3);
+  test::expect_lines_within_their_errors(
+      fixtures::smooth_morph(20), [](test::FloatTileFaults& seen, const Motion& motion) { look_at(seen, motion); });
 }
 
 }  // namespace
