@@ -77,7 +77,7 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
 
 // Where the end of one segment is the start of the next, it is placed once.
 void BlendSource::place_ends(std::size_t segment) {
-  if (!ends_) ends_.emplace();
+  if (!ends_) ends_ = SegmentEnds{};
   std::vector<double> start = weights(segment, 0), end = weights(segment, 1);
   const std::size_t count = part_.vertices().size();
   const bool goes_on = ends_->to.size() == count && ends_->end == start;
