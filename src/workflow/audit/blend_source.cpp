@@ -24,8 +24,9 @@ AuditPlace place_of(const GltfShading& shading, std::size_t vertex) {
   return {part.mesh, part.primitive, vertex - part.first_vertex, 0, 0};
 }
 
-BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights,
-                         Moment moment, MeshSkin* skin)
+BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule,
+                         const std::vector<bool>& involved, Weights weights, Moment moment, std::size_t samples,
+                         MeshSkin* skin)
     : shading_(shading),
       part_(part),
       rule_(rule),
@@ -33,7 +34,8 @@ BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, Aud
       moment_(std::move(moment)),
       skin_(skin),
       moved_(shading.set.targets.size()),
-      turned_(shading.set.targets.size()) {
+      samples_(samples),
+      sums_(shading, part.outputs(), involved) {
   std::vector<Vec3d> positions(part.vertices().size());
   place_base(positions);
   PartNormals normals;
@@ -54,6 +56,7 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   const bool turns = skin_ != nullptr && skin_->pose(moment_(segment, t), t == 1);
   const bool same = known_ && !turns && now == now_ && (rule_ == AuditRule::kGltf || start_ == end_);
   known_ = true;
+  segment_ = segment;
   t_ = t;
   if (same) return false;
   ++placed_;
@@ -107,10 +110,12 @@ bool BlendSource::is_between_ends(double t) const {
 
 void BlendSource::show() {
   if (rule_ == AuditRule::kGltf) {
-    add_up(now_, shown_now_);
+    if (sums_.find(now_).empty()) sums_.add_up(now_and_next());
+    shown_now_ = sums_.find(now_);
   } else if (rule_ != AuditRule::kFlat) {
-    add_up(start_, shown_start_);
-    add_up(end_, shown_end_);
+    if (sums_.find(start_).empty() || sums_.find(end_).empty()) sums_.add_up({start_, end_});
+    shown_start_ = sums_.find(start_);
+    shown_end_ = sums_.find(end_);
   }
   if (skin_ == nullptr) return;
   carriers_.resize(part_.outputs().size());
@@ -198,68 +203,14 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   return result;
 }
 
-// The deltas of the normals of a target, in runs of outputs. A run contains few zero deltas, and none at its ends.
-const BlendSource::TurnedRuns& BlendSource::turned(std::size_t k) {
-  if (turned_[k]) return *turned_[k];
-  constexpr std::size_t kMostZeros = 4;
-  TurnedRuns& result = turned_[k].emplace();
-  const std::span<const JudgedOutput> outputs = part_.outputs();
-  const std::vector<float>& all = shading_.normal_deltas[k];
-  if (all.empty()) return result;
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const Vec3f delta = vector_at(all, outputs[i].vertex);
-    if (delta == Vec3f{}) continue;
-    std::size_t from = i;
-    if (!result.runs.empty() && i - result.runs.back().end() <= kMostZeros) {
-      from = result.runs.back().end();
-    } else {
-      result.runs.push_back({i, 0});
-    }
-    for (; from <= i; ++from) {
-      const Vec3f d = vector_at(all, outputs[from].vertex);
-      result.deltas.insert(result.deltas.end(), {d.x, d.y, d.z});
-    }
-    result.runs.back().count = i + 1 - result.runs.back().first;
+// The weights of the moment that was placed, and of those of its segment that follow.
+std::vector<std::vector<double>> BlendSource::now_and_next() const {
+  std::vector<std::vector<double>> result = {now_};
+  for (std::size_t i = 0; i < samples_ && result.size() < StoredSums::kAtOnce; ++i) {
+    const double t = time_of_sample(i, samples_);
+    if (t > t_) result.push_back(weights(segment_, t));
   }
   return result;
-}
-
-// N + sum w D in float32, target after target, as hosts add. A delta of zero changes no sum and is left out, even where
-// its weight is not finite: such a weight never makes a sum finite, whatever the delta is.
-void BlendSource::add_up(const std::vector<double>& weights, std::vector<float>& sums) {
-  const std::span<const JudgedOutput> outputs = part_.outputs();
-  sums.resize(3 * outputs.size());
-  std::vector<std::size_t> active;
-  for (std::size_t k = 0; k < weights.size(); ++k)
-    if (weights[k] != 0 && !shading_.normal_deltas[k].empty()) active.push_back(k);
-  for (const std::size_t k : active) (void)turned(k);
-  parallel_blocks(outputs.size(), kBlock, [&](IndexRange range) {
-    for (std::size_t i = range.first; i < range.end(); ++i) {
-      const Vec3f normal = vector_at(shading_.normals, outputs[i].vertex);
-      sums[3 * i] = normal.x;
-      sums[3 * i + 1] = normal.y;
-      sums[3 * i + 2] = normal.z;
-    }
-    for (const std::size_t k : active) {
-      const TurnedRuns& turns = *turned_[k];
-      const auto weight = static_cast<float>(weights[k]);
-      if (!std::isfinite(weight)) {
-        for (std::size_t i = 3 * range.first; i < 3 * range.end(); ++i) sums[i] = weight - weight;
-        continue;
-      }
-      std::size_t before = 0;  // the number of deltas of the runs before
-      for (const IndexRange& run : turns.runs) {
-        if (run.first >= range.end()) break;
-        if (run.end() > range.first) {
-          const std::size_t first = std::max(run.first, range.first), end = std::min(run.end(), range.end());
-          const float* const from = turns.deltas.data() + 3 * (before + first - run.first);
-          float* const to = sums.data() + 3 * first;
-          for (std::size_t n = 0; n < 3 * (end - first); ++n) to[n] += weight * from[n];
-        }
-        before += run.count;
-      }
-    }
-  });
 }
 
 std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::vector<bool>& involved,

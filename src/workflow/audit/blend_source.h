@@ -12,12 +12,13 @@
 
 #include "chronormal/workflow/audit.h"
 #include "workflow/audit/judged_part.h"
+#include "workflow/audit/stored_sums.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/mesh_skin.h"
 
 namespace chronormal::inline internal {
 
-[[nodiscard]] inline Vec3f vector_at(const std::vector<float>& values, std::size_t i) {
+[[nodiscard]] inline Vec3f vector_at(std::span<const float> values, std::size_t i) {
   const float* v = values.data() + 3 * i;
   return {v[0], v[1], v[2]};
 }
@@ -35,9 +36,10 @@ class BlendSource {
   static constexpr bool kNeedsEnds = false;
 
   /// shading and part must outlive this, and so must the skin through which the mesh is seen, if there is one; where its
-  /// joints move, moment says when. Outputs are those of the part.
-  BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, Weights weights, Moment moment,
-              MeshSkin* skin = nullptr);
+  /// joints move, moment says when. Outputs are those of the part. involved has one entry for each target: others have
+  /// no weight at any time. A segment is placed at `samples` moments, one after the other.
+  BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, const std::vector<bool>& involved,
+              Weights weights, Moment moment, std::size_t samples, MeshSkin* skin = nullptr);
 
   /// Does nothing: all data are in memory.
   [[nodiscard]] static Status enter(std::size_t /*segment*/) { return Success{}; }
@@ -63,11 +65,6 @@ class BlendSource {
 
  private:
   using Delta = std::pair<std::uint32_t, Vec3f>;
-  struct TurnedRuns {
-    std::vector<IndexRange> runs;  // of outputs, ascending
-    std::vector<float> deltas;     // three for each output of a run
-  };
-
   // Weights and positions at both ends of a segment. Tracks are mostly straight in between, and so are the ways of
   // vertices then, so that the deltas of many targets are added up for the ends alone.
   struct SegmentEnds {
@@ -82,8 +79,7 @@ class BlendSource {
   void place_base(std::span<Vec3d> positions) const;
   const std::vector<Delta>& moved(std::size_t k);
   [[nodiscard]] std::size_t number(const JudgedOutput& output) const;
-  const TurnedRuns& turned(std::size_t k);
-  void add_up(const std::vector<double>& weights, std::vector<float>& sums);
+  [[nodiscard]] std::vector<std::vector<double>> now_and_next() const;
 
   const GltfShading& shading_;
   const JudgedPart& part_;
@@ -94,13 +90,14 @@ class BlendSource {
   std::vector<AffineTransform> carriers_;  // of outputs, where there is a skin
   std::size_t placed_ = 0;
   std::vector<std::optional<std::vector<Delta>>> moved_;  // of each target, once it was asked for
-  std::vector<std::optional<TurnedRuns>> turned_;         // likewise
   std::vector<ShownTurn> turns_;                          // of outputs
   std::optional<SegmentEnds> ends_;
   bool known_ = false;
+  std::size_t samples_, segment_ = 0;
   double t_ = 0;
   std::vector<double> now_, start_, end_;
-  std::vector<float> shown_now_, shown_start_, shown_end_;  // (outputs, 3)
+  StoredSums sums_;
+  std::span<const float> shown_now_, shown_start_, shown_end_;  // (outputs, 3)
 };
 
 /// The vertices whose normal some targets move: by a face around them, or by a stored delta. Of the rule flat, their

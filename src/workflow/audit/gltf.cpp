@@ -112,7 +112,7 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
     for (std::size_t s = 0; s < subject.segments; ++s) mesh.progress();
     return std::nullopt;
   }
-  BlendSource source(mesh.shading, part, mesh.rule, weights.specified, moment, skin);
+  BlendSource source(mesh.shading, part, mesh.rule, involved, weights.specified, moment, subject.samples, skin);
   HostErrors hosts(mesh.shading, part, mesh.options.hosts, weights.played, involved, skin != nullptr);
   SkinningErrors skinning;
   const auto judge_hosts = [&](const MeasuredSample& sample) {

@@ -28,7 +28,10 @@ bool moves_vertices(const GltfShading& shading, std::size_t k, const GltfPart& p
 std::optional<AuditFinding> stale_tangents(const GltfShading& shading, AuditRule rule, std::size_t k,
                                            const JudgedPart& part, const Weights& weights) {
   if (shading.tangents.empty() || shading.set.targets[k].vertices.empty()) return std::nullopt;
-  BlendSource source(shading, part, rule, weights, [](std::size_t, double t) { return t; });
+  // No normals are shown, so that no target needs to be involved.
+  BlendSource source(
+      shading, part, rule, std::vector<bool>(shading.set.targets.size()), weights,
+      [](std::size_t, double t) { return t; }, 0);
   std::vector<Vec3d> positions(part.vertices().size());
   PartNormals normals;
   source.place(0, 1, positions);

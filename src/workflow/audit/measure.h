@@ -56,6 +56,11 @@ inline void count_in_bins(double degrees, MotionError& errors) noexcept {
 /// The samples of a segment.
 [[nodiscard]] std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments) noexcept;
 
+/// Where the i-th sample of a segment is in it.
+[[nodiscard]] inline double time_of_sample(std::size_t i, std::size_t samples) noexcept {
+  return samples > 1 ? static_cast<double>(i) / static_cast<double>(samples - 1) : 0;
+}
+
 [[nodiscard]] Status check_samples(const AuditOptions& options);
 
 /// The offset of stored normals from the geometry by the weighting that was asked for, or else the detected one.
@@ -300,7 +305,7 @@ template <class Source, class EachSample>
       source.forget();
     }
     for (std::size_t i = 0; i < subject.samples; ++i) {
-      const double t = subject.samples > 1 ? static_cast<double>(i) / static_cast<double>(subject.samples - 1) : 0;
+      const double t = time_of_sample(i, subject.samples);
       if (placed.place(source, s, t)) {
         source.show();
         error = error_at(source, placed, is_flat, largest, s, t, shown, each);

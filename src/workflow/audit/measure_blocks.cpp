@@ -141,10 +141,6 @@ Vec3d shown_at(const Scratch& scratch, std::size_t e, double weight) {
   return rounded_to_float(unit(lerp(kept(scratch.from), kept(scratch.to), weight)));
 }
 
-double time_of_sample(std::size_t i, std::size_t samples) {
-  return samples > 1 ? static_cast<double>(i) / static_cast<double>(samples - 1) : 0;
-}
-
 // Writes the errors of a block at each sample of a segment.
 void measure_block(const Segment& segment, std::size_t number, const Block& block, std::span<const double> largest,
                    const JudgedPart& part, AuditRule rule, const FindPlace& at, Scratch& scratch,

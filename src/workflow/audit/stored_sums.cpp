@@ -1,0 +1,99 @@
+// Keeps deltas as dense rows of groups of outputs, and multiplies them by the weights of several moments at a time.
+#include "workflow/audit/stored_sums.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "analysis/fits/kernels/products.h"
+#include "core/blocks.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kGroupsPerTask = 16;
+
+}  // namespace
+
+StoredSums::StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<bool> involved)
+    : shading_(shading),
+      outputs_(outputs),
+      involved_(std::move(involved)),
+      stride_(3 * kGroup * block_count(outputs.size(), kGroup)) {}
+
+void StoredSums::make_groups() {
+  groups_.resize(block_count(outputs_.size(), kGroup));
+  parallel_each(groups_.size(), kGroupsPerTask, [&](std::size_t g) {
+    Group& group = groups_[g];
+    const std::size_t first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);
+    for (std::size_t k = 0; k < involved_.size(); ++k) {
+      const std::vector<float>& all = shading_.normal_deltas[k];
+      if (!involved_[k] || all.empty()) continue;
+      std::array<float, 3 * kGroup> row{};
+      for (std::size_t i = 0; i < count; ++i)
+        std::copy_n(all.data() + 3 * std::size_t{outputs_[first + i].vertex}, 3, row.data() + 3 * i);
+      if (std::all_of(row.begin(), row.end(), [](float d) { return d == 0; })) continue;
+      group.targets.push_back(static_cast<std::uint32_t>(k));
+      group.deltas.insert(group.deltas.end(), row.begin(), row.end());
+    }
+  });
+}
+
+void StoredSums::add_up(std::vector<std::vector<double>> sets) {
+  if (groups_.empty()) make_groups();
+  sets_ = std::move(sets);
+  sums_.resize(sets_.size() * stride_);
+  std::vector<float> by_target(involved_.size() * sets_.size());
+  std::vector<bool> is_finite(sets_.size(), true);
+  for (std::size_t k = 0; k < involved_.size(); ++k) {
+    if (!involved_[k] || shading_.normal_deltas[k].empty()) continue;
+    for (std::size_t s = 0; s < sets_.size(); ++s) {
+      const auto weight = static_cast<float>(sets_[s][k]);
+      if (std::isfinite(weight))
+        by_target[k * sets_.size() + s] = weight;
+      else
+        is_finite[s] = false;
+    }
+  }
+  parallel_each(groups_.size(), kGroupsPerTask, [&](std::size_t g) { add_group(g, by_target); });
+  for (std::size_t s = 0; s < sets_.size(); ++s)
+    if (!is_finite[s]) std::fill_n(sums_.data() + s * stride_, stride_, std::numeric_limits<float>::quiet_NaN());
+}
+
+// by_target are the weights as (targets, sets).
+void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
+  const Group& group = groups_[g];
+  const std::size_t sets = sets_.size(), first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);
+  float* const sums = sums_.data() + 3 * first;
+  for (std::size_t i = 0; i < count; ++i)
+    std::copy_n(shading_.normals.data() + 3 * std::size_t{outputs_[first + i].vertex}, 3, sums + 3 * i);
+  for (std::size_t s = 1; s < sets; ++s) std::copy_n(sums, 3 * count, sums + s * stride_);
+
+  const auto is_active = [&](std::uint32_t k) {
+    const std::span<const float> weights = by_target.subspan(k * sets, sets);
+    return std::any_of(weights.begin(), weights.end(), [](float weight) { return weight != 0; });
+  };
+  std::vector<float> weights;  // of a run of targets, (targets, sets)
+  for (std::size_t row = 0; row < group.targets.size();) {
+    weights.clear();
+    std::size_t end = row;
+    for (; end < group.targets.size() && is_active(group.targets[end]); ++end) {
+      const std::span<const float> of_target = by_target.subspan(group.targets[end] * sets, sets);
+      weights.insert(weights.end(), of_target.begin(), of_target.end());
+    }
+    const float* const deltas = group.deltas.data() + row * 3 * kGroup;
+    add_products({weights.data(), end - row, sets, sets, 1}, {deltas, end - row, 3 * kGroup, 3 * kGroup, 1}, sums,
+                 stride_);
+    row = end + 1;
+  }
+}
+
+std::span<const float> StoredSums::find(const std::vector<double>& weights) const noexcept {
+  const auto found = std::find(sets_.begin(), sets_.end(), weights);
+  if (found == sets_.end()) return {};
+  return std::span(sums_).subspan(static_cast<std::size_t>(found - sets_.begin()) * stride_, 3 * outputs_.size());
+}
+
+}  // namespace chronormal::inline internal

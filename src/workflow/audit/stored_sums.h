@@ -1,0 +1,55 @@
+/// Stored normals of some outputs and their deltas, added up as the specification says. Private to workflow.
+///
+/// The deltas of many targets fill more memory than a cache has, so that a sum at one set of weights takes as long as it
+/// takes to read them all. Sums at several sets are therefore made in one pass.
+#ifndef CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
+#define CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "workflow/audit/judged_part.h"
+#include "workflow/shading/gltf_shading.h"
+
+namespace chronormal::inline internal {
+
+class StoredSums {
+ public:
+  static constexpr std::size_t kAtOnce = 4;  ///< so many sets of weights take hardly longer than one
+
+  /// shading and outputs must outlive this. involved has one entry for each target: others have no weight at any time.
+  StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<bool> involved);
+
+  /// Computes N + sum w D of every output at each set of weights, in float32, target after target, as hosts add. What
+  /// was known before is forgotten. A delta of zero changes no sum, even where its weight is not finite: such a weight
+  /// never makes a sum finite, whatever the delta is. On all threads.
+  void add_up(std::vector<std::vector<double>> sets);
+
+  /// The sums at one of these sets, three for each output; nothing where it is not among them.
+  [[nodiscard]] std::span<const float> find(const std::vector<double>& weights) const noexcept;
+
+ private:
+  // Some neighbouring outputs, and a row of deltas for each target that turns any of them.
+  struct Group {
+    std::vector<std::uint32_t> targets;  // ascending
+    std::vector<float> deltas;           // (targets, 3 kGroup)
+  };
+  static constexpr std::size_t kGroup = 64;
+
+  void make_groups();
+  void add_group(std::size_t g, std::span<const float> by_target);
+
+  const GltfShading& shading_;
+  std::span<const JudgedOutput> outputs_;
+  std::vector<bool> involved_;
+  std::vector<Group> groups_;  // empty until something is added up
+  std::vector<std::vector<double>> sets_;
+  std::size_t stride_;       // of the sums of a set: whole groups
+  std::vector<float> sums_;  // (sets, stride)
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
