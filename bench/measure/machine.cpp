@@ -103,9 +103,13 @@ std::vector<std::pair<std::string, std::string>> describe_machine() {
 }
 
 std::string chosen_prefetch() {
-  const auto kibibytes = [](const PrefetchRule& rule) { return rule.best() / 1024; };
-  return fmt::format("{} KiB ahead in the shared cache, {} KiB in memory", kibibytes(prefetch_in_shared_cache()),
-                     kibibytes(prefetch_in_memory()));
+  const auto distance = [](WorkingSet set) {
+    const std::size_t bytes = prefetch_of_curves(set).best();
+    return bytes > 0 ? fmt::format("{} KiB ahead", bytes / 1024) : std::string("none");
+  };
+  return fmt::format("{} up to 1 MiB, {} up to 8 MiB, {} in the shared cache, {} in memory",
+                     distance(WorkingSet::kSmall), distance(WorkingSet::kMedium), distance(WorkingSet::kSharedCache),
+                     distance(WorkingSet::kMemory));
 }
 
 void restart_with_huge_pages(char** argv) {

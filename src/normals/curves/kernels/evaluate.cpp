@@ -2,10 +2,6 @@
 #include "normals/curves/kernels/evaluate.h"
 
 #include <algorithm>
-#include <chrono>
-#include <optional>
-
-#include "normals/curves/kernels/prefetch.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/evaluate.cpp"
@@ -197,7 +193,7 @@ struct Quadratic11 {
 template <bool kPastCaches>
 struct Accesses {
   static constexpr bool kStream = kPastCaches;
-  std::size_t ahead;  // how many bytes ahead a kernel prefetches blocks
+  std::size_t ahead;  // how many bytes ahead a kernel prefetches blocks; 0: it does not
 };
 
 template <bool kPastCaches>
@@ -275,7 +271,8 @@ HWY_NOINLINE void WholeBlocks(const BlockSpan& span, const CurveWeights& weights
   const std::size_t block_count = span.elements / kTile;
   for (std::size_t b = 0; b < block_count; ++b) {
     const std::byte* const block = blocks + b * kTile * Kind::kBytes;
-    for (std::size_t line = 0; line < kTile * Kind::kBytes; line += kCacheLine) hwy::Prefetch(block + ahead + line);
+    if (ahead > 0)
+      for (std::size_t line = 0; line < kTile * Kind::kBytes; line += kCacheLine) hwy::Prefetch(block + ahead + line);
     for (std::size_t lane = 0; lane < kTile; lane += kLanes)
       to.template Put<Kind>(kind.direction(block, lane), b * kTile + lane);
   }
@@ -304,9 +301,9 @@ void ByKind(const BlockSpan& span, const CurveWeights& w, To to) {
 }
 
 template <template <bool> class To, class... Pointer>
-void ByAccess(const BlockSpan& span, const CurveWeights& w, MemoryAccess access, Pointer... to) {
-  if (access.stream) return ByKind(span, w, To<true>{{access.ahead}, to...});
-  return ByKind(span, w, To<false>{{access.ahead}, to...});
+void ByAccess(const BlockSpan& span, const CurveWeights& w, bool stream, std::size_t ahead, Pointer... to) {
+  if (stream) return ByKind(span, w, To<true>{{ahead}, to...});
+  return ByKind(span, w, To<false>{{ahead}, to...});
 }
 
 // The elements of the last block, if it is filled in part: `part` says how many.
@@ -320,41 +317,41 @@ Tail TailOf(const BlockSpan& span) {
   return {{span.blocks + whole * kTile * bytes_of(span.kind), span.kind, kTile}, whole * kTile, span.elements % kTile};
 }
 
-void EvaluatePacked(const BlockSpan& span, const CurveWeights& w, PackedResult result) {
+void EvaluatePacked(const BlockSpan& span, const CurveWeights& w, PackedResult result, std::size_t ahead) {
   const Tail tail = TailOf(span);
-  ByAccess<ToPacked>(span, w, result.access, result.xyz);
+  ByAccess<ToPacked>(span, w, result.access.stream, ahead, result.xyz);
   if (tail.part == 0) return;
   alignas(64) float last[3 * kTile];
-  ByKind(tail.block, w, ToPacked<false>{{kNearAhead}, last});
+  ByKind(tail.block, w, ToPacked<false>{{0}, last});
   std::copy_n(last, 3 * tail.part, result.xyz + 3 * tail.first);
 }
 
-void EvaluatePlanes(const BlockSpan& span, const CurveWeights& w, PlanesResult result) {
+void EvaluatePlanes(const BlockSpan& span, const CurveWeights& w, PlanesResult result, std::size_t ahead) {
   const Tail tail = TailOf(span);
-  ByAccess<ToPlanes>(span, w, result.access, result.x, result.y, result.z);
+  ByAccess<ToPlanes>(span, w, result.access.stream, ahead, result.x, result.y, result.z);
   if (tail.part == 0) return;
   alignas(64) float last[3 * kTile];
-  ByKind(tail.block, w, ToPlanes<false>{{kNearAhead}, last, last + kTile, last + 2 * kTile});
+  ByKind(tail.block, w, ToPlanes<false>{{0}, last, last + kTile, last + 2 * kTile});
   std::copy_n(last, tail.part, result.x + tail.first);
   std::copy_n(last + kTile, tail.part, result.y + tail.first);
   std::copy_n(last + 2 * kTile, tail.part, result.z + tail.first);
 }
 
-void EvaluateOctahedral(const BlockSpan& span, const CurveWeights& w, OctahedralResult result) {
+void EvaluateOctahedral(const BlockSpan& span, const CurveWeights& w, OctahedralResult result, std::size_t ahead) {
   const Tail tail = TailOf(span);
-  ByAccess<ToOctahedral>(span, w, result.access, result.bits);
+  ByAccess<ToOctahedral>(span, w, result.access.stream, ahead, result.bits);
   if (tail.part == 0) return;
   alignas(64) std::uint32_t last[kTile];
-  ByKind(tail.block, w, ToOctahedral<false>{{kNearAhead}, last});
+  ByKind(tail.block, w, ToOctahedral<false>{{0}, last});
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 
-void EvaluateRgb10A2(const BlockSpan& span, const CurveWeights& w, Rgb10A2Result result) {
+void EvaluateRgb10A2(const BlockSpan& span, const CurveWeights& w, Rgb10A2Result result, std::size_t ahead) {
   const Tail tail = TailOf(span);
-  ByAccess<ToRgb10A2>(span, w, result.access, result.bits);
+  ByAccess<ToRgb10A2>(span, w, result.access.stream, ahead, result.bits);
   if (tail.part == 0) return;
   alignas(64) std::uint32_t last[kTile];
-  ByKind(tail.block, w, ToRgb10A2<false>{{kNearAhead}, last});
+  ByKind(tail.block, w, ToRgb10A2<false>{{0}, last});
   std::copy_n(last, tail.part, result.bits + tail.first);
 }
 
@@ -371,63 +368,39 @@ HWY_EXPORT(EvaluateRgb10A2);
 
 namespace {
 
-PackedResult behind(const PackedResult& result, std::size_t count) { return {result.xyz + 3 * count, result.access}; }
-PlanesResult behind(const PlanesResult& result, std::size_t count) {
-  return {result.x + count, result.y + count, result.z + count, result.access};
-}
-OctahedralResult behind(const OctahedralResult& result, std::size_t count) {
-  return {result.bits + count, result.access};
-}
-Rgb10A2Result behind(const Rgb10A2Result& result, std::size_t count) { return {result.bits + count, result.access}; }
-
-// Calls evaluate(span, result) with the distance at which to prefetch blocks: once for all of them, or first for some
-// pieces with which the distances are tried.
+// Calls evaluate(part of the span, where its results go, how far ahead to prefetch) for all of it.
 template <class Result, class Evaluate>
-void at_distance(BlockSpan span, Result result, const Evaluate& evaluate) {
-  using Clock = std::chrono::steady_clock;
-  if (result.access.working_set == WorkingSet::kSmall) return evaluate(span, result);
-  PrefetchRule& rule = result.access.working_set == WorkingSet::kMemory ? prefetch_in_memory()  //
-                                                                        : prefetch_in_shared_cache();
-  const std::size_t bytes = bytes_of(span.kind), part = PrefetchRule::kTrialBytes / bytes / kTile * kTile;
-  for (std::size_t i = 0; i < PrefetchRule::kDistances.size() && span.elements >= part; ++i) {
-    const std::optional<std::size_t> trial = rule.next();
-    if (!trial) break;
-    result.access.ahead = PrefetchRule::kDistances[*trial];
-    const Clock::time_point start = Clock::now();
-    evaluate({span.blocks, span.kind, part}, result);
-    const std::chrono::duration<float, std::nano> taken = Clock::now() - start;
-    rule.take(*trial, std::max(taken.count(), 1.0f) / static_cast<float>(part * bytes));
-    span = {span.blocks + part * bytes, span.kind, span.elements - part};
-    result = behind(result, part);
-  }
-  if (span.elements == 0) return;
-  result.access.ahead = rule.best();
-  evaluate(span, result);
+void at_best_distance(const BlockSpan& span, const Result& result, const Evaluate& evaluate) {
+  const std::size_t bytes = bytes_of(span.kind);
+  prefetch_of_curves(result.access.working_set)
+      .over(span.elements, bytes, [&](std::size_t first, std::size_t count, std::size_t ahead) {
+        evaluate(BlockSpan{span.blocks + first * bytes, span.kind, count}, behind(result, first), ahead);
+      });
 }
 
 }  // namespace
 
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PackedResult result) noexcept {
-  at_distance(span, result, [&weights](const BlockSpan& some, const PackedResult& to) {
-    HWY_DYNAMIC_DISPATCH(EvaluatePacked)(some, weights, to);
+  at_best_distance(span, result, [&weights](const BlockSpan& some, const PackedResult& to, std::size_t ahead) {
+    HWY_DYNAMIC_DISPATCH(EvaluatePacked)(some, weights, to, ahead);
   });
 }
 
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PlanesResult result) noexcept {
-  at_distance(span, result, [&weights](const BlockSpan& some, const PlanesResult& to) {
-    HWY_DYNAMIC_DISPATCH(EvaluatePlanes)(some, weights, to);
+  at_best_distance(span, result, [&weights](const BlockSpan& some, const PlanesResult& to, std::size_t ahead) {
+    HWY_DYNAMIC_DISPATCH(EvaluatePlanes)(some, weights, to, ahead);
   });
 }
 
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, OctahedralResult result) noexcept {
-  at_distance(span, result, [&weights](const BlockSpan& some, const OctahedralResult& to) {
-    HWY_DYNAMIC_DISPATCH(EvaluateOctahedral)(some, weights, to);
+  at_best_distance(span, result, [&weights](const BlockSpan& some, const OctahedralResult& to, std::size_t ahead) {
+    HWY_DYNAMIC_DISPATCH(EvaluateOctahedral)(some, weights, to, ahead);
   });
 }
 
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2Result result) noexcept {
-  at_distance(span, result, [&weights](const BlockSpan& some, const Rgb10A2Result& to) {
-    HWY_DYNAMIC_DISPATCH(EvaluateRgb10A2)(some, weights, to);
+  at_best_distance(span, result, [&weights](const BlockSpan& some, const Rgb10A2Result& to, std::size_t ahead) {
+    HWY_DYNAMIC_DISPATCH(EvaluateRgb10A2)(some, weights, to, ahead);
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "normals/curves/kernels/curve_blocks.h"
+#include "normals/curves/kernels/prefetch.h"
 
 namespace chronormal::inline internal {
 
@@ -17,28 +18,21 @@ struct BlockSpan {
   std::size_t elements = 0;
 };
 
-/// Where all fits that a pass reads and writes; small: 8 MiB.
-enum class WorkingSet { kSmall, kSharedCache, kMemory };
-
-/// How many bytes ahead a kernel prefetches blocks where all of them are in a near cache; elsewhere PrefetchRule
-/// decides (prefetch.h).
-inline constexpr std::size_t kNearAhead = 2048;
-
-/// How a kernel goes about the memory: by its working set it asks for blocks earlier or later, and with `stream`
-/// results go past the caches, for which all their arrays must be aligned to 64 bytes.
+/// How a kernel goes about the memory: PrefetchRule decides by its working set how early it asks for blocks, and with
+/// `stream` results go past the caches, for which all their arrays must be aligned to 64 bytes.
 struct MemoryAccess {
   WorkingSet working_set = WorkingSet::kSmall;
   bool stream = false;
-  std::size_t ahead = kNearAhead;
 };
 
 /// For a pass over so many bytes of blocks that writes so many bytes, if its results are aligned.
 constexpr MemoryAccess access_of_pass(std::size_t read, std::size_t written) noexcept {
-  constexpr std::size_t kLargestSmall = std::size_t{8} << 20, kLargestShared = std::size_t{40} << 20;
+  constexpr std::size_t kMiB = std::size_t{1} << 20;
   const std::size_t all = read + written;
-  const WorkingSet set = all <= kLargestSmall     ? WorkingSet::kSmall
-                         : read <= kLargestShared ? WorkingSet::kSharedCache
-                                                  : WorkingSet::kMemory;
+  const WorkingSet set = all <= kMiB         ? WorkingSet::kSmall
+                         : all <= 8 * kMiB   ? WorkingSet::kMedium
+                         : read <= 40 * kMiB ? WorkingSet::kSharedCache
+                                             : WorkingSet::kMemory;
   return {set, all > kStreamFrom};
 }
 
@@ -59,6 +53,20 @@ struct Rgb10A2Result {
   std::uint32_t* bits;
   MemoryAccess access = {};
 };
+
+/// Where those of later elements go.
+inline PackedResult behind(const PackedResult& result, std::size_t count) {
+  return {result.xyz + 3 * count, result.access};
+}
+inline PlanesResult behind(const PlanesResult& result, std::size_t count) {
+  return {result.x + count, result.y + count, result.z + count, result.access};
+}
+inline OctahedralResult behind(const OctahedralResult& result, std::size_t count) {
+  return {result.bits + count, result.access};
+}
+inline Rgb10A2Result behind(const Rgb10A2Result& result, std::size_t count) {
+  return {result.bits + count, result.access};
+}
 
 /// Writes the unit normals of all elements of a span, at the t of the weights.
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PackedResult result) noexcept;

@@ -1,45 +1,63 @@
-// Takes the times of trials, and keeps the shortest one for each distance.
+// Takes the times of trials, and finds the distance of the shortest median.
 #include "normals/curves/kernels/prefetch.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace chronormal::inline internal {
 
-std::size_t PrefetchRule::best() const noexcept {
+std::optional<std::size_t> PrefetchRule::next() noexcept {
+  const std::size_t all = kTrials * distances_;
+  // Several threads may get as far as the second line at once, each with a number of its own; later ones do not count on.
+  if (trials_.load(std::memory_order_relaxed) >= all) return std::nullopt;
+  const std::size_t trial = trials_.fetch_add(1, std::memory_order_relaxed);
+  if (trial >= all) return std::nullopt;
+  return trial % distances_;
+}
+
+// The median neither cares for trials that the system interrupted, or that found cold caches, nor for a lucky one.
+void PrefetchRule::take(std::size_t distance, float nanoseconds_per_byte) noexcept {
+  assert(distance < kDistances.size() && nanoseconds_per_byte > 0);
+  const std::size_t trial = counts_[distance].fetch_add(1, std::memory_order_relaxed);
+  times_[distance][trial % kTrials].store(nanoseconds_per_byte, std::memory_order_relaxed);
   std::size_t best = 0;
   float least = 0;
   for (std::size_t i = 0; i < kDistances.size(); ++i) {
-    const float time = least_[i].load(std::memory_order_relaxed);
-    if (time > 0 && (least == 0 || time < least)) best = i, least = time;
+    std::array<float, kTrials> times;
+    std::size_t count = 0;
+    for (const std::atomic<float>& time : times_[i]) {
+      times[count] = time.load(std::memory_order_relaxed);
+      if (times[count] > 0) ++count;
+    }
+    if (count == 0) continue;
+    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(times.begin(), middle, times.begin() + static_cast<std::ptrdiff_t>(count));
+    if (least == 0 || *middle < least) best = i, least = *middle;
   }
-  return kDistances[best];
+  best_.store(kDistances[best], std::memory_order_relaxed);
 }
 
-std::optional<std::size_t> PrefetchRule::next() noexcept {
-  constexpr std::size_t kAll = kTrials * kDistances.size();
-  // Several threads may get as far as the second line at once, each with a number of its own; later ones do not count on.
-  if (trials_.load(std::memory_order_relaxed) >= kAll) return std::nullopt;
-  const std::size_t trial = trials_.fetch_add(1, std::memory_order_relaxed);
-  if (trial >= kAll) return std::nullopt;
-  return trial % kDistances.size();
+namespace {
+
+class Rules {
+ public:
+  PrefetchRule& operator[](WorkingSet set) noexcept { return rules_[static_cast<std::size_t>(set)]; }
+
+ private:
+  // In caches that are near, a trial may meet curves that something else has pushed out, and would then ask for too much.
+  std::array<PrefetchRule, kWorkingSets> rules_ = {PrefetchRule(1), PrefetchRule(2), PrefetchRule(), PrefetchRule()};
+};
+
+}  // namespace
+
+PrefetchRule& prefetch_of_curves(WorkingSet set) noexcept {
+  static Rules rules;
+  return rules[set];
 }
 
-void PrefetchRule::take(std::size_t distance, float nanoseconds_per_byte) noexcept {
-  assert(distance < kDistances.size() && nanoseconds_per_byte > 0);
-  float before = least_[distance].load(std::memory_order_relaxed);
-  while ((before == 0 || nanoseconds_per_byte < before) &&
-         !least_[distance].compare_exchange_weak(before, nanoseconds_per_byte, std::memory_order_relaxed)) {
-  }
-}
-
-PrefetchRule& prefetch_in_shared_cache() noexcept {
-  static PrefetchRule rule;
-  return rule;
-}
-
-PrefetchRule& prefetch_in_memory() noexcept {
-  static PrefetchRule rule;
-  return rule;
+PrefetchRule& prefetch_of_paths(WorkingSet set) noexcept {
+  static Rules rules;
+  return rules[set];
 }
 
 }  // namespace chronormal::inline internal

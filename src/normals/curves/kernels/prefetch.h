@@ -1,41 +1,80 @@
-/// Finds out, on the machine where it runs, how far ahead an evaluation should prefetch its curves.
+/// Finds out, on the machine where it runs, how far ahead an evaluation should prefetch its curves, or whether at all.
 ///
-/// Cores differ: one works best when it prefetches 8 KiB or more ahead, another 2 KiB, and the wrong distance costs up
-/// to a third of the time. So the first passes over a large working set try several distances in turn, with 128 KiB of
-/// curves each time. From then on, all threads use the distance of the shortest trial. Results do not depend on it.
+/// Cores differ: one works best when it prefetches 8 KiB or more ahead, another 2 KiB, and a third finds all by itself
+/// and loses a third of its speed to prefetches that it did not need. So the first passes over a working set try
+/// several distances in turn, with 128 KiB of curves each time. From then on, all threads use the distance that was
+/// fastest in the median. Results do not depend on it.
 ///
-///     a span   [2 KiB][4 KiB][8 KiB][16 KiB] the rest at the best so far    until each has had its trials
+///     a span   [2 KiB][none][4 KiB][8 KiB][16 KiB] the rest at the best so far    until each has had its trials
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_PREFETCH_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_PREFETCH_H_
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <optional>
 
+#include "normals/curves/kernels/curve_blocks.h"
+
 namespace chronormal::inline internal {
+
+/// Where all fits that a pass reads and writes; small: 1 MiB, medium: 8 MiB.
+enum class WorkingSet { kSmall, kMedium, kSharedCache, kMemory };
+inline constexpr std::size_t kWorkingSets = 4;
 
 class PrefetchRule {
  public:
-  static constexpr std::array<std::size_t, 4> kDistances = {2048, 4096, 8192, 16384};
-  static constexpr std::size_t kTrials = 16;                          // for each distance
-  static constexpr std::size_t kTrialBytes = std::size_t{128} << 10;  // of curves
+  static constexpr std::array<std::size_t, 5> kDistances = {2048, 0, 4096, 8192, 16384};  // bytes; 0: no prefetch
+  static constexpr std::size_t kTrials = 16;                                              // for each distance
+  static constexpr std::size_t kTrialBytes = std::size_t{128} << 10;                      // of curves
 
-  /// The best distance so far, or the smallest one where none was tried.
-  [[nodiscard]] std::size_t best() const noexcept;
+  /// A rule that tries the first ones of these distances.
+  explicit PrefetchRule(std::size_t distances = kDistances.size()) noexcept : distances_(distances) {}
+
+  /// The best distance so far, or the first one where none was tried.
+  [[nodiscard]] std::size_t best() const noexcept { return best_.load(std::memory_order_relaxed); }
   /// The number of the distance to try next; nothing when the trials are over.
   [[nodiscard]] std::optional<std::size_t> next() noexcept;
   /// Takes the time per byte of a trial with the distance of this number.
   void take(std::size_t distance, float nanoseconds_per_byte) noexcept;
 
+  /// Calls evaluate(first, count, ahead) for all elements, in order: for parts of whole tiles with which distances are
+  /// tried, as long as there are trials left, and then for the rest at the best distance.
+  template <class Evaluate>
+  void over(std::size_t elements, std::size_t bytes_of_element, const Evaluate& evaluate);
+
  private:
-  std::atomic<std::size_t> trials_ = 0;
-  std::array<std::atomic<float>, kDistances.size()> least_ = {};  // nanoseconds per byte; 0: not tried
+  std::size_t distances_;
+  std::atomic<std::size_t> trials_ = 0;  // that were given out
+  std::atomic<std::size_t> best_ = kDistances[0];
+  // The trials of each distance in nanoseconds per byte; 0: not over yet.
+  std::array<std::array<std::atomic<float>, kTrials>, kDistances.size()> times_ = {};
+  std::array<std::atomic<std::size_t>, kDistances.size()> counts_ = {};
 };
 
-/// The rules of this process, one for curves in the cache that cores share, and one for curves in memory.
-[[nodiscard]] PrefetchRule& prefetch_in_shared_cache() noexcept;
-[[nodiscard]] PrefetchRule& prefetch_in_memory() noexcept;
+template <class Evaluate>
+void PrefetchRule::over(std::size_t elements, std::size_t bytes_of_element, const Evaluate& evaluate) {
+  using Clock = std::chrono::steady_clock;
+  const std::size_t part = kTrialBytes / bytes_of_element / kTile * kTile;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < distances_ && elements - first >= part; ++i) {
+    const std::optional<std::size_t> trial = next();
+    if (!trial) break;
+    const Clock::time_point start = Clock::now();
+    evaluate(first, part, kDistances[*trial]);
+    const std::chrono::duration<float, std::nano> taken = Clock::now() - start;
+    take(*trial, std::max(taken.count(), 1.0f) / static_cast<float>(part * bytes_of_element));
+    first += part;
+  }
+  if (first < elements) evaluate(first, elements - first, best());
+}
+
+/// The rules of this process: one for each working set, of curves along straight lines, and of those along paths. Small
+/// sets always take 2 KiB, and medium ones that or none.
+[[nodiscard]] PrefetchRule& prefetch_of_curves(WorkingSet set) noexcept;
+[[nodiscard]] PrefetchRule& prefetch_of_paths(WorkingSet set) noexcept;
 
 }  // namespace chronormal::inline internal
 

@@ -103,7 +103,8 @@ TEST(EvaluateAccess, changes_no_bit_and_writes_nothing_else) {
             const bool inside = i >= kGuard && form.is_written(i - kGuard, count);
             ASSERT_EQ(plain[i] != kMark, inside) << "word " << i << " of kind " << static_cast<int>(kind);
           }
-          for (const WorkingSet set : {WorkingSet::kSmall, WorkingSet::kSharedCache, WorkingSet::kMemory}) {
+          for (const WorkingSet set :
+               {WorkingSet::kSmall, WorkingSet::kMedium, WorkingSet::kSharedCache, WorkingSet::kMemory}) {
             for (const bool stream : {false, true})
               ASSERT_EQ(evaluated(form, span, {set, stream}), plain) << static_cast<int>(kind) << ", " << count;
           }

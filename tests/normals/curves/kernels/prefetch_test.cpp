@@ -1,34 +1,83 @@
-// Evaluations prefetch curves at the distance of the shortest trial, and there are only so many trials.
+// Evaluations prefetch curves at the distance that was fastest in the median, and there are only so many trials.
 
 #include "normals/curves/kernels/prefetch.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <optional>
+#include <random>
 #include <thread>
 #include <vector>
 
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/path_curves.h"
 #include "tests/support/fixtures.h"
 
 namespace chronormal::prefetch_test {
 namespace {
 
-TEST(PrefetchRule, the_shortest_of_all_trials_decides) {
+TEST(PrefetchRule, the_fastest_distance_in_the_median_decides) {
   for (std::size_t fastest = 0; fastest < PrefetchRule::kDistances.size(); ++fastest) {
     PrefetchRule rule;
     EXPECT_EQ(rule.best(), PrefetchRule::kDistances[0]);  // before any trial
     std::array<std::size_t, PrefetchRule::kDistances.size()> trials{};
     while (const std::optional<std::size_t> trial = rule.next()) {
-      // Every distance is slow at times, and the fastest one most of the time.
-      const bool is_quiet = ++trials[*trial] == 3;
-      rule.take(*trial, is_quiet ? (*trial == fastest ? 0.1f : 0.12f) : (*trial == fastest ? 5.0f : 2.0f));
+      const std::size_t turn = trials[*trial]++;
+      // The system interrupts two trials of the fastest distance, and each of the others is lucky once.
+      const bool is_odd = turn == 3 || (*trial == fastest && turn == 7);
+      rule.take(*trial, *trial == fastest ? (is_odd ? 500.0f : 0.1f) : (is_odd ? 0.09f : 0.13f));
     }
     EXPECT_EQ(rule.best(), PrefetchRule::kDistances[fastest]);
     for (const std::size_t count : trials) EXPECT_EQ(count, PrefetchRule::kTrials);
+  }
+}
+
+TEST(PrefetchRule, all_elements_are_evaluated_once_in_order) {
+  constexpr std::size_t kBytes = 36;
+  constexpr std::size_t kPart = PrefetchRule::kTrialBytes / kBytes / kTile * kTile;
+  for (const std::size_t elements : {std::size_t{0}, std::size_t{1}, kPart - 1, kPart, 3 * kPart + 5, 20 * kPart}) {
+    PrefetchRule rule;
+    for (std::size_t pass = 0; pass < 2 * PrefetchRule::kTrials * PrefetchRule::kDistances.size(); ++pass) {
+      std::size_t done = 0;
+      rule.over(elements, kBytes, [&](std::size_t first, std::size_t count, std::size_t ahead) {
+        EXPECT_EQ(first, done);
+        EXPECT_GT(count, 0U);
+        EXPECT_NE(std::find(PrefetchRule::kDistances.begin(), PrefetchRule::kDistances.end(), ahead),
+                  PrefetchRule::kDistances.end());
+        done += count;
+      });
+      ASSERT_EQ(done, elements);
+    }
+    EXPECT_EQ(rule.next().has_value(), elements < kPart);
+  }
+}
+
+TEST(PrefetchRule, a_rule_of_few_distances_tries_no_others) {
+  PrefetchRule rule(2);
+  for (std::size_t trial = 0; trial < 2 * PrefetchRule::kTrials; ++trial) EXPECT_EQ(rule.next(), trial % 2);
+  EXPECT_EQ(rule.next(), std::nullopt);
+}
+
+TEST(PrefetchRule, large_evaluations_of_paths_are_right_in_every_trial) {
+  constexpr std::size_t kCount = 100000;  // 10 MB with the results
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> number(-0.4, 0.4);
+  std::vector<PolynomialNormals<3>> normals(kCount);
+  for (PolynomialNormals<3>& of_element : normals)
+    for (Vec3d& control : of_element) control = {number(random), number(random), 1 + number(random)};
+  const PathCurves curves(normals);
+  std::vector<float> first(3 * kCount);
+  for (std::size_t pass = 0; pass < PrefetchRule::kTrials; ++pass) {
+    (void)curves.unit_normals(0.3, VectorView<float>::packed(first));
+    for (std::size_t i = 0; i < kCount; i += 997) {
+      const Vec3f expected = to_float(unit_normal_at(normals[i], 0.3).vector);
+      for (std::size_t c = 0; c < 3; ++c)
+        ASSERT_NEAR(first[3 * i + c], (c == 0 ? expected.x : c == 1 ? expected.y : expected.z), 1e-6) << i;
+    }
   }
 }
 
@@ -69,7 +118,7 @@ TEST(PrefetchRule, large_evaluations_try_until_they_know_and_keep_their_bits) {
   (void)curves.unit_normals(0.3, VectorView<float>::packed(first));
   for (std::size_t i = 0; i < PrefetchRule::kTrials; ++i)
     (void)curves.unit_normals(0.3, VectorView<float>::packed(later));
-  EXPECT_EQ(prefetch_in_shared_cache().next(), std::nullopt);
+  EXPECT_EQ(prefetch_of_curves(WorkingSet::kSharedCache).next(), std::nullopt);
   EXPECT_EQ(first, later);
 }
 
