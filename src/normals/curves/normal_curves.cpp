@@ -48,8 +48,16 @@ const std::int32_t* digits_of(const CurveData& curves, std::size_t element) {
   return is_exact ? curves.exact_digits.data() + at->digits : nullptr;
 }
 
-// Calls write(element, v) for the flagged elements of a range that double can carry at t, and then
-// settle(index, element) for the others; `index` is that among the flagged.
+// How many of the flagged elements [first, last) are neighbours, from the first one on.
+std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t first, std::size_t last) noexcept {
+  if (flagged[last - 1] - flagged[first] == last - 1 - first) return last - first;
+  std::size_t count = 1;
+  while (first + count < last && flagged[first + count] == flagged[first] + count) ++count;
+  return count;
+}
+
+// Calls write(element, xyz, count) for neighbouring flagged elements of a range, with what double makes of them at t, and
+// then settle(index, element) for those that it cannot carry; `index` is that among the flagged.
 template <class Write, class Settle>
 void for_flagged(const CurveData& curves, IndexRange range, double t, const Write& write, const Settle& settle) {
   const auto index_of = [&flagged = curves.flagged](std::size_t element) {
@@ -61,19 +69,17 @@ void for_flagged(const CurveData& curves, IndexRange range, double t, const Writ
   for (std::size_t tile = begin / kTile; tile * kTile < end; tile += kBatch) {
     const std::size_t count = std::min(kBatch, curves.flagged_tiles.size() - tile);
     flagged_unit_normals(std::span(curves.flagged_tiles).subspan(tile, count), t, batch);
-    const auto for_lanes = [&](std::size_t i, const auto& body) {
-      const std::size_t first = (tile + i) * kTile;
-      for (std::size_t k = std::max(first, begin); k < std::min(first + kTile, end); ++k) body(k, k - first);
-    };
     for (std::size_t i = 0; i < count; ++i) {
       const FlaggedUnits& units = batch[i];
-      for_lanes(i, [&](std::size_t k, std::size_t lane) {
-        write(curves.flagged[k], Vec3f{units.x[lane], units.y[lane], units.z[lane]});
-      });
+      const std::size_t first = (tile + i) * kTile, last = std::min(first + kTile, end);
+      for (std::size_t k = std::max(first, begin); k < last;) {
+        const std::size_t run = run_from(curves.flagged, k, last);
+        write(curves.flagged[k], units.xyz + 3 * (k - first), run);
+        k += run;
+      }
       if (units.uncertain == 0) continue;
-      for_lanes(i, [&](std::size_t k, std::size_t lane) {
-        if ((units.uncertain >> lane & 1) != 0) settle(k, curves.flagged[k]);
-      });
+      for (std::size_t k = std::max(first, begin); k < last; ++k)
+        if ((units.uncertain >> (k - first) & 1) != 0) settle(k, curves.flagged[k]);
     }
   }
 }
@@ -83,7 +89,8 @@ template <class Output>
 std::size_t write_flagged_range(const CurveData& curves, IndexRange range, double t, const Output& output) noexcept {
   std::size_t without_direction = 0;
   for_flagged(
-      curves, range, t, [&output](std::size_t element, const Vec3f& v) { output.set(element, v); },
+      curves, range, t,
+      [&output](std::size_t element, const float* xyz, std::size_t count) { set_run(output, element, xyz, count); },
       [&](std::size_t index, std::size_t element) {
         const std::int32_t* const digits = digits_of(curves, element);
         const UnitNormal u = digits != nullptr ? ExactCurve::of_kept(digits).unit_normal_at(t)
@@ -277,7 +284,7 @@ std::size_t NormalCurves::uncertain_count(double time) const noexcept {
   if (!(0 < t && t < 1)) return 0;
   std::size_t count = 0;
   for_flagged(
-      curves, {0, curves.size}, t, [](std::size_t, const Vec3f&) {},
+      curves, {0, curves.size}, t, [](std::size_t, const float*, std::size_t) {},
       [&](std::size_t index, std::size_t element) {
         const bool is_zero = largest_component(curves.flagged_normals(index)) == 0;
         if (!is_zero && digits_of(curves, element) == nullptr) ++count;

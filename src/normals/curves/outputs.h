@@ -100,6 +100,16 @@ struct AnyOutput {
 template <class Set>
 AnyOutput(WorkingSet, Set) -> AnyOutput<Set>;
 
+/// Sets the elements from `first` on, with xyz as (count, 3).
+template <class Output>
+void set_run(const Output& output, std::size_t first, const float* xyz, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) output.set(first + i, Vec3f{xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});
+}
+
+inline void set_run(const PackedOutput& output, std::size_t first, const float* xyz, std::size_t count) {
+  std::copy_n(xyz, 3 * count, output.result.x + 3 * first);
+}
+
 /// Calls body(output) with the form that a view has; returns what it returns.
 template <class Body>
 auto with_output(const VectorView<float>& result, MemoryAccess of_pass, Body body) {

@@ -26,8 +26,13 @@ HWY_INLINE Doubles InversePowerBelow(Doubles v) {
   return hn::BitCast(kDoubles, hn::Sub(hn::Set(ints, std::int64_t{0x7FE} << 52), exponent));
 }
 
+// Vectors of a tile, in planes.
+struct alignas(64) FlaggedVectors {
+  float x[kTile], y[kTile], z[kTile];
+};
+
 // Writes n(t), scaled, and returns for which elements it is not certain, as bits. With the operations of normal_at().
-HWY_INLINE std::uint32_t Evaluate(const FlaggedTile& tile, double t, FlaggedUnits& result) {
+HWY_INLINE std::uint32_t Evaluate(const FlaggedTile& tile, double t, FlaggedVectors& result) {
   const double s = 1 - t;
   const Doubles w0 = hn::Set(kDoubles, s * s), w1 = hn::Set(kDoubles, 2 * t * s), w2 = hn::Set(kDoubles, t * t);
   std::uint32_t uncertain = 0;
@@ -54,22 +59,25 @@ HWY_INLINE std::uint32_t Evaluate(const FlaggedTile& tile, double t, FlaggedUnit
   return uncertain;
 }
 
-HWY_INLINE void Normalize(FlaggedUnits& result) {
+HWY_INLINE void Normalize(const FlaggedVectors& vectors, float* xyz) {
   for (std::size_t lane = 0; lane < kTile; lane += kLanes) {
-    const Lanes3 u{hn::Load(kFloats, result.x + lane), hn::Load(kFloats, result.y + lane),
-                   hn::Load(kFloats, result.z + lane)};
+    const Lanes3 u{hn::Load(kFloats, vectors.x + lane), hn::Load(kFloats, vectors.y + lane),
+                   hn::Load(kFloats, vectors.z + lane)};
     // The vector of an element that is not certain may be zero, and is divided by something else then.
     const Floats square = hn::Max(Dot(u, u), hn::Set(kFloats, 0x1p-100f));
-    const Lanes3 unit = Scale(hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(square)), u);
-    hn::Store(unit.x, kFloats, result.x + lane);
-    hn::Store(unit.y, kFloats, result.y + lane);
-    hn::Store(unit.z, kFloats, result.z + lane);
+    StorePacked<false>(Scale(hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(square)), u), xyz + 3 * lane);
   }
 }
 
+// Each pass over a few tiles, so that no load waits for the store of a shorter vector.
 void FlaggedUnitNormals(const FlaggedTile* tiles, std::size_t count, double t, FlaggedUnits* results) {
-  for (std::size_t i = 0; i < count; ++i) results[i].uncertain = Evaluate(tiles[i], t, results[i]);
-  for (std::size_t i = 0; i < count; ++i) Normalize(results[i]);
+  constexpr std::size_t kAtOnce = 4;
+  FlaggedVectors vectors[kAtOnce];
+  for (std::size_t first = 0; first < count; first += kAtOnce) {
+    const std::size_t some = HWY_MIN(kAtOnce, count - first);
+    for (std::size_t i = 0; i < some; ++i) results[first + i].uncertain = Evaluate(tiles[first + i], t, vectors[i]);
+    for (std::size_t i = 0; i < some; ++i) Normalize(vectors[i], results[first + i].xyz);
+  }
 }
 
 }  // namespace chronormal::inline internal::HWY_NAMESPACE

@@ -32,10 +32,14 @@ struct alignas(64) FlaggedTile {
   }
 };
 
-/// Unit normals of a tile, in planes.
+/// Unit normals of a tile.
 struct alignas(64) FlaggedUnits {
-  float x[kTile], y[kTile], z[kTile];
+  float xyz[3 * kTile];     ///< (kTile, 3)
   std::uint32_t uncertain;  ///< bit i: n(t) of element i is not certain
+
+  [[nodiscard]] Vec3f operator[](std::size_t lane) const noexcept {
+    return {xyz[3 * lane], xyz[3 * lane + 1], xyz[3 * lane + 2]};
+  }
 };
 
 /// Evaluates n(t) in double, and rounds its direction to float32: within 2^-22 rad.

@@ -67,7 +67,7 @@ TEST(FlaggedNormals, have_the_direction_of_the_quadratic_at_any_size) {
           const double size = (1 - t) * (1 - t) * max_abs(n0) + 2 * t * (1 - t) * max_abs(m) + t * t * max_abs(n1);
           ASSERT_EQ((units.uncertain >> lane & 1) != 0, !(max_abs(n) > 0x1p-26 * size)) << exponent << " " << i;
           if ((units.uncertain >> lane & 1) != 0) continue;
-          const LongVector found{units.x[lane], units.y[lane], units.z[lane]};
+          const LongVector found{units[lane].x, units[lane].y, units[lane].z};
           // Where terms cancel, n(t) is off in double already, most of all where numbers are below the normal ones.
           const long double in_double = (exponent < -1000 ? 0x1p-36L : 0x1p-52L) * size / max_abs(n);
           ASSERT_LE(off(found, expected), 1.3e-7L + 10 * in_double) << exponent << " " << i << " at " << t;
