@@ -16,6 +16,7 @@ using Indices = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
 constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kFewFaces = 100000;  // of which it takes little memory to keep what each adds
 
 Indices common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
   Indices result;
@@ -276,6 +277,21 @@ void BlendTerms::Term::keep_large(std::span<const std::uint32_t> faces) {
   for (std::size_t n = 0; n < large_faces_.size(); ++n) (void)of_face(large_faces_[n], of_large_faces_[n]);
 }
 
+void BlendTerms::Term::keep_all(std::span<const std::uint32_t> faces) {
+  constexpr std::size_t kFar = 16;
+  if (faces.empty()) return;
+  const std::size_t range = faces.back() - faces.front() + std::size_t{1};
+  if (range / kFar > faces.size()) return;
+  std::vector<Rounded> of_all(faces.size());
+  numbered_blocks(faces.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n) (void)find_face(faces[n], of_all[n]);
+  });
+  first_face_ = faces.front();
+  face_places_.assign(range, kNoPlace);
+  for (std::size_t n = 0; n < faces.size(); ++n) face_places_[faces[n] - first_face_] = static_cast<std::uint32_t>(n);
+  of_all_faces_ = std::move(of_all);
+}
+
 bool BlendTerms::Term::of_face(std::uint32_t face, Rounded& result) const {
   const BlendSet& set = terms_.set_;
   const auto corners = set.topology.face(face);
@@ -308,6 +324,12 @@ bool BlendTerms::Term::of_face(std::uint32_t face, Rounded& result) const {
 }
 
 bool BlendTerms::Term::find_face(std::uint32_t face, Rounded& result) const {
+  if (!of_all_faces_.empty()) {
+    const std::size_t place = face - std::size_t{first_face_};  // large where the face is before the first
+    const std::uint32_t n = place < face_places_.size() ? face_places_[place] : kNoPlace;
+    if (n != kNoPlace) result = of_all_faces_[n];
+    return n != kNoPlace;
+  }
   if (terms_.set_.topology.face(face).size() <= kSmallFace) return of_face(face, result);
   const auto found = std::lower_bound(large_faces_.begin(), large_faces_.end(), face);
   if (found == large_faces_.end() || *found != face) return false;
@@ -324,7 +346,8 @@ BlendTerms::Term::Rounded BlendTerms::Term::at(std::uint32_t element) const {
   return {sum.value(), sum.noise()};
 }
 
-BlendTerm BlendTerms::listed(const Term& term, Indices elements) {
+BlendTerm BlendTerms::listed(Term term, std::span<const std::uint32_t> faces, Indices elements) {
+  if (term.terms_.groups_ != nullptr) term.keep_all(faces);
   BlendTerm result;
   result.elements = std::move(elements);
   const std::size_t count = result.elements.size();
@@ -350,22 +373,27 @@ BlendTerm BlendTerms::listed(const Term& term, Indices elements) {
   return result;
 }
 
-BlendTerms::Term BlendTerms::linear_by_element(std::size_t i) const { return {*this, i}; }
-
-BlendTerms::Term BlendTerms::pair_by_element(std::size_t i, std::size_t j) const {
-  if (i == j) return {*this, i, i, faces(i)};
-  // Only to find the large ones among them.
-  const Indices shared = set_.topology.all_triangles() ? Indices() : common_faces(i, j);
-  return {*this, i, j, shared};
+BlendTerms::Term BlendTerms::linear_by_element(std::size_t i) const {
+  Term term(*this, i);
+  if (groups_ != nullptr && faces(i).size() <= kFewFaces) term.keep_all(faces(i));
+  return term;
 }
 
-BlendTerm BlendTerms::linear(std::size_t i) const { return listed(linear_by_element(i), elements(i)); }
+BlendTerms::Term BlendTerms::pair_by_element(std::size_t i, std::size_t j) const {
+  const Indices shared = i == j ? Indices() : common_faces(i, j);
+  const std::span<const std::uint32_t> faces = i == j ? this->faces(i) : std::span<const std::uint32_t>(shared);
+  Term term(*this, i, j, faces);
+  if (groups_ != nullptr && faces.size() <= kFewFaces) term.keep_all(faces);
+  return term;
+}
+
+BlendTerm BlendTerms::linear(std::size_t i) const { return listed(linear_by_element(i), faces(i), elements(i)); }
 
 BlendTerm BlendTerms::pair(std::size_t i, std::size_t j) const {
   const Indices shared = i == j ? Indices() : common_faces(i, j);
   const std::span<const std::uint32_t> faces = i == j ? this->faces(i) : std::span<const std::uint32_t>(shared);
   if (faces.empty()) return {};
-  return listed(Term(*this, i, j, faces), elements_of(faces));
+  return listed(Term(*this, i, j, faces), faces, elements_of(faces));
 }
 
 bool BlendTerms::overlap(std::size_t i, std::size_t j) const noexcept {

@@ -54,7 +54,8 @@ class BlendTerms {
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
 
   /// The same, element by element, so that nobody has to hold all of it. It holds at most 4 bytes for each vertex of
-  /// the mesh and target (and the faces of more than 4 corners). O(faces that target i moves) to make.
+  /// the mesh and target (and what faces add: those of more than 4 corners, and all of them where they are 100,000 or
+  /// fewer). O(faces that target i moves) to make.
   class Term;
   [[nodiscard]] Term linear_by_element(std::size_t i) const;
   [[nodiscard]] Term pair_by_element(std::size_t i, std::size_t j) const;
@@ -95,7 +96,8 @@ class BlendTerms {
 
   BlendTerms(const BlendSet& set, const NormalGroups* groups);
 
-  [[nodiscard]] static BlendTerm listed(const Term& term, std::vector<std::uint32_t> elements);
+  [[nodiscard]] static BlendTerm listed(Term term, std::span<const std::uint32_t> faces,
+                                        std::vector<std::uint32_t> elements);
   [[nodiscard]] std::vector<std::uint32_t> common_faces(std::size_t i, std::size_t j) const;
   [[nodiscard]] std::vector<std::uint32_t> elements_of(std::span<const std::uint32_t> faces) const;
   template <class Body>
@@ -136,6 +138,8 @@ class BlendTerms::Term {
   Term(const BlendTerms& terms, std::size_t i, std::size_t j, std::span<const std::uint32_t> faces);
 
   void keep_large(std::span<const std::uint32_t> faces);
+  // Computes what all its faces add once and for all, where these are dense enough to be found at once. On all threads.
+  void keep_all(std::span<const std::uint32_t> faces);
   [[nodiscard]] Rounded at(std::uint32_t element) const;
   // What a face adds; false where it is not moved.
   [[nodiscard]] bool of_face(std::uint32_t face, Rounded& result) const;
@@ -147,6 +151,9 @@ class BlendTerms::Term {
   bool is_linear_;
   std::vector<std::uint32_t> large_faces_;  // ascending: those that would take too long for each of their elements
   std::vector<Rounded> of_large_faces_;
+  std::vector<Rounded> of_all_faces_;       // empty where they are not kept
+  std::uint32_t first_face_ = 0;            // of these
+  std::vector<std::uint32_t> face_places_;  // of the faces from there on, in of_all_faces_
 };
 
 }  // namespace chronormal::inline internal

@@ -40,7 +40,11 @@ std::vector<std::uint32_t> common(const std::vector<std::uint32_t>& a, const std
 
 NormalTerms::NormalTerms(const GltfShading& shading, Weighting weighting)
     : shading_(shading), weighting_(weighting), by_area_(shading.set, shading.groups) {
-  if (is_fitted()) fit_targets();
+  constexpr std::size_t kFewElements = 200000;
+  if (is_fitted())
+    fit_targets();
+  else if (shading.groups.size() <= kFewElements)
+    base_ = by_area_.base();
 }
 
 Vec3d NormalTerms::sample(const Segment& segment, std::uint32_t element, double t) const {

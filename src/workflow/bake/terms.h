@@ -29,7 +29,7 @@ class NormalTerms {
 
   /// n(0) of an element.
   [[nodiscard]] Vec3d base_of(std::uint32_t element) const {
-    return is_fitted() ? base_[element] : by_area_.base_of(element);
+    return base_.empty() ? by_area_.base_of(element) : base_[element];
   }
   /// A_i and C_ij, without their noise.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
@@ -77,7 +77,7 @@ class NormalTerms {
   const GltfShading& shading_;
   Weighting weighting_;
   BlendTerms by_area_;
-  std::vector<Vec3d> base_;  // where it is fitted
+  std::vector<Vec3d> base_;  // where it is fitted, or takes little memory
   std::vector<Fit> fits_;
 };
 
