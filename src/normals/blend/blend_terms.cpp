@@ -1,3 +1,4 @@
+// Computes the terms of n(w) face by face in double, and adds them up for the elements that they lie around.
 #include "normals/blend/blend_terms.h"
 
 #include <algorithm>

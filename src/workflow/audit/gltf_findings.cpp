@@ -1,3 +1,4 @@
+// Looks for what an audit has to say of a glTF file beside its errors.
 #include "workflow/audit/gltf_findings.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Finds the terms of a mesh: by area from products of positions, and by other weightings from fits to samples.
 #include "workflow/bake/terms.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The terms of blend shapes are those of exact arithmetic within the noise that they state, in every way to ask for them.
 #include "normals/blend/blend_terms.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +14,7 @@
 
 #include "tests/support/blend_oracle.h"
 #include "tests/support/elements.h"
+#include "tests/support/fixtures.h"
 
 namespace chronormal::blend_terms_test {
 namespace {
@@ -193,6 +195,37 @@ TEST(BlendTerms, sets_without_faces_vertices_or_targets_have_none) {
   const BlendTerms terms(isolated, groups);
   EXPECT_EQ(terms.base(), std::vector<Vec3d>(2));
   EXPECT_TRUE(terms.linear(0).elements.empty() && terms.pair(0, 0).elements.empty());
+}
+
+// What faces add is kept in lists, but not beyond 100,000 faces element by element.
+TEST(BlendTerms, have_the_same_bits_in_lists_and_element_by_element_on_large_meshes) {
+  const Motion motion = fixtures::smooth_morph(230);  // 105,800 faces
+  const std::size_t count = motion.topology.vertex_count();
+  BlendSet set;
+  set.topology = motion.topology;
+  set.base = motion.keyframes[0].positions;
+  const auto add_target = [&](std::size_t first, std::size_t last) {
+    BlendTarget& target = set.targets.emplace_back();
+    for (std::size_t v = first; v < last; ++v) {
+      target.vertices.push_back(static_cast<std::uint32_t>(v));
+      for (std::size_t c = 3 * v; c < 3 * v + 3; ++c)
+        target.deltas.push_back(motion.keyframes[1].positions[c] - set.base[c]);
+    }
+  };
+  add_target(0, count);
+  add_target(count / 3, count / 2);
+  const NormalGroups groups = NormalGroups::of_vertices(motion.topology, weld_coincident(motion));
+  const BlendTerms terms(set, groups);
+  const auto expect_same = [](const BlendTerm& list, const BlendTerms::Term& term) {
+    ASSERT_GT(list.elements.size(), 1000U);
+    for (std::size_t n = 0; n < list.elements.size(); ++n) ASSERT_EQ(list.values[n], term(list.elements[n])) << n;
+  };
+  for (std::size_t i = 0; i < 2; ++i) {
+    expect_same(terms.linear(i), terms.linear_by_element(i));
+    for (std::size_t j = 0; j < 2; ++j) expect_same(terms.pair(i, j), terms.pair_by_element(i, j));
+  }
+  const std::vector<Vec3d> base = terms.base();
+  for (std::uint32_t e = 0; e < base.size(); ++e) ASSERT_EQ(base[e], terms.base_of(e)) << e;
 }
 
 }  // namespace
