@@ -1,4 +1,4 @@
-// The terms of blend shapes are those of exact arithmetic within the noise that they state, in every way to ask for them.
+// The terms of blend shapes are those of exact arithmetic, within the noise that they state, however they are asked for.
 #include "normals/blend/blend_terms.h"
 
 #include <gtest/gtest.h>
