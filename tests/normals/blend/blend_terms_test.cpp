@@ -1,4 +1,4 @@
-// The terms of blend shapes are those of exact arithmetic, within the noise that they state, however they are asked for.
+// The terms of blend shapes are those of exact arithmetic within the noise that they state, in lists and one by one.
 #include "normals/blend/blend_terms.h"
 
 #include <gtest/gtest.h>
