@@ -18,6 +18,7 @@ using Indices = std::vector<std::uint32_t>;
 constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
 constexpr std::size_t kChunk = 1024;
 constexpr std::size_t kFewFaces = 100000;  // of which it takes little memory to keep what each adds
+constexpr std::size_t kFarApart = 16;      // faces lie so far apart on average that a table of all between is too large
 
 Indices common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
   Indices result;
@@ -279,10 +280,9 @@ void BlendTerms::Term::keep_large(std::span<const std::uint32_t> faces) {
 }
 
 void BlendTerms::Term::keep_all(std::span<const std::uint32_t> faces) {
-  constexpr std::size_t kFar = 16;
   if (faces.empty()) return;
   const std::size_t range = faces.back() - faces.front() + std::size_t{1};
-  if (range / kFar > faces.size()) return;
+  if (range > kFarApart * faces.size()) return;
   std::vector<Rounded> of_all(faces.size());
   numbered_blocks(faces.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) (void)find_face(faces[n], of_all[n]);
@@ -427,7 +427,9 @@ std::size_t BlendTerms::bytes() const noexcept {
 std::size_t BlendTerms::term_bytes(std::size_t faces, std::size_t corners) const noexcept {
   constexpr std::size_t kOfElement = sizeof(std::uint32_t) + sizeof(Vec3d) + sizeof(double);
   const std::size_t of_faces = faces * (2 * sizeof(std::uint32_t) + sizeof(Term::Rounded));
-  return of_faces + corners * kOfElement + size() / 8 + 2 * set_.topology.vertex_count() * sizeof(std::uint32_t);
+  const std::size_t of_places = std::min(kFarApart * faces, set_.topology.face_count()) * sizeof(std::uint32_t);
+  return of_faces + of_places + corners * kOfElement + size() / 8 +
+         2 * set_.topology.vertex_count() * sizeof(std::uint32_t);
 }
 
 std::size_t BlendTerms::base_bytes() const noexcept {
