@@ -85,7 +85,7 @@ expect_skipped() {
 }
 
 # expect_skipped_under_sanitizers PRESET: the same of the shards, whose tests say in XML why they were skipped.
-tests_without_sanitizers=15
+tests_without_sanitizers=18
 expect_skipped_under_sanitizers() {
   local reasons elsewhere
   reasons=$(sed -nE 's/.*<skipped message="([^"]*)".*/\1/p' build/"$1"/sanitized_*.xml)

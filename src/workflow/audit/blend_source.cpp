@@ -206,10 +206,11 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
 // The weights of the moment that was placed, and of those of its segment that follow.
 std::vector<std::vector<double>> BlendSource::now_and_next() const {
   std::vector<std::vector<double>> result = {now_};
-  for (std::size_t i = 0; i < samples_ && result.size() < StoredSums::kAtOnce; ++i) {
-    const double t = time_of_sample(i, samples_);
-    if (t > t_) result.push_back(weights(segment_, t));
-  }
+  // There may be a million samples. They are evenly spaced, so that none after t_ lies before this one.
+  auto i = static_cast<std::size_t>(t_ * static_cast<double>(samples_));
+  while (i < samples_ && time_of_sample(i, samples_) <= t_) ++i;
+  for (; i < samples_ && result.size() < StoredSums::kAtOnce; ++i)
+    result.push_back(weights(segment_, time_of_sample(i, samples_)));
   return result;
 }
 

@@ -15,6 +15,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/io/builtin_morphs.h"
 #include "tests/support/blend_oracle.h"
+#include "tests/support/child_process.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/read_input.h"
 #include "tests/support/shaded_mesh.h"
@@ -460,6 +461,7 @@ TEST(BlendCompare, so_many_targets_that_their_weights_do_not_fit_are_refused_bef
 // ---- real data
 
 TEST(BlendCompare, face_by_other_people_is_off_by_tens_of_degrees_with_end_points_and_by_rounding_when_exact) {
+  if (test::is_sanitized()) GTEST_SKIP() << "sanitizers make half a minute of it";
   const char* const data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
   const std::string folder = std::string(data) + "/face_mpfb2/", targets = folder + "targets/";
