@@ -161,6 +161,9 @@ inline constexpr std::array<Host, 9> kHosts = {{
 
 /// What a host keeps of the delta D of a target: what it adds to kept_normal() for each unit of weight.
 [[nodiscard]] Vec3f kept_delta(const Host& host, const Vec3f& normal, const Vec3f& delta) noexcept;
+/// The same where the result of kept_normal() is known.
+[[nodiscard]] Vec3f kept_delta(const Host& host, const Vec3f& normal, const Vec3f& kept_normal,
+                               const Vec3f& delta) noexcept;
 
 /// Replaces weights that a host leaves out by zero. There is one for each target.
 void drop_weights(const Host& host, std::span<double> weights) noexcept;

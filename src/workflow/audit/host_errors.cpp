@@ -80,7 +80,8 @@ HostErrors::HostErrors(const GltfShading& shading, const JudgedPart& part, std::
       for (std::uint32_t i = 0; i < outputs.size(); ++i) {
         const Vec3f delta = vector_at(shading.normal_deltas[k], outputs[i].vertex);
         if (delta == Vec3f{}) continue;
-        kept.deltas[k].emplace_back(i, kept_delta(host, vector_at(shading.normals, outputs[i].vertex), delta));
+        kept.deltas[k].emplace_back(
+            i, kept_delta(host, vector_at(shading.normals, outputs[i].vertex), kept.normals[i], delta));
       }
     }
   }

@@ -31,8 +31,9 @@ Vec3f half(const Vec3f& v) noexcept { return {half(v.x), half(v.y), half(v.z)}; 
 float clamped(float value, int bits) noexcept {
   const int wide = bits <= 8 ? 8 : 16;
   const int lack = wide - bits;
-  const float size = std::round(std::fmin(std::fabs(value), 1.0F) * static_cast<float>((1 << (bits - 1)) - 1));
-  const int small = std::isnan(value) ? 0 : static_cast<int>(size);
+  const float size = std::fabs(value) < 1 ? std::fabs(value) : std::isnan(value) ? 0 : 1.0F;
+  // The sum is exact in double, so that cutting it off rounds halves up.
+  const int small = static_cast<int>(static_cast<double>(size * static_cast<float>((1 << (bits - 1)) - 1)) + 0.5);
   const int kept = lack == 0 ? small : (small << lack) | (small >> (bits - 1 - lack));
   return std::copysign(static_cast<float>(kept) / static_cast<float>((1 << (wide - 1)) - 1), value);
 }
@@ -110,9 +111,11 @@ Vec3d through_frame(const Vec3d& v, int bits) noexcept {
       Vec3d{2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]), 1 - 2 * (q[0] * q[0] + q[1] * q[1])});
 }
 
-// The unit normal that a host keeps of a vector of any length.
+// The unit normal that a host keeps of a vector of any length. In so many bits nothing is rounded but to float32.
 Vec3f kept_direction(const Host& host, const Vec3f& v) noexcept {
+  constexpr int kAllBits = 32;
   const Vec3d vector = to_double(v);
+  if (host.bits >= kAllBits) return to_float(unit(vector));
   return to_float(host.by_frame ? through_frame(vector, host.bits)
                                 : through_unsigned_octahedral(unit(vector), host.bits));
 }
@@ -161,11 +164,15 @@ Vec3f kept_normal(const Host& host, const Vec3f& normal) noexcept {
 }
 
 Vec3f kept_delta(const Host& host, const Vec3f& normal, const Vec3f& delta) noexcept {
+  return kept_delta(host, normal, kept_normal(host, normal), delta);
+}
+
+Vec3f kept_delta(const Host& host, const Vec3f& normal, const Vec3f& kept_normal, const Vec3f& delta) noexcept {
   switch (host.normals) {
     case NormalRule::kSum:
       return host.keeps_halves() ? half(delta) : delta;
     case NormalRule::kUnit:
-      return kept_direction(host, normal + delta) - kept_direction(host, normal);
+      return kept_direction(host, normal + delta) - kept_normal;
     case NormalRule::kClamped:
       return clamped(delta, host.bits);
   }

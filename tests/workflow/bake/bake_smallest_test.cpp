@@ -137,13 +137,13 @@ std::vector<float> seconds(std::size_t keys) {
 }
 
 TEST(BakeSmallest, sees_one_wink_in_a_long_animation_and_in_one_of_many) {
-  constexpr std::size_t kKeys = 3000;
+  constexpr std::size_t kKeys = 3000, kClips = 600, kWinks = 411;
   GltfBuilder one = test::hills_document(2, 11), many = one;
   one.add_track(0, 0, seconds(kKeys), wink(kKeys, 1501));
-  for (std::size_t clip = 0; clip < 60; ++clip) {
+  for (std::size_t clip = 0; clip < kClips; ++clip) {
     if (clip > 0) many.add_animation("clip");
     std::vector<float> weights = wink(12, 5);
-    if (clip != 41) std::fill(weights.begin(), weights.end(), 0.0F), weights[3] = 0.001F;
+    if (clip != kWinks) std::fill(weights.begin(), weights.end(), 0.0F), weights[3] = 0.001F;
     many.add_track(clip, 0, seconds(12), weights);
   }
   for (const GltfBuilder* file : {&one, &many}) {
@@ -153,7 +153,7 @@ TEST(BakeSmallest, sees_one_wink_in_a_long_animation_and_in_one_of_many) {
     EXPECT_GT(as_it_is.played.worst, 10) << "else nothing is judged here";
     EXPECT_FALSE(as_it_is.within);
     EXPECT_TRUE(chosen(baked).within);
-    const std::size_t animation = file == &one ? 0 : 41;
+    const std::size_t animation = file == &one ? 0 : kWinks;
     std::vector<test::Pose> poses;
     for (int step = 0; step <= 100; ++step) {
       const double time = (file == &one ? 1500.0 : 4.0) + step / 50.0;
@@ -179,6 +179,31 @@ TEST(BakeSmallest, the_keys_that_tell_most_are_those_where_weights_and_products_
     EXPECT_TRUE(std::is_sorted(keys.begin(), keys.end()));
     EXPECT_TRUE(std::count(keys.begin(), keys.end(), 699U) + std::count(keys.begin(), keys.end(), 700U) > 0) << most;
   }
+}
+
+TEST(BakeSmallest, the_tracks_that_tell_most_are_those_where_weights_and_products_are_largest) {
+  std::vector<WeightTrack> tracks;
+  for (std::size_t t = 0; t < 500; ++t) {
+    WeightTrack& track = tracks.emplace_back(WeightTrack{GltfInterpolation::kLinear, {}, 2});
+    track.keys.times = {0, 1, 2};
+    track.keys.values = {0, 0.001 * static_cast<double>(t % 7), 0.001 * static_cast<double>(t % 11), 0, 0, 0};
+  }
+  tracks[77].keys.values[2] = 0.3;   // one weight, the largest
+  tracks[78].keys.values[5] = -0.2;  // the other one
+  // Both at once in the middle of one, where neither is the largest; and one after the other in another, where the
+  // product of both is nowhere as large as that of their peaks.
+  tracks[311].keys.values[2] = tracks[311].keys.values[3] = 0.1;
+  tracks[402].keys.values = {0.15, 0, 0, 0, 0, 0.15};
+  EXPECT_EQ(telling_tracks(tracks, 500).size(), 500U);
+  for (const std::size_t most : {4U, 20U, 160U}) {
+    const std::vector<std::size_t> some = telling_tracks(tracks, most);
+    EXPECT_LE(some.size(), most);
+    EXPECT_TRUE(std::is_sorted(some.begin(), some.end()));
+    for (const std::size_t t : {77U, 78U, 311U})
+      EXPECT_EQ(std::count(some.begin(), some.end(), t), 1) << t << ", " << most;
+    EXPECT_EQ(std::count(some.begin(), some.end(), 402U), 0) << most;
+  }
+  EXPECT_EQ(telling_tracks(tracks, 1).size(), 1U);
 }
 
 TEST(BakeSmallest, is_not_beaten_by_exact_in_bytes_and_error_at_once_whatever_the_tracks) {

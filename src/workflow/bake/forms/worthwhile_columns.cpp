@@ -277,9 +277,10 @@ VertexColumns kept_columns(const Host& host, const RightNormals& rights, std::sp
   bool is_same = true;
   for (std::size_t n = 0; n < vertices.size(); ++n) {
     const BaseNormal base(rights.stored(vertices[n]));
+    const Vec3f normal = to_float(base.stored), of_normal = kept_normal(host, normal);
     for (std::size_t k = form.first[n]; k < form.first[n + 1]; ++k) {
       const Vec3f& delta = form.entries[k].delta;
-      Vec3d kept = to_double(kept_delta(host, to_float(base.stored), delta));
+      Vec3d kept = to_double(kept_delta(host, normal, of_normal, delta));
       if (host.normals == NormalRule::kUnit) kept = base.length * kept;
       is_same = is_same && length(kept - to_double(delta)) <= kSame * base.length;
       result.entries[k].delta = to_float(kept);

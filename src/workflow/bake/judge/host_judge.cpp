@@ -43,7 +43,7 @@ class Sums {
     y_.assign(count, base.y);
     z_.assign(count, base.z);
     for (const auto& [column, delta] : entries) {
-      const Vec3f kept = kept_delta(host, normal, delta);
+      const Vec3f kept = kept_delta(host, normal, base, delta);
       const float* const w = weights.data() + column * stride + first;
       for (std::size_t p = 0; p < count; ++p) {
         x_[p] += w[p] * kept.x;

@@ -1,3 +1,4 @@
+// Chooses the instants at which a bake is judged, and those keys and tracks that tell most where there are too many.
 #include "workflow/bake/judge/played_poses.h"
 
 #include <algorithm>
@@ -5,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <set>
@@ -54,6 +56,38 @@ std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
   return result;
 }
 
+// Where each weight, and each product of two, is largest.
+class Peaks {
+ public:
+  // The weights that are active at once, in what has this number.
+  void add(const std::vector<Peak>& active, std::size_t number) {
+    for (std::size_t a = 0; a < active.size(); ++a) {
+      for (std::size_t b = a; b < active.size(); ++b) {
+        const auto [i, j] = std::minmax(active[a].number, active[b].number);
+        Peak& peak = peaks_[{i, j}];
+        const double size = i == j ? active[a].size : active[a].size * active[b].size;
+        if (size > peak.size) peak = {size, number};
+      }
+    }
+  }
+
+  // Of all numbers, ascending, as many as asked for: those with the largest peaks, and a fourth evenly.
+  [[nodiscard]] std::vector<std::size_t> telling(std::span<const std::size_t> all, std::size_t most) const {
+    std::vector<Peak> order;
+    order.reserve(peaks_.size());
+    for (const auto& [pair, peak] : peaks_) order.push_back(peak);
+    std::stable_sort(order.begin(), order.end(), [](const Peak& a, const Peak& b) { return a.size > b.size; });
+    std::set<std::size_t> taken;
+    for (std::size_t n = 0; n < order.size() && taken.size() < most - most / 4; ++n) taken.insert(order[n].number);
+    const std::size_t more = most - taken.size();
+    for (std::size_t n = 0; n < more; ++n) taken.insert(all[more < 2 ? 0 : n * (all.size() - 1) / (more - 1)]);
+    return {taken.begin(), taken.end()};
+  }
+
+ private:
+  std::map<std::pair<std::size_t, std::size_t>, Peak> peaks_;
+};
+
 std::vector<double> mixed(const std::vector<double>& a, const std::vector<double>& b, double part) {
   std::vector<double> result(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) result[i] = (1 - part) * a[i] + part * b[i];
@@ -71,28 +105,19 @@ std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most
     moved = moves;
   }
   if (all.size() <= most) return all;
-  // Where each weight, and each product of two, is largest.
-  std::map<std::pair<std::size_t, std::size_t>, Peak> peaks;
-  for (const std::size_t key : all) {
-    const std::vector<Peak> active = active_after(track, key);
-    for (std::size_t a = 0; a < active.size(); ++a) {
-      for (std::size_t b = a; b < active.size(); ++b) {
-        const auto [i, j] = std::minmax(active[a].number, active[b].number);
-        Peak& peak = peaks[{i, j}];
-        const double size = i == j ? active[a].size : active[a].size * active[b].size;
-        if (size > peak.size) peak = {size, key};
-      }
-    }
-  }
-  std::vector<Peak> order;
-  order.reserve(peaks.size());
-  for (const auto& [pair, peak] : peaks) order.push_back(peak);
-  std::stable_sort(order.begin(), order.end(), [](const Peak& a, const Peak& b) { return a.size > b.size; });
-  std::set<std::size_t> taken;
-  for (std::size_t n = 0; n < order.size() && taken.size() < most - most / 4; ++n) taken.insert(order[n].number);
-  const std::size_t more = most - taken.size();
-  for (std::size_t n = 0; n < more; ++n) taken.insert(all[more < 2 ? 0 : n * (all.size() - 1) / (more - 1)]);
-  return {taken.begin(), taken.end()};
+  Peaks peaks;
+  for (const std::size_t key : all) peaks.add(active_after(track, key), key);
+  return peaks.telling(all, most);
+}
+
+std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std::size_t most) {
+  std::vector<std::size_t> all(tracks.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  if (all.size() <= most) return all;
+  Peaks peaks;
+  for (const std::size_t t : all)
+    for (std::size_t key = 0; key < tracks[t].size(); ++key) peaks.add(active_after(tracks[t], key), t);
+  return peaks.telling(all, most);
 }
 
 namespace {

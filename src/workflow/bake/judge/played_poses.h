@@ -33,6 +33,10 @@ struct DrivingTrack {
 /// weights is, so that a wink in a long animation is among them; the others are taken evenly.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
 
+/// The numbers of at most so many tracks, ascending. Where there are more, those come first in which a weight, or the
+/// product of two weights, is as large as nowhere else; the others are taken evenly. All have the same targets.
+[[nodiscard]] std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std::size_t most);
+
 /// What a host plays of some tracks, one after the other, but for poses that look as the one before: for each telling
 /// key, `phase` (in [0, 1)) and as many instants as asked for in all up to the next key, evenly; where these are more
 /// than `most`, fewer instants of each key, and then fewer keys. Each track gets a share by the number of its telling

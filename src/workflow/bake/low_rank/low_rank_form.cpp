@@ -1,5 +1,5 @@
 // Rows are the nodes of the curves (extra_curves.h), or where there are too many of them, those of some gaps between
-// keys; the curves at all other nodes follow from the deltas by least squares.
+// keys, and of some tracks; the curves at all other nodes follow from the deltas by least squares.
 #include "workflow/bake/low_rank/low_rank_form.h"
 
 #include <algorithm>
@@ -46,6 +46,15 @@ struct Rows {
   std::vector<PlaceOfRows> unseen;    // others, which nothing is fitted to
 };
 
+// The tracks that have a place among so many rows, if each of them has its most telling piece there.
+std::vector<std::size_t> tracks_within(const FileInstants& all, const std::vector<WeightTrack>& tracks,
+                                       std::size_t most) {
+  std::size_t least = 0;
+  for (const CurveNodes& nodes : all.tracks) least += 2 * nodes.pieces() + 1;
+  const std::size_t some = least > most ? tracks.size() * most / least : tracks.size();
+  return telling_tracks(tracks, std::max<std::size_t>(1, some));
+}
+
 Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks, std::size_t most) {
   const std::size_t standing = all.first.back();
   const double share = std::fmin(1, static_cast<double>(most) / static_cast<double>(all.poses.size()));
@@ -56,7 +65,7 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
     row_of[instant] = rows.instants.size();
     rows.instants.push_back(instant);
   };
-  for (std::size_t t = 0; t < all.tracks.size(); ++t) {
+  for (const std::size_t t : tracks_within(all, tracks, most)) {
     const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
     // A piece between others that are left out takes three rows, and else two.
     const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
