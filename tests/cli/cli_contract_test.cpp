@@ -692,9 +692,7 @@ TEST_F(Cli, each_keeps_the_notes_and_names_the_motion_that_failed) {
 // Work that takes longer than a progress bar waits before it shows.
 constexpr const char* kSecondOfWork = "compare --sample eversion --schemes linear:scaled --samples 31";
 
-TEST_F(Cli, progress_stays_off_when_stderr_is_no_terminal) {
-  EXPECT_EQ(run(kSecondOfWork).err, "");
-}
+TEST_F(Cli, progress_stays_off_when_stderr_is_no_terminal) { EXPECT_EQ(run(kSecondOfWork).err, ""); }
 
 TEST_F(Cli, progress_shows_on_a_terminal_and_goes_away) {
   if (run_shell("script -qec true /dev/null", "/tmp").exit_code != 0) GTEST_SKIP() << "`script` makes no terminal here";

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <deque>
 
 #include "analysis/quality/kernels/shown_angles.h"
-#include "core/bits.h"
 #include "core/blocks.h"
-#include "core/portable_math.h"
+#include "workflow/bake/judge/error_spread.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -32,20 +30,51 @@ bool is_plain(const Vec3f& normal, std::span<const VertexColumns::Entry> entries
          });
 }
 
+// The weights of poses, for each column side by side, and between which poses it has any: where targets are judged
+// alone, most columns have none in most poses.
+class PoseWeights {
+ public:
+  explicit PoseWeights(const PoseList& poses)
+      : poses_(poses.size()), active_(poses.empty() ? 0 : poses[0].size()), weights_(poses_ * active_.size()) {
+    for (std::size_t p = 0; p < poses_; ++p) {
+      for (std::size_t c = 0; c < active_.size(); ++c) {
+        const auto weight = static_cast<float>(poses[p][c]);
+        weights_[c * poses_ + p] = weight;
+        if (weight == 0) continue;
+        IndexRange& active = active_[c];
+        if (active.count == 0) active.first = p;
+        active.count = p + 1 - active.first;
+      }
+    }
+  }
+
+  // (poses)
+  [[nodiscard]] const float* of(std::size_t column) const { return weights_.data() + column * poses_; }
+  // Beyond these poses the column has no weight.
+  [[nodiscard]] const IndexRange& active(std::size_t column) const { return active_[column]; }
+
+ private:
+  std::size_t poses_;
+  std::vector<IndexRange> active_;
+  std::vector<float> weights_;
+};
+
 // Sums of one vertex in many poses.
 class Sums {
  public:
-  // weights are (columns, poses).
   void add_up(const Host& host, const Vec3f& normal, std::span<const VertexColumns::Entry> entries,
-              std::span<const float> weights, std::size_t stride, std::size_t first, std::size_t count) {
+              const PoseWeights& weights, std::size_t first, std::size_t count) {
     const Vec3f base = kept_normal(host, normal);
     x_.assign(count, base.x);
     y_.assign(count, base.y);
     z_.assign(count, base.z);
     for (const auto& [column, delta] : entries) {
+      const IndexRange& active = weights.active(column);
+      const std::size_t begin = std::max(active.first, first), end = std::min(active.end(), first + count);
+      if (begin >= end) continue;
       const Vec3f kept = kept_delta(host, normal, base, delta);
-      const float* const w = weights.data() + column * stride + first;
-      for (std::size_t p = 0; p < count; ++p) {
+      const float* const w = weights.of(column) + first;
+      for (std::size_t p = begin - first; p < end - first; ++p) {
         x_[p] += w[p] * kept.x;
         y_[p] += w[p] * kept.y;
         z_[p] += w[p] * kept.z;
@@ -87,84 +116,7 @@ class Sums {
   std::vector<double> across_, along_, angles_;
 };
 
-std::vector<float> side_by_side(const PoseList& poses) {
-  std::vector<float> weights(poses.empty() ? 0 : poses.size() * poses[0].size());
-  for (std::size_t p = 0; p < poses.size(); ++p) {
-    for (std::size_t c = 0; c < poses[p].size(); ++c) weights[c * poses.size() + p] = static_cast<float>(poses[p][c]);
-  }
-  return weights;
-}
-
-constexpr std::size_t kBins = 160;
-constexpr float kBinsPerOctave = 8, kLeastBin = 1e-3F;
-
-// The exponent of a float counts octaves, and its fraction is held against eighths of one.
-std::size_t bin_of(float degrees) {
-  constexpr std::array<float, 7> kEighths = {1.0905077F, 1.1892071F, 1.2968396F, 1.4142135F,
-                                             1.5422108F, 1.6817929F, 1.8340081F};
-  const auto bits = bit_cast<std::uint32_t>(std::max(degrees, kLeastBin) / kLeastBin);
-  const float fraction = bit_cast<float>((bits & 0x007FFFFFU) | 0x3F800000U);
-  std::size_t bin = std::size_t{8} * ((bits >> 23) - 127);
-  for (const float eighth : kEighths) bin += fraction >= eighth ? 1 : 0;
-  return std::min(kBins - 1, bin);
-}
-
-// Errors with their spread, to a tenth of themselves.
-struct Spread {
-  std::size_t count = 0;
-  double sum = 0, worst = 0;
-  std::array<std::size_t, kBins> bins{};
-
-  void add(const Spread& other) {
-    count += other.count;
-    sum += other.sum;
-    worst = std::fmax(worst, other.worst);
-    for (std::size_t b = 0; b < kBins; ++b) bins[b] += other.bins[b];
-  }
-  [[nodiscard]] ShownErrors errors() const {
-    ShownErrors result{count, count > 0 ? sum / static_cast<double>(count) : 0, 0, worst};
-    std::size_t beyond = count / 1000, b = kBins - 1;
-    while (b > 0 && bins[b] <= beyond) beyond -= bins[b--];
-    const float upper = kLeastBin * static_cast<float>(portable::exp2(static_cast<double>(b + 1) / kBinsPerOctave));
-    result.most = b == 0 ? 0 : std::fmin(static_cast<double>(upper), worst);
-    return result;
-  }
-};
-
-// The same while it is gathered: numbers of vertices, which are added up in their order, and counts, for which the
-// order does not matter.
-struct Gathered {
-  explicit Gathered(std::size_t vertices) : sum(vertices), worst(vertices), counts(vertices) {}
-
-  void add(std::size_t n, std::span<const float> errors, std::span<const float> known) {
-    std::array<std::uint32_t, kBins> here{};
-    for (std::size_t p = 0; p < errors.size(); ++p) {
-      if (known[p] < 0) continue;
-      sum[n] += errors[p];
-      worst[n] = std::fmax(worst[n], errors[p]);
-      ++counts[n];
-      ++here[bin_of(errors[p])];
-    }
-    for (std::size_t b = 0; b < kBins; ++b)
-      if (here[b] > 0) bins[b].fetch_add(here[b], std::memory_order_relaxed);
-  }
-  [[nodiscard]] Spread spread() const {
-    Spread result;
-    for (std::size_t n = 0; n < sum.size(); ++n) {
-      result.count += counts[n];
-      result.sum += static_cast<double>(sum[n]);
-      result.worst = std::fmax(result.worst, static_cast<double>(worst[n]));
-    }
-    for (std::size_t b = 0; b < kBins; ++b) result.bins[b] = bins[b];
-    return result;
-  }
-
-  std::vector<float> sum, worst;
-  std::vector<std::uint32_t> counts;
-  std::array<std::atomic<std::size_t>, kBins> bins{};
-};
-
-// The same of the stored forms and of the chosen ones, in each kind of host.
+// The errors of the stored forms and of the chosen ones, in each kind of host.
 struct GatheredPairs {
   GatheredPairs(std::size_t kinds, std::size_t vertices) {
     for (std::size_t kind = 0; kind < kinds; ++kind) {
@@ -180,7 +132,7 @@ struct GatheredPairs {
     after[kind].add(vertex, now, then);
   }
 
-  std::deque<Gathered> before, after;  // they cannot be moved
+  std::deque<GatheredErrors> before, after;  // they cannot be moved
 };
 
 // Notes the vertices that make mixed poses worse than before, as a whole: all that grew in the mean, where that did;
@@ -188,7 +140,8 @@ struct GatheredPairs {
 // 99.9 % are now below that half, there is room for these, but not for what grew beyond what 99.9 % were below. Where
 // there are now no more of these than before, a vertex that is nearer in the mean may be farther off at worst, as long
 // as it is not the worst of all.
-void note_what_makes_worse(const Gathered& before, const Gathered& after, double tolerance, std::vector<char>& noted) {
+void note_what_makes_worse(const GatheredErrors& before, const GatheredErrors& after, double tolerance,
+                           std::vector<char>& noted) {
   const ShownErrors then = before.spread().errors(), now = after.spread().errors();
   const double high = std::fmax(now.most > then.most / 2 ? then.most / 2 : then.most, tolerance);
   for (std::size_t n = 0; n < noted.size(); ++n) {
@@ -238,11 +191,11 @@ HostJudge::HostJudge(const RightNormals& rights, std::span<const std::uint32_t> 
 
 std::vector<float> HostJudge::worst(const VertexColumns& form, const PoseList& poses) const {
   std::vector<float> result(vertices_.size(), 0.0F);
-  const std::vector<float> weights = side_by_side(poses);
+  const PoseWeights weights(poses);
   rights_.for_each(vertices_, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
     thread_local Sums sums;
     thread_local std::vector<float> errors;
-    sums.add_up(Host{}, to_float(rights_.stored(vertices_[n])), form.of(n), weights, poses.size(), first, right.size());
+    sums.add_up(Host{}, to_float(rights_.stored(vertices_[n])), form.of(n), weights, first, right.size());
     errors.resize(right.size());
     sums.angles_to(right, errors);
     for (const float error : errors) result[n] = std::fmax(result[n], error);
@@ -274,7 +227,7 @@ template <class Visit>
 void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set, std::span<const Kind> kinds,
                         const Visit& visit) const {
   const PoseList poses = weights_of(set.poses);
-  const std::vector<float> weights = side_by_side(poses);
+  const PoseWeights weights(poses);
   const SkinsInPoses skins(set.poses);
   std::vector<std::uint32_t> some;
   for (const std::uint32_t n : set.numbers) some.push_back(vertices_[n]);
@@ -306,7 +259,7 @@ void HostJudge::compare(std::span<const VertexColumns> forms, const PoseSet& set
         const bool is_known = kind > 0 && carries_as_before && !is_rounding(kinds[kind].host) &&
                               !is_rounding(kinds[kind - 1].host) && are_plain[f * vertices.size() + at] != 0;
         if (is_known) continue;
-        sums.add_up(kinds[kind].host, normal, forms[f].of(n), weights, set.poses.size(), first, right.size());
+        sums.add_up(kinds[kind].host, normal, forms[f].of(n), weights, first, right.size());
         if (skins.any()) sums.carry(carrying, rule);
         sums.angles_to(is_right, std::span(errors).subspan(f * right.size(), right.size()));
       }
@@ -375,7 +328,7 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
                                           std::vector<std::uint8_t>& choice) const {
   constexpr int kMostRounds = 6;
   struct Errors {
-    Spread before, after;
+    ErrorSpread before, after;
   };
   std::array<std::vector<Errors>, kPoseKinds> of_hosts;
   of_hosts.fill(std::vector<Errors>(hosts_.size()));
@@ -401,7 +354,7 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
       for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
         if (!of_file && kinds[kind].is_binding)
           note_what_makes_worse(gathered.before[kind], gathered.after[kind], tolerance_, noted);
-        const Spread then = gathered.before[kind].spread(), now = gathered.after[kind].spread();
+        const ErrorSpread then = gathered.before[kind].spread(), now = gathered.after[kind].spread();
         for (const std::size_t h : set.hosts) {
           if (!is_alike(set, judged_as(hosts_[h]), kinds[kind].host)) continue;
           Errors& errors = of_hosts[static_cast<std::size_t>(set.kind)][h];

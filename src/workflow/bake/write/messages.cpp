@@ -189,7 +189,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.stilled > 0) {
     warn(std::to_string(baked.stilled) + (baked.stilled == 1 ? " target turns" : " targets turn") +
-         " normals and moves no position: where the surface stays its normals stay, and these deltas are zero now");
+         " normals and move no position: where the surface stays its normals stay, and these deltas are zero now");
   }
   if (baked.without_stored > 0) {
     warn(std::to_string(baked.without_stored) +
