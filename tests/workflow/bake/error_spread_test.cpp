@@ -1,0 +1,84 @@
+// Gathered errors have the mean, the worst and the quantile of a list of all of them.
+#include "workflow/bake/judge/error_spread.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "chronormal/core/parallel.h"
+#include "tests/support/fixtures.h"
+
+namespace chronormal::error_spread_test {
+namespace {
+
+constexpr std::size_t kVertices = 400, kPoses = 50, kBatch = 20;
+
+// (kVertices, kPoses), from 1e-4 to 100 degrees; some are not known.
+std::vector<float> errors_of_all(unsigned seed) {
+  fixtures::Random random(seed);
+  std::vector<float> errors;
+  for (std::size_t n = 0; n < kVertices * kPoses; ++n)
+    errors.push_back(random.below(9) == 0 ? -1.0F : static_cast<float>(std::pow(10, random.uniform(-4, 2))));
+  return errors;
+}
+
+// Adds them vertex by vertex, in batches of poses.
+void add_all(const std::vector<float>& errors, GatheredErrors& to) {
+  for (std::size_t first = 0; first < kPoses; first += kBatch) {
+    parallel_for(kVertices, [&](std::size_t v) {
+      const auto some = std::span(errors).subspan(v * kPoses + first, std::min(kBatch, kPoses - first));
+      to.add(v, some, some);
+    });
+  }
+}
+
+TEST(ErrorSpread, is_that_of_a_list_of_all_errors) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const std::vector<float> errors = errors_of_all(seed);
+    GatheredErrors gathered(kVertices);
+    add_all(errors, gathered);
+    std::vector<double> known;
+    double sum = 0;
+    for (const float error : errors) {
+      if (error < 0) continue;
+      known.push_back(error);
+      sum += known.back();
+    }
+    std::sort(known.begin(), known.end());
+    const ShownErrors result = gathered.spread().errors();
+    EXPECT_EQ(result.judged, known.size());
+    EXPECT_NEAR(result.mean, sum / static_cast<double>(known.size()), 1e-5 * result.mean);
+    EXPECT_EQ(result.worst, known.back());
+    const double most = known[known.size() - 1 - known.size() / 1000];
+    EXPECT_GE(result.most, most);
+    EXPECT_LE(result.most, 1.1 * most);
+  }
+}
+
+TEST(ErrorSpread, of_two_sets_is_that_of_both) {
+  const std::vector<float> small(kVertices * kPoses, 0.01F), large(kVertices * kPoses, 3.0F);
+  GatheredErrors a(kVertices), b(kVertices), both(kVertices);
+  add_all(small, a);
+  add_all(large, b);
+  add_all(small, both);
+  add_all(large, both);
+  ErrorSpread sum = a.spread();
+  sum.add(b.spread());
+  EXPECT_EQ(sum.bins, both.spread().bins);
+  EXPECT_EQ(sum.count, 2 * kVertices * kPoses);
+  EXPECT_NEAR(sum.errors().mean, 1.505, 1e-4);
+  EXPECT_EQ(sum.errors().worst, 3);
+}
+
+TEST(ErrorSpread, of_nothing_is_zero) {
+  const ShownErrors none = GatheredErrors(3).spread().errors();
+  EXPECT_EQ(none.judged, 0U);
+  EXPECT_EQ(none.mean, 0);
+  EXPECT_EQ(none.most, 0);
+  EXPECT_EQ(none.worst, 0);
+}
+
+}  // namespace
+}  // namespace chronormal::error_spread_test
