@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "chronormal/core/parallel.h"
@@ -49,6 +50,8 @@ TEST(ErrorSpread, is_that_of_a_list_of_all_errors) {
     std::sort(known.begin(), known.end());
     const ShownErrors result = gathered.spread().errors();
     EXPECT_EQ(result.judged, known.size());
+    const auto& bins = gathered.spread().bins;
+    EXPECT_EQ(std::accumulate(bins.begin(), bins.end(), std::size_t{0}), known.size());
     EXPECT_NEAR(result.mean, sum / static_cast<double>(known.size()), 1e-5 * result.mean);
     EXPECT_EQ(result.worst, known.back());
     const double most = known[known.size() - 1 - known.size() / 1000];
