@@ -1,3 +1,4 @@
+// Allocates memory for arrays that are streamed, in huge pages where it is large.
 #include "core/memory.h"
 
 #include <cassert>
@@ -17,19 +18,24 @@ constexpr std::size_t kSmallestHuge = 4 * kHugePage;
 
 }  // namespace
 
-AlignedBytes::AlignedBytes(std::size_t size) : size_(size), capacity_(size) {
-  if (size == 0) return;
+std::byte* allocate_aligned(std::size_t size) {
   const std::size_t alignment = size >= kSmallestHuge ? kHugePage : kCacheLine;
   if (size > std::size_t(-1) - alignment) throw std::bad_alloc();
   const std::size_t whole = (size + alignment - 1) / alignment * alignment;
-  data_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, whole)));
-  if (data_ == nullptr) throw std::bad_alloc();
+  void* const memory = std::aligned_alloc(alignment, whole);
+  if (memory == nullptr) throw std::bad_alloc();
 #ifdef __linux__
-  if (alignment == kHugePage) (void)madvise(data_.get(), whole, MADV_HUGEPAGE);  // where it is refused: small pages
+  if (alignment == kHugePage) (void)madvise(memory, whole, MADV_HUGEPAGE);  // where it is refused: small pages
 #endif
+  return static_cast<std::byte*>(memory);
 }
 
-void AlignedBytes::Free::operator()(std::byte* p) const noexcept { std::free(p); }
+void free_aligned(void* memory) noexcept { std::free(memory); }
+
+AlignedBytes::AlignedBytes(std::size_t size)
+    : data_(size == 0 ? nullptr : allocate_aligned(size)), size_(size), capacity_(size) {}
+
+void AlignedBytes::Free::operator()(std::byte* p) const noexcept { free_aligned(p); }
 
 void AlignedBytes::resize(std::size_t size) noexcept {
   assert(size <= capacity_);

@@ -15,6 +15,10 @@ namespace chronormal::inline internal {
 /// after it, that is better from 20 to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
+/// Memory for so many bytes, aligned as that of AlignedBytes. Throws std::bad_alloc.
+[[nodiscard]] std::byte* allocate_aligned(std::size_t size);
+void free_aligned(void* memory) noexcept;
+
 /// Uninitialised bytes, aligned to 64. From 8 MiB on they are aligned to 2 MiB and, on Linux, marked for huge pages,
 /// which spares most misses of the address translation. Pages that are never written cost no memory.
 class AlignedBytes {
@@ -67,6 +71,24 @@ class AlignedArray {
 
  private:
   AlignedBytes bytes_;
+};
+
+/// For a std::vector that is streamed, in memory as that of AlignedBytes.
+template <class T>
+struct AlignedAllocator {
+  using value_type = T;
+
+  AlignedAllocator() = default;
+  template <class U>
+  explicit AlignedAllocator(const AlignedAllocator<U>& /*other*/) noexcept {}
+
+  [[nodiscard]] T* allocate(std::size_t count) {
+    return reinterpret_cast<T*>(
+        allocate_aligned(count > std::size_t(-1) / sizeof(T) ? std::size_t(-1) : count * sizeof(T)));
+  }
+  void deallocate(T* p, std::size_t /*count*/) noexcept { free_aligned(p); }
+
+  friend bool operator==(const AlignedAllocator&, const AlignedAllocator&) = default;
 };
 
 template <class T>

@@ -68,8 +68,8 @@ class Build {
  public:
   Build(std::size_t size, const CurveOptions& options, CurveData* reuse)
       : limits_(options.tolerance), part_(part_size(size)) {
-    if (reuse != nullptr) curves_.blocks = std::exchange(*reuse, {}).blocks;
-    curves_.blocks.resize(0);
+    if (reuse != nullptr) curves_ = std::exchange(*reuse, {});
+    curves_.clear();
     curves_.size = size;
     curves_.keeps_lengths = limits_.with_lengths;
     if (size == 0) return;
@@ -94,7 +94,8 @@ class Build {
       }
       if (builder_->make_chunk(source)) continue;
       builder_.reset();
-      bytes_ += parts_[next_++].bytes;
+      join(parts_[next_]);
+      if (next_ < parts_.size()) parts_[next_].take_memory(parts_[next_ - 1]);
     }
   }
 
@@ -133,38 +134,14 @@ class Build {
     });
   }
 
-  // Puts the results of the parts one after the other.
+  // Puts the results of the parts one after the other, as far as that is not done.
   CurveData finish() {
-    std::size_t bytes = 0, flagged = 0;
-    for (const CurvePart& made : parts_) flagged += made.flagged.size();
+    std::size_t flagged = curves_.flagged.size();
+    for (std::size_t p = next_; p < parts_.size(); ++p) flagged += parts_[p].flagged.size();
     curves_.flagged.reserve(flagged);
-    curves_.flagged_tiles.resize(block_count(flagged, kTile));
-    flagged = 0;
-    for (const CurvePart& made : parts_) {
-      for (const CurveData::Run& run : made.runs) {
-        if (!curves_.runs.empty() && curves_.runs.back().kind == run.kind) {
-          curves_.runs.back().block_count += run.block_count;
-        } else {
-          curves_.runs.push_back({run.first_block, run.block_count, bytes + run.offset, run.kind});
-        }
-      }
-      bytes += made.bytes;
-      append(curves_.flagged, made.flagged);
-      for (const FlaggedNormals& normals : made.flagged_normals) {
-        curves_.flagged_tiles[flagged / kTile].set(flagged % kTile, normals);
-        ++flagged;
-      }
-      for (const auto& [element, digits] : made.exact)
-        curves_.exact.push_back({element, curves_.exact_digits.size() + digits});
-      append(curves_.exact_digits, made.exact_digits);
-      for (std::size_t d = 0; d < 3; ++d) curves_.degree_counts[d] += made.degree_counts[d];
-      if (!made.exponents.empty() && curves_.keeps_lengths) {
-        curves_.exponents.resize(whole() / kTile);
-        std::copy(made.exponents.begin(), made.exponents.end(),
-                  curves_.exponents.begin() + static_cast<std::ptrdiff_t>(made.elements.first / kTile));
-      }
-    }
-    curves_.blocks.resize(bytes);
+    curves_.flagged_tiles.reserve(block_count(flagged, kTile));
+    while (next_ < parts_.size()) join(parts_[next_]);
+    curves_.blocks.resize(bytes_);
     return std::move(curves_);
   }
 
@@ -176,15 +153,37 @@ class Build {
     to.insert(to.end(), more.begin(), more.end());
   }
 
+  // Adds the next part, whose blocks are in their place.
+  void join(const CurvePart& made) {
+    for (const CurveData::Run& run : made.runs) {
+      if (!curves_.runs.empty() && curves_.runs.back().kind == run.kind) {
+        curves_.runs.back().block_count += run.block_count;
+      } else {
+        curves_.runs.push_back({run.first_block, run.block_count, bytes_ + run.offset, run.kind});
+      }
+    }
+    for (std::size_t k = 0; k < made.flagged.size(); ++k) curves_.add_flagged(made.flagged[k], made.flagged_normals[k]);
+    for (const auto& [element, digits] : made.exact)
+      curves_.exact.push_back({element, curves_.exact_digits.size() + digits});
+    append(curves_.exact_digits, made.exact_digits);
+    for (std::size_t d = 0; d < 3; ++d) curves_.degree_counts[d] += made.degree_counts[d];
+    if (!made.exponents.empty() && curves_.keeps_lengths) {
+      curves_.exponents.resize(whole() / kTile);
+      std::copy(made.exponents.begin(), made.exponents.end(),
+                curves_.exponents.begin() + static_cast<std::ptrdiff_t>(made.elements.first / kTile));
+    }
+    bytes_ += made.bytes;
+    ++next_;
+  }
+
   [[nodiscard]] std::size_t whole() const { return block_count(curves_.size, kTile) * kTile; }
 
   CurveData curves_;
   BuildLimits limits_;
   std::size_t part_;  // elements
   std::vector<CurvePart> parts_;
-  // For parts that are made one after the other: the next part, its builder, and the bytes of the parts before.
-  std::size_t next_ = 0, bytes_ = 0;
-  std::optional<PartBuilder> builder_;
+  std::size_t next_ = 0, bytes_ = 0;    // the next part to be added, and the bytes of the parts before
+  std::optional<PartBuilder> builder_;  // of that part, where parts are made one after the other
 };
 
 template <class MakeSource>

@@ -41,7 +41,7 @@ struct CurveData {
   std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty where all are 0
   /// Elements that are evaluated in double, ascending, and what from: sixteen of them side by side.
   std::vector<std::size_t> flagged;
-  std::vector<FlaggedTile> flagged_tiles;
+  std::vector<FlaggedTile, AlignedAllocator<FlaggedTile>> flagged_tiles;
   /// The flagged elements for which double does not suffice at every t, in ascending order. `digits` is the place in
   /// exact_digits at which the ExactCurve of the element begins.
   struct ExactElement {
@@ -51,6 +51,27 @@ struct CurveData {
   std::vector<ExactElement> exact;
   std::vector<std::int32_t> exact_digits;
   AlignedArray<float> scratch;  ///< of preparing, kept for the next segment
+
+  /// Becomes empty, and keeps its memory.
+  void clear() noexcept {
+    size = 0;
+    degree_counts = {};
+    blocks.resize(0);
+    runs.clear();
+    exponents.clear();
+    flagged.clear();
+    flagged_tiles.clear();
+    exact.clear();
+    exact_digits.clear();
+  }
+
+  /// Adds a flagged element behind all others.
+  void add_flagged(std::size_t element, const FlaggedNormals& normals) {
+    const std::size_t lane = flagged.size() % kTile;
+    if (lane == 0) flagged_tiles.emplace_back();
+    flagged_tiles.back().set(lane, normals);
+    flagged.push_back(element);
+  }
 
   /// Returns the control normals of the element flagged[index].
   [[nodiscard]] ControlNormals flagged_normals(std::size_t index) const noexcept {

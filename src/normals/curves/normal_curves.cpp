@@ -302,6 +302,7 @@ void NormalCurves::normals(double time, VectorView<float> result) const noexcept
   const double t = local_time(time);
   const CurveWeights weights = CurveWeights::at(t, !curves.keeps_lengths);
   for (const CurveData::Run& run : curves.runs) {
+    if (run.kind == BlockKind::kNone) continue;
     const IndexRange elements = run.elements(curves.size);
     for (std::size_t i = elements.first; i < elements.end(); ++i) {
       const std::size_t block = (i - elements.first) / kTile;

@@ -86,6 +86,7 @@ struct AnyOutput {
   Set set;
 
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
+    if (span.kind == BlockKind::kNone) return;
     constexpr std::size_t kCount = 16 * kTile;
     alignas(64) float x[kCount], y[kCount], z[kCount];
     for (std::size_t i = 0; i < span.elements; i += kCount) {

@@ -108,6 +108,19 @@ struct CurvePart {
   std::vector<std::int32_t> exact_digits;
   std::vector<std::int16_t> exponents;  // empty, or one for each of its blocks
   std::array<std::size_t, 3> degree_counts{};
+
+  // Takes the memory of a part that is no longer needed.
+  void take_memory(CurvePart& done) {
+    const auto take = [](auto& to, auto& from) {
+      to = std::move(from);
+      to.clear();
+    };
+    take(runs, done.runs);
+    take(flagged, done.flagged);
+    take(flagged_normals, done.flagged_normals);
+    take(exact, done.exact);
+    take(exact_digits, done.exact_digits);
+  }
 };
 
 // The result of examining one element that the quick test in float32 did not settle.
@@ -216,7 +229,7 @@ class PartBuilder {
         part_.degree_counts[1] += static_cast<std::size_t>(std::popcount(moving & ~bending));
         part_.degree_counts[2] += static_cast<std::size_t>(std::popcount(bending));
       }
-      needs[k].degree = (bending & counted) != 0 ? 2 : (moving & counted) != 0 ? 1 : 0;
+      needs[k].degree = (bending & counted) != 0 ? 2 : (moving & counted) != 0 ? 1 : counted != 0 ? 0 : kNoDegree;
     }
 
     const std::size_t bytes_before = part_.bytes;

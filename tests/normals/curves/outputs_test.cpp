@@ -397,7 +397,7 @@ void expect_streamed_as_stored(std::size_t words, const Evaluate& evaluate) {
 
 TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
   for (const WorkingSet set : {WorkingSet::kSharedCache, WorkingSet::kMemory}) {
-    const std::size_t faces = set == WorkingSet::kSharedCache ? 1'000'037 : 1'500'037;
+    const std::size_t faces = set == WorkingSet::kSharedCache ? 1'000'037 : 1'700'037;
     SCOPED_TRACE(faces);
     Motion motion = test::integer_grid(50);
     motion.topology = repeated_grid(motion.topology, faces);

@@ -15,6 +15,7 @@
 ///     kQuadratic11    16 words for x, for y, for z; from the lowest bit up: 5 low bits of m, 11 bits of n0, 5 high
 ///                     bits of m, 11 bits of n1; c = q M / 1023 for the ends, m = (32 high + low + 16) 2 M / 1023, with
 ///                     both halves signed, from -16 to 15
+///     kNone           nothing: all elements are flagged (curve_data.h)
 ///
 /// Pairs are what one instruction multiplies by two weights and adds up (pmaddwd).
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_CURVE_BLOCKS_H_
@@ -36,19 +37,24 @@ enum class BlockKind : int {
   kScaled16,
   kLinear32,
   kQuadratic32,
+  kNone,
 };
 
 /// Bytes for each element.
 [[nodiscard]] constexpr std::size_t bytes_of(BlockKind kind) {
-  constexpr std::size_t bytes[] = {12, 16, 12, 12, 20, 20, 24, 36};
+  constexpr std::size_t bytes[] = {12, 16, 12, 12, 20, 20, 24, 36, 0};
   return bytes[static_cast<int>(kind)];
 }
 
 /// How precisely the elements of a block are kept, whatever their degree.
 enum class Precision : std::uint8_t { k11, k16, kScaled16, k32 };
 
+/// The degree of a block in which all elements are flagged.
+inline constexpr int kNoDegree = -1;
+
 /// The kind for elements of a degree; with_lengths asks for lengths where all are of degree 0.
 [[nodiscard]] constexpr BlockKind kind_for(Precision precision, int degree, bool with_lengths) {
+  if (degree == kNoDegree) return BlockKind::kNone;
   if (degree == 0) return with_lengths ? BlockKind::kUnitLength : BlockKind::kUnit;
   switch (precision) {
     case Precision::k11:

@@ -297,6 +297,8 @@ void ByKind(const BlockSpan& span, const CurveWeights& w, To to) {
       return WholeBlocks<Linear32>(span, w, to);
     case BlockKind::kQuadratic32:
       return WholeBlocks<Quadratic32>(span, w, to);
+    case BlockKind::kNone:
+      return;
   }
 }
 
@@ -371,6 +373,7 @@ namespace {
 // Calls evaluate(part of the span, where its results go, how far ahead to prefetch) for all of it.
 template <class Result, class Evaluate>
 void at_best_distance(const BlockSpan& span, const Result& result, const Evaluate& evaluate) {
+  if (span.kind == BlockKind::kNone) return;
   const std::size_t bytes = bytes_of(span.kind);
   prefetch_of_curves(result.access.working_set)
       .over(span.elements, bytes, [&](std::size_t first, std::size_t count, std::size_t ahead) {

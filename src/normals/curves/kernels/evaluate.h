@@ -68,7 +68,7 @@ inline Rgb10A2Result behind(const Rgb10A2Result& result, std::size_t count) {
   return {result.bits + count, result.access};
 }
 
-/// Writes the unit normals of all elements of a span, at the t of the weights.
+/// Writes the unit normals of all elements of a span, at the t of the weights; of kNone nothing.
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PackedResult result) noexcept;
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PlanesResult result) noexcept;
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, OctahedralResult result) noexcept;

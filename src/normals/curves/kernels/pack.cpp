@@ -326,6 +326,8 @@ void PackTile(const ControlTile& tile, BlockKind kind, std::byte* block) {
       return PackLinear32(tile, floats);
     case BlockKind::kQuadratic32:
       return PackQuadratic32(tile, floats);
+    case BlockKind::kNone:
+      return;
   }
 }
 
