@@ -51,6 +51,19 @@ HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
 #define CHRONORMAL_DEMOTE_CLAMPS 0
 #endif
 
+// Both halves of the lanes, in the range of float; a single lane is the lower one.
+HWY_INLINE Floats Joined(Doubles lower, [[maybe_unused]] Doubles upper) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::DemoteTo(kFloats, lower);
+#else
+  const HalfFloatTag half;
+  return hn::Combine(kFloats, hn::DemoteTo(half, upper), hn::DemoteTo(half, lower));
+#endif
+}
+HWY_INLINE Lanes3 Joined(const Doubles3& lower, const Doubles3& upper) {
+  return {Joined(lower.x, upper.x), Joined(lower.y, upper.y), Joined(lower.z, upper.z)};
+}
+
 // kLanes doubles in memory.
 HWY_INLINE Floats ToFloat(const double* from) {
 #if CHRONORMAL_DEMOTE_CLAMPS
@@ -58,9 +71,7 @@ HWY_INLINE Floats ToFloat(const double* from) {
   for (std::size_t i = 0; i < kLanes; ++i) rounded[i] = static_cast<float>(from[i]);
   return hn::LoadU(kFloats, rounded);
 #else
-  const HalfFloatTag half;
-  return hn::Combine(kFloats, hn::DemoteTo(half, hn::Load(kDoubles, from + kDoubleLanes)),
-                     hn::DemoteTo(half, hn::Load(kDoubles, from)));
+  return Joined(hn::Load(kDoubles, from), hn::Load(kDoubles, from + kDoubleLanes));
 #endif
 }
 

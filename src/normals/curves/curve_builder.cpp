@@ -139,7 +139,6 @@ class Build {
     std::size_t flagged = curves_.flagged.size();
     for (std::size_t p = next_; p < parts_.size(); ++p) flagged += parts_[p].flagged.size();
     curves_.flagged.reserve(flagged);
-    curves_.flagged_tiles.reserve(block_count(flagged, kTile));
     while (next_ < parts_.size()) join(parts_[next_]);
     curves_.blocks.resize(bytes_);
     return std::move(curves_);
@@ -162,7 +161,7 @@ class Build {
         curves_.runs.push_back({run.first_block, run.block_count, bytes_ + run.offset, run.kind});
       }
     }
-    for (std::size_t k = 0; k < made.flagged.size(); ++k) curves_.add_flagged(made.flagged[k], made.flagged_normals[k]);
+    curves_.flagged.append(made.flagged);
     for (const auto& [element, digits] : made.exact)
       curves_.exact.push_back({element, curves_.exact_digits.size() + digits});
     append(curves_.exact_digits, made.exact_digits);

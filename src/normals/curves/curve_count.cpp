@@ -71,7 +71,8 @@ std::size_t CurveCount::bytes(std::size_t size) const noexcept {
   static_assert(sizeof(std::size_t) != kIndex ||
                 (sizeof(CurveData::Run) == kRun && sizeof(CurveData::ExactElement) == kExact));
   return block_bytes - unused + runs * kRun + (has_exponents ? block_count(size, kTile) * sizeof(std::int16_t) : 0) +
-         flagged * (kIndex + sizeof(FlaggedNormals)) + exact * kExact + digits * sizeof(std::int32_t);
+         flagged * (kIndex + sizeof(FlaggedTile) / kTile + sizeof(std::int16_t)) + exact * kExact +
+         digits * sizeof(std::int32_t);
 }
 
 CurveCount count_curves(const Segment& segment, IndexRange faces, std::span<EdgedTile> exact) {

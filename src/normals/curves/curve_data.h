@@ -13,8 +13,8 @@
 #include "chronormal/core/views.h"
 #include "chronormal/normals/control_normals.h"
 #include "core/memory.h"
+#include "normals/curves/flagged_elements.h"
 #include "normals/curves/kernels/curve_blocks.h"
-#include "normals/curves/kernels/flagged_normals.h"
 
 namespace chronormal::inline internal {
 
@@ -39,9 +39,7 @@ struct CurveData {
   AlignedBytes blocks;
   std::vector<Run> runs;
   std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty where all are 0
-  /// Elements that are evaluated in double, ascending, and what from: sixteen of them side by side.
-  std::vector<std::size_t> flagged;
-  std::vector<FlaggedTile, AlignedAllocator<FlaggedTile>> flagged_tiles;
+  FlaggedElements flagged;              ///< what is evaluated in double
   /// The flagged elements for which double does not suffice at every t, in ascending order. `digits` is the place in
   /// exact_digits at which the ExactCurve of the element begins.
   struct ExactElement {
@@ -60,22 +58,8 @@ struct CurveData {
     runs.clear();
     exponents.clear();
     flagged.clear();
-    flagged_tiles.clear();
     exact.clear();
     exact_digits.clear();
-  }
-
-  /// Adds a flagged element behind all others.
-  void add_flagged(std::size_t element, const FlaggedNormals& normals) {
-    const std::size_t lane = flagged.size() % kTile;
-    if (lane == 0) flagged_tiles.emplace_back();
-    flagged_tiles.back().set(lane, normals);
-    flagged.push_back(element);
-  }
-
-  /// Returns the control normals of the element flagged[index].
-  [[nodiscard]] ControlNormals flagged_normals(std::size_t index) const noexcept {
-    return element_of(flagged_tiles[index / kTile].normals, index % kTile);
   }
 };
 

@@ -48,6 +48,13 @@ const std::int32_t* digits_of(const CurveData& curves, std::size_t element) {
   return is_exact ? curves.exact_digits.data() + at->digits : nullptr;
 }
 
+// Whether double is certain of the direction of n(t), or that there is none, if the control normals are exact.
+bool has_certain_direction(const ControlNormals& c, double t) {
+  const double s = 1 - t;
+  const double size = s * s * max_abs(c.n0) + 2 * t * s * max_abs(c.m) + t * t * max_abs(c.n1);
+  return largest_component(c) == 0 || max_abs(normal_at(c, t)) > smallest_certain(0) * size;
+}
+
 // How many of the flagged elements [first, last) are neighbours, from the first one on.
 std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t first, std::size_t last) noexcept {
   if (flagged[last - 1] - flagged[first] == last - 1 - first) return last - first;
@@ -60,26 +67,26 @@ std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t first,
 // then settle(index, element) for those that it cannot carry; `index` is that among the flagged.
 template <class Write, class Settle>
 void for_flagged(const CurveData& curves, IndexRange range, double t, const Write& write, const Settle& settle) {
-  const auto index_of = [&flagged = curves.flagged](std::size_t element) {
+  const auto index_of = [&flagged = curves.flagged.numbers](std::size_t element) {
     return static_cast<std::size_t>(std::lower_bound(flagged.begin(), flagged.end(), element) - flagged.begin());
   };
   constexpr std::size_t kBatch = 4;  // tiles
   const std::size_t begin = index_of(range.first), end = index_of(range.end());
   FlaggedUnits batch[kBatch];
   for (std::size_t tile = begin / kTile; tile * kTile < end; tile += kBatch) {
-    const std::size_t count = std::min(kBatch, curves.flagged_tiles.size() - tile);
-    flagged_unit_normals(std::span(curves.flagged_tiles).subspan(tile, count), t, batch);
+    const std::size_t count = std::min(kBatch, curves.flagged.tiles.size() - tile);
+    flagged_unit_normals(std::span(curves.flagged.tiles).subspan(tile, count), t, batch);
     for (std::size_t i = 0; i < count; ++i) {
       const FlaggedUnits& units = batch[i];
       const std::size_t first = (tile + i) * kTile, last = std::min(first + kTile, end);
       for (std::size_t k = std::max(first, begin); k < last;) {
-        const std::size_t run = run_from(curves.flagged, k, last);
-        write(curves.flagged[k], units.xyz + 3 * (k - first), run);
+        const std::size_t run = run_from(curves.flagged.numbers, k, last);
+        write(curves.flagged.numbers[k], units.xyz + 3 * (k - first), run);
         k += run;
       }
       if (units.uncertain == 0) continue;
       for (std::size_t k = std::max(first, begin); k < last; ++k)
-        if ((units.uncertain >> (k - first) & 1) != 0) settle(k, curves.flagged[k]);
+        if ((units.uncertain >> (k - first) & 1) != 0) settle(k, curves.flagged.numbers[k]);
     }
   }
 }
@@ -94,7 +101,7 @@ std::size_t write_flagged_range(const CurveData& curves, IndexRange range, doubl
       [&](std::size_t index, std::size_t element) {
         const std::int32_t* const digits = digits_of(curves, element);
         const UnitNormal u = digits != nullptr ? ExactCurve::of_kept(digits).unit_normal_at(t)
-                                               : unit_normal_at(curves.flagged_normals(index), t);
+                                               : unit_normal_at(curves.flagged.scaled_normals(index), t);
         output.set(element, to_float(u.vector));
         if (u.direction == Direction::kNone) ++without_direction;
       });
@@ -286,8 +293,8 @@ std::size_t NormalCurves::uncertain_count(double time) const noexcept {
   for_flagged(
       curves, {0, curves.size}, t, [](std::size_t, const float*, std::size_t) {},
       [&](std::size_t index, std::size_t element) {
-        const bool is_zero = largest_component(curves.flagged_normals(index)) == 0;
-        if (!is_zero && digits_of(curves, element) == nullptr) ++count;
+        if (digits_of(curves, element) == nullptr && !has_certain_direction(curves.flagged.scaled_normals(index), t))
+          ++count;
       });
   return count;
 }
@@ -326,9 +333,11 @@ void NormalCurves::normals(double time, VectorView<float> result) const noexcept
     }
   }
   for (std::size_t k = 0; k < curves.flagged.size(); ++k) {
-    const std::int32_t* const digits = digits_of(curves, curves.flagged[k]);
-    result.set(curves.flagged[k], clamped_to_float(digits != nullptr ? ExactCurve::of_kept(digits).normal_at(t)
-                                                                     : normal_at(curves.flagged_normals(k), t)));
+    const std::int32_t* const digits = digits_of(curves, curves.flagged.numbers[k]);
+    result.set(curves.flagged.numbers[k],
+               clamped_to_float(digits != nullptr ? ExactCurve::of_kept(digits).normal_at(t)
+                                                  : std::ldexp(1.0, curves.flagged.exponents[k]) *
+                                                        normal_at(curves.flagged.scaled_normals(k), t)));
   }
 }
 

@@ -108,7 +108,11 @@ void set_run(const Output& output, std::size_t first, const float* xyz, std::siz
 }
 
 inline void set_run(const PackedOutput& output, std::size_t first, const float* xyz, std::size_t count) {
-  std::copy_n(xyz, 3 * count, output.result.x + 3 * first);
+  float* const to = output.result.x + 3 * first;
+  if (count == kTile)  // copied without a call
+    std::copy_n(xyz, 3 * kTile, to);
+  else
+    std::copy_n(xyz, 3 * count, to);
 }
 
 /// Calls body(output) with the form that a view has; returns what it returns.

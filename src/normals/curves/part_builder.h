@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "chronormal/core/polynomial.h"
+#include "core/bits.h"
 #include "core/memory.h"
 #include "normals/curves/certificate.h"
 #include "normals/curves/curve_data.h"
@@ -102,8 +103,7 @@ struct CurvePart {
   std::byte* begin = nullptr;  // of its blocks; nullptr where they are counted and not made
   std::size_t bytes = 0;
   std::vector<CurveData::Run> runs;  // offsets from begin
-  std::vector<std::size_t> flagged;
-  std::vector<FlaggedNormals> flagged_normals;
+  FlaggedElements flagged;
   std::vector<CurveData::ExactElement> exact;
   std::vector<std::int32_t> exact_digits;
   std::vector<std::int16_t> exponents;  // empty, or one for each of its blocks
@@ -117,7 +117,6 @@ struct CurvePart {
     };
     take(runs, done.runs);
     take(flagged, done.flagged);
-    take(flagged_normals, done.flagged_normals);
     take(exact, done.exact);
     take(exact_digits, done.exact_digits);
   }
@@ -320,16 +319,23 @@ class PartBuilder {
       }
     });
     if (out_of_range) flagged |= rescale(source, elements, flagged, tile, alone);
-    for_lanes(flagged, [&](std::size_t lane) {
-      put(tile, lane, kPlaceHolder);
-      part_.flagged.push_back(elements.first + lane);
-      if (alone[lane]) {
-        part_.flagged_normals.push_back({alone[lane]->normals, alone[lane]->certain});
-      } else {
-        part_.flagged_normals.push_back({element_of(bounded.normals, lane), known.certain[lane]});
-      }
+    constexpr std::uint32_t kAll = (1u << kTile) - 1;
+    if ((flagged & known.flagged) == kAll) {
+      add_whole_tile(elements.first, bounded, known);
+      for (std::size_t k = 0; k < 9; ++k) std::fill_n(tile.normals[k], kTile, k % 3 == 0 ? 1.0F : 0.0F);
+    } else {
+      for_lanes(flagged, [&](std::size_t lane) {
+        put(tile, lane, kPlaceHolder);
+        part_.flagged.add(elements.first + lane,
+                          alone[lane]
+                              ? FlaggedNormals::scaled(alone[lane]->normals, alone[lane]->certain)
+                              : FlaggedNormals{scaled(known.scale[lane], element_of(bounded.normals, lane)),
+                                               {known.limits[0][lane], known.limits[1][lane], known.limits[2][lane]},
+                                               exponent_of(known.scale[lane])});
+      });
+    }
+    for_lanes(needs_exact, [&](std::size_t lane) {
       if constexpr (!std::is_same_v<Source, GivenNormals>) {
-        if ((needs_exact >> lane & 1) == 0) return;
         part_.exact.push_back({elements.first + lane, part_.exact_digits.size()});
         source.exact(elements.first + lane).append_to(part_.exact_digits);
       }
@@ -337,6 +343,28 @@ class PartBuilder {
     for (std::size_t lane = elements.count; lane < kTile; ++lane)
       for (auto& plane : tile.normals) plane[lane] = plane[elements.count - 1];
     return flagged;
+  }
+
+  // That of the power of two whose inverse scales an element.
+  static std::int16_t exponent_of(double scale) {
+    constexpr int kBias = 1023, kDigits = 52;
+    return static_cast<std::int16_t>(kBias - static_cast<int>(bit_cast<std::uint64_t>(scale) >> kDigits));
+  }
+
+  // Adds sixteen flagged elements as they lie.
+  void add_whole_tile(std::size_t first, const BoundedTile& bounded, const TileCertificates& known) {
+    FlaggedTile tile;
+    for (std::size_t k = 0; k < 9; ++k)
+      for (std::size_t lane = 0; lane < kTile; ++lane)
+        tile.normals[k][lane] = known.scale[lane] * bounded.normals[k][lane];
+    std::copy_n(&known.limits[0][0], 3 * kTile, &tile.limits[0][0]);
+    std::array<std::size_t, kTile> numbers;
+    std::array<std::int16_t, kTile> exponents;
+    for (std::size_t lane = 0; lane < kTile; ++lane) {
+      numbers[lane] = first + lane;
+      exponents[lane] = exponent_of(known.scale[lane]);
+    }
+    part_.flagged.append(numbers, std::span(&tile, 1), exponents);
   }
 
   // Calls body(lane) for each bit that is set.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "normals/curves/certificate.h"
+#include "normals/curves/kernels/flagged_normals.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/certify.cpp"
@@ -160,7 +161,17 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const std::uint32_t flagged = BitsOf(kDoubles, open) & asked;
   if (flagged == 0) return;
   const Doubles certain = hn::Max(AllOf(0x1p-26), hn::Mul(AllOf(0x1p22), share));
-  hn::Store(certain, kDoubles, result.certain + lane);
+  // The largest component is a normal number, far from both ends of their range.
+  const hn::RebindToSigned<DoubleTag> bits;
+  const auto exponent = hn::And(hn::BitCast(bits, largest), hn::Set(bits, std::int64_t{0x7FF} << 52));
+  const Doubles power = hn::BitCast(kDoubles, hn::Sub(hn::Set(bits, std::int64_t{0x7FE} << 52), exponent));
+  hn::Store(power, kDoubles, result.scale + lane);
+  const HalfFloatTag floats;
+  const Doubles sizes[3] = {size0, size_m, size1};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Doubles limit = hn::Mul(AllOf(kLimitUp), hn::Mul(certain, hn::Mul(power, sizes[k])));
+    hn::StoreU(hn::DemoteTo(floats, hn::Max(AllOf(kLeastLimit), limit)), floats, result.limits[k] + lane);
+  }
   const auto stays = StaysCertain(n, n_square, lengths, certain, open);
   result.flagged |= flagged << lane;
   result.needs_exact |= (flagged & ~BitsOf(kDoubles, stays)) << lane;

@@ -17,7 +17,8 @@ struct TileCertificates {
   std::uint32_t flagged = 0;             ///< of the known ones: float32 cannot carry them
   std::uint32_t needs_exact = 0;         ///< of the flagged ones: double cannot carry them at every t
   Precision precision = Precision::k11;  ///< that suffices for all others that are known
-  alignas(64) double certain[kTile];     ///< of the flagged ones, as in FlaggedNormals
+  alignas(64) double scale[kTile];       ///< of the flagged ones, the power of two of FlaggedNormals
+  float limits[3][kTile];                ///< of the flagged ones, as in FlaggedNormals, of what is scaled
 };
 
 /// Decides as precision_for(), smallest_certain() and stays_certain() do. `asked` are the elements in question, as bits.

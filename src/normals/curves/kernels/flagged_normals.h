@@ -3,6 +3,7 @@
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_FLAGGED_NORMALS_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_FLAGGED_NORMALS_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,24 +14,37 @@
 
 namespace chronormal::inline internal {
 
+/// An element times a power of two, so that its largest component is at least 1 and below 4, and float32 has n(t) in
+/// range.
 struct FlaggedNormals {
   ControlNormals normals;
-  double certain = 0;  ///< the share of sum w_k max_abs(c_k) above which n(t) has a direction (certificate.h)
+  /// n(t) has a direction where its largest component is above the quadratic with these control values: of each control
+  /// normal the share smallest_certain(), and so much that float32 has the square of n(t); infinite for what cannot be
+  /// scaled.
+  std::array<float, 3> limits{};
+  std::int16_t exponent = 0;  ///< of the power of two that makes of it what it was
+
+  /// Scales control normals, of which n(t) has a direction where its largest component is above the share `certain` of
+  /// sum w_k max_abs(c_k) (certificate.h).
+  [[nodiscard]] static FlaggedNormals scaled(const ControlNormals& normals, double certain) noexcept;
 };
 
-/// Sixteen of them side by side: the planes of ControlTile in double, and `certain`. Lanes that are not used are zero.
+/// Sixteen of them side by side: the planes of ControlTile in double, and the limits. Lanes that are not used are zero.
 struct alignas(64) FlaggedTile {
   double normals[9][kTile]{};
-  double certain[kTile]{};
+  float limits[3][kTile]{};
 
   void set(std::size_t lane, const FlaggedNormals& flagged) noexcept {
     std::size_t k = 0;
     for (const Vec3d* const v : {&flagged.normals.n0, &flagged.normals.m, &flagged.normals.n1}) {
       for (const double component : {v->x, v->y, v->z}) normals[k++][lane] = component;
     }
-    certain[lane] = flagged.certain;
+    for (k = 0; k < 3; ++k) limits[k][lane] = flagged.limits[k];
   }
 };
+
+/// Limits are rounded up, and none is below the least.
+inline constexpr double kLimitUp = 1 + 0x1p-20, kLeastLimit = 0x1p-50;
 
 /// Unit normals of a tile.
 struct alignas(64) FlaggedUnits {

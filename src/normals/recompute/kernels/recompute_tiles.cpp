@@ -40,11 +40,6 @@ struct Sum {
 
 #else
 
-HWY_INLINE Floats Joined(Doubles lower, Doubles upper) {
-  const HalfFloatTag part;
-  return hn::Combine(kFloats, hn::DemoteTo(part, upper), hn::DemoteTo(part, lower));
-}
-
 // Four floats each from `base` plus kLanes / 4 offsets, as blocks of one vector.
 HWY_INLINE Floats RowsAt(const float* base, const std::size_t* offsets) {
   return LoadBlocks([base, offsets](std::size_t block) HWY_ATTR { return base + offsets[block]; });
@@ -270,24 +265,17 @@ HWY_NOINLINE FineNormals FineNormalsAt(const MovingTriangles& triangles, const E
                         PointsOf<kStride>(points, block, lane, 2)};
   };
   const CornersAtEnd from = corners(triangles.from), to = corners(triangles.to);
-  const auto joined = [](const Doubles3& lower, [[maybe_unused]] const Doubles3& upper) HWY_ATTR {
-#if HWY_TARGET == HWY_SCALAR
-    return Lanes3{hn::DemoteTo(kFloats, lower.x), hn::DemoteTo(kFloats, lower.y), hn::DemoteTo(kFloats, lower.z)};
-#else
-    return Lanes3{Joined(lower.x, upper.x), Joined(lower.y, upper.y), Joined(lower.z, upper.z)};
-#endif
-  };
   constexpr int kUpper = HWY_TARGET == HWY_SCALAR ? 0 : 1;
   const Doubles3 lower = ExactNormal<0>(from, to, t), upper = ExactNormal<kUpper>(from, to, t);
   FineNormals fine;
-  fine.n = joined(lower, upper);
+  fine.n = Joined(lower, upper);
   fine.square = Dot(fine.n, fine.n);
   // Not the square times the largest share, which may be infinite, and then no less than a product that is.
   const auto precise = hn::Le(hn::Mul(product, hn::Set(kFloats, 1 / kMaxThinProduct)), fine.square);
   fine.trusted = hn::And(precise, InRange(hn::Min(fine.square, smaller), fine.square));
   const Floats one = hn::Set(kFloats, 1.0f);
   const Floats scale = hn::Div(one, hn::Sqrt(hn::IfThenElse(fine.trusted, fine.square, one)));
-  fine.unit = joined(ExactUnit<0>(lower, scale), ExactUnit<kUpper>(upper, scale));
+  fine.unit = Joined(ExactUnit<0>(lower, scale), ExactUnit<kUpper>(upper, scale));
   return fine;
 }
 

@@ -15,6 +15,7 @@
 #include "chronormal/normals/normal_curves.h"
 #include "core/rounding.h"
 #include "normals/curves/certificate.h"
+#include "normals/curves/kernels/flagged_normals.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 
@@ -74,7 +75,7 @@ BoundedNormals element(fixtures::Random& random) {
 struct Decided {
   bool known = false;
   std::optional<Precision> precision;
-  double certain = 0;
+  FlaggedNormals scaled;
   bool needs_exact = false;
 };
 
@@ -86,8 +87,9 @@ Decided decided(const BoundedNormals& c, const PrecisionLimits& limits) {
   for (const Vec3d& v : {c.normals.n0, c.normals.m, c.normals.n1}) is_finite &= std::isfinite(sum_abs(v));
   result.known = is_finite && share <= kLargestShare && largest <= kLargestComponent && end >= kSmallestEnd;
   result.precision = precision_for(c.normals, limits);
-  result.certain = smallest_certain(share);
-  result.needs_exact = !result.precision && !stays_certain(c.normals, result.certain);
+  const double certain = smallest_certain(share);
+  result.scaled = FlaggedNormals::scaled(c.normals, certain);
+  result.needs_exact = !result.precision && !stays_certain(c.normals, certain);
   return result;
 }
 
@@ -98,7 +100,11 @@ std::string fault(const TileCertificates& found, std::size_t lane, const Decided
   if (!expected.known) return has(found.flagged | found.needs_exact) ? "flagged, but not known" : "";
   if (has(found.flagged) != !expected.precision) return expected.precision ? "flagged" : "not flagged";
   if (has(found.needs_exact) != expected.needs_exact) return expected.needs_exact ? "needs nothing" : "needs exact";
-  if (!expected.precision && found.certain[lane] != expected.certain) return "certain from another share on";
+  if (!expected.precision) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (found.limits[k][lane] != expected.scaled.limits[k]) return "certain from another limit on";
+    if (found.scale[lane] != std::ldexp(1.0, -expected.scaled.exponent)) return "scaled by another power of two";
+  }
   if (alone && expected.precision && found.precision != *expected.precision) return "has another precision";
   return "";
 }

@@ -1,0 +1,72 @@
+/// The elements of curves that float32 cannot carry, in ascending order: their numbers, and sixteen of them side by side.
+#ifndef CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
+#define CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/normals/control_normals.h"
+#include "core/blocks.h"
+#include "core/memory.h"
+#include "normals/curves/kernels/flagged_normals.h"
+
+namespace chronormal::inline internal {
+
+struct FlaggedElements {
+  std::vector<std::size_t> numbers;
+  std::vector<FlaggedTile, AlignedAllocator<FlaggedTile>> tiles;
+  std::vector<std::int16_t> exponents;  ///< an element is what its tile has times 2^exponent
+
+  [[nodiscard]] std::size_t size() const noexcept { return numbers.size(); }
+
+  /// The control normals of an element, scaled as in its tile.
+  [[nodiscard]] ControlNormals scaled_normals(std::size_t index) const noexcept {
+    return element_of(tiles[index / kTile].normals, index % kTile);
+  }
+
+  /// Becomes empty, and keeps its memory.
+  void clear() noexcept {
+    numbers.clear();
+    tiles.clear();
+    exponents.clear();
+  }
+
+  void reserve(std::size_t count) {
+    numbers.reserve(count);
+    tiles.reserve(block_count(count, kTile));
+    exponents.reserve(count);
+  }
+
+  void add(std::size_t number, const FlaggedNormals& normals) {
+    const std::size_t lane = size() % kTile;
+    if (lane == 0) tiles.emplace_back();
+    tiles.back().set(lane, normals);
+    exponents.push_back(normals.exponent);
+    numbers.push_back(number);
+  }
+
+  /// Adds elements that lie side by side already, but for the last tile in full ones.
+  void append(std::span<const std::size_t> more, std::span<const FlaggedTile> in_tiles,
+              std::span<const std::int16_t> of_more) {
+    if (size() % kTile == 0) {
+      tiles.insert(tiles.end(), in_tiles.begin(), in_tiles.end());
+      numbers.insert(numbers.end(), more.begin(), more.end());
+      exponents.insert(exponents.end(), of_more.begin(), of_more.end());
+      return;
+    }
+    for (std::size_t k = 0; k < more.size(); ++k) {
+      const FlaggedTile& tile = in_tiles[k / kTile];
+      const std::size_t lane = k % kTile;
+      add(more[k], {element_of(tile.normals, lane),
+                    {tile.limits[0][lane], tile.limits[1][lane], tile.limits[2][lane]},
+                    of_more[k]});
+    }
+  }
+  void append(const FlaggedElements& more) { append(more.numbers, more.tiles, more.exponents); }
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
