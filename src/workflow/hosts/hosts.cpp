@@ -32,8 +32,9 @@ float clamped(float value, int bits) noexcept {
   const int wide = bits <= 8 ? 8 : 16;
   const int lack = wide - bits;
   const float size = std::fabs(value) < 1 ? std::fabs(value) : std::isnan(value) ? 0 : 1.0F;
-  // The sum is exact in double, so that cutting it off rounds halves up.
-  const int small = static_cast<int>(static_cast<double>(size * static_cast<float>((1 << (bits - 1)) - 1)) + 0.5);
+  const float scaled = size * static_cast<float>((1 << (bits - 1)) - 1);
+  const int whole = static_cast<int>(scaled);
+  const int small = scaled - static_cast<float>(whole) >= 0.5F ? whole + 1 : whole;  // the difference is exact
   const int kept = lack == 0 ? small : (small << lack) | (small >> (bits - 1 - lack));
   return std::copysign(static_cast<float>(kept) / static_cast<float>((1 << (wide - 1)) - 1), value);
 }

@@ -9,7 +9,10 @@ namespace chronormal::inline internal {
 std::optional<std::size_t> PrefetchRule::next() noexcept {
   const std::size_t all = kTrials * distances_;
   // Several threads may get as far as the second line at once, each with a number of its own; later ones do not count on.
-  if (trials_.load(std::memory_order_relaxed) >= all) return std::nullopt;
+  if (trials_.load(std::memory_order_relaxed) >= all) {
+    if (calls_.fetch_add(1, std::memory_order_relaxed) % kCallsBetween != kCallsBetween - 1) return std::nullopt;
+    trials_.store(0, std::memory_order_relaxed);
+  }
   const std::size_t trial = trials_.fetch_add(1, std::memory_order_relaxed);
   if (trial >= all) return std::nullopt;
   return trial % distances_;

@@ -3,7 +3,8 @@
 /// Cores differ: one works best when it prefetches 8 KiB or more ahead, another 2 KiB, and a third finds all by itself
 /// and loses a third of its speed to prefetches that it did not need. So the first passes over a working set try
 /// several distances in turn, with 128 KiB of curves each time. From then on, all threads use the distance that was
-/// fastest in the median. Results do not depend on it.
+/// fastest in the median. Now and then the trials are repeated, since what else the machine is busy with may have decided
+/// them, and changes. Results do not depend on it.
 ///
 ///     a span   [2 KiB][none][4 KiB][8 KiB][16 KiB] the rest at the best so far    until each has had its trials
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_PREFETCH_H_
@@ -29,13 +30,14 @@ class PrefetchRule {
   static constexpr std::array<std::size_t, 5> kDistances = {2048, 0, 4096, 8192, 16384};  // bytes; 0: no prefetch
   static constexpr std::size_t kTrials = 16;                                              // for each distance
   static constexpr std::size_t kTrialBytes = std::size_t{128} << 10;                      // of curves
+  static constexpr std::size_t kCallsBetween = 1024;  // of next() that find no trial before these are repeated
 
   /// A rule that tries the first ones of these distances.
   explicit PrefetchRule(std::size_t distances = kDistances.size()) noexcept : distances_(distances) {}
 
   /// The best distance so far, or the first one where none was tried.
   [[nodiscard]] std::size_t best() const noexcept { return best_.load(std::memory_order_relaxed); }
-  /// The number of the distance to try next; nothing when the trials are over.
+  /// The number of the distance to try next; nothing when the trials are over, for a while.
   [[nodiscard]] std::optional<std::size_t> next() noexcept;
   /// Takes the time per byte of a trial with the distance of this number.
   void take(std::size_t distance, float nanoseconds_per_byte) noexcept;
@@ -48,6 +50,7 @@ class PrefetchRule {
  private:
   std::size_t distances_;
   std::atomic<std::size_t> trials_ = 0;  // that were given out
+  std::atomic<std::size_t> calls_ = 0;   // that found none
   std::atomic<std::size_t> best_ = kDistances[0];
   // The trials of each distance in nanoseconds per byte; 0: not over yet.
   std::array<std::array<std::atomic<float>, kTrials>, kDistances.size()> times_ = {};

@@ -36,6 +36,26 @@ TEST(PrefetchRule, the_fastest_distance_in_the_median_decides) {
   }
 }
 
+TEST(PrefetchRule, trials_are_repeated_after_a_while_and_replace_those_before) {
+  PrefetchRule rule;
+  const auto try_all = [&rule](std::size_t fastest) {
+    std::size_t count = 0;
+    while (const std::optional<std::size_t> trial = rule.next()) {
+      rule.take(*trial, *trial == fastest ? 0.1f : 0.13f);
+      ++count;
+    }
+    return count;
+  };
+  constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
+  EXPECT_EQ(try_all(3), kAll);
+  for (const std::size_t fastest : {1U, 4U}) {
+    // The call that ended the trials found none, too.
+    for (std::size_t call = 2; call < PrefetchRule::kCallsBetween; ++call) ASSERT_FALSE(rule.next()) << call;
+    EXPECT_EQ(try_all(fastest), kAll);
+    EXPECT_EQ(rule.best(), PrefetchRule::kDistances[fastest]);
+  }
+}
+
 TEST(PrefetchRule, all_elements_are_evaluated_once_in_order) {
   constexpr std::size_t kBytes = 36;
   constexpr std::size_t kPart = PrefetchRule::kTrialBytes / kBytes / kTile * kTile;
@@ -118,7 +138,12 @@ TEST(PrefetchRule, large_evaluations_try_until_they_know_and_keep_their_bits) {
   (void)curves.unit_normals(0.3, VectorView<float>::packed(first));
   for (std::size_t i = 0; i < PrefetchRule::kTrials; ++i)
     (void)curves.unit_normals(0.3, VectorView<float>::packed(later));
-  EXPECT_EQ(prefetch_of_curves(WorkingSet::kSharedCache).next(), std::nullopt);
+  // The trials are over, unless tests in the same process came before, after which a repetition may have begun.
+  std::size_t left = 0;
+  while (left <= PrefetchRule::kTrials * PrefetchRule::kDistances.size() &&
+         prefetch_of_curves(WorkingSet::kSharedCache).next())
+    ++left;
+  EXPECT_LE(left, PrefetchRule::kTrials * PrefetchRule::kDistances.size());
   EXPECT_EQ(first, later);
 }
 
