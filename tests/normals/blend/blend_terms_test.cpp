@@ -197,8 +197,8 @@ TEST(BlendTerms, sets_without_faces_vertices_or_targets_have_none) {
   EXPECT_TRUE(terms.linear(0).elements.empty() && terms.pair(0, 0).elements.empty());
 }
 
-// Of a mesh with more than 100,000 faces, lists keep the share of every face, and terms that are asked for one by one
-// compute it anew.
+// Lists keep what every face adds, while terms that are asked for one by one compute it anew where a mesh has more than
+// 100,000 faces.
 TEST(BlendTerms, have_the_same_bits_in_lists_and_element_by_element_on_large_meshes) {
   const Motion motion = fixtures::smooth_morph(230);  // 105,800 faces
   const std::size_t count = motion.topology.vertex_count();

@@ -64,7 +64,7 @@ HWY_EXPORT(FlaggedUnitNormals);
 FlaggedNormals FlaggedNormals::scaled(const ControlNormals& c, double certain) noexcept {
   const double sizes[3] = {max_abs(c.n0), max_abs(c.m), max_abs(c.n1)};
   const double largest = std::max({sizes[0], sizes[1], sizes[2]});
-  // Of the powers of two, those that are normal numbers, and whose inverse is one.
+  // The power of two and its inverse are both normal numbers.
   constexpr int kMost = 1022;
   const bool in_range = largest >= 0x1p-1022 && is_finite(c.n0) && is_finite(c.m) && is_finite(c.n1);
   const int exponent = in_range ? std::min(kMost, std::ilogb(largest)) : 0;
