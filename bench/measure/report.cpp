@@ -114,7 +114,8 @@ std::string json_of(const Report& report) {
                             {"share_of_bandwidth", rounded(row.share_of_bandwidth)},
                             {"verified_error_rad", rounded(row.verified_error)},
                             {"limit_rad", rounded(row.limit)},
-                            {"verified_elements", row.verified_elements}});
+                            {"verified_elements", row.verified_elements},
+                            {"predicted_ns", rounded(row.predicted_ns)}});
   json["qualities"] = Json::array();
   for (const SchemeQuality& one : report.qualities)
     json["qualities"].push_back({{"scheme", one.scheme},

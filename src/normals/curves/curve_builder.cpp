@@ -90,10 +90,12 @@ class Build {
     for (; count > 0; --count) {
       if (!builder_) {
         parts_[next_].begin = curves_.blocks.data() + bytes_;
+        std::swap(parts_[next_].flagged, curves_.flagged);  // so that these need not be moved
         builder_.emplace(parts_[next_], limits_);
       }
       if (builder_->make_chunk(source)) continue;
       builder_.reset();
+      std::swap(parts_[next_].flagged, curves_.flagged);
       join(parts_[next_]);
       if (next_ < parts_.size()) parts_[next_].take_memory(parts_[next_ - 1]);
     }

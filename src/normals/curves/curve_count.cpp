@@ -23,6 +23,10 @@ class KeptFaces : public FaceNormals {
   void write(IndexRange faces, std::span<ControlTile> tiles) const {
     face_control_tiles(segment_, faces, tiles, kept_.subspan((faces.first - first_) / kTile, tiles.size()));
   }
+  void write(IndexRange faces, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const {
+    FaceNormals::write(faces, tiles, bounded);
+    write(faces, tiles);
+  }
 
  private:
   const Segment& segment_;

@@ -1,9 +1,10 @@
 /// Where the control normals of curves come from: each source writes tiles for a glance, and what a closer look needs.
 ///
 ///     write(elements, tiles)   sixteen by sixteen, in double, rounded to float32
+///     write(elements, tiles, bounded)   the same, and beside each tile what it is rounded from, and how far off that
+///                              may be
 ///     write_in_float(elements, tiles)   the same in float32 throughout, with bounds on the errors, of a source for
 ///                              which has_float() is true; not every source has these two
-///     in_double(elements, tile)   up to sixteen, and how far off those may be; returns what it leaves out, as bits
 ///     in_double(i)             one element, and how far off that may be
 ///     exact(i)                 the same without any rounding, where there are positions to make it from
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
@@ -26,6 +27,13 @@
 
 namespace chronormal::inline internal {
 
+/// Puts the elements of a source into tiles one by one.
+template <class Source>
+void put_each(const Source& source, IndexRange elements, std::span<BoundedTile> bounded) {
+  for (std::size_t i = 0; i < bounded.size() * kTile; ++i)
+    put(bounded[i / kTile], i % kTile, source.in_double(elements.first + std::min(i, elements.count - 1)));
+}
+
 /// Control normals that are there already.
 class GivenNormals {
  public:
@@ -41,12 +49,11 @@ class GivenNormals {
       tile.degree[i % kTile] = degree(c);
     }
   }
-  // They are the truth, whatever they were made from.
-  [[nodiscard]] std::uint32_t in_double(IndexRange elements, BoundedTile& tile) const {
-    for (std::size_t lane = 0; lane < kTile; ++lane)
-      put(tile, lane, {normals_[elements.first + std::min(lane, elements.count - 1)], {}});
-    return 0;
+  void write(IndexRange elements, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const {
+    write(elements, tiles);
+    put_each(*this, elements, bounded);
   }
+  // They are the truth, whatever they were made from.
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return {normals_[i], {}}; }
 
  private:
@@ -59,18 +66,17 @@ class FaceNormals {
   explicit FaceNormals(const Segment& segment) : segment_(segment) {}
 
   void write(IndexRange faces, std::span<ControlTile> tiles) const { face_control_tiles(segment_, faces, tiles); }
+  void write(IndexRange faces, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const {
+    if (segment_.topology->all_triangles()) {
+      face_control_tiles(segment_, faces, tiles, bounded);
+    } else {
+      face_control_tiles(segment_, faces, tiles);
+      put_each(*this, faces, bounded);
+    }
+  }
   [[nodiscard]] bool has_float() const { return segment_.topology->all_triangles(); }
   void write_in_float(IndexRange faces, std::span<ControlTile> tiles) const {
     float_triangle_tiles(segment_, faces, tiles);
-  }
-  [[nodiscard]] std::uint32_t in_double(IndexRange faces, BoundedTile& tile) const {
-    if (segment_.topology->all_triangles()) {
-      bounded_triangle_tile(segment_, faces, tile);
-    } else {
-      for (std::size_t lane = 0; lane < kTile; ++lane)
-        put(tile, lane, in_double(faces.first + std::min(lane, faces.count - 1)));
-    }
-    return 0;
   }
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const {
     const PolygonNormals polygon = polygon_control_normals(segment_, segment_.topology->face(i));
@@ -91,12 +97,12 @@ class GroupNormals {
       : segment_(segment), groups_(groups), tiles_(segment, groups, fetch) {}
 
   void write(IndexRange elements, std::span<ControlTile> tiles) const { tiles_.write(elements, tiles); }
+  void write(IndexRange elements, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const {
+    tiles_.write(elements, tiles, bounded);
+  }
   [[nodiscard]] bool has_float() const { return true; }
   void write_in_float(IndexRange elements, std::span<ControlTile> tiles) const {
     tiles_.write_in_float(elements, tiles);
-  }
-  [[nodiscard]] std::uint32_t in_double(IndexRange elements, BoundedTile& tile) const {
-    return tiles_.write_bounded(elements, tile);
   }
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return control_normals_of_group(segment_, groups_, i); }
   [[nodiscard]] ExactCurve exact(std::size_t i) const { return ExactCurve::of_faces(segment_, groups_.faces(i)); }

@@ -2,6 +2,7 @@
 #ifndef CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -47,24 +48,27 @@ struct FlaggedElements {
     numbers.push_back(number);
   }
 
-  /// Adds elements that lie side by side already, but for the last tile in full ones.
-  void append(std::span<const std::size_t> more, std::span<const FlaggedTile> in_tiles,
+  /// Adds elements that lie side by side in a tile already, from its lane `first`.
+  void append(std::span<const std::size_t> more, const FlaggedTile& from, std::size_t first,
               std::span<const std::int16_t> of_more) {
-    if (size() % kTile == 0) {
-      tiles.insert(tiles.end(), in_tiles.begin(), in_tiles.end());
-      numbers.insert(numbers.end(), more.begin(), more.end());
-      exponents.insert(exponents.end(), of_more.begin(), of_more.end());
-      return;
+    const std::size_t lane = size() % kTile, fitting = std::min(more.size(), kTile - lane);
+    if (more.size() == kTile && lane == 0) {
+      tiles.push_back(from);
+    } else {
+      if (lane == 0) tiles.emplace_back();
+      tiles.back().set_lanes(lane, from, first, fitting);
+      if (fitting < more.size()) tiles.emplace_back().set_lanes(0, from, first + fitting, more.size() - fitting);
     }
-    for (std::size_t k = 0; k < more.size(); ++k) {
-      const FlaggedTile& tile = in_tiles[k / kTile];
-      const std::size_t lane = k % kTile;
-      add(more[k], {element_of(tile.normals, lane),
-                    {tile.limits[0][lane], tile.limits[1][lane], tile.limits[2][lane]},
-                    of_more[k]});
+    numbers.insert(numbers.end(), more.begin(), more.end());
+    exponents.insert(exponents.end(), of_more.begin(), of_more.end());
+  }
+  void append(const FlaggedElements& more) {
+    for (std::size_t k = 0; k < more.size(); k += kTile) {
+      const std::size_t count = std::min(kTile, more.size() - k);
+      append(std::span(more.numbers).subspan(k, count), more.tiles[k / kTile], 0,
+             std::span(more.exponents).subspan(k, count));
     }
   }
-  void append(const FlaggedElements& more) { append(more.numbers, more.tiles, more.exponents); }
 };
 
 }  // namespace chronormal::inline internal

@@ -109,14 +109,13 @@ struct CurvePart {
   std::vector<std::int16_t> exponents;  // empty, or one for each of its blocks
   std::array<std::size_t, 3> degree_counts{};
 
-  // Takes the memory of a part that is no longer needed.
+  // Takes the memory of a part that is no longer needed; its flagged elements have been taken out of it.
   void take_memory(CurvePart& done) {
     const auto take = [](auto& to, auto& from) {
       to = std::move(from);
       to.clear();
     };
     take(runs, done.runs);
-    take(flagged, done.flagged);
     take(exact, done.exact);
     take(exact_digits, done.exact_digits);
   }
@@ -210,25 +209,12 @@ class PartBuilder {
   void add_chunk(Source& source, IndexRange elements) {
     const std::size_t tile_count = (elements.count + kTile - 1) / kTile;
     const std::span<ControlTile> tiles(tiles_.data(), tile_count);
-    TileSummary summaries[kChunkTiles];
-    write_tiles(source, elements, tiles, std::span(summaries, tile_count));
-
     Need needs[kChunkTiles];
-    for (std::size_t k = 0; k < tile_count; ++k) {
-      const IndexRange range{elements.first + k * kTile, std::min(kTile, elements.count - k * kTile)};
-      needs[k].precision = summaries[k].precision;
-      const std::uint32_t all = lanes_of(range.count);
-      std::uint32_t counted = all;
-      if (summaries[k].uncertain != 0) counted &= ~examine(source, range, summaries[k], tiles[k], needs[k]);
-      const std::uint32_t moving = summaries[k].moving & all, bending = summaries[k].bending & all;
-      if (bending == all) {
-        part_.degree_counts[2] += range.count;
-      } else {
-        part_.degree_counts[0] += static_cast<std::size_t>(std::popcount(all & ~moving));
-        part_.degree_counts[1] += static_cast<std::size_t>(std::popcount(moving & ~bending));
-        part_.degree_counts[2] += static_cast<std::size_t>(std::popcount(bending));
-      }
-      needs[k].degree = (bending & counted) != 0 ? 2 : (moving & counted) != 0 ? 1 : counted != 0 ? 0 : kNoDegree;
+    for (std::size_t k = 0; k < tile_count; k += kWrittenTiles) {
+      const std::size_t first = k * kTile, count = std::min(kWrittenTiles, tile_count - k);
+      fetch_destination(k, count);
+      add_tiles(source, {elements.first + first, std::min(count * kTile, elements.count - first)},
+                tiles.subspan(k, count), needs + k);
     }
 
     const std::size_t bytes_before = part_.bytes;
@@ -242,38 +228,68 @@ class PartBuilder {
     chunk_bytes_ = part_.bytes - bytes_before;
   }
 
-  // Writes the tiles of a chunk, and summarizes them: in float32 where that may do, and in double what it does not do
-  // for.
+  // Those of some tiles, and their elements.
+  static IndexRange range_of(IndexRange elements, std::size_t first_tile, std::size_t count) {
+    const std::size_t first = first_tile * kTile;
+    return {elements.first + first, std::min(count * kTile, elements.count - first)};
+  }
+
+  // Makes a few tiles, and finds out what a block needs to hold each of them.
+  template <class Source>
+  void add_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles, Need* needs) {
+    std::array<TileSummary, kWrittenTiles> summaries;
+    write_tiles(source, elements, tiles, std::span(summaries).first(tiles.size()));
+    for (std::size_t k = 0; k < tiles.size(); ++k) {
+      const IndexRange range = range_of(elements, k, 1);
+      needs[k].precision = summaries[k].precision;
+      const std::uint32_t all = lanes_of(range.count);
+      std::uint32_t counted = all;
+      if (summaries[k].uncertain != 0) counted &= ~examine(source, range, summaries[k], k, tiles[k], needs[k]);
+      const std::uint32_t moving = summaries[k].moving & all, bending = summaries[k].bending & all;
+      if (bending == all) {
+        part_.degree_counts[2] += range.count;
+      } else {
+        part_.degree_counts[0] += static_cast<std::size_t>(std::popcount(all & ~moving));
+        part_.degree_counts[1] += static_cast<std::size_t>(std::popcount(moving & ~bending));
+        part_.degree_counts[2] += static_cast<std::size_t>(std::popcount(bending));
+      }
+      needs[k].degree = (bending & counted) != 0 ? 2 : (moving & counted) != 0 ? 1 : counted != 0 ? 0 : kNoDegree;
+    }
+  }
+
+  // Writes a few tiles, and summarizes them: in float32 where that may do, and in double what it does not do for.
   template <class Source>
   void write_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles,
                    std::span<TileSummary> summaries) {
-    const auto range_of = [&](std::size_t tile, std::size_t count) {
-      const std::size_t first = tile * kTile;
-      return IndexRange{elements.first + first, std::min(count * kTile, elements.count - first)};
-    };
-    for (std::size_t k = 0; k < tiles.size(); k += kWrittenTiles) {
-      const std::size_t count = std::min(kWrittenTiles, tiles.size() - k);
-      const auto in_double = [&](std::size_t first, std::size_t tile_count) {
-        source.write(range_of(first, tile_count), tiles.subspan(first, tile_count));
-        summarize_tiles(tiles.subspan(first, tile_count), limits_.in_double, summaries.subspan(first, tile_count));
-      };
-      fetch_destination(k, count);
-      if constexpr (WritesInFloat<Source>) {
-        if (limits_.in_float && source.has_float() && float_.is_tried()) {
-          source.write_in_float(range_of(k, count), tiles.subspan(k, count));
-          summarize_tiles(tiles.subspan(k, count), *limits_.in_float, summaries.subspan(k, count));
-          std::size_t in_vain = 0;
-          for (std::size_t i = k; i < k + count; ++i) {
-            if (summaries[i].uncertain == 0) continue;
-            in_double(i, 1);
-            ++in_vain;
-          }
-          float_.note(2 * in_vain > count);
-          continue;
-        }
+    // Where the last tiles had to be examined these are likely to be, which asks for bounds that cost little now.
+    const bool with_bounds = std::exchange(is_examined_, false);
+    has_bounds_ = 0;
+    const auto in_double = [&](std::size_t first, std::size_t count) {
+      const IndexRange range = range_of(elements, first, count);
+      const std::span<ControlTile> some = tiles.subspan(first, count);
+      if (with_bounds) {
+        source.write(range, some, std::span(bounded_).subspan(first, count));
+        has_bounds_ |= lanes_of(count) << first;
+      } else {
+        source.write(range, some);
       }
-      in_double(k, count);
+      summarize_tiles(some, limits_.in_double, summaries.subspan(first, count));
+    };
+    if constexpr (WritesInFloat<Source>) {
+      if (limits_.in_float && source.has_float() && float_.is_tried()) {
+        source.write_in_float(elements, tiles);
+        summarize_tiles(tiles, *limits_.in_float, summaries);
+        std::size_t in_vain = 0;
+        for (std::size_t k = 0; k < tiles.size(); ++k) {
+          if (summaries[k].uncertain == 0) continue;
+          in_double(k, 1);
+          ++in_vain;
+        }
+        float_.note(2 * in_vain > tiles.size());
+        return;
+      }
     }
+    in_double(0, tiles.size());
   }
 
   // Prefetches the memory that the blocks of some tiles will go to, as many bytes as those of the last chunk had. It
@@ -289,24 +305,40 @@ class PartBuilder {
 #endif
   }
 
-  // Examines in double the elements of a tile that the quick test did not settle: sixteen at a time, and one by one
-  // what that leaves. Returns the flagged ones as bits.
+  // Examines in double the elements of tile k of a few that the quick test did not settle: sixteen at a time, and one by
+  // one what that leaves. Returns the flagged ones as bits.
   template <class Source>
-  std::uint32_t examine(Source& source, IndexRange elements, const TileSummary& summary, ControlTile& tile,
-                        Need& need) {
+  std::uint32_t examine(Source& source, IndexRange elements, const TileSummary& summary, std::size_t k,
+                        ControlTile& tile, Need& need) {
     constexpr int kFewest = 3;  // for which sixteen at a time pay
     const std::uint32_t uncertain = summary.uncertain & lanes_of(elements.count);
-    BoundedTile bounded;
-    TileCertificates known;
+    TileCertificates& known = certificates_;
+    known.clear();
     if (std::popcount(uncertain) >= kFewest) {
-      const std::uint32_t asked = uncertain & ~source.in_double(elements, bounded);
-      certify_tile(bounded, limits_.in_double, asked, known);
+      is_examined_ = true;
+      BoundedTile& bounded = bounded_[k];
+      if ((has_bounds_ >> k & 1) == 0) source.write(elements, std::span(&tile, 1), std::span(&bounded, 1));
+      certify_tile(bounded, limits_.in_double, uncertain & ~bounded.left_out, known);
       need.precision = std::max(need.precision, known.precision);
     }
+    if (known.flagged == lanes_of(kTile)) {
+      add_known(elements.first, 0, kTile);
+      for (std::size_t plane = 0; plane < 9; ++plane)
+        std::fill_n(tile.normals[plane], kTile, plane % 3 == 0 ? 1.0F : 0.0F);  // kPlaceHolder
+      add_exact(source, elements.first, known.needs_exact);
+      return known.flagged;
+    }
+    return examine_alone(source, elements, uncertain & ~known.known, tile, need);
+  }
+
+  // Examines one by one some elements of a tile, and adds all of its flagged ones, also those with certificates.
+  template <class Source>
+  std::uint32_t examine_alone(Source& source, IndexRange elements, std::uint32_t asked, ControlTile& tile, Need& need) {
+    const TileCertificates& known = certificates_;
     std::uint32_t flagged = known.flagged, needs_exact = known.needs_exact;
     bool out_of_range = false;
     std::array<std::optional<Examined>, kTile> alone;
-    for_lanes(uncertain & ~known.known, [&](std::size_t lane) {
+    for_lanes(asked, [&](std::size_t lane) {
       alone[lane] = examined(source, elements.first + lane, limits_.in_double);
       const auto& [normals, precision, certain, lane_needs_exact] = *alone[lane];
       if (precision) {
@@ -319,52 +351,43 @@ class PartBuilder {
       }
     });
     if (out_of_range) flagged |= rescale(source, elements, flagged, tile, alone);
-    constexpr std::uint32_t kAll = (1u << kTile) - 1;
-    if ((flagged & known.flagged) == kAll) {
-      add_whole_tile(elements.first, bounded, known);
-      for (std::size_t k = 0; k < 9; ++k) std::fill_n(tile.normals[k], kTile, k % 3 == 0 ? 1.0F : 0.0F);
-    } else {
-      for_lanes(flagged, [&](std::size_t lane) {
-        put(tile, lane, kPlaceHolder);
-        part_.flagged.add(elements.first + lane,
-                          alone[lane]
-                              ? FlaggedNormals::scaled(alone[lane]->normals, alone[lane]->certain)
-                              : FlaggedNormals{scaled(known.scale[lane], element_of(bounded.normals, lane)),
-                                               {known.limits[0][lane], known.limits[1][lane], known.limits[2][lane]},
-                                               exponent_of(known.scale[lane])});
-      });
-    }
-    for_lanes(needs_exact, [&](std::size_t lane) {
-      if constexpr (!std::is_same_v<Source, GivenNormals>) {
-        part_.exact.push_back({elements.first + lane, part_.exact_digits.size()});
-        source.exact(elements.first + lane).append_to(part_.exact_digits);
+    for_lanes(flagged, [&](std::size_t lane) { put(tile, lane, kPlaceHolder); });
+    for (std::size_t lane = 0; flagged >> lane != 0;) {
+      const std::uint32_t left = flagged >> lane;
+      if ((left & 1) == 0) {
+        lane += static_cast<std::size_t>(std::countr_zero(left));
+      } else if (alone[lane]) {
+        part_.flagged.add(elements.first + lane, FlaggedNormals::scaled(alone[lane]->normals, alone[lane]->certain));
+        ++lane;
+      } else {
+        const auto neighbours = static_cast<std::size_t>(std::countr_one(known.flagged >> lane));
+        add_known(elements.first, lane, neighbours);
+        lane += neighbours;
       }
-    });
+    }
+    add_exact(source, elements.first, needs_exact);
     for (std::size_t lane = elements.count; lane < kTile; ++lane)
       for (auto& plane : tile.normals) plane[lane] = plane[elements.count - 1];
     return flagged;
   }
 
-  // That of the power of two whose inverse scales an element.
-  static std::int16_t exponent_of(double scale) {
-    constexpr int kBias = 1023, kDigits = 52;
-    return static_cast<std::int16_t>(kBias - static_cast<int>(bit_cast<std::uint64_t>(scale) >> kDigits));
+  // Adds neighbours that are flagged as they lie beside their certificates.
+  void add_known(std::size_t first, std::size_t lane, std::size_t count) {
+    std::array<std::size_t, kTile> numbers;
+    for (std::size_t i = 0; i < count; ++i) numbers[i] = first + lane + i;
+    part_.flagged.append(std::span(numbers).first(count), certificates_.scaled, lane,
+                         std::span(certificates_.exponents).subspan(lane, count));
   }
 
-  // Adds sixteen flagged elements as they lie.
-  void add_whole_tile(std::size_t first, const BoundedTile& bounded, const TileCertificates& known) {
-    FlaggedTile tile;
-    for (std::size_t k = 0; k < 9; ++k)
-      for (std::size_t lane = 0; lane < kTile; ++lane)
-        tile.normals[k][lane] = known.scale[lane] * bounded.normals[k][lane];
-    std::copy_n(&known.limits[0][0], 3 * kTile, &tile.limits[0][0]);
-    std::array<std::size_t, kTile> numbers;
-    std::array<std::int16_t, kTile> exponents;
-    for (std::size_t lane = 0; lane < kTile; ++lane) {
-      numbers[lane] = first + lane;
-      exponents[lane] = exponent_of(known.scale[lane]);
+  // Adds elements that double cannot carry at every t.
+  template <class Source>
+  void add_exact(const Source& source, std::size_t first, std::uint32_t lanes) {
+    if constexpr (!std::is_same_v<Source, GivenNormals>) {
+      for_lanes(lanes, [&](std::size_t lane) {
+        part_.exact.push_back({first + lane, part_.exact_digits.size()});
+        source.exact(first + lane).append_to(part_.exact_digits);
+      });
     }
-    part_.flagged.append(numbers, std::span(&tile, 1), exponents);
   }
 
   // Calls body(lane) for each bit that is set.
@@ -413,7 +436,11 @@ class PartBuilder {
   AlignedArray<ControlTile> tiles_;
   std::size_t made_ = 0;  // elements
   FloatTrials float_;
-  std::size_t chunk_bytes_ = 0;  // of the last chunk
+  std::array<BoundedTile, kWrittenTiles> bounded_;  // of the tiles that are being added
+  TileCertificates certificates_;                   // of the one that is being examined
+  std::uint32_t has_bounds_ = 0;                    // those of them that have one, as bits
+  bool is_examined_ = false;                        // one of them was, sixteen elements at a time
+  std::size_t chunk_bytes_ = 0;                     // of the last chunk
 };
 
 }  // namespace chronormal::inline internal

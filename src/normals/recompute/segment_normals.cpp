@@ -51,15 +51,15 @@ constexpr Row kPrepareTriangle = {7.9, 8, 9}, kPreparePolygon = {35, 35, 35}, kP
 constexpr Row kPreparePoint = {2.75, 2.85, 3.4}, kPreparePointMiss = {0.3, 3, 9};
 // The same of both in float32, where the tolerance allows it and sixteen curves side by side bend.
 constexpr Row kPrepareFloatTriangle = {5.4, 5.5, 6.2}, kPrepareFloatPoint = {1.7, 1.75, 2};
-// An element that is examined on its own, and each of its faces; or one of sixteen that are prepared once more, in double.
+// An element that is examined on its own, and each of its faces; or one of sixteen, with the bounds that this takes.
 // (The ratio of the latter to preparing is that of a Zen 4, too.)
 constexpr double kExamined = 100, kExaminedFace = 52, kExaminedOfTile = 16;
 // For each byte of curves and scratch: memory that the system gives for the first time has to be cleared.
 constexpr double kNewByte = 0.02;
 
-// Evaluating curves: an element, each byte that is read or written, and an element in double.
+// Evaluating curves: an element, each byte that is read or written, and what an element in double adds.
 constexpr Row kEvaluate = {0.43, 0.2, 0}, kEvaluateByte = {0.0006, 0.015, 0.04};
-constexpr double kEvaluateFlagged = 2.8;
+constexpr Row kEvaluateFlagged = {1.1, 1.2, 3.7};
 
 constexpr double kResultBytes = 3 * sizeof(float);
 constexpr double kPositionBytes = 6 * sizeof(float);  // of both ends
@@ -90,10 +90,9 @@ double curve_bytes_of_element(double degree, double tolerance) {
   return of_degree[i] + (degree - low) * (of_degree[i + 1] - of_degree[i]);
 }
 
-// The share of the elements that are prepared in float32: by sixteen, of which none is straight or doubtful.
+// The share of the elements that are prepared in float32.
 double share_in_float(const MeshShape& shape, double tolerance) {
-  if (!PrecisionLimits::for_float_tiles(tolerance)) return 0;
-  return std::clamp(shape.degree - 1, 0.0, 1.0) * (1 - std::min(1.0, static_cast<double>(kTile) * shape.doubtful));
+  return PrecisionLimits::for_float_tiles(tolerance) ? shape.in_float32 : 0;
 }
 
 // On a sample of faces.
@@ -110,13 +109,24 @@ double average_degree(const Segment& segment) {
   return sum / static_cast<double>(samples);
 }
 
+// Whether a tile that was made in double might as well have been made in float32. What that is off by is estimated from
+// the products: half as many as faces, and those of a ring are each about as large as those of two faces.
+bool fits_float(ControlTile tile, double products) {
+  static const PrecisionLimits limits = *PrecisionLimits::for_float_tiles(kCompactTolerance);
+  const auto roundings = static_cast<float>(0x1p-24 * (products + 5));
+  for (float& magnitude : tile.magnitude) magnitude *= roundings;
+  TileSummary summary;
+  summarize_tiles(std::span(&tile, 1), limits, std::span(&summary, 1));
+  return summary.uncertain == 0;
+}
+
 // Looks at tiles at a fixed stride as the preparation would.
 template <class Source>
 void find_doubtful(Source& source, std::size_t size, MeshShape& shape) {
   constexpr std::size_t kSamples = 8;
   const PrecisionLimits exact = PrecisionLimits::for_tolerance(kExactTolerance),
                         compact = PrecisionLimits::for_tolerance(kCompactTolerance);
-  std::size_t seen = 0, doubtful = 0, flagged = 0, flagged_compact = 0;
+  std::size_t seen = 0, doubtful = 0, flagged = 0, flagged_compact = 0, in_float = 0;
   const std::size_t tiles = (size + kTile - 1) / kTile, samples = std::min(tiles, kSamples);
   for (std::size_t i = 0; i < samples; ++i) {
     const std::size_t first = tiles * i / samples * kTile;
@@ -126,6 +136,7 @@ void find_doubtful(Source& source, std::size_t size, MeshShape& shape) {
     TileSummary summary;
     summarize_tiles(std::span(tile.data(), 1), exact, std::span(&summary, 1));
     seen += elements.count;
+    if (fits_float(tile[0], shape.faces_per_element / 2 + 1)) in_float += elements.count;
     for (std::size_t lane = 0; lane < elements.count; ++lane) {
       if ((summary.uncertain >> lane & 1) == 0) continue;
       ++doubtful;
@@ -137,6 +148,7 @@ void find_doubtful(Source& source, std::size_t size, MeshShape& shape) {
   }
   if (seen == 0) return;
   const auto share = [seen](std::size_t count) { return static_cast<double>(count) / static_cast<double>(seen); };
+  shape.in_float32 = share(in_float);
   shape.doubtful = share(doubtful);
   shape.flagged = std::min(shape.doubtful, share(flagged));
   shape.flagged_compact = std::min(shape.flagged, share(flagged_compact));
@@ -151,12 +163,14 @@ class SampledGroups {
     for (std::size_t i = 0; i < tiles.size() * kTile; ++i) {
       const std::size_t element = elements.first + std::min(i, elements.count - 1);
       const ControlNormals normals = in_double(element).normals;
-      double magnitude = 0;
-      for (const std::uint32_t f : groups_.faces(element))
-        magnitude += polygon_control_normals(segment_, segment_.topology->face(f)).magnitude;
       ControlTile& tile = tiles[i / kTile];
       put(tile, i % kTile, normals);
-      tile.magnitude[i % kTile] = static_cast<float>(magnitude);
+      tile.magnitude[i % kTile] = 0;
+      for (const std::uint32_t f : groups_.faces(element)) {
+        ControlTile of_face;
+        face_control_tiles(segment_, {f, 1}, std::span(&of_face, 1));
+        tile.magnitude[i % kTile] += of_face.magnitude[0];
+      }
       tile.degree[i % kTile] = degree(normals);
     }
   }
@@ -290,8 +304,10 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
   }
   costs.in_float32 += vertices / elements * cost(kFloatVertex, level);
   costs.recompute += kRecomputeThin * shape.doubtful * terms;
-  costs.prepare +=
-      std::min(shape.doubtful * (kExamined + kExaminedFace * terms), costs.prepare + shape.doubtful * kExaminedOfTile);
+  // Sixteen that are examined where those before them were not are prepared once more, with bounds.
+  const double examined = std::min(1.0, static_cast<double>(kTile) * shape.doubtful);
+  costs.prepare += std::min(shape.doubtful * (kExamined + kExaminedFace * terms),
+                            examined * (1 - examined) * costs.prepare + shape.doubtful * kExaminedOfTile);
 
   const double kept = curve_bytes_of_element(shape.degree, tolerance);
   costs.curve_bytes = kept * elements;
@@ -299,7 +315,8 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
   costs.prepare += kNewByte * (kept + scratch);
   const Level level_of_curves = level_of((kept + kResultBytes) * elements);
   costs.evaluate = cost(kEvaluate, level_of_curves) + cost(kEvaluateByte, level_of_curves) * (kept + kResultBytes);
-  costs.evaluate += kEvaluateFlagged * (tolerance <= kExactTolerance ? shape.flagged : shape.flagged_compact);
+  costs.evaluate +=
+      cost(kEvaluateFlagged, level_of_curves) * (tolerance <= kExactTolerance ? shape.flagged : shape.flagged_compact);
   return costs;
 }
 

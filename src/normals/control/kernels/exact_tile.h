@@ -19,7 +19,8 @@ struct alignas(64) ExactTile {
 
 /// Sixteen elements as BoundedNormals has one: control normals in double, with bounds on their errors.
 struct BoundedTile : ExactTile {
-  double errors[3][kTile];  ///< how far any component of n0, m and n1 may be from the exact one
+  double errors[3][kTile];     ///< how far any component of n0, m and n1 may be from the exact one
+  std::uint32_t left_out = 0;  ///< the elements that are not here but left to others, as bits
 };
 
 /// Sixteen faces with the longest of their edges from the first corner.

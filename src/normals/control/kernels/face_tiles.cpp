@@ -42,6 +42,14 @@ void EdgedFaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles
   }
 }
 
+void BoundedFaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles, BoundedTile* exact) {
+  const PointAccess access = AccessOf(segment);
+  for (std::size_t f = faces.first; f < faces.end(); f += kTile, ++exact) {
+    FaceTile(segment, access, f, faces.end(), *exact, {.errors = exact->errors});
+    RoundTile(*exact, *tiles++);
+  }
+}
+
 void FloatFaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
   const PointAccess access = AccessOf(segment);
   const Floats roundings = RoundingsInFloat(1);
@@ -56,10 +64,6 @@ void FloatFaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles
       }
     });
   }
-}
-
-void BoundedTriangles(const Segment& segment, IndexRange faces, BoundedTile& tile) {
-  FaceTile(segment, AccessOf(segment), faces.first, faces.end(), tile, {.errors = tile.errors});
 }
 
 void TriangleControlNormals(const Segment& segment, IndexRange faces, double* result) {
@@ -87,9 +91,9 @@ HWY_AFTER_NAMESPACE();
 namespace chronormal::inline internal {
 
 HWY_EXPORT(FaceTiles);
-HWY_EXPORT(FloatFaceTiles);
 HWY_EXPORT(EdgedFaceTiles);
-HWY_EXPORT(BoundedTriangles);
+HWY_EXPORT(BoundedFaceTiles);
+HWY_EXPORT(FloatFaceTiles);
 HWY_EXPORT(TriangleControlNormals);
 
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept {
@@ -105,15 +109,17 @@ void face_control_tiles(const Segment& segment, IndexRange faces, std::span<Cont
   HWY_DYNAMIC_DISPATCH(EdgedFaceTiles)(segment, faces, tiles.data(), exact.data());
 }
 
+void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
+                        std::span<BoundedTile> exact) noexcept {
+  assert(segment.topology->all_triangles() && faces.count > 0 && faces.end() <= segment.topology->face_count());
+  assert(tiles.size() == (faces.count + kTile - 1) / kTile && exact.size() == tiles.size());
+  HWY_DYNAMIC_DISPATCH(BoundedFaceTiles)(segment, faces, tiles.data(), exact.data());
+}
+
 void float_triangle_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept {
   assert(segment.topology->all_triangles() && faces.count > 0 && faces.end() <= segment.topology->face_count());
   assert(tiles.size() == (faces.count + kTile - 1) / kTile);
   HWY_DYNAMIC_DISPATCH(FloatFaceTiles)(segment, faces, tiles.data());
-}
-
-void bounded_triangle_tile(const Segment& segment, IndexRange faces, BoundedTile& tile) noexcept {
-  assert(segment.topology->all_triangles() && faces.count > 0 && faces.count <= kTile);
-  HWY_DYNAMIC_DISPATCH(BoundedTriangles)(segment, faces, tile);
 }
 
 void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept {

@@ -23,14 +23,15 @@ void face_control_tiles(const Segment& segment, IndexRange faces, std::span<Cont
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
                         std::span<EdgedTile> exact) noexcept;
 
+/// The same of triangles, and beside each tile what it is rounded from, with bounds on the errors, for a closer look.
+/// exact must have as many elements as tiles
+void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
+                        std::span<BoundedTile> exact) noexcept;
+
 /// Writes the tiles of triangles in float32 throughout, with a bound on their errors: `magnitude` is one of the error
 /// of any component; `degree` is 2 where the curve bends by more than that error, so that its degree is 2 without a
 /// doubt, and 1 elsewhere. The same preconditions
 void float_triangle_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
-
-/// Writes up to sixteen triangles in double, with bounds on their errors, for a closer look. Lanes behind the last one
-/// repeat it.
-void bounded_triangle_tile(const Segment& segment, IndexRange faces, BoundedTile& tile) noexcept;
 
 /// face_control_normals() of a mesh of triangles.
 void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;

@@ -2,6 +2,9 @@
 #include "normals/curves/kernels/certify.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
 
 #include "normals/curves/certificate.h"
 #include "normals/curves/kernels/flagged_normals.h"
@@ -79,22 +82,74 @@ HWY_INLINE Quartic Square(const Vectors& n) {
 
 // The lanes among `open` in which ratio |n(t)| >= limit(t) at every t.
 HWY_INLINE DoubleMask StaysAbove(const Quartic& n_square, double ratio, const Quartic& limit_square, DoubleMask open) {
+  if (None(open)) return open;
   const Doubles ratio_square = AllOf(ratio * ratio);
   Quartic slack;
   for (std::size_t k = 0; k < 5; ++k) slack.at[k] = hn::Sub(hn::Mul(ratio_square, n_square.at[k]), limit_square.at[k]);
   return CertainlyNotNegative<kCertificateDepth>(slack, open);
 }
 
+// A quadratic and a quartic at one of a few instants, by the values of Bernstein polynomials there.
+struct Instant {
+  double of_degree2[3], of_degree4[5];
+};
+inline constexpr Instant kInstants[] = {
+    {{1.0 / 4, 1.0 / 2, 1.0 / 4}, {1.0 / 16, 4.0 / 16, 6.0 / 16, 4.0 / 16, 1.0 / 16}},
+    {{9.0 / 16, 6.0 / 16, 1.0 / 16}, {81.0 / 256, 108.0 / 256, 54.0 / 256, 12.0 / 256, 1.0 / 256}},
+    {{1.0 / 16, 6.0 / 16, 9.0 / 16}, {1.0 / 256, 12.0 / 256, 54.0 / 256, 108.0 / 256, 81.0 / 256}}};
+
+// What |n(t)| is compared with before there is a proof: squares at a few instants, far cheaper than that proof, which
+// cannot succeed where n(t) is too short at one of them.
+class Glance {
+ public:
+  HWY_INLINE Glance(const Quartic& n_square, const Doubles (&length_square)[3]) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const Instant& at = kInstants[i];
+      Doubles square = hn::Zero(kDoubles), limit = square;
+      for (std::size_t k = 0; k < 5; ++k) square = hn::Add(square, hn::Mul(AllOf(at.of_degree4[k]), n_square.at[k]));
+      for (std::size_t k = 0; k < 3; ++k)
+        limit = hn::Add(limit, hn::Mul(AllOf(at.of_degree2[k] * at.of_degree2[k]), length_square[k]));
+      square_[i] = square;
+      limit_[i] = limit;
+    }
+  }
+
+  // Whether ratio |n(t)| >= 1 may hold at every t.
+  HWY_INLINE DoubleMask MayStayAboveOne(double ratio) const {
+    Doubles smallest = square_[0];
+    for (std::size_t i = 1; i < kCount; ++i) smallest = hn::Min(smallest, square_[i]);
+    return hn::Ge(hn::Mul(AllOf(kUp * ratio * ratio), smallest), AllOf(1));
+  }
+
+  // Whether ratio |n(t)| >= sum w_k |c_k| may hold at every t; the square of that sum is more than the sum of squares.
+  HWY_INLINE DoubleMask MayStayAbove(double ratio) const {
+    const Doubles factor = AllOf(kUp * ratio * ratio);
+    auto may = hn::Ge(hn::Mul(factor, square_[0]), limit_[0]);
+    for (std::size_t i = 1; i < kCount; ++i) may = hn::And(may, hn::Ge(hn::Mul(factor, square_[i]), limit_[i]));
+    return may;
+  }
+
+ private:
+  static constexpr std::size_t kCount = std::size(kInstants);
+  static constexpr double kUp = 1 + 0x1p-40;  // for all roundings
+  Doubles square_[kCount], limit_[kCount];
+};
+
 HWY_INLINE Doubles ScaledLength(const Doubles3& v) { return hn::Sqrt(Dot(v, v)); }
 
+HWY_INLINE Numbers LengthsOf(const Vectors& n, const Quartic& n_square) {
+  return {hn::Sqrt(n_square.at[0]), ScaledLength(n.m), hn::Sqrt(n_square.at[4])};
+}
+
 // As stays_certain(), of control normals that are scaled to 1.
-HWY_INLINE DoubleMask StaysCertain(const Vectors& n, const Quartic& n_square, const Numbers& lengths, Doubles certain,
-                                   DoubleMask open) {
+HWY_INLINE DoubleMask StaysCertain(const Vectors& n, const Quartic& n_square, Doubles certain, DoubleMask open) {
   const Doubles share = hn::Mul(AllOf(4), certain);
   const Doubles height = hn::Abs(Dot(n.n0, Cross(n.m, n.n1)));
   const Doubles area = ScaledLength(Cross(n.m - n.n0, n.n1 - n.n0));
   const auto proven = hn::And(open, hn::Ge(height, hn::Add(hn::Mul(share, area), AllOf(kDeterminantRounding))));
   open = hn::AndNot(proven, open);
+  if (None(open)) return proven;
+  const Numbers lengths = LengthsOf(n, n_square);
   const auto too_short = [](const Doubles3& v, Doubles size) HWY_ATTR {
     return hn::And(hn::Gt(LargestOf(v), hn::Zero(kDoubles)), hn::Lt(size, AllOf(kSmallestLength)));
   };
@@ -110,6 +165,13 @@ HWY_INLINE DoubleMask StaysCertain(const Vectors& n, const Quartic& n_square, co
 HWY_INLINE Doubles3 VectorAt(const BoundedTile& tile, std::size_t k, std::size_t lane) {
   return {hn::Load(kDoubles, tile.normals[k] + lane), hn::Load(kDoubles, tile.normals[k + 1] + lane),
           hn::Load(kDoubles, tile.normals[k + 2] + lane)};
+}
+
+HWY_INLINE void StoreScaled(Doubles scale, const Doubles3& v, FlaggedTile& tile, std::size_t k, std::size_t lane) {
+  const Doubles3 scaled = Scale(scale, v);
+  hn::Store(scaled.x, kDoubles, tile.normals[k] + lane);
+  hn::Store(scaled.y, kDoubles, tile.normals[k + 1] + lane);
+  hn::Store(scaled.z, kDoubles, tile.normals[k + 2] + lane);
 }
 
 void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::size_t lane, std::uint32_t asked,
@@ -137,7 +199,7 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const Doubles scale = hn::Div(one, largest);
   const Vectors n{Scale(scale, given.n0), Scale(scale, given.m), Scale(scale, given.n1)};
   const Quartic n_square = Square(n);
-  const Numbers lengths{hn::Sqrt(n_square.at[0]), ScaledLength(n.m), hn::Sqrt(n_square.at[4])};
+  const Glance glance(n_square, {n_square.at[0], Dot(n.m, n.m), n_square.at[4]});
   auto open = known;
   const auto settle = [&](DoubleMask fits, Precision precision) HWY_ATTR {
     if ((BitsOf(kDoubles, fits) & asked) != 0) result.precision = std::max(result.precision, precision);
@@ -145,17 +207,22 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   };
   if (limits.largest_ratio16 > 0) {
     const Quartic ones{{one, one, one, one, one}};
-    const auto fits16 = StaysAbove(n_square, limits.largest_ratio16, ones, open);
+    const auto may_fit16 = hn::And(open, glance.MayStayAboveOne(limits.largest_ratio16));
+    const auto fits16 = StaysAbove(n_square, limits.largest_ratio16, ones, may_fit16);
     const auto fits11 = StaysAbove(n_square, limits.largest_ratio11, ones, fits16);
     settle(fits11, Precision::k11);
     settle(hn::AndNot(fits11, fits16), Precision::k16);
   }
-  if (limits.sum_ratio_scaled16 > 0 && !None(open)) {
+  const auto may_fit_scaled = hn::And(open, glance.MayStayAbove(limits.sum_ratio_scaled16));
+  if (limits.sum_ratio_scaled16 > 0 && !None(may_fit_scaled)) {
     const Doubles more = AllOf(kSmallestScale);
+    const Numbers lengths = LengthsOf(n, n_square);
     const Numbers scales{hn::Add(lengths.n0, more), hn::Add(lengths.m, more), hn::Add(lengths.n1, more)};
-    settle(StaysAbove(n_square, limits.sum_ratio_scaled16, Square(scales), open), Precision::kScaled16);
+    settle(StaysAbove(n_square, limits.sum_ratio_scaled16, Square(scales), may_fit_scaled), Precision::kScaled16);
   }
-  if (!None(open)) settle(StaysAbove(n_square, limits.sum_ratio32, Square(lengths), open), Precision::k32);
+  const auto may_fit32 = hn::And(open, glance.MayStayAbove(limits.sum_ratio32));
+  if (!None(may_fit32))
+    settle(StaysAbove(n_square, limits.sum_ratio32, Square(LengthsOf(n, n_square)), may_fit32), Precision::k32);
 
   result.known |= known_bits << lane;
   const std::uint32_t flagged = BitsOf(kDoubles, open) & asked;
@@ -165,14 +232,20 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const hn::RebindToSigned<DoubleTag> bits;
   const auto exponent = hn::And(hn::BitCast(bits, largest), hn::Set(bits, std::int64_t{0x7FF} << 52));
   const Doubles power = hn::BitCast(kDoubles, hn::Sub(hn::Set(bits, std::int64_t{0x7FE} << 52), exponent));
-  hn::Store(power, kDoubles, result.scale + lane);
+  StoreScaled(power, given.n0, result.scaled, 0, lane);
+  StoreScaled(power, given.m, result.scaled, 3, lane);
+  StoreScaled(power, given.n1, result.scaled, 6, lane);
   const HalfFloatTag floats;
+  alignas(64) std::int64_t exponents[kDoubleLanes];
+  hn::Store(exponent, bits, exponents);
+  for (std::size_t i = 0; i < kDoubleLanes; ++i)
+    result.exponents[lane + i] = static_cast<std::int16_t>((exponents[i] >> 52) - 1023);
   const Doubles sizes[3] = {size0, size_m, size1};
   for (std::size_t k = 0; k < 3; ++k) {
     const Doubles limit = hn::Mul(AllOf(kLimitUp), hn::Mul(certain, hn::Mul(power, sizes[k])));
-    hn::StoreU(hn::DemoteTo(floats, hn::Max(AllOf(kLeastLimit), limit)), floats, result.limits[k] + lane);
+    hn::StoreU(hn::DemoteTo(floats, hn::Max(AllOf(kLeastLimit), limit)), floats, result.scaled.limits[k] + lane);
   }
-  const auto stays = StaysCertain(n, n_square, lengths, certain, open);
+  const auto stays = StaysCertain(n, n_square, certain, open);
   result.flagged |= flagged << lane;
   result.needs_exact |= (flagged & ~BitsOf(kDoubles, stays)) << lane;
 }
@@ -196,8 +269,7 @@ HWY_EXPORT(CertifyTile);
 
 void certify_tile(const BoundedTile& tile, const PrecisionLimits& limits, std::uint32_t asked,
                   TileCertificates& result) noexcept {
-  result.known = result.flagged = result.needs_exact = 0;
-  result.precision = Precision::k11;
+  result.clear();
   HWY_DYNAMIC_DISPATCH(CertifyTile)(tile, limits, asked, result);
 }
 

@@ -3,6 +3,7 @@
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_FLAGGED_NORMALS_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_FLAGGED_NORMALS_H_
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,6 +41,14 @@ struct alignas(64) FlaggedTile {
       for (const double component : {v->x, v->y, v->z}) normals[k++][lane] = component;
     }
     for (k = 0; k < 3; ++k) limits[k][lane] = flagged.limits[k];
+  }
+  /// Copies `count` lanes of another tile, from its lane `first`, to this lane and those behind it.
+  void set_lanes(std::size_t lane, const FlaggedTile& from, std::size_t first, std::size_t count) noexcept {
+    for (std::size_t k = 0; k < 9; ++k) std::copy_n(from.normals[k] + first, count, normals[k] + lane);
+    for (std::size_t k = 0; k < 3; ++k) std::copy_n(from.limits[k] + first, count, limits[k] + lane);
+  }
+  [[nodiscard]] FlaggedNormals element(std::size_t lane, std::int16_t exponent) const noexcept {
+    return {element_of(normals, lane), {limits[0][lane], limits[1][lane], limits[2][lane]}, exponent};
   }
 };
 

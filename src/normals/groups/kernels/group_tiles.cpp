@@ -303,15 +303,7 @@ void FloatGroupTilesOf(const RingInput& input, IndexRange elements, ControlTile*
   }
 }
 
-void BoundedGroupTile(const RingInput& input, std::size_t slice, BoundedTile& tile) {
-  const std::size_t first_row = input.rings.first_row[slice], rows = input.rings.first_row[slice + 1] - first_row;
-  PointColumns points[1 + kMostPathPoints];
-  LoadRing(input, AccessOf(input.segment), input.rings.indices + kTile * first_row, rows, points);
-  SumRing(points, rows, tile);
-  for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) StoreErrors(points, rows, lane, tile.errors);
-}
-
-void GroupTilesOf(const RingInput& input, IndexRange elements, ControlTile* tiles) {
+void GroupTilesOf(const RingInput& input, IndexRange elements, ControlTile* tiles, BoundedTile* bounded) {
   const Segment& segment = input.segment;
   const RingSlices& rings = input.rings;
   const PointAccess access = AccessOf(segment);
@@ -325,6 +317,11 @@ void GroupTilesOf(const RingInput& input, IndexRange elements, ControlTile* tile
     if (input.fetch && first_row + rows + kRowsAhead <= all_rows) FetchRows(segment, access, indices, rows);
     LoadRing(input, access, indices, rows, points);
     SumRing(points, rows, exact);
+    if (bounded != nullptr) {
+      static_cast<ExactTile&>(*bounded) = exact;
+      for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) StoreErrors(points, rows, lane, bounded->errors);
+      ++bounded;
+    }
     const std::uint32_t doubtful = RoundTile(points, rows, exact, tile);
     if (HWY_UNLIKELY(doubtful != 0)) {
       for (std::size_t i = 0; i < kTile; ++i) {
@@ -344,7 +341,6 @@ namespace chronormal::inline internal {
 
 HWY_EXPORT(GroupTilesOf);
 HWY_EXPORT(FloatGroupTilesOf);
-HWY_EXPORT(BoundedGroupTile);
 
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               ExactTile& exact, ControlTile& tile) noexcept {
@@ -365,33 +361,40 @@ void GroupTiles::write(IndexRange elements, std::span<ControlTile> tiles) const 
   assert(elements.count > 0 && elements.end() <= groups_->size());
   assert(elements.first % kTile == 0 && (elements.count % kTile == 0 || elements.end() == groups_->size()));
   assert(tiles.size() == (elements.count + kTile - 1) / kTile);
-  const RingSlices slices = rings_->view();
-  HWY_DYNAMIC_DISPATCH(GroupTilesOf)({segment_, *groups_, slices, fetch_}, elements, tiles.data());
-  const auto left_out = rings_->left_out();
-  auto next = std::lower_bound(left_out.begin(), left_out.end(), elements.first);
-  for (; next != left_out.end() && *next < elements.end(); ++next) set_alone(*next, elements, tiles);
+  const RingInput input{segment_, *groups_, rings_->view(), fetch_};
+  HWY_DYNAMIC_DISPATCH(GroupTilesOf)(input, elements, tiles.data(), nullptr);
+  for (const std::size_t element : left_out(elements)) set_alone(element, elements, tiles);
+}
+
+void GroupTiles::write(IndexRange elements, std::span<ControlTile> tiles,
+                       std::span<BoundedTile> bounded) const noexcept {
+  assert(elements.count > 0 && elements.end() <= groups_->size());
+  assert(elements.first % kTile == 0 && (elements.count % kTile == 0 || elements.end() == groups_->size()));
+  assert(tiles.size() == (elements.count + kTile - 1) / kTile && bounded.size() == tiles.size());
+  const RingInput input{segment_, *groups_, rings_->view(), fetch_};
+  HWY_DYNAMIC_DISPATCH(GroupTilesOf)(input, elements, tiles.data(), bounded.data());
+  for (BoundedTile& tile : bounded) tile.left_out = 0;
+  for (const std::size_t element : left_out(elements)) {
+    set_alone(element, elements, tiles);
+    const std::size_t i = element - elements.first;
+    bounded[i / kTile].left_out |= 1u << i % kTile;
+  }
 }
 
 void GroupTiles::write_in_float(IndexRange elements, std::span<ControlTile> tiles) const noexcept {
   assert(elements.count > 0 && elements.first % kTile == 0 && elements.end() <= groups_->size());
   assert(tiles.size() == (elements.count + kTile - 1) / kTile);
   HWY_DYNAMIC_DISPATCH(FloatGroupTilesOf)({segment_, *groups_, rings_->view(), fetch_}, elements, tiles.data());
-  const auto left_out = rings_->left_out();
-  auto next = std::lower_bound(left_out.begin(), left_out.end(), elements.first);
-  for (; next != left_out.end() && *next < elements.end(); ++next) {
-    const std::size_t i = *next - elements.first;
+  for (const std::size_t element : left_out(elements)) {
+    const std::size_t i = element - elements.first;
     tiles[i / kTile].magnitude[i % kTile] = std::numeric_limits<float>::infinity();
   }
 }
 
-std::uint32_t GroupTiles::write_bounded(IndexRange elements, BoundedTile& tile) const noexcept {
-  assert(elements.count > 0 && elements.count <= kTile && elements.first % kTile == 0);
-  HWY_DYNAMIC_DISPATCH(BoundedGroupTile)({segment_, *groups_, rings_->view(), false}, elements.first / kTile, tile);
-  const auto left_out = rings_->left_out();
-  std::uint32_t unknown = 0;
-  auto next = std::lower_bound(left_out.begin(), left_out.end(), elements.first);
-  for (; next != left_out.end() && *next < elements.end(); ++next) unknown |= 1u << (*next - elements.first);
-  return unknown;
+std::span<const std::uint32_t> GroupTiles::left_out(IndexRange elements) const noexcept {
+  const auto all = rings_->left_out();
+  const auto first = std::lower_bound(all.begin(), all.end(), elements.first);
+  return {first, std::lower_bound(first, all.end(), elements.end())};
 }
 
 void GroupTiles::set_alone(std::size_t element, IndexRange elements, std::span<ControlTile> tiles) const noexcept {

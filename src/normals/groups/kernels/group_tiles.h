@@ -31,17 +31,19 @@ class GroupTiles {
   /// have ceil(elements.count / 16) elements
   void write(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
+  /// The same, and beside each tile its sums in double as they are, with bounds on their errors, for a closer look.
+  /// Elements with many faces are left out of these.
+  /// bounded must have as many elements as tiles
+  void write(IndexRange elements, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const noexcept;
+
   /// Writes the tiles of a range of elements in float32 throughout, in about half the time, with a bound on their
   /// errors: `magnitude` is one of the error of any component, and infinite for elements with many faces; `degree` is 2
   /// where the curve bends by more than that error, so that its degree is 2 without a doubt, and 1 elsewhere.
   /// The same preconditions as write()
   void write_in_float(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
-  /// Writes up to sixteen elements in double, with bounds on their errors, for a closer look. Returns the elements that
-  /// it leaves to others, as bits: those with many faces. elements.first must be a multiple of 16
-  [[nodiscard]] std::uint32_t write_bounded(IndexRange elements, BoundedTile& tile) const noexcept;
-
  private:
+  [[nodiscard]] std::span<const std::uint32_t> left_out(IndexRange elements) const noexcept;
   void set_alone(std::size_t element, IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
   Segment segment_;

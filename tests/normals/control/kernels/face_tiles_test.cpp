@@ -252,7 +252,8 @@ TEST(FaceTiles, bound_the_errors_of_triangles_in_double) {
         for (std::size_t f = 0; f < faces; f += kTile) {
           BoundedTile tile;
           const IndexRange range{f, std::min(kTile, faces - f)};
-          bounded_triangle_tile(segment, range, tile);
+          ControlTile tiles_of;
+          face_control_tiles(segment, range, std::span(&tiles_of, 1), std::span(&tile, 1));
           for (std::size_t lane = 0; lane < kTile; ++lane) {
             const std::size_t i = std::min(f + lane, faces - 1);
             const ControlNormals c = element_of(tile.normals, lane);

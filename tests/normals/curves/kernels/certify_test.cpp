@@ -102,8 +102,9 @@ std::string fault(const TileCertificates& found, std::size_t lane, const Decided
   if (has(found.needs_exact) != expected.needs_exact) return expected.needs_exact ? "needs nothing" : "needs exact";
   if (!expected.precision) {
     for (std::size_t k = 0; k < 3; ++k)
-      if (found.limits[k][lane] != expected.scaled.limits[k]) return "certain from another limit on";
-    if (found.scale[lane] != std::ldexp(1.0, -expected.scaled.exponent)) return "scaled by another power of two";
+      if (found.scaled.limits[k][lane] != expected.scaled.limits[k]) return "certain from another limit on";
+    if (found.exponents[lane] != expected.scaled.exponent) return "scaled by another power of two";
+    if (!(element_of(found.scaled.normals, lane) == expected.scaled.normals)) return "scaled to something else";
   }
   if (alone && expected.precision && found.precision != *expected.precision) return "has another precision";
   return "";

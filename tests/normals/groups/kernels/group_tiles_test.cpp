@@ -419,7 +419,9 @@ std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, 
     std::vector<BoundedTile> tiles((groups.size() + kTile - 1) / kTile);
     for (std::size_t e = 0; e < groups.size(); e += kTile) {
       BoundedTile& tile = tiles[e / kTile];
-      const std::uint32_t unknown = writer.write_bounded({e, std::min(kTile, groups.size() - e)}, tile);
+      ControlTile rounded;
+      writer.write({e, std::min(kTile, groups.size() - e)}, std::span(&rounded, 1), std::span(&tile, 1));
+      const std::uint32_t unknown = tile.left_out;
       for (std::size_t lane = 0; lane < kTile; ++lane) {
         const std::size_t i = std::min(e + lane, groups.size() - 1);
         if ((unknown >> lane & 1) != 0) {
