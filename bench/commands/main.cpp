@@ -303,7 +303,8 @@ int run(int argc, char** argv) {
                                    {"audit"},
                                    {"compare"},
                                    {"bake", "-o", in("baked.glb")}}),
-                    measure_input(program, "OBJ, a file for each keyframe", frames, {{"inspect"}, {"audit"}})};
+                    measure_input(program, "OBJ, a file for each keyframe", frames,
+                                  {{"inspect"}, {"audit"}, {"bake", "-o", in("baked_of_obj.glb")}})};
   json["obj"] = measure_obj(frames[0]);
   if (json_path.empty()) return 0;
   std::ofstream file(json_path);

@@ -160,6 +160,34 @@ TEST(MeshShape, what_nearly_collapses_is_seen_and_costs) {
   EXPECT_GT(shape_of(collapsing.segment(0), vertices_of(collapsing)).doubtful, 0.9);
 }
 
+TEST(MeshShape, thin_triangles_are_known_to_need_double_in_compact_curves) {
+  const Motion smooth = fixtures::smooth_morph(60);
+  Motion thin = smooth;
+  for (Motion::Keyframe& keyframe : thin.keyframes)
+    for (std::size_t i = 0; i < keyframe.positions.size(); i += 3) keyframe.positions[i] *= 30;
+  const auto shape_by = [](const Motion& motion, bool vertices) {
+    return vertices ? shape_of(motion.segment(0), vertices_of(motion)) : shape_of(motion.segment(0));
+  };
+  for (const bool vertices : {false, true}) {
+    const MeshShape good = shape_by(smooth, vertices), bad = shape_by(thin, vertices);
+    EXPECT_EQ(good.in_float32, 1) << vertices;
+    EXPECT_LT(bad.in_float32, 0.3) << vertices;
+    EXPECT_EQ(bad.doubtful, 0) << vertices;
+    EXPECT_GT(model_costs(bad, kCompactTolerance).prepare, 1.3 * model_costs(good, kCompactTolerance).prepare);
+    EXPECT_EQ(model_costs(bad, kExactTolerance).prepare, model_costs(good, kExactTolerance).prepare);
+  }
+}
+
+TEST(MeshShape, what_is_kept_in_double_costs_more_each_time) {
+  const Motion collapsing = fixtures::collapsing_soup(1e-6, 3000);
+  MeshShape mesh = shape_of(collapsing.segment(0));
+  const double flagged = mesh.flagged;
+  ASSERT_GT(flagged, 0.5);
+  const double with = model_costs(mesh, kExactTolerance).evaluate;
+  mesh.flagged = 0;
+  EXPECT_GT(with - model_costs(mesh, kExactTolerance).evaluate, 0.5 * flagged);
+}
+
 TEST(MeshShape, is_measured_without_the_paths_around_all_vertices) {
   if (!test::AllocationCounter::works()) GTEST_SKIP() << "the sanitizer counts allocations by itself";
   const Motion motion = fixtures::smooth_morph(60);
