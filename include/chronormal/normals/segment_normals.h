@@ -74,6 +74,8 @@ struct MeshShape {
   /// be prepared one by one, since they nearly collapse in the segment; and flagged, which are then kept in double, in
   /// exact and in compact curves.
   double scattered = 0, doubtful = 0, flagged = 0, flagged_compact = 0;
+  /// Of the faces, those that are recomputed in double, since they are thin or have neighbours that are.
+  double thin = 0;
   /// Likewise, those that compact curves prepare in float32: the others are of thin triangles, or nearly collapse.
   double in_float32 = 1;
 };

@@ -119,7 +119,7 @@ QuickNormal quick_normal(const Segment& segment, std::size_t f, double t) {
   if (max_abs(exact) <= kLargestNormal) {
     const Vec3f n = to_float(exact);
     const float product = a * b, square = dot(n, n);
-    if (product <= 40 * square && in_range(std::min({square, a, b}), square))
+    if (product <= kMostProduct * square && in_range(std::min({square, a, b}), square))
       return {n, normalized(n), 3.32f * std::sqrt(product), true};
   }
   return thin_normal(segment, f, t, a, b);

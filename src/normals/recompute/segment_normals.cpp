@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <utility>
 
 #include "chronormal/normals/control_normals.h"
 #include "core/memory.h"
+#include "core/portable_math.h"
 #include "motion/coherence.h"
 #include "normals/curves/curve_sources.h"
 #include "normals/curves/kernels/pack.h"
@@ -35,10 +37,12 @@ struct Row {
 constexpr Row kRecomputeTriangle = {3.4, 3.5, 4}, kRecomputePolygon = {17, 17.5, 18};
 constexpr Row kRecomputeMiss = {0.3, 1, 4.2};
 // Recompute, groups: a triangle kept for its sum; a term of a sum; a term that was not in a near cache; and what is
-// added for a term of a scattered element, and of an element with thin faces.
+// added for a term of a scattered element, and of a doubtful one.
 constexpr Row kRecomputeKept = {3.7, 3.8, 4.2}, kRecomputeTerm = {0.75, 0.85, 1.1},
               kRecomputeTermMiss = {0.04, 2.4, 5.2};
-constexpr double kRecomputeScattered = 45, kRecomputeThin = 3.2;
+constexpr double kRecomputeScattered = 25, kRecomputeDoubtful = 2.2;
+// What a triangle takes more that is made in double, since it or one of its neighbours is thin.
+constexpr double kRecomputeThin = 6.5;
 // In float32: a triangle, a term of a sum, and a term that was not in a near cache; a vertex whose position is
 // interpolated.
 constexpr Row kFloatTriangle = {1.3, 1.5, 2.2}, kFloatTerm = {0.5, 0.6, 0.9}, kFloatMiss = {0.05, 1, 4};
@@ -73,6 +77,18 @@ Level level_of(double bytes) {
 }
 
 double cost(const Row& row, Level level) { return row.at[level]; }
+
+// Of what streams over so many bytes, of which a cache may hold a part: half way from one level to the next on a
+// logarithmic scale, the cost is half way, too.
+double streaming_cost(const Row& row, double bytes) {
+  constexpr double kNearEnd = kModelledNearCache, kSharedBegin = kModelledSharedCache / 2,
+                   kSharedEnd = kModelledSharedCache, kMemoryBegin = 4 * kModelledSharedCache;
+  const auto way = [bytes](double begin, double end) {
+    return std::clamp(portable::log(bytes / begin) / portable::log(end / begin), 0.0, 1.0);
+  };
+  if (bytes <= kSharedEnd) return std::lerp(row.at[kNear], row.at[kShared], way(kNearEnd, kSharedBegin));
+  return std::lerp(row.at[kShared], row.at[kMemory], way(kSharedEnd, kMemoryBegin));
+}
 
 // Mixes the costs of two ways, of which the second does this share of the work.
 Row mixed(double share, const Row& first, const Row& second) {
@@ -152,6 +168,36 @@ void find_doubtful(Source& source, std::size_t size, MeshShape& shape) {
   shape.doubtful = share(doubtful);
   shape.flagged = std::min(shape.doubtful, share(flagged));
   shape.flagged_compact = std::min(shape.flagged, share(flagged_compact));
+}
+
+// The share of the faces that NormalRecompute makes in double since they, or some of sixteen neighbours, are thin: on a
+// sample of faces and instants.
+double thin_share(const Segment& segment) {
+  constexpr std::size_t kSamples = 8;
+  constexpr double kInstants[] = {0.125, 0.375, 0.625, 0.875};
+  if (!segment.topology->all_triangles()) return 0;
+  const std::size_t tiles = segment.topology->face_count() / kTile, samples = std::min(tiles, kSamples);
+  const auto is_thin = [&segment](std::size_t face, double t) {
+    const auto corners = segment.topology->face(face);
+    const auto edge = [corners](const VectorView<const float>& points, std::size_t k) {
+      return to_double(points[corners[k]]) - to_double(points[corners[0]]);
+    };
+    const Vec3d e0 = edge(segment.from, 1), e1 = edge(segment.to, 1), f0 = edge(segment.from, 2),
+                f1 = edge(segment.to, 2);
+    const Vec3d n = cross(lerp(e0, e1, t), lerp(f0, f1, t));
+    const double a = std::lerp(dot(e0, e0), dot(e1, e1), t), b = std::lerp(dot(f0, f0), dot(f1, f1), t);
+    return !(a * b <= kMostProduct * dot(n, n));
+  };
+  std::size_t thin = 0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const IndexRange tile{tiles * i / samples * kTile, kTile};
+    for (const double t : kInstants) {
+      std::size_t f = tile.first;
+      while (f < tile.end() && !is_thin(f, t)) ++f;
+      if (f < tile.end()) ++thin;
+    }
+  }
+  return samples == 0 ? 0 : static_cast<double>(thin) / static_cast<double>(samples * std::size(kInstants));
 }
 
 // Elements of groups one by one, without the paths around all of them, which only curves need.
@@ -241,6 +287,7 @@ MeshShape shape_of(const Segment& segment) {
       static_cast<double>(topology.corner_count()) / static_cast<double>(topology.face_count()) - 2;
   shape.lines_per_face = lines_per_face(topology);
   shape.degree = average_degree(segment);
+  shape.thin = thin_share(segment);
   FaceNormals source(segment);
   find_doubtful(source, shape.elements, shape);
   return shape;
@@ -283,6 +330,7 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
     return shape.triangles_per_face * cost(is_polygon ? polygon : triangle, level) +
            kFullMiss * misses * cost(miss, level_of_positions);
   };
+  const double thin = kRecomputeThin * shape.thin;
   const auto sum_of = [&](double face, const Row& term, const Row& miss) {
     return faces / elements * face +
            shape.faces_per_element * (cost(term, level) + misses * cost(miss, level_of_terms));
@@ -290,7 +338,7 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
   const double terms = is_sum ? shape.faces_per_element : 1, in_float = share_in_float(shape, tolerance);
   if (is_sum) {
     costs.recompute =
-        sum_of(front_end(kRecomputeKept, kRecomputePolygon, kRecomputeMiss), kRecomputeTerm, kRecomputeTermMiss);
+        sum_of(front_end(kRecomputeKept, kRecomputePolygon, kRecomputeMiss) + thin, kRecomputeTerm, kRecomputeTermMiss);
     costs.prepare = shape.faces_per_element * shape.triangles_per_face *
                     (cost(mixed(in_float, kPreparePoint, kPrepareFloatPoint), level) +
                      misses * cost(kPreparePointMiss, level_of_positions));
@@ -298,12 +346,12 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
     // A mesh in no order keeps the normals of all faces, and needs no window.
     if (shape.lines_per_face <= kScatteredLines) costs.recompute += kRecomputeScattered * shape.scattered * terms;
   } else {
-    costs.recompute = front_end(kRecomputeTriangle, kRecomputePolygon, kRecomputeMiss);
+    costs.recompute = front_end(kRecomputeTriangle, kRecomputePolygon, kRecomputeMiss) + thin;
     costs.prepare = front_end(mixed(in_float, kPrepareTriangle, kPrepareFloatTriangle), kPreparePolygon, kPrepareMiss);
     costs.in_float32 = front_end(kFloatTriangle, kFloatTriangle, kFloatMiss);
   }
   costs.in_float32 += vertices / elements * cost(kFloatVertex, level);
-  costs.recompute += kRecomputeThin * shape.doubtful * terms;
+  costs.recompute += kRecomputeDoubtful * shape.doubtful * terms;
   // Sixteen that are examined where those before them were not are prepared once more, with bounds.
   const double examined = std::min(1.0, static_cast<double>(kTile) * shape.doubtful);
   costs.prepare += std::min(shape.doubtful * (kExamined + kExaminedFace * terms),
@@ -313,10 +361,12 @@ StrategyCosts model_costs(const MeshShape& shape, double tolerance) noexcept {
   costs.curve_bytes = kept * elements;
   const double scratch = shape.lines_per_face > kScatteredLines ? kScatteredBytes * vertices / elements : 0;
   costs.prepare += kNewByte * (kept + scratch);
-  const Level level_of_curves = level_of((kept + kResultBytes) * elements);
-  costs.evaluate = cost(kEvaluate, level_of_curves) + cost(kEvaluateByte, level_of_curves) * (kept + kResultBytes);
+  const auto streaming = [bytes = (kept + kResultBytes) * elements](const Row& row) {
+    return streaming_cost(row, bytes);
+  };
+  costs.evaluate = streaming(kEvaluate) + streaming(kEvaluateByte) * (kept + kResultBytes);
   costs.evaluate +=
-      cost(kEvaluateFlagged, level_of_curves) * (tolerance <= kExactTolerance ? shape.flagged : shape.flagged_compact);
+      streaming(kEvaluateFlagged) * (tolerance <= kExactTolerance ? shape.flagged : shape.flagged_compact);
   return costs;
 }
 

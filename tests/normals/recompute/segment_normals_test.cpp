@@ -160,7 +160,7 @@ TEST(MeshShape, what_nearly_collapses_is_seen_and_costs) {
   EXPECT_GT(shape_of(collapsing.segment(0), vertices_of(collapsing)).doubtful, 0.9);
 }
 
-TEST(MeshShape, thin_triangles_are_known_to_need_double_in_compact_curves) {
+TEST(MeshShape, thin_triangles_are_known_to_need_double) {
   const Motion smooth = fixtures::smooth_morph(60);
   Motion thin = smooth;
   for (Motion::Keyframe& keyframe : thin.keyframes)
@@ -175,6 +175,10 @@ TEST(MeshShape, thin_triangles_are_known_to_need_double_in_compact_curves) {
     EXPECT_EQ(bad.doubtful, 0) << vertices;
     EXPECT_GT(model_costs(bad, kCompactTolerance).prepare, 1.3 * model_costs(good, kCompactTolerance).prepare);
     EXPECT_EQ(model_costs(bad, kExactTolerance).prepare, model_costs(good, kExactTolerance).prepare);
+    // They are recomputed in double, too.
+    EXPECT_EQ(good.thin, 0) << vertices;
+    EXPECT_GT(bad.thin, 0.8) << vertices;
+    EXPECT_GT(model_costs(bad, kExactTolerance).recompute, 1.7 * model_costs(good, kExactTolerance).recompute);
   }
 }
 
@@ -250,6 +254,19 @@ TEST(Strategy, costs_grow_with_disorder_and_distance) {
     // Curves do not mind the order of the mesh once they are prepared.
     EXPECT_EQ(cost(10'000'000, vertices, 0.25).evaluate, cost(10'000'000, vertices, 3).evaluate);
   }
+}
+
+TEST(Strategy, evaluating_costs_more_the_further_away_curves_are_and_never_jumps) {
+  double before = 0;
+  for (double size = 1000; size < 1e8; size *= 1.1) {
+    const double evaluate = model_costs(shape(static_cast<std::size_t>(size), false), kExactTolerance).evaluate;
+    EXPECT_GE(evaluate, before) << size;
+    if (before > 0) {
+      EXPECT_LT(evaluate, 1.1 * before) << size;
+    }
+    before = evaluate;
+  }
+  EXPECT_GT(before, 3 * model_costs(shape(1000, false), kExactTolerance).evaluate);
 }
 
 TEST(Strategy, curves_of_low_degree_are_modelled_smaller_and_cheaper) {

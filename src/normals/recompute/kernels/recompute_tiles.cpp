@@ -202,8 +202,7 @@ HWY_INLINE Normals NormalsAt(const EdgeBlock& block, std::size_t lane, double t)
   const Floats a = hn::Add(hn::Mul(s1, Square(block.start_e, lane)), hn::Mul(t1, Square(block.end_e, lane)));
   const Floats b = hn::Add(hn::Mul(s1, Square(block.start_f, lane)), hn::Mul(t1, Square(block.end_f, lane)));
   const Floats product = hn::Mul(a, b), square = Dot(n, n);
-  constexpr float kMaxProduct = 40;  // 2.31 sqrt(40) <= 14.7
-  const auto precise = hn::Le(product, hn::Mul(hn::Set(kFloats, kMaxProduct), square));
+  const auto precise = hn::Le(product, hn::Mul(hn::Set(kFloats, kMostProduct), square));
   const Floats smaller = hn::Min(a, b);
   return {n, product, smaller, hn::And(precise, InRange(hn::Min(square, smaller), square))};
 }

@@ -27,6 +27,9 @@
 
 namespace chronormal::inline internal {
 
+/// Triangles are not thin where A B is at most this share of |n|^2: 2.31 sqrt(40) <= 14.7.
+inline constexpr float kMostProduct = 40;
+
 /// Triangles as the kernels read them: positions packed; or paired, x0 y0 z0 _ x1 y1 z1 _ for each vertex.
 struct MovingTriangles {
   const std::uint32_t* corners = nullptr;  ///< three for each face
