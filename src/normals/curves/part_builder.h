@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "chronormal/core/polynomial.h"
-#include "core/bits.h"
 #include "core/memory.h"
 #include "normals/curves/certificate.h"
 #include "normals/curves/curve_data.h"

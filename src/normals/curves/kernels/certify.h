@@ -15,12 +15,12 @@ namespace chronormal::inline internal {
 /// What is known of the elements of a tile that were asked for. Bit i of each set stands for element i.
 /// Nothing is set that is not known.
 struct TileCertificates {
+  FlaggedTile scaled;             ///< the flagged ones, as FlaggedNormals; other lanes have anything
+  std::int16_t exponents[kTile];  ///< of the flagged ones, as FlaggedNormals has one
   std::uint32_t known = 0;  ///< the others must be examined one by one: they are huge, tiny, or hardly more than noise
   std::uint32_t flagged = 0;             ///< of the known ones: float32 cannot carry them
   std::uint32_t needs_exact = 0;         ///< of the flagged ones: double cannot carry them at every t
   Precision precision = Precision::k11;  ///< that suffices for all others that are known
-  FlaggedTile scaled;                    ///< the flagged ones, as FlaggedNormals; other lanes have anything
-  std::int16_t exponents[kTile];         ///< of the flagged ones, as FlaggedNormals has one
 
   /// Knows nothing more.
   void clear() noexcept {
