@@ -71,12 +71,12 @@ struct MeshShape {
   /// Of the normals in t, 0 to 2, on the average.
   double degree = 2;
   /// Shares of the elements: scattered, whose faces are too far apart for a window over them; doubtful, which have to
-  /// be prepared one by one, since they nearly collapse in the segment; and flagged, which are then kept in double, in
+  /// be examined in double, since they nearly collapse in the segment; and flagged, which are then kept in double, in
   /// exact and in compact curves.
   double scattered = 0, doubtful = 0, flagged = 0, flagged_compact = 0;
-  /// Of the faces, those that are recomputed in double, since they are thin or have neighbours that are.
+  /// The share of the faces that are recomputed in double, since they are thin or have neighbours that are.
   double thin = 0;
-  /// Likewise, those that compact curves prepare in float32: the others are of thin triangles, or nearly collapse.
+  /// The share of the elements that compact curves prepare in float32. The others have thin faces, or nearly collapse.
   double in_float32 = 1;
 };
 
