@@ -174,23 +174,31 @@ bool NormalTerms::overlap(std::size_t i, std::size_t j) const {
 
 std::vector<Vec3d> NormalTerms::exact_at(std::span<const double> weights) const {
   if (!is_fitted()) return by_area_at(weights);
+  if (const std::vector<Vec3d>* kept = sampled_.find(weights)) return *kept;
   std::vector<double> blended(shading_.set.base.size());
   blend_positions(shading_.set, weights, blended);
-  const std::vector<float> to(blended.begin(), blended.end());
-  return sample_all(segment_to(shading_.set, to));
+  return sample_all(weights, blended);
 }
 
-std::vector<Vec3d> NormalTerms::weighted_at(std::span<const double> positions,
-                                            std::span<const std::uint32_t> elements) const {
-  // The normals of all faces are worth their time only where most of them are asked for.
+std::vector<Vec3d> NormalTerms::sample_all(std::span<const double> weights, std::span<const double> positions) const {
   const std::vector<float> to(positions.begin(), positions.end());
-  const Segment segment = segment_to(shading_.set, to);
+  std::vector<Vec3d> all = sample_all(segment_to(shading_.set, to));
+  sampled_.keep(weights, all);
+  return all;
+}
+
+std::vector<Vec3d> NormalTerms::weighted_at(std::span<const double> weights, std::span<const double> positions,
+                                            std::span<const std::uint32_t> elements) const {
   std::vector<Vec3d> result(elements.size());
-  if (4 * elements.size() > shading_.groups.size()) {
-    const std::vector<Vec3d> all = sample_all(segment);
+  const auto take = [&](const std::vector<Vec3d>& all) {
     for (std::size_t n = 0; n < elements.size(); ++n) result[n] = all[elements[n]];
     return result;
-  }
+  };
+  if (const std::vector<Vec3d>* kept = sampled_.find(weights)) return take(*kept);
+  // The normals of all faces are worth their time only where most of them are asked for.
+  if (4 * elements.size() > shading_.groups.size()) return take(sample_all(weights, positions));
+  const std::vector<float> to(positions.begin(), positions.end());
+  const Segment segment = segment_to(shading_.set, to);
   parallel_each(elements.size(), kBlock, [&](std::size_t n) { result[n] = sample(segment, elements[n], 1); });
   return result;
 }

@@ -14,6 +14,7 @@
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/weighting.h"
 #include "normals/blend/blend_terms.h"
+#include "workflow/bake/pose_memory.h"
 #include "workflow/shading/gltf_shading.h"
 
 namespace chronormal::inline internal {
@@ -53,9 +54,9 @@ class NormalTerms {
   [[nodiscard]] std::vector<Vec3d> by_area_at(std::span<const double> weights) const {
     return normals_from_positions(shading_, weights);
   }
-  /// The normals by the weighting of some elements, with the length by area, from the positions of all vertices, (V,
-  /// 3).
-  [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> positions,
+  /// The normals of some elements at some weights by a weighting that is fitted, with the length by area. positions
+  /// (V, 3) are those of all vertices at these weights.
+  [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> weights, std::span<const double> positions,
                                                std::span<const std::uint32_t> elements) const;
   [[nodiscard]] bool is_fitted() const noexcept { return weighting_ != Weighting::kArea; }
   /// How far the fit of a target alone is from the weighted normals that are shown, in radians, at eighths of its
@@ -69,16 +70,21 @@ class NormalTerms {
     std::vector<Vec3d> linear, square;
     double error = 0;
   };
+  static constexpr std::size_t kMostSampledBytes = std::size_t{256} << 20;
+
   void fit_targets();
   // The weighted normal of an element at t of a segment, and those of all at its end, with the length by area.
   [[nodiscard]] Vec3d sample(const Segment& segment, std::uint32_t element, double t) const;
   [[nodiscard]] std::vector<Vec3d> sample_all(const Segment& segment) const;
+  // The latter at some weights, which it keeps where there is room.
+  [[nodiscard]] std::vector<Vec3d> sample_all(std::span<const double> weights, std::span<const double> positions) const;
 
   const GltfShading& shading_;
   Weighting weighting_;
   BlendTerms by_area_;
   std::vector<Vec3d> base_;  // where it is fitted, or takes little memory
   std::vector<Fit> fits_;
+  mutable PoseMemory sampled_{kMostSampledBytes};  // all elements
 };
 
 /// A term whose values are computed or found where they are asked for. Threads: const functions may run at once.

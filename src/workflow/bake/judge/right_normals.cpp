@@ -67,7 +67,7 @@ std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
   std::vector<double> positions(shading_.set.base.size());
   blend_positions(shading_.set, pose, positions);
   const std::vector<Vec3d> weighted =
-      terms_.is_fitted() ? terms_.weighted_at(positions, elements) : std::vector<Vec3d>();
+      terms_.is_fitted() ? terms_.weighted_at(pose, positions, elements) : std::vector<Vec3d>();
   parallel_each(elements.size(), kRightBlock, [&](std::size_t n) {
     const Vec3d normal = normal_from_positions(shading_, positions, elements[n]);
     result[n] = judged(elements[n], normal, weighted.empty() ? normal : weighted[n]);

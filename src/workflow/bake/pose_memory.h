@@ -1,0 +1,48 @@
+/// Vectors that were found for poses of a mesh and are asked for again and again: what is judged for one host or one form
+/// is judged in the same poses for the next. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
+#define CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
+
+#include <cstddef>
+#include <map>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal::inline internal {
+
+/// Keeps what comes first as long as there is room, since poses come in the same order each time, and nothing would be
+/// found where the oldest had to go. Threads: all functions may run at once.
+class PoseMemory {
+ public:
+  explicit PoseMemory(std::size_t most_bytes) : room_(most_bytes) {}
+
+  /// What was kept for a pose; nullptr: nothing was. It stays as long as the memory does.
+  [[nodiscard]] const std::vector<Vec3d>* find(std::span<const double> pose) const {
+    const std::vector<double> key(pose.begin(), pose.end());
+    const std::scoped_lock lock(mutex_);
+    const auto found = kept_.find(key);
+    return found == kept_.end() ? nullptr : &found->second;
+  }
+
+  /// Keeps a copy of vectors where there is room for them.
+  void keep(std::span<const double> pose, const std::vector<Vec3d>& vectors) {
+    const std::size_t bytes = vectors.size() * sizeof(Vec3d) + pose.size() * sizeof(double);
+    std::vector<double> key(pose.begin(), pose.end());
+    const std::scoped_lock lock(mutex_);
+    if (bytes > room_ || !kept_.try_emplace(std::move(key), vectors).second) return;
+    room_ -= bytes;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::vector<double>, std::vector<Vec3d>> kept_;
+  std::size_t room_;  // bytes
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
