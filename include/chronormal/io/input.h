@@ -1,8 +1,8 @@
 /// What is read: one input of any format, from files or from memory.
 ///
 ///     walk_0.obj walk_1.obj         several meshes: the keyframes of a sequence, in the order given
-///     'walk_*.obj'  walk/           a pattern with * ? [..] (where no file has that very name), or a folder of meshes
-///                                   of one format; both are sorted by number, so that walk_2 stands before walk_10
+///     'walk_*.obj'  walk/           a pattern with * ? [..], or %d (where no file has that very name), or a folder
+///                                   of meshes of one format; sorted by number, so that walk_2 stands before walk_10
 ///     body.obj walk.pc2             a mesh and a point cache: .pc2, .mdd, .npy, .mc, .mcx, or a Maya .xml
 ///     body.obj cache.xml#bodyShape  the same, with the channel of a Maya cache
 ///     walk.npz                      a whole motion: .npz or .md2

@@ -4,8 +4,10 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -18,6 +20,7 @@
 namespace chronormal::inline internal {
 namespace {
 
+constexpr std::string_view kNoneMatches = "no file of this name, and none that matches it";
 constexpr std::string_view kTopologyMustNotChange = ": topology must not change between keyframes";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -32,13 +35,35 @@ std::string_view take_number(std::string_view& text) {
   return number;
 }
 
-Result<std::vector<std::string>> match_pattern(const std::string& pattern) {
+std::vector<std::string> match_pattern(const std::string& pattern) {
   glob_t matches{};
   const int code = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
   std::vector<std::string> files;
   for (std::size_t i = 0; code == 0 && i < matches.gl_pathc; ++i) files.emplace_back(matches.gl_pathv[i]);
   ::globfree(&matches);
-  if (files.empty()) return Error{ErrorCode::kFailed, pattern, "no file of this name, and none that matches it"};
+  return files;
+}
+
+// What comes before and behind the number in a name with a place for one, %d or %0Nd, as outputs are given by; nothing
+// where it has no such place.
+std::optional<std::pair<std::string, std::string>> around_number(const std::string& input) {
+  const std::size_t slash = input.rfind('/');
+  const std::size_t percent = input.find('%', slash == std::string::npos ? 0 : slash);
+  if (percent == std::string::npos) return std::nullopt;
+  std::string_view rest = std::string_view(input).substr(percent + 1);
+  if (rest.starts_with('0')) (void)take_number(rest);
+  if (!rest.starts_with('d')) return std::nullopt;
+  return std::pair{input.substr(0, percent), std::string(rest.substr(1))};
+}
+
+// The files whose names have a number there, and nothing else.
+std::vector<std::string> match_numbered(const std::string& before, const std::string& after) {
+  std::vector<std::string> files = match_pattern(before + "[0-9]*" + after);
+  const auto is_other = [&](const std::string& file) {
+    const auto end = file.end() - static_cast<std::ptrdiff_t>(after.size());
+    return !std::all_of(file.begin() + static_cast<std::ptrdiff_t>(before.size()), end, is_digit);
+  };
+  std::erase_if(files, is_other);
   return files;
 }
 
@@ -80,10 +105,14 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
       continue;
     }
     const bool is_pattern = input.find_first_of("*?[") != std::string::npos;
-    if (!std::filesystem::exists(status) && !(is_missing && is_pattern))
+    const auto numbered = is_missing && !is_pattern ? around_number(input) : std::nullopt;
+    if (!std::filesystem::exists(status) && !(is_missing && is_pattern) && !numbered)
       return Error{ErrorCode::kFailed, input, code ? code.message() : "no such file or folder"};
-    Result<std::vector<std::string>> found = is_missing ? match_pattern(input) : list_folder(input);
+    Result<std::vector<std::string>> found = numbered     ? match_numbered(numbered->first, numbered->second)
+                                             : is_missing ? match_pattern(input)
+                                                          : list_folder(input);
     if (!found) return found.error();
+    if (found.value().empty() && is_missing) return Error{ErrorCode::kFailed, input, std::string(kNoneMatches)};
     std::sort(found.value().begin(), found.value().end(), stands_before);
     std::move(found.value().begin(), found.value().end(), std::back_inserter(files));
   }

@@ -87,6 +87,23 @@ TEST(FindFrames, file_whose_name_looks_like_a_pattern_is_a_file) {
   EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "a[1].obj"}))), (Names{"a[1].obj"}));
 }
 
+TEST(FindFrames, a_name_that_outputs_are_given_by_stands_for_its_numbered_files) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a_2.obj", "a_10.obj", "a_1b.obj", "a_.obj", "a_003.obj", "b_1.obj", "a_4.ply"})
+    (void)folder.write(name, "");
+  const Names expected{"a_2.obj", "a_003.obj", "a_10.obj"};
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "a_%d.obj"}))), expected);
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "a_%04d.obj"}))), expected);
+  for (const char* name : {"c_%d.obj", "a_%x.obj", "a_%.obj", "%d_%d.obj"}) {
+    const Error missing = error_of(find_frames(test::files(Names{folder / name})));
+    EXPECT_EQ(missing.code, ErrorCode::kFailed) << name;
+    EXPECT_NE(missing.text().find(folder / name + ": "), std::string::npos) << missing.text();
+  }
+  // A file of that very name comes first.
+  (void)folder.write("a_%d.obj", "");
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "a_%d.obj"}))), (Names{"a_%d.obj"}));
+}
+
 TEST(FindFrames, what_is_not_there_is_an_error_with_its_name) {
   const TemporaryFolder folder;
   const Error missing = error_of(find_frames(test::files(Names{folder / "no.obj"})));
