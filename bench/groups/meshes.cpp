@@ -67,7 +67,7 @@ Mesh of_file(const std::string& path) {
   return middle_of(*motion.value());
 }
 
-// What SegmentNormals expects each of these ways to take, which is how it chooses between them.
+// Notes how long SegmentNormals expects each of these ways to take, which is how it chooses between them.
 void predict(const MeshShape& shape, std::vector<Case>& cases) {
   const StrategyCosts exact = model_costs(shape, kExactTolerance), compact = model_costs(shape, kCompactTolerance);
   const std::pair<const char*, double> predictions[] = {

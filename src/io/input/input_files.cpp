@@ -44,8 +44,8 @@ std::vector<std::string> match_pattern(const std::string& pattern) {
   return files;
 }
 
-// What comes before and behind the number in a name with a place for one, %d or %0Nd, as outputs are given by; nothing
-// where it has no such place.
+// Finds what comes before and behind the number in a name with a place for one, %d or %0Nd, as outputs are given by.
+// Returns nothing where it has no such place.
 std::optional<std::pair<std::string, std::string>> around_number(const std::string& input) {
   const std::size_t slash = input.rfind('/');
   const std::size_t percent = input.find('%', slash == std::string::npos ? 0 : slash);
@@ -56,7 +56,7 @@ std::optional<std::pair<std::string, std::string>> around_number(const std::stri
   return std::pair{input.substr(0, percent), std::string(rest.substr(1))};
 }
 
-// The files whose names have a number there, and nothing else.
+// Finds the files whose names have a number there, and nothing else.
 std::vector<std::string> match_numbered(const std::string& before, const std::string& after) {
   std::vector<std::string> files = match_pattern(before + "[0-9]*" + after);
   const auto is_other = [&](const std::string& file) {

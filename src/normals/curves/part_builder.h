@@ -227,7 +227,7 @@ class PartBuilder {
     chunk_bytes_ = part_.bytes - bytes_before;
   }
 
-  // Those of some tiles, and their elements.
+  // Returns the elements of some of the tiles that hold `elements`.
   static IndexRange range_of(IndexRange elements, std::size_t first_tile, std::size_t count) {
     const std::size_t first = first_tile * kTile;
     return {elements.first + first, std::min(count * kTile, elements.count - first)};

@@ -41,7 +41,7 @@ constexpr Row kRecomputeMiss = {0.3, 1, 4.2};
 constexpr Row kRecomputeKept = {3.7, 3.8, 4.2}, kRecomputeTerm = {0.75, 0.85, 1.1},
               kRecomputeTermMiss = {0.04, 2.4, 5.2};
 constexpr double kRecomputeScattered = 25, kRecomputeDoubtful = 2.2;
-// What a triangle takes more that is made in double, since it or one of its neighbours is thin.
+// A triangle takes this much more where it is made in double, since it or one of its neighbours is thin.
 constexpr double kRecomputeThin = 6.5;
 // In float32: a triangle, a term of a sum, and a term that was not in a near cache; a vertex whose position is
 // interpolated.

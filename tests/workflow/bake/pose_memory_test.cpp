@@ -1,5 +1,5 @@
-// What is kept for poses, and for which there is no room; and that normals of poses are the same however often, and in
-// whichever order, they are asked for.
+// A memory of poses keeps what came first, as far as there is room; and normals of poses are the same however often, and
+// in whichever order, they are asked for.
 
 #include "workflow/bake/pose_memory.h"
 
