@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace chronormal::bench {
 namespace {
@@ -95,27 +96,29 @@ std::string json_of(const Report& report) {
                                   {"stream_gb_s", rounded(one.stream)},
                                   {"copy_gb_s", rounded(one.copy)}});
   json["rows"] = Json::array();
-  for (const Row& row : report.rows)
-    json["rows"].push_back({{"group", row.group},
-                            {"size", row.size},
-                            {"order", row.order},
-                            {"name", row.name},
-                            {"library", row.library},
-                            {"note", row.note},
-                            {"elements", row.elements},
-                            {"threads", row.threads},
-                            {"evaluations", row.evaluations},
-                            {"median_ns", rounded(row.median_ns)},
-                            {"least_ns", rounded(row.least_ns)},
-                            {"spread", rounded(row.spread)},
-                            {"repetitions", row.repetitions},
-                            {"bytes_read", rounded(row.bytes_read)},
-                            {"bytes_written", rounded(row.bytes_written)},
-                            {"share_of_bandwidth", rounded(row.share_of_bandwidth)},
-                            {"verified_error_rad", rounded(row.verified_error)},
-                            {"limit_rad", rounded(row.limit)},
-                            {"verified_elements", row.verified_elements},
-                            {"predicted_ns", rounded(row.predicted_ns)}});
+  for (const Row& row : report.rows) {
+    Json one = {{"group", row.group},
+                {"size", row.size},
+                {"order", row.order},
+                {"name", row.name},
+                {"library", row.library},
+                {"note", row.note},
+                {"elements", row.elements},
+                {"threads", row.threads},
+                {"evaluations", row.evaluations},
+                {"median_ns", rounded(row.median_ns)},
+                {"least_ns", rounded(row.least_ns)},
+                {"spread", rounded(row.spread)},
+                {"repetitions", row.repetitions},
+                {"bytes_read", rounded(row.bytes_read)},
+                {"bytes_written", rounded(row.bytes_written)},
+                {"share_of_bandwidth", rounded(row.share_of_bandwidth)},
+                {"verified_error_rad", rounded(row.verified_error)},
+                {"limit_rad", rounded(row.limit)},
+                {"verified_elements", row.verified_elements}};
+    if (row.predicted_ns > 0) one["predicted_ns"] = rounded(row.predicted_ns);
+    json["rows"].push_back(std::move(one));
+  }
   json["qualities"] = Json::array();
   for (const SchemeQuality& one : report.qualities)
     json["qualities"].push_back({{"scheme", one.scheme},
