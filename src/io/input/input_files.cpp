@@ -35,9 +35,9 @@ std::string_view take_number(std::string_view& text) {
   return number;
 }
 
-std::vector<std::string> match_pattern(const std::string& pattern) {
+std::vector<std::string> match_pattern(const std::string& pattern, int flags = 0) {
   glob_t matches{};
-  const int code = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches);
+  const int code = ::glob(pattern.c_str(), GLOB_NOSORT | flags, nullptr, &matches);
   std::vector<std::string> files;
   for (std::size_t i = 0; code == 0 && i < matches.gl_pathc; ++i) files.emplace_back(matches.gl_pathv[i]);
   ::globfree(&matches);
@@ -58,10 +58,12 @@ std::optional<std::pair<std::string, std::string>> around_number(const std::stri
 
 // Finds the files whose names have a number there, and nothing else.
 std::vector<std::string> match_numbered(const std::string& before, const std::string& after) {
-  std::vector<std::string> files = match_pattern(before + "[0-9]*" + after);
-  const auto is_other = [&](const std::string& file) {
-    const auto end = file.end() - static_cast<std::ptrdiff_t>(after.size());
-    return !std::all_of(file.begin() + static_cast<std::ptrdiff_t>(before.size()), end, is_digit);
+  // A backslash is a part of the name here.
+  std::vector<std::string> files = match_pattern(before + "[0-9]*" + after, GLOB_NOESCAPE);
+  const auto is_other = [&](std::string_view file) {
+    if (file.size() < before.size() + after.size() || !file.starts_with(before) || !file.ends_with(after)) return true;
+    const std::string_view number = file.substr(before.size(), file.size() - before.size() - after.size());
+    return !std::all_of(number.begin(), number.end(), is_digit);
   };
   std::erase_if(files, is_other);
   return files;

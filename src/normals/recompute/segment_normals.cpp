@@ -78,8 +78,8 @@ Level level_of(double bytes) {
 
 double cost(const Row& row, Level level) { return row.at[level]; }
 
-// Of what streams over so many bytes, of which a cache may hold a part: half way from one level to the next on a
-// logarithmic scale, the cost is half way, too.
+// Returns the cost of what streams over so many bytes, of which a cache may hold a part. Half way from one level to the
+// next on a logarithmic scale, the cost is half way, too.
 double streaming_cost(const Row& row, double bytes) {
   constexpr double kNearEnd = kModelledNearCache, kSharedBegin = kModelledSharedCache / 2,
                    kSharedEnd = kModelledSharedCache, kMemoryBegin = 4 * kModelledSharedCache;

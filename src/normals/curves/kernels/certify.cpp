@@ -98,8 +98,8 @@ inline constexpr Instant kInstants[] = {
     {{9.0 / 16, 6.0 / 16, 1.0 / 16}, {81.0 / 256, 108.0 / 256, 54.0 / 256, 12.0 / 256, 1.0 / 256}},
     {{1.0 / 16, 6.0 / 16, 9.0 / 16}, {1.0 / 256, 12.0 / 256, 54.0 / 256, 108.0 / 256, 81.0 / 256}}};
 
-// What |n(t)| is compared with before there is a proof: squares at a few instants, far cheaper than that proof, which
-// cannot succeed where n(t) is too short at one of them.
+// Compares |n(t)| with its limits at a few instants, which is far cheaper than a proof. A proof cannot succeed where n(t)
+// is too short at one of them.
 class Glance {
  public:
   HWY_INLINE Glance(const Quartic& n_square, const Doubles (&length_square)[3]) {

@@ -13,7 +13,6 @@
 namespace chronormal::inline internal {
 
 /// What is known of the elements of a tile that were asked for. Bit i of each set stands for element i.
-/// Nothing is set that is not known.
 struct TileCertificates {
   FlaggedTile scaled;             ///< the flagged ones, as FlaggedNormals; other lanes have anything
   std::int16_t exponents[kTile];  ///< of the flagged ones, as FlaggedNormals has one
