@@ -25,11 +25,3 @@ if(TARGET chronormal_peers)
   target_link_libraries(chronormal_bench PRIVATE chronormal_peers)
   target_compile_definitions(chronormal_bench PRIVATE CHRONORMAL_HAVE_PEERS)
 endif()
-
-# Where there are tests, the program is run on tiny meshes: everything it times is verified, and its JSON is read.
-if(CHRONORMAL_TESTS)
-  add_test(NAME bench_runs_and_verifies
-           COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:chronormal_bench>
-                   -P ${CMAKE_CURRENT_LIST_DIR}/../tests/docs/bench_smoke.cmake)
-  set_tests_properties(bench_runs_and_verifies PROPERTIES TIMEOUT 120)
-endif()

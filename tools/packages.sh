@@ -12,6 +12,17 @@ listed_packages() {
   ' "$root/tools/packages.txt"
 }
 
+# update_lists APT-GET...: `apt-get update`, which unlike an installation does not wait for its lock by itself.
+update_lists() {
+  local deadline=$((SECONDS + 300)) said
+  until said=$("$@" update 2>&1); do
+    printf '%s\n' "$said"
+    if [[ $said != *"Could not get lock"* ]] || [ "$SECONDS" -ge "$deadline" ]; then return 1; fi
+    say "another program holds the lock of the lists of packages: trying again in five seconds"
+    sleep 5
+  done
+}
+
 # install_packages SECTION...: silent where nothing is missing.
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
@@ -34,10 +45,11 @@ install_packages() {
     as_root=(sudo)
   fi
   say "installing ${missing[*]}"
-  if ! { "${as_root[@]}" apt-get update -q &&
-         "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends \
-           "${missing[@]}"; } </dev/null >&2; then
-    say "the packages could not be installed; is there a network, and is this Debian 12 (apt-get says why above)?"
+  # Another process may hold the locks of dpkg or of the lists for a while: apt-get says that it waits, five minutes at most.
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300)
+  if ! { update_lists "${apt[@]}" && "${apt[@]}" install -y --no-install-recommends "${missing[@]}"; } </dev/null >&2; then
+    say "the packages could not be installed (apt-get says why above); is there a network, is this Debian 12, and has no other"
+    say "program held the lock of dpkg for five minutes?"
     return 1
   fi
 }

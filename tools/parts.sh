@@ -1,36 +1,68 @@
-# Sourced by ./test: parts that are timed, how they build and run tests, and the table at the end.
+# Sourced by ./test and .ci/run: the parts of ./test --full, how a part builds and runs tests, and the table at the end.
 
-part_names=() part_seconds=() part_budgets=()
-pace=1
+# Each part has a line: its name, the minutes that it takes from nothing on two idle cores, the sections of
+# tools/packages.txt that it needs besides [run] and [test] ("-": none), and a pattern of the files whose change makes
+# .ci/run run it at once, whatever its turn ("-": none). Minutes are printed beside those measured; no part fails for them.
+parts_table='
+data        3   -                 -
+slow        4   -                 ^tests/(faults/|support/cpu_time)|^src/io/bytes/output_file
+browser     6   web,node          ^(web|js)/
+python      4   python            ^python/
+sanitizers  16  -                 ^fuzz/|^src/io/bytes/
+npm         14  web,node,wasm     ^js/|^web/|^cmake/wasm|^tools/w
+presets     28  -                 ^CMakePresets|^CMakeLists|^cmake/(compiler|product)
+clang       28  clang             ^cmake/compiler
+tidy        14  clang             ^\.clang-tidy
+fuzz        26  clang             ^fuzz/
+hosts       20  web,node,wasm     ^tests/hosts/.*_page
+pipelines   15  web,node,blender  ^tests/hosts/(pipelines|blender)
+exact       20  -                 ^tests/support/exact_|^src/normals/control/exact
+faults      20  -                 ^tests/faults/
+embedding   28  embedding,node    ^(capi|tests/install)/|^cmake/(install|product)|^python/setup
+everywhere  30  web,node,wasm     ^tests/hosts/same_bytes
+pages       15  plots,python      ^tools/(paper|weightings|benchmarks|support|python|uses|truth)/
+scale       28  vtk,plots         ^(vtk|cli/ranks|tools/scale)/
+peers       20  bench,peers       ^bench/
+'
 
-# measure_pace: sets `pace` to how many times as long as on the machine of the budgets compiling takes on this one, on
-# all cores at once, the best of three times; it is 1 where this machine is the faster one. The figure for the machine of
-# the budgets is derived: where tools/pace.cpp takes 6.3 s, the part build takes 28 minutes; there it takes 15.
-milliseconds_of_the_budgets=3300
-measure_pace() {
-  local best=0 begin took round
-  for round in 1 2 3; do
-    begin=$(date +%s%3N)
-    seq "$(nproc)" | xargs -P 0 -I {} c++ -std=c++20 -O2 -c tools/pace.cpp -o /dev/null
-    took=$(($(date +%s%3N) - begin))
-    if [ "$best" -eq 0 ] || [ "$took" -lt "$best" ]; then best=$took; fi
+part_names() { awk 'NF { print $1 }' <<<"$parts_table"; }
+part_field() { awk -v name="$1" -v field="$2" '$1 == name { print $field }' <<<"$parts_table"; }
+part_minutes() { part_field "$1" 2; }
+part_packages() { part_field "$1" 3 | tr ',' '\n' | grep -v '^-$' || true; }
+
+# parts_of_change FILE...: the parts whose pattern matches one of these files.
+parts_of_change() {
+  local name pattern
+  for name in $(part_names); do
+    pattern=$(part_field "$name" 4)
+    if [ "$pattern" != - ] && printf '%s\n' "$@" | grep -qE "$pattern"; then echo "$name"; fi
   done
-  pace=$(awk -v a="$best" -v b="$milliseconds_of_the_budgets" 'BEGIN { printf "%.1f", (a > b ? a / b : 1) }')
-  say "compiling takes $pace times as long here as on the machine of the budgets ($best ms, $milliseconds_of_the_budgets there)"
 }
 
-# part NAME BUDGET COMMAND...: runs a part and notes how long it took; BUDGET is in minutes. The first part that fails
-# ends everything, with the table of what there was.
+done_names=() done_seconds=() done_jobs=()
+
+# count_jobs: sets `jobs` to the seconds of processors that this script's children took up to now. (In a subshell, `times`
+# would tell of the children of that.)
+count_jobs() {
+  times >build/times
+  jobs=$(awk 'NR == 2 { for (i = 1; i <= 2; ++i) { split($i, t, /[ms]/); s += 60 * t[1] + t[2] } print int(s) }' build/times)
+}
+
+# part NAME COMMAND...: runs a part, and notes how long it took. The first part that fails ends everything, with the table.
 part() {
-  local name=$1 budget=$2 begin=$SECONDS status=0
-  shift 2
+  local name=$1 begin=$SECONDS jobs before status=0
+  shift
+  count_jobs
+  before=$jobs
   say "== $name"
-  # In a subshell, so that the first error ends the part as it would end the script.
+  # A subshell, so that the first error ends the part as it would end the script.
   set +e
   (set -e; "$@")
   status=$?
   set -e
-  part_names+=("$name") part_seconds+=($((SECONDS - begin))) part_budgets+=("$budget")
+  done_names+=("$name") done_seconds+=($((SECONDS - begin)))
+  count_jobs
+  done_jobs+=($((jobs - before)))
   if [ "$status" -ne 0 ]; then
     say "the part $name failed (exit code $status); the first error above says why"
     print_parts
@@ -38,69 +70,56 @@ part() {
   fi
 }
 
+# configure PRESET [OPTION...]
+configure() {
+  local preset=$1
+  shift
+  cmake --preset "$preset" -DCHRONORMAL_ALL_TESTS=ON "$@" >/dev/null
+}
+
 # configure_and_build PRESET [TARGET...]
 configure_and_build() {
   local preset=$1
   shift
-  cmake --preset "$preset" -DCHRONORMAL_ALL_TESTS=ON >/dev/null
+  configure "$preset"
   cmake --build --preset "$preset" ${1+--target "$@"}
 }
 
-# run_ctest PRESET NAME [CTEST-ARGUMENT...]: runs tests, and keeps what ctest says in build/PRESET/NAME.log.
+# run_ctest PRESET NAME [CTEST-ARGUMENT...]: runs tests, keeps what ctest says in build/PRESET/NAME.log, and notes what
+# they counted.
 run_ctest() {
-  local preset=$1 name=$2
+  local preset=$1 name=$2 status=0
   shift 2
+  rm -rf "build/$preset/results"
   ctest --test-dir "build/$preset" --output-on-failure --no-tests=error --parallel "$(nproc)" "$@" |
-    tee "build/$preset/$name.log"
-  # "99% tests passed, 2 tests failed out of 1320"
-  sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests failed out of ([0-9]+)$/\1 \2/p' "build/$preset/$name.log" \
-    >>build/counts.txt
+    tee "build/$preset/$name.log" || status=$?
+  # "99% tests passed, 2 tests failed out of 61", of which those that ran a program of tests counted more than one.
+  sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests failed out of ([0-9]+)$/\1 \2/p' "build/$preset/$name.log" >>build/counts.txt
+  report_results "build/$preset/results" || status=1
+  return "$status"
 }
 
-# known_skips: prints a pattern of the tests that this machine has no terminal, no device or no file system for. Where it
-# has, they must run.
-known_skips() {
-  local known=all_keys_only folder
-  folder=$(mktemp -d)
-  script -qec true /dev/null </dev/null &>/dev/null || known+='|_on_a_terminal_'
-  [ -c /dev/full ] || known+='|full_device_is_an_error'
-  truncate -s 4097M "$folder/large" 2>/dev/null || known+='|more_than_a_glb_can_hold'
-  if mount -t tmpfs -o size=64k none "$folder" 2>/dev/null; then umount "$folder"; else known+='|^InterruptedBake'; fi
-  rm -rf "$folder"
-  echo "$known"
+# report_results FOLDER: counts the tests in the XML files of GoogleTest there, and says which were skipped and why. A
+# skip is red only where its reason does not hold on this machine.
+report_results() {
+  local folder=$1 reasons wrong
+  [ -d "$folder" ] || return 0
+  sed -nE 's/^<testsuites tests="([0-9]+)" failures="([0-9]+)".*/\2 \1/p' "$folder"/*.xml |
+    awk '{ failed += $1; all += $2; ++programs } END { print failed - 0, all - programs }' >>build/counts.txt
+  reasons=$(sed -nE 's/.*<skipped message="[^"&]*&#x0A;([^"]*)".*/\1/p' "$folder"/*.xml | sort | uniq -c | sort -rn)
+  [ -n "$reasons" ] || return 0
+  say "skipped tests, and why:"
+  printf '%s\n' "$reasons" >&2
+  wrong=$(grep -E "$(wrong_reasons)" <<<"$reasons" || true)
+  [ -z "$wrong" ] || { say "these reasons do not hold here: $wrong"; return 1; }
 }
 
-# expect_skipped PRESET NAME: no test of run_ctest was skipped but those on real meshes where CHRONORMAL_DATA is not set,
-# and those of known_skips, so that nothing that is missing drops a test unseen.
-real_mesh_tests=47
-expect_skipped() {
-  local log=build/$1/$2.log expected=$real_mesh_tests skipped
-  [ -z "${CHRONORMAL_DATA-}" ] || expected=0
-  skipped=$(sed -nE 's/^[[:space:]]+[0-9]+ - (.*) \(Skipped\)$/\1/p' "$log" | grep -vE "$(known_skips)" || true)
-  [ "$(grep -c . <<<"$skipped")" -eq "$expected" ] || {
-    say "$expected tests may be skipped here, and these were:"
-    say "$skipped"
-    return 1
-  }
-}
-
-# expect_skipped_under_sanitizers PRESET: the same of the shards, whose tests say in XML why they were skipped.
-tests_without_sanitizers=18
-expect_skipped_under_sanitizers() {
-  local reasons elsewhere
-  reasons=$(sed -nE 's/.*<skipped message="([^"]*)".*/\1/p' build/"$1"/sanitized_*.xml)
-  elsewhere=$(grep -vE 'sanitizer|/dev/full|no terminal|may not mount|no small file system|files of 4 GiB|all keys only' <<<"$reasons" || true)
-  [ -n "${CHRONORMAL_DATA-}" ] || elsewhere=$(grep -v CHRONORMAL_DATA <<<"$elsewhere" || true)
-  [ -z "$elsewhere" ] || {
-    say "under sanitizers, tests were skipped for another reason than those that tools/parts.sh knows:"
-    say "$elsewhere"
-    return 1
-  }
-  [ "$(grep -c sanitizer <<<"$reasons")" -eq "$tests_without_sanitizers" ] || {
-    say "$tests_without_sanitizers tests say that they are not for sanitizers, and these did:"
-    say "$reasons"
-    return 1
-  }
+# wrong_reasons: prints a pattern of the reasons for which no test may be skipped on this machine.
+wrong_reasons() {
+  printf 'built without oneTBB'
+  [ -z "${CHRONORMAL_DATA-}" ] || printf '|set CHRONORMAL_DATA'
+  ! script -qec true /dev/null </dev/null &>/dev/null || printf '|makes no terminal'
+  [ ! -c /dev/full ] || printf '|no /dev/full'
 }
 
 # show_counts NAME...: what Node's test runner counted in these.
@@ -113,32 +132,20 @@ show_counts() {
 }
 
 print_parts() {
-  local i minutes over=false factor=${CHRONORMAL_TIME_FACTOR:-1}
-  printf '\n%-12s %8s %8s\n' part minutes budget
-  for i in "${!part_names[@]}"; do
-    minutes=$(awk -v s="${part_seconds[i]}" 'BEGIN { printf "%.1f", s / 60 }')
-    printf '%-12s %8s %8s' "${part_names[i]}" "$minutes" "${part_budgets[i]}"
-    if awk -v s="${part_seconds[i]}" -v b="${part_budgets[i]}" -v f="$factor" -v p="$pace" \
-      'BEGIN { exit !(s > 60 * b * f * p) }'; then
-      printf '  over'
-      over=true
-    fi
-    printf '\n'
+  local i jobs
+  count_jobs
+  printf '\n%-12s %8s %8s %12s\n' part minutes usual job-seconds
+  for i in "${!done_names[@]}"; do
+    printf '%-12s %8s %8s %12s\n' "${done_names[i]}" "$(minutes "${done_seconds[i]}")" "$(part_minutes "${done_names[i]}")" "${done_jobs[i]}"
   done
-  printf '%-12s %8s\n' all "$(awk -v s="$SECONDS" 'BEGIN { printf "%.1f", s / 60 }')"
-  ! $over
+  printf '%-12s %8s %8s %12s\n' all "$(minutes "$SECONDS")" '' "$jobs"
 }
+minutes() { awk -v s="$1" 'BEGIN { printf "%.1f", s / 60 }'; }
 
-# finish_parts: the table, whether all parts kept their budgets, and the sum of all tests.
+# finish_parts: prints the table, and the sum of all tests.
 finish_parts() {
-  local status=0
-  if ! print_parts; then
-    say "a part took longer than its budget (times $pace for the pace of this machine, times ${CHRONORMAL_TIME_FACTOR:-1}):"
-    say "find out why, or set CHRONORMAL_TIME_FACTOR for a machine that is busy with other things"
-    status=1
-  fi
+  print_parts
   if [ -s build/counts.txt ]; then
     awk '{ failed += $1; all += $2 } END { printf "tests: %d passed, %d failed\n", all - failed, failed }' build/counts.txt
   fi
-  return $status
 }

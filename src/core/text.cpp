@@ -124,6 +124,11 @@ std::string counted(std::size_t count, const char* singular, const char* plural)
   return grouped(count) + ' ' + (count == 1 ? singular : plural);
 }
 
+std::string shortest_text(double value) {
+  char digits[32];
+  return {digits, to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
 std::string with_decimals(double value, int decimals) { return digits_of(value, std::chars_format::fixed, decimals); }
 
 std::string with_digits(double value, int digits) { return digits_of(value, std::chars_format::general, digits); }

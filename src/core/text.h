@@ -22,6 +22,9 @@ namespace chronormal::inline internal {
 /// "1 face", "1,234 faces".
 [[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
 
+/// The shortest text that reads back as the same number.
+[[nodiscard]] std::string shortest_text(double value);
+
 /// A number with so many decimals, or with so many significant digits and no zeros at the end; "-" where it is infinite
 /// or no number.
 [[nodiscard]] std::string with_decimals(double value, int decimals);

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "core/charconv.h"
+#include "core/text.h"
 
 namespace chronormal {
 namespace {
@@ -15,11 +15,6 @@ namespace {
 Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
 
 // The fewest digits that read back as the same number, so that it can be pasted.
-std::string text_of(double number) {
-  char digits[32];
-  return {digits, to_chars(digits, digits + sizeof digits, number).ptr};
-}
-
 }  // namespace
 
 std::string_view motion_kind_name(MotionKind kind) noexcept {
@@ -62,8 +57,8 @@ Result<Instant> find_instant(const Motion& motion, double time) {
     if (start_of(s) <= time && time <= end_of(s)) found = s;
   }
   if (!found)
-    return misuse("there is no motion at time " + text_of(time) + ": it goes from " + text_of(first) + " to " +
-                  text_of(last));
+    return misuse("there is no motion at time " + shortest_text(time) + ": it goes from " + shortest_text(first) +
+                  " to " + shortest_text(last));
   const double t = (time - start_of(*found)) / (end_of(*found) - start_of(*found));
   return Instant{*found, std::clamp(t, 0.0, 1.0)};
 }

@@ -2,7 +2,7 @@
 // output is the old one or the new one, nothing else remains, and the exit code is a documented one. The faults come
 // from a layer beneath the program (fault_layer.cpp), which itself is the one that users get.
 //
-// ./test runs a sample of the faults. `./test --full faults` (CHRONORMAL_FULL=1) runs all of them, but for some of those
+// ./test --full slow runs a sample of the faults. `./test --full faults` (CHRONORMAL_FULL=1) runs all of them, but for some of those
 // of memory: until it has read its arguments, every command asks for the same memory about 8,000 times, to make the table
 // of all options. `help` and `usage` fail at each of these, and the other commands at one in 20. What asks for memory
 // more than 3,000 times after that, as `bake` does, fails at about 3,000 of these places.

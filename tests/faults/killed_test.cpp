@@ -1,5 +1,5 @@
 // A run with --resume that is killed at any call to the system, and started again, gives the bytes of an undisturbed
-// run. ./test kills at random calls, `./test --full faults` (CHRONORMAL_FULL=1) at each.
+// run. ./test --full slow kills at random calls, `./test --full faults` (CHRONORMAL_FULL=1) at each.
 
 #include <gtest/gtest.h>
 

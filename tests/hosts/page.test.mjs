@@ -2,7 +2,7 @@
 // what it cannot read gets a message that helps, and it asks for nothing.
 //
 //   CHRONORMAL_PROGRAM        the program
-//   CHRONORMAL_PAGE           the page: build/web/chronormal.html, by ./run page or ./test
+//   CHRONORMAL_PAGE           the page: build/web/chronormal.html, by ./run page or ./test --full npm
 //   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place
 //   CHRONORMAL_DATA           moving files by other people, where it is set
 //   CHRONORMAL_FULL=1         all of these

@@ -8,7 +8,7 @@ import { fileURLToPath } from 'node:url';
 const here = (name) => fileURLToPath(new URL(name, import.meta.url));
 
 if (!existsSync(here('node_modules/three'))) {
-  console.error('The npm packages of tests/hosts are missing: run ./test once, or `npm ci --ignore-scripts` there');
+  console.error('The npm packages of tests/hosts are missing: run ./test --full browser once, or `npm ci --ignore-scripts` there');
   process.exit(1);
 }
 const [log, ...files] = process.argv.slice(2);

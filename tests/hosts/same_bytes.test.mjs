@@ -1,5 +1,5 @@
 // The package and the native program make the same bytes and say the same of every file of the real data: a few in
-// ./test, all with CHRONORMAL_FULL=1.
+// ./test --full npm, all with CHRONORMAL_FULL=1.
 //
 //   CHRONORMAL_DATA   the folder of the real data
 import assert from 'node:assert/strict';

@@ -17,8 +17,6 @@ std::string_view without_plus(std::string_view word) noexcept {
   return word;
 }
 
-bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
-
 // Whether a number that from_chars found out of range is too large (true) or too small (false): by the decimal
 // exponent of its first digit that is not 0. Such numbers are far from 1, so the sign of that exponent decides.
 bool is_large(std::string_view number) noexcept {

@@ -16,6 +16,8 @@ namespace chronormal::inline internal::scan {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
+[[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
 /// Hands out the lines of a text without their ends, counted from 1.
 class Lines {
  public:

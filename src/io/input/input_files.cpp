@@ -14,6 +14,7 @@
 
 #include "chronormal/normals/paths.h"
 #include "io/bytes/file.h"
+#include "io/bytes/scan.h"
 #include "io/input/formats.h"
 #include "normals/curves/path_stream.h"
 
@@ -23,12 +24,10 @@ namespace {
 constexpr std::string_view kNoneMatches = "no file of this name, and none that matches it";
 constexpr std::string_view kTopologyMustNotChange = ": topology must not change between keyframes";
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 // Takes the digits at the front of text, without leading zeros.
 std::string_view take_number(std::string_view& text) {
   std::size_t end = 0;
-  while (end < text.size() && is_digit(text[end])) ++end;
+  while (end < text.size() && scan::is_digit(text[end])) ++end;
   std::string_view number = text.substr(0, end);
   text.remove_prefix(end);
   while (!number.empty() && number.front() == '0') number.remove_prefix(1);
@@ -63,7 +62,7 @@ std::vector<std::string> match_numbered(const std::string& before, const std::st
   const auto is_other = [&](std::string_view file) {
     if (file.size() < before.size() + after.size() || !file.starts_with(before) || !file.ends_with(after)) return true;
     const std::string_view number = file.substr(before.size(), file.size() - before.size() - after.size());
-    return !std::all_of(number.begin(), number.end(), is_digit);
+    return !std::all_of(number.begin(), number.end(), scan::is_digit);
   };
   std::erase_if(files, is_other);
   return files;
@@ -74,7 +73,7 @@ std::vector<std::string> match_numbered(const std::string& before, const std::st
 bool stands_before(const std::string& a, const std::string& b) {
   std::string_view rest_a = a, rest_b = b;
   while (!rest_a.empty() && !rest_b.empty()) {
-    if (is_digit(rest_a.front()) && is_digit(rest_b.front())) {
+    if (scan::is_digit(rest_a.front()) && scan::is_digit(rest_b.front())) {
       const std::string_view number_a = take_number(rest_a), number_b = take_number(rest_b);
       if (number_a.size() != number_b.size()) return number_a.size() < number_b.size();
       if (number_a != number_b) return number_a < number_b;

@@ -9,14 +9,13 @@
 #include "chronormal/io/output.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/output_file.h"
+#include "io/bytes/scan.h"
 #include "io/gltf/glb/glb.h"
 #include "io/gltf/glb/glb_targets.h"
 #include "io/input/formats.h"
 
 namespace chronormal {
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 // A name with a place for a number.
 struct NamePattern {
@@ -45,7 +44,7 @@ Result<NamePattern> parse_pattern(const std::string& pattern) {
   if (rest.starts_with('0')) {
     rest.remove_prefix(1);
     std::size_t digits = 0;
-    for (; digits < 2 && digits < rest.size() && is_digit(rest[digits]); ++digits)
+    for (; digits < 2 && digits < rest.size() && scan::is_digit(rest[digits]); ++digits)
       parts.width = 10 * parts.width + static_cast<std::size_t>(rest[digits] - '0');
     if (parts.width == 0) return misuse;
     rest.remove_prefix(digits);

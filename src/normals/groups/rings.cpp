@@ -42,7 +42,7 @@ class PathMaker {
       }
     }
     if (path_.size() - 1 > most_points_) return no_path();
-    if (path_.size() == 1) path_.push_back(path_[0]);
+    if (path_.size() == 1) path_.resize(2, path_[0]);
     return path_;
   }
 
@@ -60,7 +60,7 @@ class PathMaker {
   const Path& no_path() {
     is_left_out_ = true;
     path_.resize(1);
-    path_.push_back(path_[0]);
+    path_.resize(2, path_[0]);
     return path_;
   }
 
@@ -100,7 +100,7 @@ class PathMaker {
       path_.push_back(to[next]);
       left &= ~(1U << next);
     }
-    if (path_.size() == 1) path_.push_back(path_[0]);
+    if (path_.size() == 1) path_.resize(2, path_[0]);
     return true;
   }
 

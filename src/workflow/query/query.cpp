@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "chronormal/io/output.h"
-#include "core/charconv.h"
+#include "core/text.h"
 #include "io/cache/npz.h"
 
 namespace chronormal {
@@ -30,15 +30,10 @@ std::string npy_of(const QueryColumn& column) {
 }
 
 // The fewest digits that read back as the same number, so that it can be pasted.
-std::string text_of(double number) {
-  char digits[32];
-  return {digits, to_chars(digits, digits + sizeof digits, number).ptr};
-}
-
 Error no_motion(const char* option, double time, double first, double last) {
   return Error{ErrorCode::kUsage, option,
                "there is no motion " + std::string(option == std::string("--from") ? "after " : "before ") +
-                   text_of(time) + ": it goes from " + text_of(first) + " to " + text_of(last)};
+                   shortest_text(time) + ": it goes from " + shortest_text(first) + " to " + shortest_text(last)};
 }
 
 }  // namespace

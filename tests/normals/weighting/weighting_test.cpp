@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -191,6 +192,27 @@ TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
     const Motion motion = test::still(fixtures::make_triangles(3, {0, 1, 2}), {{0, 0, 0}, {size, 0, 0}, {0, size, 0}});
     for (const WeightingInfo& info : kWeightings)
       expect_near(unit(weighted(motion, info.weighting, 0.5)[0]), {0, 0, 1}, 1e-15);
+  }
+}
+
+// docs/theory.md, eq. 19: two triangles with an edge in common, one of which stands still.
+TEST(Weighting, is_along_what_the_theory_says_of_two_triangles) {
+  Motion motion{Topology::triangles(4, {0, 1, 2, 1, 0, 3}).value(), std::vector<Motion::Keyframe>(2), {}};
+  motion.keyframes[0] = {{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0}, 0, {}};
+  motion.keyframes[1] = {{0, 0, 0, 1, 0, 0, 0, 1, 1, 0, -1, 0}, 1, {}};
+  motion.connect_as_sequence();
+  for (const double t : {0.0, 0.25, 0.5, 1.0}) {
+    const double r = std::sqrt(1 + t * t);
+    const auto slope = [&](Weighting weighting, std::size_t vertex) {
+      const Vec3d n = weighted(motion, weighting, t)[vertex];
+      EXPECT_NEAR(n.x, 0, 1e-15);
+      return n.y / n.z;
+    };
+    EXPECT_NEAR(slope(Weighting::kArea, 0), -t / 2, 1e-14);
+    EXPECT_NEAR(slope(Weighting::kUniform, 0), -t / (1 + r), 1e-14);
+    EXPECT_NEAR(slope(Weighting::kAngle, 0), -t / (1 + r), 1e-14);
+    EXPECT_NEAR(slope(Weighting::kAreaAngle, 1), -t / (1 + std::numbers::pi / (4 * std::atan(r))), 1e-14);
+    EXPECT_NEAR(slope(Weighting::kMax, 0), -t / (2 + t * t), 1e-14);
   }
 }
 

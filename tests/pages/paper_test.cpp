@@ -4,7 +4,6 @@
 
 #include <string>
 
-#include "tests/support/child_process.h"
 #include "tests/support/generated_page.h"
 #include "tests/support/process.h"
 
@@ -12,7 +11,6 @@ namespace chronormal::paper_test {
 namespace {
 
 TEST(Paper, page_and_pictures_are_what_the_generator_writes) {
-  if (test::is_sanitized()) GTEST_SKIP() << "the generator takes minutes under sanitizers; the release build runs it";
   const test::TemporaryFolder folder;
   const ProcessResult result = run_shell(std::string(kBuildFolder) + "/tools/paper/chronormal_paper .", folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
