@@ -10,6 +10,7 @@ import { join } from 'node:path';
 import { after, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { NodeIO } from '@gltf-transform/core';
+import semver from 'semver';
 import { install } from './installed.mjs';
 
 const { folder, installed, remove, load, native, wasm } = install();
@@ -29,6 +30,14 @@ test('the command line says and ends as the program does', () => {
     assert.deepEqual(wasm(args), native(args), args.join(' '));
   }
   assert.equal(wasm(['inspect', '-', '--json'], { input: face }).status, 0);
+});
+
+test('packages that tests and pages install run on the Node.js of Debian 12', () => {
+  for (const locked of ['package-lock.json', '../../web/package-lock.json']) {
+    const { packages } = JSON.parse(readFileSync(new URL(locked, import.meta.url)));
+    const others = Object.entries(packages).filter(([, { engines }]) => !semver.satisfies('18.20.4', engines?.node ?? '*'));
+    assert.deepEqual(others.map(([name, { engines }]) => `${name} ${engines.node}`), []);
+  }
 });
 
 test('a bake, a sequence and sampled normals have the same bytes', () => {
