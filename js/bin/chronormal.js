@@ -1,5 +1,13 @@
 #!/usr/bin/env node
 // The program on any system with Node.js: the same commands, messages and exit codes, on the files of this machine.
-import { main } from '../src/cli.js';
+// An older Node.js reads this file too, so that it says what is needed: no import and no await stand outside a function.
+const LEAST = 18; // the "engines" of package.json
 
-process.exitCode = await main(process.argv.slice(2));
+if (parseInt(process.versions.node, 10) < LEAST) {
+  console.error(`chronormal: needs Node.js ${LEAST} or later; this is ${process.versions.node}`);
+  process.exitCode = 1;
+} else {
+  import('../src/cli.js')
+    .then(({ main }) => main(process.argv.slice(2)))
+    .then((code) => { process.exitCode = code; });
+}

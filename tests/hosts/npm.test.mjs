@@ -13,7 +13,7 @@ import { NodeIO } from '@gltf-transform/core';
 import semver from 'semver';
 import { install } from './installed.mjs';
 
-const { folder, installed, remove, load, native, wasm } = install();
+const { folder, installed, remove, load, native, wasm, node } = install();
 after(remove);
 
 const { bake, audit, inspect, compare, ChronormalError } = await load('index.node.js');
@@ -30,6 +30,20 @@ test('the command line says and ends as the program does', () => {
     assert.deepEqual(wasm(args), native(args), args.join(' '));
   }
   assert.equal(wasm(['inspect', '-', '--json'], { input: face }).status, 0);
+});
+
+test('an older Node.js is told which one the program needs, and the least of package.json runs it', () => {
+  const [, least] = JSON.parse(readFileSync(join(installed, 'package.json'))).engines.node.match(/^>=(\d+)$/);
+  const command = join(installed, 'bin/chronormal.js'), older = join(folder, 'older.cjs');
+  const runAs = (version) => {
+    writeFileSync(older, `Object.defineProperty(process.versions, 'node', { value: '${version}' });`);
+    return node(['--require', older, command, '--version']);
+  };
+  for (const version of ['10.24.1', `${least - 1}.99.0`]) {
+    const message = `chronormal: needs Node.js ${least} or later; this is ${version}\n`;
+    assert.deepEqual(runAs(version), { status: 1, stdout: '', stderr: message });
+  }
+  assert.deepEqual(runAs(`${least}.0.0`), native(['--version']));
 });
 
 test('packages that tests and pages install run on the Node.js of Debian 12', () => {
