@@ -6,17 +6,18 @@
 //   CHRONORMAL_FULL=1         all of these
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { readContainer } from '../../web/src/data.js';
+import { fromBase64, readContainer, unzipped } from '../../web/src/data.js';
 import { makePlayer } from '../../web/src/player.js';
 import { ExactNormals, exactPositions } from './exact.mjs';
 import { writeStill } from './fixtures.mjs';
 import { chronormal } from './program.mjs';
 import { read } from './reader.mjs';
+import { randomNumbers } from './random.mjs';
 import { clickWorst, openPages, worstNow } from './web_page.mjs';
 
 const FULL = process.env.CHRONORMAL_FULL === '1', DATA = process.env.CHRONORMAL_DATA;
@@ -115,6 +116,54 @@ test('weights that are set by hand drive the extra targets of a baked file', () 
   assert.ok(baked.surface.degrees[baked.worst] < 0.01, `${baked.surface.degrees[baked.worst]} degrees`);
 });
 
+const SEED = 49;
+const DAMAGED = /^the data of this page (are damaged|end too early|are no report|have version)/;
+
+// Where the arrays of a container are: {begin, size, count} in bytes, of each array of numbers with a point.
+function arraysOf(bytes) {
+  const size = bytes.readUInt32LE(12), first = Math.ceil((16 + size) / 8) * 8, found = [];
+  const look = (value) => {
+    if (value === null || typeof value !== 'object') return;
+    if (['f32', 'f64'].includes(value.type)) found.push({ begin: first + value.offset, size: Number(value.type.slice(1)) / 8, count: value.count });
+    Object.values(value).forEach(look);
+  };
+  look(JSON.parse(bytes.subarray(16, 16 + size)));
+  return found.filter(({ count }) => count > 0);
+}
+
+test(`data with a number that is not finite, at a place of the seed ${SEED}, are refused`, () => {
+  dataOf('bumps', path('bumps.glb'));
+  const whole = readFileSync(path('bumps.bin')), arrays = arraysOf(whole), random = randomNumbers(SEED);
+  const below = (count) => Math.floor(count * random());
+  for (let i = 0; i < 100; ++i) {
+    const { begin, size, count } = arrays[below(arrays.length)], bytes = Buffer.from(whole);
+    const at = begin + size * below(count), value = [NaN, Infinity, -Infinity][below(3)];
+    size === 4 ? bytes.writeFloatLE(value, at) : bytes.writeDoubleLE(value, at);
+    assert.throws(() => readContainer(bytes), { message: DAMAGED }, `${value} at ${at}`);
+  }
+});
+
+// The data that stand in a page, with some characters of their base64 changed or cut off.
+function damage(page, random) {
+  const [, before, data, after] = page.match(/^(.*id="chronormal-data">)([^<]*)(<.*)$/s);
+  const from = Math.floor(data.length * random()), kind = Math.floor(4 * random());
+  const broken = [
+    () => data.slice(0, from), () => data.slice(0, from - (from % 4)),
+    () => `${data.slice(0, from)}!${data.slice(from + 1)}`,
+    () => `${data.slice(0, from)}${data[from] === 'A' ? 'B' : 'A'}${data.slice(from + 1)}`,
+  ][kind]();
+  return { broken, page: before + broken + after };
+}
+
+test(`data that are damaged, by the seed ${SEED}, are called that`, async () => {
+  const page = readFileSync(pageOf('bumps', path('bumps.glb')), 'utf8'), random = randomNumbers(SEED);
+  for (let i = 0; i < 100; ++i) {
+    const { broken } = damage(page, random);
+    const open = async () => readContainer(await unzipped(fromBase64(broken)));
+    await assert.rejects(open, { message: DAMAGED }, `${i}`);
+  }
+});
+
 describe('in Chromium', () => {
   let pages;
   before(async () => (pages = await openPages()));
@@ -132,6 +181,16 @@ describe('in Chromium', () => {
     assert.ok((await worstNow(pages.page)).degrees < NEAR, 'the base is right');
     await pages.page.keyboard.press('3');
     assert.equal(await pages.page.$eval('.segmented button[aria-pressed=true]', (button) => button.textContent), 'Error');
+    assert.deepEqual(pages.faults, []);
+  });
+
+  test('a page whose data are damaged says so', async () => {
+    const whole = readFileSync(pageOf('bumps', path('bumps.glb')), 'utf8'), random = randomNumbers(SEED);
+    for (let i = 0; i < 8; ++i) {
+      writeFileSync(path('damaged.html'), damage(whole, random).page);
+      await pages.show(path('damaged.html'));
+      assert.match(await pages.page.$eval('.fault', (box) => box.textContent), DAMAGED);
+    }
     assert.deepEqual(pages.faults, []);
   });
 

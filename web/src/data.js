@@ -3,6 +3,8 @@
 const MAGIC = 'CHRONRPT', VERSION = 1, HEADER = 16;
 const TYPES = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, i16: Int16Array, u8: Uint8Array };
 
+const damaged = () => new Error('the data of this page are damaged: get or make the page again');
+
 const isArray = (value) => typeof value?.type === 'string' && Number.isInteger(value.offset) && Number.isInteger(value.count);
 
 /**
@@ -21,8 +23,11 @@ export function readContainer(bytes) {
 
   const arrayOf = ({ offset, type, count }) => {
     const Type = TYPES[type];
-    if (!Type || first + offset + count * Type.BYTES_PER_ELEMENT > bytes.length) throw new Error('the data of this page end too early');
-    return new Type(buffer, start + first + offset, count);
+    if (!Type || offset < 0 || offset % 8 !== 0 || count < 0) throw damaged();
+    if (first + offset + count * Type.BYTES_PER_ELEMENT > bytes.length) throw new Error('the data of this page end too early');
+    const array = new Type(buffer, start + first + offset, count);
+    for (let i = 0; i < count; ++i) if (!Number.isFinite(array[i])) throw damaged();
+    return array;
   };
   const withArrays = (value) => {
     if (value === null || typeof value !== 'object') return value;
@@ -30,18 +35,31 @@ export function readContainer(bytes) {
     if (Array.isArray(value)) return value.map(withArrays);
     return Object.fromEntries(Object.entries(value).map(([name, member]) => [name, withArrays(member)]));
   };
-  const report = JSON.parse(new TextDecoder().decode(bytes.subarray(HEADER, HEADER + size)));
+  let report;
+  try {
+    report = JSON.parse(new TextDecoder('utf-8', { fatal: true }).decode(bytes.subarray(HEADER, HEADER + size)));
+  } catch {
+    throw damaged();
+  }
+  if (!Array.isArray(report?.parts)) throw damaged();
   return { ...report, parts: withArrays(report.parts) };
 }
 
 /** Bytes of their base64, in whole groups of four. */
 export function fromBase64(text) {
-  const binary = atob(text.trim()), bytes = new Uint8Array(binary.length);
+  let binary;
+  try {
+    binary = atob(text.trim());
+  } catch {
+    throw damaged();
+  }
+  const bytes = new Uint8Array(binary.length);
   for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);
   return bytes;
 }
 
 /** What gzip made shorter, as it was. */
 export async function unzipped(bytes) {
-  return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer());
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return new Uint8Array(await new Response(stream).arrayBuffer().catch(() => Promise.reject(damaged())));
 }
