@@ -15,7 +15,6 @@ export class ChronormalError extends Error {
 
 // Exit codes of the program: done, and done but not within the tolerance.
 const DONE = 0, BEYOND = 4;
-const OUTPUTS = 'out';
 
 // What of the options is meant for these functions, and not for the program.
 const OWN = new Set(['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit']);
@@ -26,8 +25,10 @@ function flagsOf(options) {
   const flags = [];
   for (const [name, value] of Object.entries(options)) {
     if (OWN.has(name) || value === undefined || value === false) continue;
-    flags.push(flagOf(name));
-    if (value !== true) flags.push(Array.isArray(value) ? value.join(',') : String(value));
+    const flag = flagOf(name), text = Array.isArray(value) ? value.join(',') : String(value);
+    if (value === true) flags.push(flag);
+    else if (text.startsWith('-')) flags.push(`${flag}=${text}`); // which would be an option by itself
+    else flags.push(flag, text);
   }
   return flags;
 }
@@ -42,7 +43,8 @@ const bytesOf = (data) => {
 // A GLB says so in its first bytes; everything else is JSON.
 const nameOf = (bytes) => (bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 ? 'input.glb' : 'input.gltf');
 
-// Does a task in a worker, which ends with it: then nothing is left, and it can be stopped in the middle.
+// Does a task in a worker, which ends with it: then nothing is left, and it can be stopped in the middle. The worker gets the
+// files themselves, and no copies.
 async function inWorker(task, { signal, onProgress }) {
   const module = await compile(); // once for all workers
   signal?.throwIfAborted();
@@ -53,16 +55,25 @@ async function inWorker(task, { signal, onProgress }) {
       settle(value);
     };
     const stop = () => end(reject, signal.reason);
+    // Rejects with what is thrown here, where no caller could catch it.
+    const guarded = (work) => {
+      try {
+        work();
+      } catch (error) {
+        end(reject, error);
+      }
+    };
     const worker = platform.startWorker(
       ({ progress, done, failed }) => {
-        if (progress) onProgress?.(progress);
+        if (progress) guarded(() => onProgress?.(progress));
         else if (done) end(resolve, done);
         else end(reject, new ChronormalError(1, failed));
       },
       (error) => end(reject, error),
     );
     signal?.addEventListener('abort', stop, { once: true });
-    worker.postMessage({ task, wantsProgress: onProgress !== undefined, module });
+    const files = Object.values(task.files).map((bytes) => bytes.buffer);
+    guarded(() => worker.postMessage({ task, wantsProgress: onProgress !== undefined, module }, files));
   });
 }
 
@@ -75,13 +86,22 @@ async function execute(task, options) {
   return done;
 }
 
-function taskOf(command, input, options, more = []) {
-  const bytes = bytesOf(input), name = options.name ?? nameOf(bytes);
-  const resources = Object.entries(options.resources ?? {}).map(([uri, data]) => [uri, bytesOf(data)]);
+// Takes copies of what is read, so that the caller may change it while the call goes on. `more` makes further arguments of
+// the folder for what is written.
+function taskOf(command, input, options, more = () => []) {
+  const copyOf = (data) => new Uint8Array(bytesOf(data));
+  const bytes = copyOf(input), name = options.name ?? nameOf(bytes);
+  if (typeof name !== 'string') throw new TypeError('name: it has to be a string');
+  const resources = Object.entries(options.resources ?? {}).map(([uri, data]) => [uri, copyOf(data)]);
+  const files = { ...Object.fromEntries(resources), [name]: bytes };
+  const folders = new Set(Object.keys(files).flatMap((path) => path.split('/')));
+  let outputs = 'out';
+  while (folders.has(outputs)) outputs += '_';
   return {
-    args: [command, name, '--json', ...more, ...flagsOf(options)],
-    files: { ...Object.fromEntries(resources), [name]: bytes },
-    outputs: OUTPUTS,
+    // A single "-" would be standard input, and what stands in brackets a list.
+    args: [command, '--json', ...more(outputs), ...flagsOf(options), '--', /^(-|\[.*\])$/s.test(name) ? `./${name}` : name],
+    files,
+    outputs,
     memoryLimit: options.memoryLimit,
   };
 }
@@ -96,8 +116,8 @@ const bakedName = (name) => {
 
 /** Writes right normals into a glTF file, or makes one of a sequence, and says how far off they were and are. */
 export async function bake(input, options = {}) {
-  const base = bakedName(options.name ?? nameOf(bytesOf(input)));
-  const done = await execute(taskOf('bake', input, options, ['-o', `${OUTPUTS}/${base}`]), options);
+  const base = bakedName(String(options.name ?? nameOf(bytesOf(input))));
+  const done = await execute(taskOf('bake', input, options, (outputs) => ['-o', `${outputs}/${base}`]), options);
   const { [base]: bytes, ...files } = done.files;
   return { bytes, files, report: JSON.parse(done.stdout), warnings: warningsOf(done.stderr), within: done.code === DONE };
 }

@@ -56,12 +56,13 @@ export async function run(args, { prepare, finish, stdout, stderr, terminals = {
   const module = await compile();
   const out = new Sink(stdout, terminals.stdout), err = new Sink(stderr, terminals.stderr);
   let code = 1;
-  const program = await createProgram({
+  // A module that cannot start would leave its promise pending: what is thrown on the way, by prepare() too, ends the run.
+  const program = await new Promise((resolve, reject) => createProgram({
     require: platform.require,
     thisProgram: 'chronormal',
     memoryLimit,
     instantiateWasm(imports, done) {
-      WebAssembly.instantiate(module, imports).then(done);
+      WebAssembly.instantiate(module, imports).then(done).catch(reject);
       return {};
     },
     preRun: [
@@ -84,7 +85,7 @@ export async function run(args, { prepare, finish, stdout, stderr, terminals = {
     },
     print: (text) => stdout(new TextEncoder().encode(`${text}\n`)),
     printErr: (text) => stderr(new TextEncoder().encode(`${text}\n`)),
-  });
+  }).then(resolve, reject));
   for (const [stream, isTerminal] of [[1, terminals.stdout], [2, terminals.stderr]]) {
     if (isTerminal) program.FS.getStream(stream).tty = true;
   }

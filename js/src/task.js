@@ -2,7 +2,28 @@
 import { run } from './run.js';
 
 const FOLDER = '/work';
+const USAGE = 2; // the exit code of the program for a wrong call
 const BAR = /\r([^\r[]*) \[[= ]*\]\s+(\d+) %/g;
+
+class UnusableName extends Error {}
+
+// Puts a file where its name says, which may have folders in it.
+function write(FS, name, bytes) {
+  try {
+    let folder = '';
+    for (const part of name.split('/').slice(0, -1)) {
+      folder += `${part}/`;
+      if (!FS.analyzePath(folder).exists) FS.mkdir(folder);
+    }
+    FS.writeFile(name, bytes);
+  } catch (error) {
+    if (!(error instanceof FS.ErrnoError)) throw error;
+    throw new UnusableName(name);
+  }
+  // The program has names in UTF-8 that end with a zero; and a device is no file.
+  const known = new TextDecoder().decode(new TextEncoder().encode(name));
+  if (known !== name || name.includes('\0') || !FS.isFile(FS.stat(name).mode)) throw new UnusableName(name);
+}
 
 /**
  * @param {{args: string[], files: Object<string, Uint8Array>, outputs: string, memoryLimit?: number}} task the
@@ -18,19 +39,12 @@ export async function perform({ args, files, outputs, memoryLimit }, onProgress)
     for (const [, label, percent] of stderr.matchAll(BAR)) onProgress?.({ label, percent: Number(percent) });
     stderr = stderr.replace(BAR, '').replaceAll('\r\x1b[K', '');
   };
-  const { code, result } = await run(args, {
+  const world = {
     prepare(FS) {
       FS.mkdir(FOLDER);
       FS.chdir(FOLDER);
       FS.mkdir(outputs);
-      for (const [name, bytes] of Object.entries(files)) {
-        let folder = '';
-        for (const part of name.split('/').slice(0, -1)) {
-          folder += `${part}/`;
-          if (!FS.analyzePath(folder).exists) FS.mkdir(folder);
-        }
-        FS.writeFile(name, bytes);
-      }
+      for (const [name, bytes] of Object.entries(files)) write(FS, name, bytes);
     },
     finish(FS) {
       const made = {};
@@ -50,8 +64,15 @@ export async function perform({ args, files, outputs, memoryLimit }, onProgress)
     terminals: { stderr: onProgress !== undefined },
     memoryLimit,
     env: { NO_COLOR: '1', COLUMNS: '80', TERM: 'xterm', HOME: '/', LANG: 'C.UTF-8' },
-  });
+  };
+  let ended;
+  try {
+    ended = await run(args, world);
+  } catch (error) {
+    if (!(error instanceof UnusableName)) throw error;
+    return { code: USAGE, stdout: '', stderr: `${JSON.stringify(error.message)}: no file can have this name`, files: {} };
+  }
   const whole = new Uint8Array(stdout.reduce((size, bytes) => size + bytes.length, 0));
   stdout.reduce((at, bytes) => (whole.set(bytes, at), at + bytes.length), 0);
-  return { code, stdout: new TextDecoder().decode(whole), stderr: stderr.trim(), files: result };
+  return { code: ended.code, stdout: new TextDecoder().decode(whole), stderr: stderr.trim(), files: ended.result };
 }

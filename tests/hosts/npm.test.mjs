@@ -12,6 +12,7 @@ import { fileURLToPath } from 'node:url';
 import { NodeIO } from '@gltf-transform/core';
 import semver from 'semver';
 import { install } from './installed.mjs';
+import { randomNumbers } from './random.mjs';
 
 const { folder, installed, remove, load, native, wasm, node } = install();
 after(remove);
@@ -113,6 +114,73 @@ test('wrong input is refused in the words of the program, and the next call work
   });
   await assert.rejects(bake(face, { tolernace: 1 }), { name: 'ChronormalError', code: 2, message: /tolernace.*tolerance/s });
   assert.equal((await inspect(face)).report.command, 'inspect');
+});
+
+// What a call comes to: its report, or the code and the words of what it was refused with.
+const outcomeOf = (call) => call.then(({ report }) => report, ({ name, code, message }) => ({ name, code, message }));
+
+test('a file of any name is read under it, or refused with it, in a worker and in this thread', async () => {
+  const json = '{"asset": {"version": "2.0"}}   ', tiny = Buffer.alloc(20 + json.length);
+  [0x46546c67, 2, tiny.length, json.length, 0x4e4f534a].forEach((word, i) => tiny.writeUInt32LE(word, 4 * i));
+  tiny.write(json, 20);
+  const expected = (await inspect(tiny)).report, random = randomNumbers(49); // the seed of all that follows
+  const below = (count) => Math.floor(count * random());
+  const parts = ['', '.', '..', 'out', 'work', '-', '--', '-o', '--json', '-x.glb', 'a.glb', '%d', '*', '[a]', '?', ' ', 'é', '\n', '\0', '\ud800', '\ufeff',
+                 '__proto__', 'dev', 'stdin', 'stdout', 'proc', 'x'.repeat(300)];
+  const drawn = Array.from({ length: 100 }, () => Array.from({ length: 1 + below(3) }, () => parts[below(parts.length)]).join(['/', ''][below(2)]));
+  let read = 0;
+  for (const [i, name] of [...parts, ...drawn].entries()) {
+    const said = JSON.stringify(name), found = await outcomeOf(inspect(tiny, { name, worker: false }));
+    if (found.input) {
+      ++read;
+      assert.deepEqual(found, { ...expected, input: { ...expected.input, name: /^(-|\[.*\])$/s.test(name) ? `./${name}` : name } });
+    } else {
+      assert.deepEqual(found, { name: 'ChronormalError', code: 2, message: `${said}: no file can have this name` });
+    }
+    if (i % 4 === 0) assert.deepEqual(await outcomeOf(inspect(tiny, { name })), found, said);
+  }
+  assert.ok(read > 50, `${read}`);
+  const { bytes: baked } = await bake(face, { encode: 'endpoint' });
+  for (const name of ['out', 'out/a.glb', '-x.glb', '../work/out/b.glb']) {
+    assert.deepEqual((await bake(face, { name, encode: 'endpoint', worker: false })).bytes, baked, name);
+  }
+  for (const worker of [true, false]) {
+    assert.deepEqual(await outcomeOf(inspect(tiny, { resources: { '..': tiny }, worker })),
+      { name: 'ChronormalError', code: 2, message: '"..": no file can have this name' });
+    await assert.rejects(inspect(tiny, { name: 5, worker }), { name: 'TypeError', message: /^name: / });
+  }
+});
+
+test('an option whose value begins with "-" gets it', async () => {
+  const { stderr } = native(['audit', 'bumps.glb', '--json', '--animation=-walk']);
+  assert.match(stderr, /-walk/);
+  await assert.rejects(audit(face, { name: 'bumps.glb', animation: '-walk' }), ({ message }) => stderr.endsWith(`${message}\n`));
+});
+
+test('memory of the caller may be used again as soon as a call has returned its promise', async () => {
+  const corners = new Uint8Array(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]).buffer), text = new TextEncoder().encode(JSON.stringify({
+    asset: { version: '2.0' }, buffers: [{ uri: 'a.bin', byteLength: 36 }], bufferViews: [{ buffer: 0, byteLength: 36 }],
+    accessors: [{ bufferView: 0, componentType: 5126, type: 'VEC3', count: 3, min: [0, 0, 0], max: [1, 1, 0] }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }], nodes: [{ mesh: 0 }], scenes: [{ nodes: [0] }],
+  }));
+  const views = [(bytes) => bytes, ({ buffer }) => buffer, ({ buffer }) => Buffer.from(buffer), ({ buffer }) => new DataView(buffer)];
+  for (const call of [inspect, audit]) {
+    const expected = await call(text, { resources: { 'a.bin': corners } });
+    for (const worker of [true, false]) {
+      for (const viewOf of views) {
+        const [own, other] = [text, corners].map((bytes) => Uint8Array.from(bytes));
+        const promise = call(viewOf(own), { resources: { 'a.bin': viewOf(other) }, worker });
+        own.fill(0);
+        other.fill(0);
+        assert.deepEqual(await promise, expected);
+      }
+    }
+  }
+});
+
+test('an error in what hears of progress ends the call, which can catch it', async () => {
+  const onProgress = () => { throw new Error('no more'); };
+  for (const worker of [true, false]) await assert.rejects(audit(face, { samples: 6001, worker, onProgress }), /no more/);
 });
 
 test('where memory runs out, that is said, and the next call works', async () => {
