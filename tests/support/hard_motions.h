@@ -272,6 +272,40 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(rim + 1, std::move(corners)), from, to);
 }
 
+/// A fan of faces around vertex 0 that cancel but for next to nothing, and stand still but for next to nothing. The rim
+/// lies in a plane, in whole numbers, and goes there and back, so that it encloses no area; its height over the plane is
+/// a small whole number times a power of two that double loses beside the height of vertex 0.
+[[nodiscard]] inline Motion cancelling_star(Random& random) {
+  const std::size_t half = 2 + random.below(6), across = random.below(3);
+  const auto small = [&random] { return static_cast<double>(random.below(15)) - 7; };
+  const int low = -static_cast<int>(30 + random.below(60)), shift = static_cast<int>(random.below(40)) - 20;
+  const bool moves = random.below(3) == 0;  // in its plane, by whole numbers
+  std::vector<Point> way(half);
+  for (Point& p : way)
+    for (double& x : p) x = small();
+  const Point by = moves ? Point{small(), small(), small()} : Point{};
+  std::vector<Point> from, to;
+  const auto add = [&](const Point& p, double height0, double height1) {
+    Point a = p, b = p;
+    for (std::size_t k = 0; k < 3; ++k) b[k] += by[k];
+    a[across] = height0;
+    b[across] = height1;
+    from.push_back(scaled_point(std::ldexp(1.0, shift), a));
+    to.push_back(scaled_point(std::ldexp(1.0, shift), b));
+  };
+  const double height = std::ldexp(1 + static_cast<double>(random.below(7)), -static_cast<int>(random.below(4)));
+  add({small(), small(), small()}, height, height);
+  const auto next_to_nothing = [&] { return std::ldexp(small(), low); };
+  for (std::size_t i = 0; i < 2 * half; ++i) {
+    const double height0 = next_to_nothing();
+    add(way[i < half ? i : 2 * half - 1 - i], height0, random.below(4) == 0 ? height0 : next_to_nothing());
+  }
+  std::vector<std::uint32_t> corners;
+  const auto rim = static_cast<std::uint32_t>(2 * half);
+  for (std::uint32_t v = 0; v < rim; ++v) corners.insert(corners.end(), {0, 1 + v, 1 + (v + 1) % rim});
+  return fixtures::make_motion(fixtures::make_triangles(1 + rim, std::move(corners)), from, to);
+}
+
 struct HardMotions {
   const char* name;
   Motion (*make)(Random&);
@@ -295,6 +329,7 @@ struct HardMotions {
       {"hundreds of faces around a vertex", many_faces},
       {"tangles of faces", tangle_of_faces},
       {"ordinary, at any scale", [](Random& r) { return soup_of(r, ordinary); }},
+      {"stars whose faces almost cancel", cancelling_star},
   };
   return families;
 }

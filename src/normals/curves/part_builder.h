@@ -243,7 +243,7 @@ class PartBuilder {
       needs[k].precision = summaries[k].precision;
       const std::uint32_t all = lanes_of(range.count);
       std::uint32_t counted = all;
-      if (summaries[k].uncertain != 0) counted &= ~examine(source, range, summaries[k], k, tiles[k], needs[k]);
+      if (summaries[k].uncertain != 0) counted &= ~examine(source, range, k, tiles[k], needs[k], summaries[k]);
       const std::uint32_t moving = summaries[k].moving & all, bending = summaries[k].bending & all;
       if (bending == all) {
         part_.degree_counts[2] += range.count;
@@ -305,10 +305,10 @@ class PartBuilder {
   }
 
   // Examines in double the elements of tile k of a few that the quick test did not settle: sixteen at a time, and one by
-  // one what that leaves. Returns the flagged ones as bits.
+  // one what that leaves. Returns the flagged ones as bits, and corrects the degrees of those that come out otherwise.
   template <class Source>
-  std::uint32_t examine(Source& source, IndexRange elements, const TileSummary& summary, std::size_t k,
-                        ControlTile& tile, Need& need) {
+  std::uint32_t examine(Source& source, IndexRange elements, std::size_t k, ControlTile& tile, Need& need,
+                        TileSummary& summary) {
     constexpr int kFewest = 3;  // for which sixteen at a time pay
     const std::uint32_t uncertain = summary.uncertain & lanes_of(elements.count);
     TileCertificates& known = certificates_;
@@ -327,12 +327,13 @@ class PartBuilder {
       add_exact(source, elements.first, known.needs_exact);
       return known.flagged;
     }
-    return examine_alone(source, elements, uncertain & ~known.known, tile, need);
+    return examine_alone(source, elements, uncertain & ~known.known, tile, need, summary);
   }
 
   // Examines one by one some elements of a tile, and adds all of its flagged ones, also those with certificates.
   template <class Source>
-  std::uint32_t examine_alone(Source& source, IndexRange elements, std::uint32_t asked, ControlTile& tile, Need& need) {
+  std::uint32_t examine_alone(Source& source, IndexRange elements, std::uint32_t asked, ControlTile& tile, Need& need,
+                              TileSummary& summary) {
     const TileCertificates& known = certificates_;
     std::uint32_t flagged = known.flagged, needs_exact = known.needs_exact;
     bool out_of_range = false;
@@ -350,6 +351,10 @@ class PartBuilder {
       }
     });
     if (out_of_range) flagged |= rescale(source, elements, flagged, tile, alone);
+    // The block holds what was put now, which may move or bend where the sums before, mere rounding, did not.
+    for (std::size_t lane = 0; lane < kTile; ++lane) {
+      if (alone[lane]) summary.set_degree(lane, degree(alone[lane]->normals));
+    }
     for_lanes(flagged, [&](std::size_t lane) { put(tile, lane, kPlaceHolder); });
     for (std::size_t lane = 0; flagged >> lane != 0;) {
       const std::uint32_t left = flagged >> lane;

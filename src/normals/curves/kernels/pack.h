@@ -40,6 +40,12 @@ struct TileSummary {
   std::uint32_t moving = 0;              ///< bit i: its degree is 1 or 2
   std::uint32_t bending = 0;             ///< bit i: its degree is 2
   Precision precision = Precision::k11;  ///< that suffices for all others
+
+  void set_degree(std::size_t lane, int degree) noexcept {
+    const std::uint32_t bit = 1u << lane;
+    moving = degree > 0 ? moving | bit : moving & ~bit;
+    bending = degree > 1 ? bending | bit : bending & ~bit;
+  }
 };
 
 /// Finds the elements of which some operations in float32 show that they stay long enough: all three control normals

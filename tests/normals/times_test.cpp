@@ -1,0 +1,220 @@
+// A theorem of time: the normals at t are the same bytes whatever other times are asked for, before, after or together
+// with t; on every instruction set and number of threads, and by every way to compute them. On hard meshes drawn at
+// random, with whole numbers of any size for the truth.
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/parallel.h"
+#include "chronormal/normals/curve_preparation.h"
+#include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/recompute.h"
+#include "chronormal/normals/segment_normals.h"
+#include "simd/targets.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
+#include "tests/support/integer_normal.h"
+
+namespace chronormal::times_test {
+namespace {
+
+using fixtures::Random;
+using test::IntegerNormals;
+using test::IntegerTime;
+using test::IntegerVector;
+
+using Normals = std::vector<float>;
+
+// A prepared way to compute the normals of some elements: those at each of some times, in this order.
+using Way = std::function<std::vector<Normals>(const std::vector<double>& times)>;
+
+struct NamedWay {
+  std::string name;
+  std::function<Way()> make;  // prepares it anew
+};
+
+// Ways that must agree to the last bit, and to this angle with the truth.
+struct Kin {
+  double tolerance;  // radians
+  std::vector<NamedWay> ways;
+};
+
+template <class Object>
+Way one_by_one(Object made, Threads threads) {
+  const auto object = std::make_shared<Object>(std::move(made));
+  return [object, threads](const std::vector<double>& times) {
+    std::vector<Normals> results(times.size(), Normals(3 * object->size()));
+    for (std::size_t i = 0; i < times.size(); ++i)
+      object->unit_normals(times[i], VectorView<float>::packed(results[i].data(), object->size()), threads);
+    return results;
+  };
+}
+
+Way all_together(NormalCurves made, Threads threads) {
+  const auto curves = std::make_shared<NormalCurves>(std::move(made));
+  return [curves, threads](const std::vector<double>& times) {
+    std::vector<Normals> results(times.size(), Normals(3 * curves->size()));
+    std::vector<VectorView<float>> views;
+    for (Normals& normals : results) views.push_back(VectorView<float>::packed(normals.data(), curves->size()));
+    curves->unit_normals(times, views, threads);
+    return results;
+  };
+}
+
+// Faces where groups is nullptr.
+std::vector<Kin> all_ways(const Segment& segment, const NormalGroups* groups) {
+  std::vector<Kin> all;
+  for (const double tolerance : {kExactTolerance, kCompactTolerance, 5e-3}) {
+    const CurveOptions options{tolerance};
+    const auto made = [=, &segment](Threads threads) {
+      return groups == nullptr ? NormalCurves::of_faces(segment, options, threads)
+                               : NormalCurves::of_groups(segment, *groups, options, threads);
+    };
+    Kin& kin = all.emplace_back(Kin{tolerance, {}});
+    for (const Threads threads : {Threads::kOne, Threads::kAll}) {
+      kin.ways.push_back({"curves", [=] { return one_by_one(made(threads), threads); }});
+      kin.ways.push_back({"curves, all times together", [=] { return all_together(made(threads), threads); }});
+    }
+    kin.ways.push_back({"curves in slices", [=, &segment] {
+                          CurvePreparation slices = groups == nullptr ? CurvePreparation(segment, options)
+                                                                      : CurvePreparation(segment, *groups, options);
+                          while (!slices.prepare(0.3)) {
+                          }
+                          return one_by_one(slices.take(), Threads::kOne);
+                        }});
+    kin.ways.push_back({"curves as the strategy", [=, &segment] {
+                          StrategyOptions strategy{.tolerance = tolerance};
+                          strategy.forced = NormalStrategy::kPolynomial;
+                          return one_by_one(groups == nullptr ? SegmentNormals(segment, strategy)
+                                                              : SegmentNormals(segment, *groups, strategy),
+                                            Threads::kOne);
+                        }});
+  }
+  Kin& anew = all.emplace_back(Kin{kExactTolerance, {}});
+  for (const Threads threads : {Threads::kOne, Threads::kAll}) {
+    anew.ways.push_back(
+        {"made anew", [=, &segment] {
+           return one_by_one(groups == nullptr ? NormalRecompute(segment) : NormalRecompute(segment, *groups), threads);
+         }});
+  }
+  return all;
+}
+
+// Says what of a way is wrong, or nothing. `expected` has the normals of the times, one for one; it is set where empty.
+std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times, Random& random,
+                           std::vector<Normals>& expected) {
+  const auto same = [](const Normals& a, const Normals& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
+  };
+  // One time, by an object that has seen no other.
+  std::vector<Normals> alone;
+  for (const double t : times) alone.push_back(way.make()({t})[0]);
+  if (expected.empty()) expected = alone;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!same(alone[i], expected[i])) return way.name + ": other bytes at t = " + std::to_string(times[i]);
+  }
+  // Two, and all of them in some order.
+  std::vector<std::size_t> order(times.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+  const Way kept = way.make();
+  for (const std::size_t count : {std::size_t{2}, order.size()}) {
+    std::vector<double> asked;
+    for (std::size_t i = 0; i < count; ++i) asked.push_back(times[order[i]]);
+    const std::vector<Normals> found = kept(asked);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!same(found[i], expected[order[i]]))
+        return way.name + ": other bytes among " + std::to_string(count) + " times at t = " + std::to_string(asked[i]);
+    }
+  }
+  return "";
+}
+
+// Holds the normals of all elements at all times against whole numbers.
+std::string fault_in_directions(double tolerance, const std::vector<double>& times, const std::vector<Normals>& found,
+                                const IntegerNormals& oracle, const NormalGroups* groups) {
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const IntegerTime time = IntegerTime::of(times[i]);
+    const std::vector<IntegerVector> here = oracle.at(time), beside = oracle.at(time.moved(times[i] == 0 ? 1 : -1));
+    for (std::size_t e = 0; e < found[i].size() / 3; ++e) {
+      const auto of_element = [&](const std::vector<IntegerVector>& of_faces) {
+        return groups == nullptr ? of_faces[e] : test::sum_of(of_faces, groups->faces(e));
+      };
+      IntegerVector n = of_element(here);
+      if (test::is_zero(n)) n = of_element(beside);
+      const Vec3f u{found[i][3 * e], found[i][3 * e + 1], found[i][3 * e + 2]};
+      const double angle = test::is_zero(n) ? 0 : test::angle_between(u, test::direction_of(n));
+      const bool is_right = test::is_zero(n) ? u.x == 0 && u.y == 0 && u.z == 0 : angle <= tolerance;
+      if (!is_right)
+        return "element " + std::to_string(e) + " at t = " + std::to_string(times[i]) + " is off by " +
+               std::to_string(angle) + " rad";
+    }
+  }
+  return "";
+}
+
+std::string fault_of(const Motion& motion, const NormalGroups* groups, Random& random) {
+  const Segment segment = motion.segment(0);
+  const IntegerNormals oracle(segment);
+  const std::vector<double> times{0, 1, random.uniform(0, 1), 0.5};
+  for (const Kin& kin : all_ways(segment, groups)) {
+    std::vector<Normals> expected;
+    for (const std::int64_t target : supported_targets()) {
+      const ScopedTarget scoped(target);
+      const ThreadLimit limit(1 + random.below(4));
+      for (const NamedWay& way : kin.ways) {
+        const std::string fault = fault_in_bytes(way, times, random, expected);
+        if (!fault.empty()) return fault + " on " + target_name(target);
+      }
+    }
+    const std::string fault = fault_in_directions(kin.tolerance, times, expected, oracle, groups);
+    if (!fault.empty()) return kin.ways[0].name + " to " + std::to_string(kin.tolerance) + ": " + fault;
+  }
+  return "";
+}
+
+TEST(Times, do_not_change_each_others_bytes) {
+  constexpr std::uint64_t kSeed = 49001;
+  constexpr std::size_t kOfFamily = 4, kOfStars = 60;
+  std::vector<test::HardMotions> families = test::hard_motions();
+  std::size_t wrong = 0, meshes = 0;
+  for (std::size_t k = 0; k < families.size(); ++k) {
+    Random random(kSeed + k);
+    std::size_t wrong_here = 0;
+    std::string first;
+    const std::size_t count = families[k].make == test::cancelling_star ? kOfStars : kOfFamily;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Motion motion = families[k].make(random);
+      const Points points = separate_points(motion.topology.vertex_count());
+      const NormalGroups vertices = NormalGroups::of_vertices(motion.topology, points);
+      const NormalGroups corners = NormalGroups::by_crease_angle(motion, points, random.uniform(0, 180)).value();
+      for (const NormalGroups* const groups : {static_cast<const NormalGroups*>(nullptr), &vertices, &corners}) {
+        const std::string fault = fault_of(motion, groups, random);
+        if (fault.empty()) continue;
+        if (wrong_here++ == 0) {
+          first = groups == nullptr ? "faces" : groups == &vertices ? "vertices" : "corners";
+          first += " of mesh " + std::to_string(i) + ": " + fault;
+        }
+      }
+    }
+    std::cout << "  " << families[k].name << ": " << count << " meshes from seed " << kSeed + k << ", " << wrong_here
+              << " wrong" << (first.empty() ? "" : ", first: " + first) << '\n';
+    EXPECT_EQ(wrong_here, 0u) << first;
+    wrong += wrong_here;
+    meshes += count;
+  }
+  std::cout << "  " << meshes << " meshes, " << wrong << " wrong\n";
+}
+
+}  // namespace
+}  // namespace chronormal::times_test
