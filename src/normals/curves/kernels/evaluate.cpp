@@ -95,12 +95,13 @@ HWY_INLINE Shorts PairSet(std::int32_t pair) { return hn::BitCast(kShorts, hn::S
 HWY_INLINE Shorts LoadPairs(const std::int32_t* p) { return hn::BitCast(kShorts, hn::Load(kInts, p)); }
 HWY_INLINE Shorts ShiftHalvesLeft11(Shorts a) { return hn::ShiftLeft<11>(a); }
 
-// start + a.low v.low + a.high v.high + b.low w.low + b.high w.high, for each pair. Integers: exact in any order.
+// start + a.low v.low + a.high v.high + b.low w.low + b.high w.high, for each pair. Integers: exact in any order. Both
+// sums have their lanes in an order of their own until they are rearranged, on NEON, so that start is added then.
 HWY_INLINE Floats PairSum(Ints start, Shorts a, Shorts v, Shorts b, Shorts w) {
   Ints rest = hn::Zero(kInts);
-  Ints sum = hn::ReorderWidenMulAccumulate(kInts, a, v, start, rest);
+  Ints sum = hn::ReorderWidenMulAccumulate(kInts, a, v, hn::Zero(kInts), rest);
   sum = hn::ReorderWidenMulAccumulate(kInts, b, w, sum, rest);
-  return hn::ConvertTo(kFloats, hn::RearrangeToOddPlusEven(sum, rest));
+  return hn::ConvertTo(kFloats, hn::Add(start, hn::RearrangeToOddPlusEven(sum, rest)));
 }
 HWY_INLINE Floats PairSum(Shorts a, Shorts v) {
   Ints rest = hn::Zero(kInts);

@@ -1,0 +1,75 @@
+# Sourced by ./test: compiles the core of the library for a machine of another kind, 64-bit ARM, and runs there, which is an
+# emulator, the tests that say that the bits are the same everywhere.
+
+# fetch_arm64 FOLDER: unpacks the packages that tools/packages.txt lists under [machines-arm64] there, as they are on such a
+# machine; silent where they are there. Nothing is installed, and the lists of packages are kept here: what the machine is set
+# to stays as it is.
+fetch_arm64() {
+  local folder=$1 listed package
+  listed=$(listed_packages machines-arm64 | xargs)
+  [ "$(cat "$folder/.fetched" 2>/dev/null)" = "$listed" ] && return 0
+  say "getting the ARM packages" $listed
+  rm -rf "$folder" && mkdir -p "$folder/.apt/lists/partial" "$folder/.apt/cache/archives/partial"
+  cat >"$folder/.apt/sources.list" <<'LIST'
+deb [arch=arm64 signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian bookworm main
+LIST
+  local options=(-o "Dir::Etc::SourceList=$folder/.apt/sources.list" -o Dir::Etc::SourceParts=/nonexistent
+                 -o "Dir::State::Lists=$folder/.apt/lists" -o "Dir::Cache=$folder/.apt/cache" -o APT::Sandbox::User="$(id -un)"
+                 -o APT::Architectures::=amd64 -o APT::Architectures::=arm64)
+  if ! (cd "$folder" && apt-get -q "${options[@]}" update &&
+        apt-get -q "${options[@]}" download $(printf '%s:arm64 ' $listed)) </dev/null >"$folder/.apt/log" 2>&1; then
+    say "the ARM packages could not be fetched; the end of $folder/.apt/log says why:"
+    tail -n 5 "$folder/.apt/log" >&2
+    return 1
+  fi
+  for package in "$folder"/*.deb; do dpkg-deb -x "$package" "$folder" || return 1; done
+  rm -f "$folder"/*.deb
+  printf '%s\n' "$listed" >"$folder/.fetched"
+}
+
+# The floors that need nothing but Highway, and the tests of them that are theorems of bits.
+machine_floors=(core simd motion normals)
+machine_tests=(tests/normals/curves/golden_bits_test.cpp tests/normals/times_test.cpp tests/support/random_seed.cpp)
+
+# build_for_arm64: compiles these, those files only that are newer than what was made of them, with the flags of the presets;
+# makes build/arm64/tests.
+build_for_arm64() {
+  local build=$root/build/arm64 file
+  fetch_arm64 "$root/build/arm64-packages" || return 1
+  mkdir -p "$build"
+  local packages=$root/build/arm64-packages/usr
+  {
+    for file in "${machine_floors[@]}"; do find "src/$file" -name '*.cpp'; done
+    printf '%s\n' "${machine_tests[@]}"
+  } | sort >"$build/sources"
+  # One rule for each source: what a file includes is written down beside its object.
+  {
+    printf 'cxx = %s\n' "${CHRONORMAL_ARM64_CXX:-aarch64-linux-gnu-g++}"
+    # The instruction sets are those of the library everywhere. Highway asks for NEON with its instructions for
+    # cryptography, by a pragma that GCC forgets in constructors that it writes itself.
+    local disabled
+    disabled=$(sed -n 's/.*"\(HWY_DISABLED_TARGETS=[^"]*\)".*/\1/p' cmake/product.cmake)
+    printf "flags = '-D%s'" "$disabled"
+    printf ' -march=armv8-a+crypto -std=c++20 -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math -Wno-psabi'
+    printf ' -I%s -I%s/src -I%s/include -isystem %s/include -isystem %s/include/aarch64-linux-gnu\n' \
+      "$root" "$root" "$root" "$packages" "$packages"
+    printf 'rule cxx\n  description = $in\n  command = $cxx $flags -MMD -MF $out.d -c $in -o $out\n  depfile = $out.d\n  deps = gcc\n'
+    printf 'rule link\n  command = $cxx -o $out @$out.rsp -L%s/lib/aarch64-linux-gnu' "$packages"
+    printf ' -Wl,-rpath,%s/lib/aarch64-linux-gnu' "$packages"
+    printf ' -lhwy -lgtest_main -lgtest -lgmpxx -lgmp\n  rspfile = $out.rsp\n  rspfile_content = $in\n'
+    local objects=()
+    while read -r file; do
+      objects+=("objects/$file.o")
+      printf 'build objects/%s.o: cxx %s/%s\n' "$file" "$root" "$file"
+    done <"$build/sources"
+    printf 'build tests: link %s\n' "${objects[*]}"
+  } >"$build/build.ninja"
+  ninja -C "$build"
+}
+
+# part_machines: installs, builds and runs.
+part_machines() {
+  install_packages run machines
+  build_for_arm64
+  qemu-aarch64-static -L /usr/aarch64-linux-gnu build/arm64/tests --gtest_brief=1
+}
