@@ -22,13 +22,14 @@
 
 namespace chronormal {
 
-/// Writes n(t) of a range of faces, and (0, 0, 0) where n(t) is zero: where it is so small against the positions that
-/// it is made of (below 1e-10 of their products) that rounding would decide its direction. Threads: pure.
+/// Writes n(t) of a range of faces. Where double cannot tell it from rounding (below 1e-10 of the products that it is
+/// the sum of), it is computed in integers; it is (0, 0, 0) where it is zero, and where it passes a zero so near that a
+/// rounding of t would turn it. Threads: pure.
 /// result must have faces.count elements; t in [0, 1]
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept;
 
-/// n(t) of a vertex or corner: the sum of those of the faces that it belongs to, and (0, 0, 0) where that is below
-/// 1e-10 of their lengths. Threads: pure. t in [0, 1]
+/// Returns n(t) of a vertex or corner in the same way: the sum of those of the faces that it belongs to, however far
+/// these cancel. Threads: pure. t in [0, 1]
 [[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept;
 
 /// Where an angular error was found.

@@ -165,13 +165,19 @@ class NormalGroups {
   friend const Rings& internal::rings_around(const Topology& topology, const NormalGroups& groups);
 };
 
-/// Writes the control normals of a range of elements: nine additions per corner. A component of a sum that is smaller
-/// than the rounding error of its own terms is written as exactly zero. Pure: no allocation, no throw.
+/// Writes the control normals of a range of elements as the sums of those that are given: nine additions per corner. A
+/// component of a sum that is smaller than the rounding error of its own terms is written as exactly zero. What the faces
+/// themselves are off by stays, however far they cancel. Pure: no allocation, no throw.
 /// of_faces must have the control normals of all faces, result as many elements as the range
 void group_control_normals(const NormalGroups& groups, std::span<const ControlNormals> of_faces, IndexRange elements,
                            std::span<ControlNormals> result) noexcept;
 
-/// Returns the control normals of all faces of a segment, or of all elements. On all cores.
+/// Writes those of a range of elements of a segment, of which of_faces has the faces, within 2^-24 of their lengths of
+/// the exact ones: where faces cancel, so that the rounding of double could be more, they are made of integers. Pure.
+void group_control_normals(const Segment& segment, const NormalGroups& groups, std::span<const ControlNormals> of_faces,
+                           IndexRange elements, std::span<ControlNormals> result) noexcept;
+
+/// Returns the control normals of all faces of a segment, or of all elements, as precise as those. On all cores.
 [[nodiscard]] std::vector<ControlNormals> all_face_control_normals(const Segment& segment);
 [[nodiscard]] std::vector<ControlNormals> all_group_control_normals(const Segment& segment, const NormalGroups& groups);
 

@@ -41,12 +41,15 @@ using PathNormal = NormalOf<6>;
 constexpr double kLongestOfThree = 1.7320509;  // a vector of three components, each up to 1
 constexpr double kCutting = 0x1p-46;           // what cutting a polynomial in double adds, of its largest coefficient
 
+// Brings the largest component to 1; zero stays what it is, and what it may be off by is all that is known.
+double scale_of(double largest) { return largest == 0 ? 1 : 1 / largest; }
+
 // A quadratic that is zero at an end for sure has the direction of one of lower degree, which is not: n(t) / t, and
-// likewise at t = 1. Nothing where n is zero throughout.
+// likewise at t = 1. Nothing where n is zero throughout for sure.
 std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlErrors& errors) {
   const double largest = std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
-  if (largest == 0) return std::nullopt;
-  const double scale = 1 / largest;
+  if (largest == 0 && errors == ControlErrors{}) return std::nullopt;
+  const double scale = scale_of(largest);
   const Vec3d n0 = scale * c.n0, m = scale * c.m, n1 = scale * c.n1;
   const auto error_of = [&](std::size_t k, const Vec3d& v) {
     return kLongestOfThree * scale * errors[k] + kCutting * max_abs(v);
@@ -84,8 +87,8 @@ Bernstein<T, 6> divided_by_time(const Bernstein<T, 6>& p) {
 std::optional<PathNormal> without_zero_ends(const PolynomialNormals<3>& c, const PathErrors& errors) {
   double largest = 0;
   for (const Vec3d& v : c) largest = std::max(largest, max_abs(v));
-  if (largest == 0) return std::nullopt;
-  const double scale = 1 / largest;
+  if (largest == 0 && errors == PathErrors{}) return std::nullopt;
+  const double scale = scale_of(largest);
   PathNormal normal;
   for (std::size_t k = 0; k < c.size(); ++k) {
     normal.n[k] = scale * c[k];

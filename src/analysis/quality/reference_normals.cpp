@@ -1,12 +1,21 @@
+// The exact normals that everything is held against: cross products of vertices at t in double, and the same in
+// integers where double cannot tell them from rounding.
 #include "chronormal/analysis/quality.h"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
+
+#include "core/wide_integer.h"
 
 namespace chronormal {
 namespace {
 
-// Some 500,000 rounding errors: the direction of what is kept is right to 1e-5 rad at least.
-constexpr double kZeroShare = 1e-10;
+// Some 500,000 rounding errors: the direction of what double gives is right to 1e-5 rad at least.
+constexpr double kDoubtfulShare = 1e-10;
+// A normal that a rounding of t turns by more than this is that of no particular moment.
+constexpr double kMostTurned = 1e-5;
 
 // A vector between two others, and the size of what it was made of: its error is a rounding of that size.
 struct Interpolated {
@@ -18,7 +27,15 @@ struct Interpolated {
   }
 };
 
-Vec3d vector_area_at(const Segment& segment, std::span<const std::uint32_t> face, double t) {
+// n(t) in double, and the products by which its rounding is judged.
+struct AreaAtTime {
+  Vec3d n;
+  double products = 0;
+
+  [[nodiscard]] bool is_certain() const noexcept { return max_abs(n) > kDoubtfulShare * products; }
+};
+
+AreaAtTime vector_area_at(const Segment& segment, std::span<const std::uint32_t> face, double t) {
   // The first corner is the origin: differences of float32 positions are exact in double, or nearly so.
   const Vec3d origin = to_double(segment.from[face[0]]);
   const auto vertex_at = [&](std::uint32_t vertex) {
@@ -26,35 +43,93 @@ Vec3d vector_area_at(const Segment& segment, std::span<const std::uint32_t> face
     return Interpolated{lerp(from, to, t), (1 - t) * max_abs(from) + t * max_abs(to)};
   };
   const Interpolated a = vertex_at(face[0]);
-  Vec3d n;
-  double products = 0;
+  AreaAtTime area;
   Interpolated e = vertex_at(face[1]) - a;
   for (std::size_t c = 2; c < face.size(); ++c) {
     const Interpolated f = vertex_at(face[c]) - a;
-    n = n + cross(e.vector, f.vector);
-    products += e.size * max_abs(f.vector) + f.size * max_abs(e.vector);
+    area.n = area.n + cross(e.vector, f.vector);
+    area.products += e.size * max_abs(f.vector) + f.size * max_abs(e.vector);
     e = f;
   }
-  return max_abs(n) > kZeroShare * products ? n : Vec3d{};
+  return area;
+}
+
+// A float has up to 277 bits, and a time up to 253.
+constexpr std::size_t kPointDigits = 24, kAreaDigits = 50;
+using Point = std::array<WideInteger<kPointDigits>, 3>;
+
+// A vertex at t, in units of 2^-(149 + t.scale): from 2^t.scale + (to - from) t 2^t.scale.
+Point point_at(const Segment& segment, std::uint32_t vertex, const UnitFraction& t) {
+  const Vec3f from = segment.from[vertex], to = segment.to[vertex];
+  const std::array<float, 3> a{from.x, from.y, from.z}, b{to.x, to.y, to.z};
+  const FloatParts one{1, 0}, minus_one{-1, 0};
+  Point point;
+  for (std::size_t k = 0; k < 3; ++k) {
+    WideInteger<14> start, step;
+    start.add_product(FloatParts::of(a[k]), one);
+    start.settle();
+    step.add_product(FloatParts::of(b[k]), one);
+    step.add_product(FloatParts::of(a[k]), minus_one);
+    step.settle();
+    point[k].add_shifted(start, t.scale);
+    point[k].add_product(step, t);
+    point[k].settle();
+  }
+  return point;
+}
+
+// The sum of n(t) of some faces without any rounding but that of the result: the products of neighbouring corners add
+// up to the area, wherever the origin is.
+Vec3d exact_area_at(const Segment& segment, std::span<const std::uint32_t> faces, double t) {
+  const UnitFraction fraction = UnitFraction::of(t < 0x1p-200 ? 0 : t);
+  std::array<WideInteger<kAreaDigits>, 3> sum;
+  for (const std::uint32_t f : faces) {
+    const auto face = segment.topology->face(f);
+    Point before = point_at(segment, face.back(), fraction);
+    for (const std::uint32_t vertex : face) {
+      const Point here = point_at(segment, vertex, fraction);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        sum[k].add_product(before[i], here[j]);
+        sum[k].add_product(before[j], here[i], -1);
+        sum[k].settle();
+      }
+      before = here;
+    }
+  }
+  const int unit = -298 - 2 * static_cast<int>(fraction.scale);
+  return {sum[0].to_double(unit), sum[1].to_double(unit), sum[2].to_double(unit)};
+}
+
+Vec3d exact_normal_at(const Segment& segment, std::span<const std::uint32_t> faces, double t) {
+  const Vec3d n = exact_area_at(segment, faces, t);
+  if (n == Vec3d{} || t <= 0 || t >= 1) return n;
+  for (const double end : {0.0, 1.0}) {
+    const Vec3d beside = exact_area_at(segment, faces, std::nextafter(t, end));
+    if (max_abs(beside - n) > kMostTurned * max_abs(n)) return {};
+  }
+  return n;
 }
 
 }  // namespace
 
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept {
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
-  for (std::size_t i = 0; i < faces.count; ++i)
-    result[i] = vector_area_at(segment, segment.topology->face(faces.first + i), t);
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    const auto face = static_cast<std::uint32_t>(faces.first + i);
+    const AreaAtTime area = vector_area_at(segment, segment.topology->face(face), t);
+    result[i] = area.is_certain() ? area.n : exact_normal_at(segment, {&face, 1}, t);
+  }
 }
 
 Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept {
-  Vec3d sum;
-  double size = 0;
+  AreaAtTime sum;
   for (const std::uint32_t face : faces) {
-    const Vec3d n = vector_area_at(segment, segment.topology->face(face), t);
-    sum = sum + n;
-    size += max_abs(n);
+    const AreaAtTime area = vector_area_at(segment, segment.topology->face(face), t);
+    sum.n = sum.n + area.n;
+    sum.products += area.products;
   }
-  return max_abs(sum) > kZeroShare * size ? sum : Vec3d{};
+  return sum.is_certain() ? sum.n : exact_normal_at(segment, faces, t);
 }
 
 }  // namespace chronormal

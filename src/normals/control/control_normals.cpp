@@ -33,24 +33,6 @@ UnitNormal first_direction(const Vec3d& at_end, const Vec3d& middle, const Vec3d
 }  // namespace
 
 inline namespace internal {
-namespace {
-
-// Makes those control normals of integers that are hardly more than the rounding of double.
-void settle_rounding(const Segment& segment, std::span<const std::uint32_t> face, PolygonNormals& result) noexcept {
-  constexpr double kExactError = 0x1p-50;
-  const ControlNormals exact = ExactCurve::of_polygon(segment, face).rounded();
-  const auto settle = [](const Vec3d& from, Vec3d& to, double& error) {
-    if (error <= kLargestRounding * max_abs(to)) return;
-    to = from;
-    error = kExactError * max_abs(from);
-  };
-  settle(exact.n0, result.normals.n0, result.errors[0]);
-  settle(exact.m, result.normals.m, result.errors[1]);
-  settle(exact.n1, result.normals.n1, result.errors[2]);
-}
-
-}  // namespace
-
 PolygonNormals polygon_control_normals(const Segment& segment, std::span<const std::uint32_t> face) noexcept {
   CrossSum n0, m, n1;
   const Vec3d a0 = to_double(segment.from[face[0]]), a1 = to_double(segment.to[face[0]]);
@@ -68,7 +50,7 @@ PolygonNormals polygon_control_normals(const Segment& segment, std::span<const s
   result.errors = {n0.error(), 0.5 * m.error(), n1.error()};
   result.magnitude =
       maximum_number(max_abs(n0.magnitude()), maximum_number(max_abs(m.magnitude()), max_abs(n1.magnitude())));
-  if (!(result.largest_share() <= kLargestRounding)) settle_rounding(segment, face, result);
+  if (!(result.largest_share() <= kLargestRounding)) result.settle(ExactCurve::of_polygon(segment, face).rounded());
   return result;
 }
 

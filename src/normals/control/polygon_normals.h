@@ -30,6 +30,19 @@ struct BoundedNormals {
     return maximum_number(share(errors[0], normals.n0),
                           maximum_number(share(errors[1], normals.m), share(errors[2], normals.n1)));
   }
+
+  /// Takes those from integers, rounded, whose rounding may be more than kLargestRounding.
+  void settle(const ControlNormals& exact) noexcept {
+    const auto take = [](const Vec3d& from, Vec3d& to, double& error) {
+      constexpr double kExactError = 0x1p-50;
+      if (error <= kLargestRounding * max_abs(to)) return;
+      to = from;
+      error = kExactError * max_abs(from);
+    };
+    take(exact.n0, normals.n0, errors[0]);
+    take(exact.m, normals.m, errors[1]);
+    take(exact.n1, normals.n1, errors[2]);
+  }
 };
 
 struct PolygonNormals : BoundedNormals {  ///< the normals as face_control_normals() writes them

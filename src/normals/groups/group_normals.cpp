@@ -26,6 +26,13 @@ void group_control_normals(const NormalGroups& groups, std::span<const ControlNo
   }
 }
 
+void group_control_normals(const Segment& segment, const NormalGroups& groups, std::span<const ControlNormals> of_faces,
+                           IndexRange elements, std::span<ControlNormals> result) noexcept {
+  assert(result.size() == elements.count && elements.end() <= groups.size());
+  for (std::size_t i = 0; i < elements.count; ++i)
+    result[i] = settled_group_normals(segment, groups, of_faces, elements.first + i).normals;
+}
+
 std::vector<ControlNormals> all_face_control_normals(const Segment& segment) {
   std::vector<ControlNormals> normals(segment.topology->face_count());
   parallel_blocks(normals.size(), kBlock, [&](IndexRange faces) {
@@ -38,7 +45,8 @@ std::vector<ControlNormals> all_group_control_normals(const Segment& segment, co
   const std::vector<ControlNormals> of_faces = all_face_control_normals(segment);
   std::vector<ControlNormals> normals(groups.size());
   parallel_blocks(normals.size(), kBlock, [&](IndexRange elements) {
-    group_control_normals(groups, of_faces, elements, std::span(normals).subspan(elements.first, elements.count));
+    group_control_normals(segment, groups, of_faces, elements,
+                          std::span(normals).subspan(elements.first, elements.count));
   });
   return normals;
 }

@@ -1,16 +1,18 @@
-/// Sums of the control normals of faces, and that of one element straight from positions: for the few that need
-/// another look.
+/// Sums of the control normals of faces, and what is done where their faces cancel so far that the sum is hardly more
+/// than rounding.
 #ifndef CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 #define CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
 #include "core/rounding.h"
+#include "normals/control/exact_curve.h"
 #include "normals/control/polygon_normals.h"
 
 namespace chronormal::inline internal {
@@ -33,7 +35,8 @@ class ControlNormalsSum {
   VectorSum n0_, m_, n1_;
 };
 
-/// The normals as group_control_normals() has them, bit for bit. Pure: no allocation, no throw.
+/// Adds up the control normals of the faces of an element, with a bound on the errors of both the faces and the sum.
+/// Pure: no allocation, no throw.
 [[nodiscard]] inline BoundedNormals control_normals_of_group(const Segment& segment, const NormalGroups& groups,
                                                              std::size_t element) noexcept {
   ControlNormalsSum sum;
@@ -45,6 +48,29 @@ class ControlNormalsSum {
   }
   BoundedNormals result{sum.without_rounding(), sum.errors()};
   for (std::size_t k = 0; k < 3; ++k) result.errors[k] += of_faces[k];
+  return result;
+}
+
+/// Returns the control normals of an element, each within 2^-24 of its length of the exact one, and zero only where that
+/// is: where faces cancel so far that the rounding of double could be more than 2^-26, they are made of integers. Pure.
+/// of_faces must have face_control_normals() of all faces
+[[nodiscard]] inline BoundedNormals settled_group_normals(const Segment& segment, const NormalGroups& groups,
+                                                          std::span<const ControlNormals> of_faces,
+                                                          std::size_t element) noexcept {
+  // Each face is within 2^-26 of its length, and what adding them up rounds is far less.
+  constexpr double kOfFace = kLargestRounding + 0x1p-40, kMostCancelled = 4;
+  ControlNormalsSum sum;
+  std::array<double, 3> sizes{};
+  for (const std::uint32_t f : groups.faces(element)) {
+    const ControlNormals& face = of_faces[f];
+    sum.add(face);
+    sizes = {sizes[0] + max_abs(face.n0), sizes[1] + max_abs(face.m), sizes[2] + max_abs(face.n1)};
+  }
+  BoundedNormals result{sum.without_rounding(), {kOfFace * sizes[0], kOfFace * sizes[1], kOfFace * sizes[2]}};
+  if (result.largest_share() <= kMostCancelled * kOfFace) return result;
+  result.errors = control_normals_of_group(segment, groups, element).errors;
+  if (result.largest_share() <= kLargestRounding) return result;
+  result.settle(ExactCurve::of_faces(segment, groups.faces(element)).rounded());
   return result;
 }
 

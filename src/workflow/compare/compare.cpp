@@ -18,6 +18,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
 #include "normals/curves/path_stream.h"
+#include "normals/groups/group_sum.h"
 #include "workflow/compare/compared.h"
 #include "workflow/compare/curved_segments.h"
 #include "workflow/errors/error_rows.h"
@@ -116,25 +117,17 @@ class Elements {
 
   void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const noexcept {
     if (groups_)
-      group_control_normals(*groups_, of_faces_.find(segment.index)->second, range, result);
+      group_control_normals(segment, *groups_, of_faces_.find(segment.index)->second, range, result);
     else
       face_control_normals(segment, range, result);
   }
-  // How far they may be off: each face within 2^-26 of its length, and a sum by a few roundings of double more.
+  // How far they may be off.
   [[nodiscard]] std::vector<ControlErrors> control_errors(const Segment& segment, IndexRange range) const {
     std::vector<ControlErrors> errors;
     if (!groups_) return errors;
-    constexpr double kShare = 0x1p-26 + 0x1p-40;
     const std::vector<ControlNormals>& of_faces = of_faces_.find(segment.index)->second;
-    for (std::size_t i = 0; i < range.count; ++i) {
-      ControlErrors sum{};
-      for (const std::uint32_t f : groups_->faces(range.first + i)) {
-        const ControlNormals& face = of_faces[f];
-        sum = {sum[0] + kShare * max_abs(face.n0), sum[1] + kShare * max_abs(face.m),
-               sum[2] + kShare * max_abs(face.n1)};
-      }
-      errors.push_back(sum);
-    }
+    for (std::size_t i = 0; i < range.count; ++i)
+      errors.push_back(settled_group_normals(segment, *groups_, of_faces, range.first + i).errors);
     return errors;
   }
   // For exact_normals(); nothing where these are not normals of triangles on straight lines.

@@ -67,7 +67,7 @@ class TruthElements {
     std::vector<ControlNormals> of_faces = all_face_control_normals(segment);
     if (!groups_) return of_faces;
     std::vector<ControlNormals> result(count_);
-    group_control_normals(*groups_, of_faces, {0, count_}, result);
+    group_control_normals(segment, *groups_, of_faces, {0, count_}, result);
     return result;
   }
   [[nodiscard]] std::vector<PolynomialNormals<3>> control_normals(const PolynomialSegment<3>& segment) const {

@@ -343,5 +343,61 @@ TEST(Certificates, give_the_same_bits_on_any_number_of_threads) {
   EXPECT_EQ(certify("no such scheme", motion.segment(0)).error().code, ErrorCode::kUsage);
 }
 
+// ---- sums that cancel ----------------------------------------------------------------------------------------------
+
+// What double makes of faces that cancel is rounding; the certificate must know that, or the normals must not be so made.
+TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
+  std::size_t judged = 0, known = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    fixtures::Random random(kSeed + 400 + seed);
+    const Motion motion = seed % 3 == 0 ? test::cancelling_fan(random) : test::cancelling_star(random);
+    const Segment segment = motion.segment(0);
+    const NormalGroups groups =
+        NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+    const std::size_t count = groups.size();
+    const std::vector<ControlNormals> of_faces = all_face_control_normals(segment);
+    std::vector<ControlNormals> plain(count);
+    group_control_normals(groups, of_faces, {0, count}, plain);
+    std::vector<ControlErrors> plain_errors(count);
+    for (std::size_t e = 0; e < count; ++e) {
+      for (const std::uint32_t f : groups.faces(e)) {
+        const ControlNormals& face = of_faces[f];
+        const double share = 0x1p-26 + 0x1p-40;
+        plain_errors[e][0] += share * max_abs(face.n0);
+        plain_errors[e][1] += share * max_abs(face.m);
+        plain_errors[e][2] += share * max_abs(face.n1);
+      }
+    }
+    const IntegerNormals oracle(segment);
+    for (const std::string& name : {"polynomial", "linear", "cubic", "slerp"}) {
+      for (const bool is_settled : {true, false}) {
+        const std::vector<ControlNormals> normals = is_settled ? all_group_control_normals(segment, groups) : plain;
+        const ElementBlock block{&segment, {0, count}, normals, false};
+        const auto scheme = make_scheme(name).value();
+        scheme->prepare(block);
+        std::vector<ErrorBounds> bounds(count);
+        certify(*scheme, block, bounds, {}, is_settled ? std::span<const ControlErrors>() : plain_errors);
+        std::vector<float> shown(3 * count);
+        for (const double t : {0.0, 1.0, 0.5, random.uniform(0, 1)}) {
+          scheme->evaluate(t, VectorView<float>::packed(shown.data(), count));
+          const std::vector<IntegerVector> exact = oracle.at(IntegerTime::of(t));
+          for (std::size_t e = 0; e < count; ++e) {
+            const IntegerVector n = test::sum_of(exact, groups.faces(e));
+            if (test::is_zero(n)) continue;
+            const Vec3f u{shown[3 * e], shown[3 * e + 1], shown[3 * e + 2]};
+            const bool is_shown = u.x != 0 || u.y != 0 || u.z != 0;
+            const double error = is_shown ? error_of(u, n) : std::numbers::pi;
+            EXPECT_LE(error, bounds[e].upper + kOracle) << name << ", seed " << seed << ", vertex " << e << ", t " << t;
+            ++judged;
+            if (is_settled && name == std::string("polynomial") && bounds[e].upper < 1e-5) ++known;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(judged, 5000u);
+  EXPECT_GT(known, 500u) << "control normals that were made of integers have small bounds";
+}
+
 }  // namespace
 }  // namespace chronormal::certify_test

@@ -14,6 +14,8 @@
 #include "chronormal/io/builtin_morphs.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
+#include "tests/support/integer_normal.h"
 #include "tests/support/reference.h"
 #include "tests/support/reference_elements.h"
 
@@ -336,6 +338,33 @@ TEST(CompareCertified, no_sample_exceeds_the_bound_of_any_element) {
         EXPECT_EQ(row.certified->unbounded, 0U) << row.scheme;
       }
     }
+  }
+}
+
+// Faces that cancel have a normal, which schemes are held against; whole numbers say where there is none.
+TEST(CompareCertified, vertices_whose_faces_cancel_are_seen) {
+  fixtures::Random random(4917);
+  constexpr std::size_t kSamples = 5;
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE("star " + std::to_string(i) + " from seed 4917");
+    const Motion motion = test::cancelling_star(random);
+    CompareOptions options{{"polynomial", "linear"}, kSamples, Access::kRandom, {}, {ElementKind::kVertices, false}};
+    options.certify = true;
+    const Comparison compared = compare(motion, options).value();
+    const NormalGroups vertices =
+        NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+    const test::IntegerNormals oracle(motion.segment(0));
+    std::size_t without = 0;
+    for (std::size_t k = 0; k < kSamples; ++k) {
+      const auto faces = oracle.at(test::IntegerTime::of(static_cast<double>(k) / (kSamples - 1)));
+      for (std::size_t v = 0; v < vertices.size(); ++v)
+        without += test::is_zero(test::sum_of(faces, vertices.faces(v))) ? 1U : 0U;
+    }
+    for (const SchemeComparison& row : compared.schemes) {
+      EXPECT_EQ(row.quality.degenerate, without) << row.scheme;
+      EXPECT_LE(row.quality.max, row.certified->upper) << row.scheme;
+    }
+    EXPECT_LE(row(compared, "polynomial").quality.max, 2e-6);
   }
 }
 

@@ -164,6 +164,39 @@ TEST(NormalSampler, no_mesh_is_too_hard_for_a_millionth_of_a_radian) {
   }
 }
 
+// The number of times decides how normals are computed, and must not decide what they are.
+TEST(NormalSampler, normals_at_a_time_are_right_whatever_is_asked_beside_it) {
+  fixtures::Random random(4949);
+  for (const auto& family : test::hard_motions()) {
+    const int meshes = family.make == test::cancelling_star ? 40 : 3;
+    for (int i = 0; i < meshes; ++i) {
+      const Motion motion = family.make(random);
+      const NormalGroups vertices =
+          NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+      const test::IntegerNormals oracle(motion.segment(0));
+      const std::vector<double> times = {1, 0.375, 0};
+      for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
+        SampleOptions options = options_of(kind);
+        options.elements.weld = false;
+        for (const double evaluations : {1.0, 2.0, 1000.0}) {
+          NormalSampler sampler = sampler_of(motion, options);
+          for (const double t : times) {
+            const auto faces = oracle.at(test::IntegerTime::of(t));
+            const std::vector<float> found = good(sampler.at_time(t, evaluations)).normals;
+            for (std::size_t e = 0; e < found.size() / 3; ++e) {
+              const auto n = kind == ElementKind::kFaces ? faces[e] : test::sum_of(faces, vertices.faces(e));
+              if (test::is_zero(n)) continue;
+              const Vec3f u{found[3 * e], found[3 * e + 1], found[3 * e + 2]};
+              EXPECT_LE(test::angle_between(u, test::direction_of(n)), 1e-6)
+                  << family.name << ", mesh " << i << ", element " << e << " at " << t << " of " << evaluations;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(NormalSampler, every_weighting_is_computed_anew_at_each_time) {
   for (const Motion& motion : motions()) {
     const reference::Mesh mesh = test::reference_mesh(motion.segment(0));

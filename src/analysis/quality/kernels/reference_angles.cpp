@@ -15,6 +15,7 @@
 #include <cassert>
 #include <limits>
 
+#include "chronormal/analysis/quality.h"
 #include "simd/angles-inl.h"
 
 #if !defined(CHRONORMAL_ANALYSIS_REFERENCE_ANGLES_ONCE)
@@ -126,9 +127,9 @@ HWY_EXPORT(Normals);
 HWY_EXPORT(AnglesToExact);
 
 ReferenceTriangles::ReferenceTriangles(const Segment& segment, IndexRange faces)
-    : count_(faces.count), edges_((faces.count + kGroup - 1) / kGroup * kGroup * kValues) {
+    : segment_(segment), faces_(faces), edges_((faces.count + kGroup - 1) / kGroup * kGroup * kValues) {
   assert(segment.topology->all_triangles() && faces.end() <= segment.topology->face_count());
-  for (std::size_t i = 0; i < count_; ++i) {
+  for (std::size_t i = 0; i < faces.count; ++i) {
     const auto face = segment.topology->face(faces.first + i);
     const Vec3d origin = to_double(segment.from[face[0]]);
     const Vec3d parts[] = {to_double(segment.to[face[0]]) - origin, to_double(segment.from[face[1]]) - origin,
@@ -145,8 +146,14 @@ ReferenceTriangles::ReferenceTriangles(const Segment& segment, IndexRange faces)
 }
 
 void ReferenceTriangles::normals(double t, std::span<Vec3d> result) const noexcept {
-  assert(result.size() == count_);
-  HWY_DYNAMIC_DISPATCH(Normals)(edges_.data(), count_, t, result.data());
+  assert(result.size() == faces_.count);
+  HWY_DYNAMIC_DISPATCH(Normals)(edges_.data(), faces_.count, t, result.data());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (result[i] != Vec3d{}) continue;
+    reference_normals(segment_, {faces_.first + i, 1}, t, result.subspan(i, 1));
+    if (const double scale = max_abs(result[i]); scale > 0)
+      result[i] = {result[i].x / scale, result[i].y / scale, result[i].z / scale};
+  }
 }
 
 void angles_to_exact(std::span<const Vec3d> exact, VectorView<const float> shown, std::span<double> angles) noexcept {

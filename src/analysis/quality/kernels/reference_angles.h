@@ -19,15 +19,17 @@ namespace chronormal::inline internal {
 /// over contiguous memory.
 class ReferenceTriangles {
  public:
-  /// All faces of the segment must be triangles. Nothing of it is kept.
+  /// All faces of the segment must be triangles. What it views must outlive the object, which looks at it again where
+  /// double is not enough.
   ReferenceTriangles(const Segment& segment, IndexRange faces);
 
-  /// Writes n(t) of each face divided by its largest component, and (0, 0, 0) where it is zero.
+  /// Writes n(t) of each face divided by its largest component, and (0, 0, 0) where reference_normals() does.
   /// result must have as many elements as there are faces; t in [0, 1]
   void normals(double t, std::span<Vec3d> result) const noexcept;
 
  private:
-  std::size_t count_;
+  Segment segment_;
+  IndexRange faces_;
   std::vector<double> edges_;  // in groups of lanes, 20 values of each triangle
 };
 
