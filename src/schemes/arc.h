@@ -103,7 +103,6 @@ struct UniformArc {
   [[nodiscard]] std::size_t plane_count() const { return kArcPlanes; }
 
   [[nodiscard]] Formula formula() const { return Formula::kCircleArc; }
-  void shared(double t, float* values) const { values[0] = static_cast<float>(t); }
 
   [[nodiscard]] std::size_t state_planes() const { return kTurnPlanes; }
   void anchor(ElementCoefficients c, double t, double step, double* state) const {

@@ -55,7 +55,6 @@ struct TimedCircle {
   }
 
   [[nodiscard]] Formula formula() const { return Formula::kTimedCircleArc; }
-  void shared(double t, float* values) const { values[0] = static_cast<float>(t); }
 };
 
 }  // namespace

@@ -6,8 +6,16 @@
 ///     std::size_t plane_count() const                    how many floats an element keeps
 ///     Formula formula() const                            what is evaluated
 ///     void fit(ElementMotion& element, double* c) const  fills them; calls element.use_fallback() where undefined
+///
+/// where that is a sum, or where it takes anything but shared_values() of the formula,
+///
 ///     void shared(double t, float* values) const         what all elements have in common at t, as the formula asks
 ///
+/// where certify() shall bound the errors of a sum, and the weights that shared() rounds to float32 are polynomials,
+///
+///     WeightBasis basis() const                          these polynomials; may be std::optional
+///
+/// (of a sum without it, or of another formula with shared() of its own, no bound below half a turn is certified),
 /// where it looks at the face itself,
 ///
 ///     bool needs_faces = true
@@ -27,6 +35,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -122,6 +132,12 @@ class BlockedValues {
   AlignedArray<float> values_;
 };
 
+/// Whether a policy says itself what all elements have in common at t.
+template <class Policy>
+concept SharesValues = requires(const Policy& policy, float* values) {
+  policy.shared(0.0, values);
+};
+
 /// Whether a policy can be played.
 template <class Policy>
 concept Playable = requires(const Policy& policy) {
@@ -195,10 +211,14 @@ class CurveScheme final : public Scheme {
       if (element.used_fallback()) ++fallbacks_;
       values_.put(i, c);
     }
-    fitted_ = {policy_.formula(), values_.view()};
   }
 
-  [[nodiscard]] const FittedCurves* fitted_curves() const noexcept override { return &fitted_; }
+  [[nodiscard]] std::shared_ptr<const FittedCurves> fitted_curves() const override {
+    FittedCurves fitted{policy_.formula(), values_.view(), std::nullopt};
+    if constexpr (requires { policy_.basis(); }) fitted.basis = policy_.basis();
+    const bool is_known = is_sum(fitted.formula) ? fitted.basis.has_value() : !SharesValues<Policy>;
+    return is_known ? std::make_shared<const FittedCurves>(std::move(fitted)) : nullptr;
+  }
 
   std::size_t evaluate(double t, VectorView<float> result) const noexcept override {
     evaluate_curves(policy_.formula(), values_.view(), shared(t), result);
@@ -248,9 +268,13 @@ class CurveScheme final : public Scheme {
   static constexpr double kExampleTime = 0.375;
 
   [[nodiscard]] SharedValues shared(double t) const noexcept {
-    SharedValues values{};
-    policy_.shared(t, values.data());
-    return values;
+    if constexpr (SharesValues<Policy>) {
+      SharedValues values{};
+      policy_.shared(t, values.data());
+      return values;
+    } else {
+      return shared_values(policy_.formula(), t);
+    }
   }
 
   // Of a face that turns from +x to +y, so that no formula takes a short cut.
@@ -276,7 +300,6 @@ class CurveScheme final : public Scheme {
   std::size_t fallbacks_ = 0;
   std::size_t without_direction_ = 0;
   BlockedValues values_;
-  FittedCurves fitted_;
 };
 
 }  // namespace chronormal::inline internal

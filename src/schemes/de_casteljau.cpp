@@ -21,7 +21,6 @@ class DeCasteljau {
   }
 
   [[nodiscard]] Formula formula() const { return Formula::kDeCasteljau; }
-  void shared(double t, float* values) const { values[0] = static_cast<float>(t); }
 
  private:
   std::size_t count_;

@@ -3,9 +3,11 @@
 #define CHRONORMAL_SCHEMES_FITTED_CURVES_H_
 
 #include <cstddef>
+#include <optional>
 
 #include "chronormal/core/vec3.h"
 #include "schemes/kernels/curve_kernels.h"
+#include "schemes/weight_basis.h"
 
 namespace chronormal::inline internal {
 
@@ -23,10 +25,12 @@ struct ElementCoefficients {
   return {blocks.values + i / kBlock * kBlock * blocks.plane_count + i % kBlock};
 }
 
-/// A formula, and the coefficients of a block. They are valid until the scheme is prepared anew.
+/// A formula, the coefficients of a block, which are valid until the scheme is prepared anew, and the weights of a sum.
+/// A formula that is no sum is evaluated with its shared_values().
 struct FittedCurves {
   Formula formula = Formula::kSum;
   CoefficientBlocks coefficients;
+  std::optional<WeightBasis> basis;  ///< of a sum, with a weight for each vector
 };
 
 }  // namespace chronormal::inline internal

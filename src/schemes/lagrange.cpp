@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "schemes/curve_scheme.h"
 #include "schemes/makers.h"
@@ -40,6 +41,10 @@ class Lagrange {
   void shared(double t, float* values) const {
     const auto weights = weights_at(t);
     for (std::size_t k = 0; k <= degree_; ++k) values[k] = static_cast<float>(weights[k]);
+  }
+  [[nodiscard]] std::optional<WeightBasis> basis() const {
+    if (degree_ > WeightBasis::kMostDegree) return std::nullopt;
+    return WeightBasis::lagrange(degree_);
   }
 
   // Played by forward differences: K additions per component and step. Not beyond degree 3: differences of high order

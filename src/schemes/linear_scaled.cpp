@@ -25,6 +25,7 @@ class ScaledLinear {
     values[0] = static_cast<float>(1 - t);
     values[1] = static_cast<float>(t);
   }
+  [[nodiscard]] WeightBasis basis() const { return {1, {{1, 0}, {0, 1}}}; }
 
  private:
   static double best_scale(const ElementMotion& element, const Vec3d& u0, const Vec3d& u1) {

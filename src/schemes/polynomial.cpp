@@ -28,6 +28,7 @@ class Polynomial final : public Scheme {
     return curves_.unit_normals(t, result);
   }
 
+  [[nodiscard]] bool is_exact() const noexcept override { return true; }
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
   [[nodiscard]] std::size_t flagged_count() const noexcept override { return curves_.flagged_count(); }
   [[nodiscard]] std::size_t bytes() const noexcept override { return curves_.bytes(); }

@@ -35,14 +35,6 @@ class Rational {
   }
 
   [[nodiscard]] Formula formula() const { return Formula::kRational; }
-
-  // The weights of the quadratic, and those of the quartic.
-  void shared(double t, float* values) const {
-    const double s = 1 - t;
-    const double weights[] = {
-        s * s, 2 * t * s, t * t, s * s * s * s, 4 * s * s * s * t, 6 * s * s * t * t, 4 * s * t * t * t, t * t * t * t};
-    for (const double weight : weights) *values++ = static_cast<float>(weight);
-  }
 };
 
 }  // namespace

@@ -34,6 +34,7 @@ class Recompute final : public Scheme {
   }
 
   [[nodiscard]] bool uses_control_normals() const noexcept override { return false; }
+  [[nodiscard]] bool is_exact() const noexcept override { return true; }
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
 
   // The corners of the faces, and six floats a vertex at both ends: on a closed triangle mesh a vertex serves 2 faces.

@@ -23,7 +23,6 @@ struct Slerp {
   }
 
   [[nodiscard]] Formula formula() const { return Formula::kGreatArc; }
-  void shared(double t, float* values) const { values[0] = static_cast<float>(t); }
 
   // Played by a rotation per step (Barrera 2004, as cited by the paper, in the form that drifts least).
   [[nodiscard]] std::size_t state_planes() const { return kTurnPlanes; }

@@ -21,36 +21,19 @@
 #include "chronormal/schemes/scheme.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"
+#include "tests/support/scheme_names.h"
 
 namespace chronormal::oracle_test {
 namespace {
 
 using fixtures::Shape;
+using test::scheme_names;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
 // How far from 1 a length may be. `rational` alone divides by a length that is not measured but evaluated, as a quartic
 // in float32 that loses digits where n(t) is small against its control normals: its direction is as good as any.
 double length_tolerance(std::string_view scheme) { return scheme == "rational" ? 2e-6 : 1e-6; }
-
-// All names that make_scheme() knows, with numbers for K and SEED.
-std::vector<std::string> scheme_names() {
-  std::vector<std::string> names;
-  for (const SchemeDescription& description : scheme_descriptions()) {
-    const std::string name(description.name);
-    const std::string stem = name.substr(0, name.rfind(':'));
-    if (name == "lagrange:K") {
-      for (const char* degree : {":1", ":2", ":3", ":5", ":8"}) names.push_back(stem + degree);
-    } else if (name == "decasteljau:K") {
-      for (const char* count : {":2", ":3", ":4", ":6"}) names.push_back(stem + count);
-    } else if (name == "quaternion:random:SEED") {
-      for (const char* seed : {":1", ":7"}) names.push_back(stem + seed);
-    } else {
-      names.push_back(name);
-    }
-  }
-  return names;
-}
 
 // A motion with everything that schemes and oracles are prepared from.
 struct Subject {

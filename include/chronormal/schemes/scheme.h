@@ -111,9 +111,11 @@ class Scheme {
   /// Operations per element and step of a playback, counted likewise; nothing where there is no incremental form.
   [[nodiscard]] virtual std::optional<OperationCounts> sequential_operations() const { return std::nullopt; }
 
-  /// What the block was fitted with, for certify() in analysis/certify.h; nothing where a scheme follows the exact
-  /// normals to kExactTolerance.
-  [[nodiscard]] virtual const FittedCurves* fitted_curves() const noexcept { return nullptr; }
+  /// Whether every normal that evaluate() writes is promised to be within kExactTolerance of the exact one.
+  [[nodiscard]] virtual bool is_exact() const noexcept { return false; }
+  /// Returns the curves that the block was fitted with, for certify() in analysis/certify.h; nothing where they are not
+  /// known, so that no bound can be certified. They are valid until the next prepare().
+  [[nodiscard]] virtual std::shared_ptr<const FittedCurves> fitted_curves() const { return nullptr; }
 };
 
 /// Makes a scheme from its name. Errors: kUsage with the names that there are, or the range of a parameter.

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -190,21 +191,17 @@ ErrorBounds computed_bounds(const PathNormal& normal) {
 // All elements of a block share these.
 class Certifier {
  public:
-  explicit Certifier(const Scheme& scheme) : fitted_(scheme.fitted_curves()) {
-    if (fitted_ == nullptr) {
-      reads_positions_ = !scheme.uses_control_normals();
-      return;
-    }
-    const std::size_t vectors = fitted_->coefficients.plane_count / 3;
-    if (is_sum() && vectors - 1 <= LagrangeBasis::kMostDegree) basis_.emplace(vectors - 1);
-  }
+  explicit Certifier(const Scheme& scheme)
+      : fitted_(scheme.fitted_curves()),
+        is_exact_(scheme.is_exact()),
+        reads_positions_(is_exact_ && !scheme.uses_control_normals()) {}
 
   [[nodiscard]] ErrorBounds bounds(std::size_t i, const ControlNormals& normals, const ControlErrors& errors,
                                    const CertifyOptions& options, double enough) const {
     if (reads_positions_) return {0, kExactTolerance, 0, 0, 1};
     const std::optional<Normal> normal = without_zero_ends(normals, errors);
     if (!normal) return {0, 0, 0, 0, 1};
-    if (fitted_ == nullptr) return bounds_of(CubicCurve(normal->n, kExactTolerance), *normal, options, enough);
+    if (is_exact_) return bounds_of(CubicCurve(normal->n, kExactTolerance), *normal, options, enough);
     return of_fitted(i, *normal, options, enough);
   }
 
@@ -214,21 +211,17 @@ class Certifier {
                                            const CertifyOptions& options, double enough) const {
     const std::optional<PathNormal> exact = without_zero_ends(truth, truth_errors);
     if (!exact) return {0, 0, 0, 0, 1};
-    if (fitted_ != nullptr) return of_fitted(i, *exact, options, enough);
+    if (!is_exact_) return of_fitted(i, *exact, options, enough);
     const std::optional<Normal> straight = without_zero_ends(normals, errors);
     if (!straight) return kUnknown;
     return bounds_of(CubicCurve(straight->n, kExactTolerance, straight->error), *exact, options, enough);
   }
 
  private:
-  [[nodiscard]] bool is_sum() const {
-    const Formula f = fitted_->formula;
-    return f == Formula::kSum || f == Formula::kSumOf2 || f == Formula::kSumOf3 || f == Formula::kSumOf4;
-  }
-
   template <std::size_t N>
   [[nodiscard]] ErrorBounds of_fitted(std::size_t i, const NormalOf<N>& normal, const CertifyOptions& options,
                                       double enough) const {
+    if (fitted_ == nullptr) return kUnknown;
     const ElementCoefficients c = coefficients_of(fitted_->coefficients, i);
     switch (fitted_->formula) {
       case Formula::kRational:
@@ -241,9 +234,9 @@ class Certifier {
       case Formula::kDeCasteljau:
         return bounds_of(SphericalCurve(fitted_->coefficients.plane_count / 3, c), normal, options, enough);
       default:
-        if (!basis_) return kUnknown;
-        if (basis_->degree() <= 3) return bounds_of(CubicCurve(*basis_, c), normal, options, enough);
-        return bounds_of(LagrangeCurve(*basis_, c), normal, options, enough);
+        if (!fitted_->basis) return kUnknown;
+        if (fitted_->basis->degree() <= 3) return bounds_of(CubicCurve(*fitted_->basis, c), normal, options, enough);
+        return bounds_of(SumCurve(*fitted_->basis, c), normal, options, enough);
     }
   }
 
@@ -257,9 +250,8 @@ class Certifier {
     return bounds;
   }
 
-  const FittedCurves* fitted_;
-  bool reads_positions_ = false;
-  std::optional<LagrangeBasis> basis_;
+  std::shared_ptr<const FittedCurves> fitted_;
+  bool is_exact_, reads_positions_;
 };
 
 ControlErrors promised_errors(const ControlNormals& c) {

@@ -27,100 +27,30 @@ Bernstein<Vec3d, 3> elevated(const Bernstein<Vec3d, 2>& p) {
   return {p[0], (1.0 / 3) * (p[0] + 2.0 * p[1]), (1.0 / 3) * (2.0 * p[1] + p[2]), p[2]};
 }
 
-// The halves of de Casteljau's triangle over as many coefficients as there are, in place: p becomes the part after t,
-// or the one before it.
-template <class T>
-void keep_after(std::span<T> p, double t) {
-  for (std::size_t level = 1; level < p.size(); ++level) {
-    for (std::size_t k = 0; k + level < p.size(); ++k) p[k] = (1 - t) * p[k] + t * p[k + 1];
-  }
-}
-template <class T>
-void keep_before(std::span<T> p, double t) {
-  for (std::size_t level = 1; level < p.size(); ++level) {
-    for (std::size_t k = p.size() - 1; k >= level; --k) p[k] = (1 - t) * p[k - 1] + t * p[k];
-  }
-}
-template <class T>
-void restrict_in_place(std::span<T> p, double a, double b) {
-  keep_before(p, b);
-  if (a > 0) keep_after(p, a / b);
-}
-
 CurvePiece cubic_piece(const Bernstein<Vec3d, 3>& p, double radius, double middle_radius) {
   return {p, radius, 0.125 * (p[0] + p[3]) + 0.375 * (p[1] + p[2]), middle_radius, kScaling};
 }
 
 }  // namespace
 
-LagrangeBasis::LagrangeBasis(std::size_t degree) : degree_(degree), of_nodes_(degree + 1) {
-  assert(degree >= 1 && degree <= kMostDegree);
-  const double nodes = static_cast<double>(degree);
-  double largest_sum = 0;  // of |coefficients| as they would be without any cancellation
-  std::array<double, kMostDegree + 1> sums{};
-  for (std::size_t k = 0; k <= degree; ++k) {
-    // The product of (degree x - j) / (k - j), one factor after the other, each of degree 1.
-    Coefficients p{1}, sizes{1};
-    std::size_t so_far = 0;
-    for (std::size_t j = 0; j <= degree; ++j) {
-      if (j == k) continue;
-      const double scale = 1 / (static_cast<double>(k) - static_cast<double>(j));
-      const double at_start = -static_cast<double>(j) * scale, at_end = (nodes - static_cast<double>(j)) * scale;
-      ++so_far;
-      Coefficients next{}, next_sizes{};
-      for (std::size_t i = 0; i <= so_far; ++i) {
-        const double share = static_cast<double>(i) / static_cast<double>(so_far);
-        if (i < so_far) {
-          next[i] += (1 - share) * at_start * p[i];
-          next_sizes[i] += (1 - share) * std::fabs(at_start) * sizes[i];
-        }
-        if (i > 0) {
-          next[i] += share * at_end * p[i - 1];
-          next_sizes[i] += share * std::fabs(at_end) * sizes[i - 1];
-        }
-      }
-      p = next;
-      sizes = next_sizes;
-    }
-    of_nodes_[k] = p;
-    for (std::size_t i = 0; i <= degree; ++i) sums[i] += sizes[i];
-  }
-  largest_sum = *std::max_element(sums.begin(), sums.end());
-  conversion_error_ = 32 * nodes * kUnitRoundoff * largest_sum;
-  if (degree == 1) return;
-
-  // The weights are symmetric, so half of [0, 1] tells; on a piece, a polynomial is below its largest coefficient.
-  const std::size_t pieces = 4 * degree;
-  for (std::size_t i = 0; 2 * i < pieces; ++i) {
-    double sum = 0;
-    for (const Coefficients& of_node : of_nodes_) {
-      Coefficients p = of_node;
-      const std::span<double> used(p.data(), degree + 1);
-      restrict_in_place(used, static_cast<double>(i) / static_cast<double>(pieces),
-                        static_cast<double>(i + 1) / static_cast<double>(pieces));
-      double largest = 0;
-      for (const double b : used) largest = std::max(largest, std::fabs(b));
-      sum += largest;
-    }
-    most_weight_ = std::max(most_weight_, sum + conversion_error_);
-  }
-}
-
-CubicCurve::CubicCurve(const LagrangeBasis& basis, ElementCoefficients c) noexcept : angle_(kScaling) {
+CubicCurve::CubicCurve(const WeightBasis& basis, ElementCoefficients c) noexcept : angle_(kScaling) {
   const std::size_t degree = basis.degree();
   assert(degree <= 3);
-  const double rounding = rounding_of_sum(degree + 1);
-  if (degree == 1) {
-    const Vec3d from = to_double(c.vector(0)), to = to_double(c.vector(1));
-    *this = CubicCurve(from, rounding * length_of(from), to, rounding * length_of(to));
-    return;
-  }
+  const double rounding = rounding_of_sum(basis.count());
   std::array<Vec3d, 4> p{};
+  std::array<double, 4> sizes{};  // of what is added up for each
   double largest = 0;
-  for (std::size_t k = 0; k <= degree; ++k) {
+  for (std::size_t k = 0; k < basis.count(); ++k) {
     const Vec3d v = to_double(c.vector(k));
     largest = std::max(largest, length_of(v));
-    for (std::size_t i = 0; i <= degree; ++i) p[i] = p[i] + basis.of_node(k)[i] * v;
+    for (std::size_t i = 0; i <= degree; ++i) {
+      p[i] = p[i] + basis.weight(k)[i] * v;
+      sizes[i] += std::fabs(basis.weight(k)[i]) * length_of(v);
+    }
+  }
+  if (degree == 1) {
+    *this = CubicCurve(p[0], rounding * sizes[0], p[1], rounding * sizes[1]);
+    return;
   }
   p_ = degree == 3 ? p : elevated({p[0], p[1], p[2]});
   radius_.fill((rounding * basis.most_weight() + basis.conversion_error()) * largest);
@@ -149,19 +79,19 @@ CurvePiece CubicCurve::over(double a, double b) const noexcept {
   return piece;
 }
 
-LagrangeCurve::LagrangeCurve(const LagrangeBasis& basis, ElementCoefficients c) noexcept : degree_(basis.degree()) {
+SumCurve::SumCurve(const WeightBasis& basis, ElementCoefficients c) noexcept : degree_(basis.degree()) {
   double largest = 0;
   p_ = {};
-  for (std::size_t k = 0; k <= degree_; ++k) {
+  for (std::size_t k = 0; k < basis.count(); ++k) {
     const Vec3d v = to_double(c.vector(k));
     largest = std::max(largest, length_of(v));
-    for (std::size_t i = 0; i <= degree_; ++i) p_[i] = p_[i] + basis.of_node(k)[i] * v;
+    for (std::size_t i = 0; i <= degree_; ++i) p_[i] = p_[i] + basis.weight(k)[i] * v;
   }
-  radius_ = (rounding_of_sum(degree_ + 1) * basis.most_weight() + basis.conversion_error()) * largest;
+  radius_ = (rounding_of_sum(basis.count()) * basis.most_weight() + basis.conversion_error()) * largest;
 }
 
-CurvePiece LagrangeCurve::over(double a, double b) const noexcept {
-  std::array<Vec3d, LagrangeBasis::kMostDegree + 1> coefficients = p_;
+CurvePiece SumCurve::over(double a, double b) const noexcept {
+  std::array<Vec3d, WeightBasis::kMostDegree + 1> coefficients = p_;
   const std::span<Vec3d> p(coefficients.data(), degree_ + 1);
   restrict_in_place(p, a, b);
   // The cubic of the same ends and slopes at the ends; raised to the degree of p, it has a coefficient beside each of
@@ -179,7 +109,7 @@ CurvePiece LagrangeCurve::over(double a, double b) const noexcept {
     away = std::max(away, length_of(p[j] - raised));
   }
   CurvePiece piece = cubic_piece(cubic, radius_ + away * 1.0001, radius_);
-  std::array<Vec3d, LagrangeBasis::kMostDegree + 1> half = coefficients;
+  std::array<Vec3d, WeightBasis::kMostDegree + 1> half = coefficients;
   keep_before(std::span<Vec3d>(half.data(), degree_ + 1), 0.5);
   piece.middle = half[degree_];
   return piece;
@@ -224,11 +154,17 @@ CurvePiece ArcCurve::over(double a, double b) const noexcept {
 }
 
 SphericalCurve::SphericalCurve(std::size_t count, ElementCoefficients c) noexcept : count_(count) {
-  for (std::size_t k = 0; k < count; ++k) points_[k] = unit(to_double(c.vector(k)));
+  constexpr double kMostOff = 4 * kE;  // of the square of a unit vector in float32
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3d v = to_double(c.vector(k));
+    points_[k] = unit(v);
+    are_unit_ = are_unit_ && std::fabs(dot(v, v) - 1) <= kMostOff;
+  }
 }
 
 CurvePiece SphericalCurve::over(double a, double b) const noexcept {
   constexpr double kMostTurn = std::numbers::pi - 1e-3;  // beyond, a slerp is not known in float32
+  if (!are_unit_) return {{}, kInfinity, {}, kInfinity, 0};
   const double t = a + (b - a) / 2, half = (b - a) / 2;
   // A point in the middle of the piece, how fast it may move anywhere on it, and its rounding across and along itself.
   struct Moving {

@@ -21,37 +21,15 @@
 #include "chronormal/core/polynomial.h"
 #include "chronormal/core/vec3.h"
 #include "schemes/fitted_curves.h"
+#include "schemes/weight_basis.h"
 
 namespace chronormal::inline internal {
 
-/// Lagrange polynomials at equidistant nodes, as what the whole block has in common. Beyond degree 27 the weights are
-/// so large that float32 shows nothing but rounding.
-class LagrangeBasis {
- public:
-  static constexpr std::size_t kMostDegree = 27;
-  using Coefficients = std::array<double, kMostDegree + 1>;
-
-  /// Allocates. degree must be in [1, kMostDegree]
-  explicit LagrangeBasis(std::size_t degree);
-
-  [[nodiscard]] std::size_t degree() const noexcept { return degree_; }
-  /// The Bernstein coefficients of the polynomial that is 1 at node k.
-  [[nodiscard]] const Coefficients& of_node(std::size_t k) const noexcept { return of_nodes_[k]; }
-  /// At least the sum of the |weights| at any t.
-  [[nodiscard]] double most_weight() const noexcept { return most_weight_; }
-  /// How far a curve through unit vectors is off where its Bernstein coefficients are made and cut in double.
-  [[nodiscard]] double conversion_error() const noexcept { return conversion_error_; }
-
- private:
-  std::size_t degree_;
-  std::vector<Coefficients> of_nodes_;
-  double most_weight_ = 1, conversion_error_ = 0;
-};
-
-/// Weighted sums of up to four vectors, and quadratics: cubics as they stand.
+/// Weighted sums whose weights are cubics at most, and quadratics: cubics as they stand.
 class CubicCurve {
  public:
-  CubicCurve(const LagrangeBasis& basis, ElementCoefficients c) noexcept;
+  /// basis.degree() must be 3 at most
+  CubicCurve(const WeightBasis& basis, ElementCoefficients c) noexcept;
   /// The quadratic of `rational`, whose weights are those of Bernstein.
   explicit CubicCurve(ElementCoefficients c) noexcept;
   /// A line between two vectors, in balls of these radii around its ends.
@@ -67,16 +45,17 @@ class CubicCurve {
   double angle_;
 };
 
-/// Weighted sums of more vectors.
-class LagrangeCurve {
+/// Weighted sums of a higher degree.
+class SumCurve {
  public:
-  LagrangeCurve(const LagrangeBasis& basis, ElementCoefficients c) noexcept;
+  /// basis.degree() must be 3 at least
+  SumCurve(const WeightBasis& basis, ElementCoefficients c) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
 
  private:
   std::size_t degree_;
-  std::array<Vec3d, LagrangeBasis::kMostDegree + 1> p_;
+  std::array<Vec3d, WeightBasis::kMostDegree + 1> p_;
   double radius_ = 0;
 };
 
@@ -104,6 +83,7 @@ class SphericalCurve {
  private:
   std::size_t count_;
   std::array<Vec3d, kMaxDeCasteljauNormals> points_;
+  bool are_unit_ = true;  // else nothing is known
 };
 
 }  // namespace chronormal::inline internal

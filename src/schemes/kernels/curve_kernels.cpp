@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -182,6 +183,20 @@ std::vector<Counting> counting(std::span<const float> values) {
 }
 
 }  // namespace
+
+SharedValues shared_values(Formula formula, double t) noexcept {
+  assert(!is_sum(formula));
+  SharedValues values{};
+  if (formula != Formula::kRational) {
+    values[0] = static_cast<float>(t);
+    return values;
+  }
+  const double s = 1 - t;
+  const double weights[] = {
+      s * s, 2 * t * s, t * t, s * s * s * s, 4 * s * s * s * t, 6 * s * s * t * t, 4 * s * t * t * t, t * t * t * t};
+  for (std::size_t k = 0; k < std::size(weights); ++k) values[k] = static_cast<float>(weights[k]);
+  return values;
+}
 
 void evaluate_curves(Formula formula, const CoefficientBlocks& curves, const SharedValues& shared,
                      VectorView<float> result, std::size_t stream_from) noexcept {

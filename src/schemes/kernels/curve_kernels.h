@@ -40,6 +40,14 @@ enum class Formula {
   kDeCasteljau,
 };
 
+/// Whether it adds up vectors by weights that all elements share.
+[[nodiscard]] constexpr bool is_sum(Formula f) noexcept {
+  return f == Formula::kSum || f == Formula::kSumOf2 || f == Formula::kSumOf3 || f == Formula::kSumOf4;
+}
+
+/// What a formula that is no sum asks for at one t: t itself, or the weights of Bernstein of a quadratic and its square.
+[[nodiscard]] SharedValues shared_values(Formula formula, double t) noexcept;
+
 /// Coefficients in blocks, aligned to 64 bytes. The memory is the caller's.
 struct CoefficientBlocks {
   const float* values = nullptr;

@@ -20,6 +20,7 @@
 #include "tests/support/curved_motion.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/integer_normal.h"
+#include "tests/support/scheme_names.h"
 
 namespace chronormal::certify_path_test {
 namespace {
@@ -32,12 +33,11 @@ constexpr double kOracle = 1e-12;  // radians
 const std::string kPathCurves = "PathCurves";
 
 const std::vector<std::string>& all_schemes() {
-  static const std::vector<std::string> names = {"recompute",        "polynomial",          "rational",
-                                                 "linear",           "quadratic",           "cubic",
-                                                 "lagrange:5",       "linear:scaled",       "slerp",
-                                                 "decasteljau:4",    "quaternion:matrix",   "quaternion:edge",
-                                                 "quaternion:polar", "quaternion:random:3", "quaternion:optimal",
-                                                 "circle",           "circle:timed",        kPathCurves};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = test::scheme_names();
+    all.push_back(kPathCurves);
+    return all;
+  }();
   return names;
 }
 

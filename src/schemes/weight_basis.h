@@ -1,0 +1,65 @@
+/// The weights of a sum of vectors as polynomials in t: what a certificate must know of a scheme beside its coefficients.
+#ifndef CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
+#define CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace chronormal::inline internal {
+
+/// Keeps the part of a polynomial after t, or the one before it, in place: the halves of de Casteljau's triangle over as
+/// many Bernstein coefficients as there are.
+template <class T>
+void keep_after(std::span<T> p, double t) {
+  for (std::size_t level = 1; level < p.size(); ++level) {
+    for (std::size_t k = 0; k + level < p.size(); ++k) p[k] = (1 - t) * p[k] + t * p[k + 1];
+  }
+}
+template <class T>
+void keep_before(std::span<T> p, double t) {
+  for (std::size_t level = 1; level < p.size(); ++level) {
+    for (std::size_t k = p.size() - 1; k >= level; --k) p[k] = (1 - t) * p[k - 1] + t * p[k];
+  }
+}
+template <class T>
+void restrict_in_place(std::span<T> p, double a, double b) {
+  keep_before(p, b);
+  if (a > 0) keep_after(p, a / b);
+}
+
+class WeightBasis {
+ public:
+  /// Beyond this degree, Lagrange weights are so large that float32 shows nothing but rounding.
+  static constexpr std::size_t kMostDegree = 27;
+  using Coefficients = std::array<double, kMostDegree + 1>;
+
+  /// Takes the Bernstein coefficients of each weight. The weights 1 - t and t, and eased ones 1 - 3 t^2 + 2 t^3 and
+  /// 3 t^2 - 2 t^3:
+  ///     WeightBasis(1, {{1, 0}, {0, 1}})        WeightBasis(3, {{1, 1, 0, 0}, {0, 0, 1, 1}})
+  /// degree must be in [1, kMostDegree]
+  WeightBasis(std::size_t degree, std::vector<Coefficients> weights);
+  /// Makes the basis of Lagrange polynomials at equidistant nodes; weight k is 1 at node k.
+  [[nodiscard]] static WeightBasis lagrange(std::size_t degree);
+
+  [[nodiscard]] std::size_t degree() const noexcept { return degree_; }
+  [[nodiscard]] std::size_t count() const noexcept { return weights_.size(); }
+  [[nodiscard]] const Coefficients& weight(std::size_t k) const noexcept { return weights_[k]; }
+  /// At least the sum of the |weights| at any t.
+  [[nodiscard]] double most_weight() const noexcept { return most_weight_; }
+  /// How far a curve through unit vectors is off where its Bernstein coefficients are made and cut in double.
+  [[nodiscard]] double conversion_error() const noexcept { return conversion_error_; }
+
+ private:
+  // largest_sum: of the |coefficients| of all weights at one place, without any cancellation in them.
+  WeightBasis(std::size_t degree, std::vector<Coefficients> weights, double largest_sum);
+
+  std::size_t degree_;
+  std::vector<Coefficients> weights_;
+  double most_weight_ = 1, conversion_error_ = 0;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
