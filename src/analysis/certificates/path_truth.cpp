@@ -6,7 +6,9 @@
 // shares of M. So a triangle is within 20 u of that sum, and a fan of polygons adds 2 u for each corner;
 // polynomial_face_normals() takes a control normal for zero that is not above 32 u for each corner of it. The bound is
 // twice that.
+#include <algorithm>
 #include <cassert>
+#include <cstdint>
 
 #include "chronormal/analysis/certify.h"
 #include "core/rounding.h"
@@ -19,16 +21,24 @@ PathTruth path_truth(const PolynomialSegment<3>& path, IndexRange faces) {
   polynomial_face_normals(path, faces, std::span(truth.normals));
   for (std::size_t i = 0; i < faces.count; ++i) {
     const auto face = path.topology->face(faces.first + i);
-    const auto sizes_to = [&](std::size_t c) {
+    const auto is_at = [&path](std::uint32_t a, std::uint32_t b) {
+      return std::all_of(path.control.begin(), path.control.end(), [=](const auto& p) { return p[a] == p[b]; });
+    };
+    struct Edge {
+      std::uint32_t to;
       Bernstein<double, 3> sizes;
-      for (std::size_t k = 0; k < sizes.size(); ++k)
-        sizes[k] = max_abs(path.control[k][face[c]] - path.control[k][face[0]]);
-      return sizes;
+    };
+    const auto edge_to = [&](std::size_t c) {
+      Edge edge{face[c], {}};
+      for (std::size_t k = 0; k < edge.sizes.size(); ++k)
+        edge.sizes[k] = max_abs(path.control[k][face[c]] - path.control[k][face[0]]);
+      return edge;
     };
     PathErrors& error = truth.errors[i];
     error = {};
-    for_fan(face.size(), sizes_to, [&](const Bernstein<double, 3>& e, const Bernstein<double, 3>& f) {
-      const auto products = multiply(e, f);
+    for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& f) {
+      if (is_at(e.to, f.to)) return;  // there is no area, and nothing is rounded
+      const auto products = multiply(e.sizes, f.sizes);
       for (std::size_t k = 0; k < error.size(); ++k) error[k] += products[k];
     });
     for (double& e : error) e *= 2 * 32 * kUnitRoundoff * static_cast<double>(face.size()) * (1 + 0x1p-40);

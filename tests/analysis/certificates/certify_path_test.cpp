@@ -286,6 +286,26 @@ TEST(PathCertificates, are_close_on_an_ordinary_mesh) {
   for (const ErrorBounds& each : bounds) ASSERT_LE(each.upper, 1.01 * kPathAngle);
 }
 
+// Two corners at one point make no area, for certain; of three on a line, rounding is all that is known.
+TEST(PathCertificates, know_a_face_that_never_has_an_area_from_rounding) {
+  Motion motion;
+  motion.topology = Topology::triangles(5, {0, 1, 1, 0, 1, 2, 0, 1, 3, 0, 3, 4}).value();
+  for (int k = 0; k < 4; ++k) {
+    const float x = 0.125f * static_cast<float>(k), y = x * x + 0.3f;
+    motion.keyframes.push_back(
+        {{x, y, 0, 1 + x, y, x, 1 + x, y, x, 2 + x, y, x + x, 0, 1, 2}, static_cast<double>(k), ""});
+  }
+  motion.connect_as_sequence();
+  const PolynomialSegment<3> path = path_segment(motion, 1, PathKind::kCatmullRom);
+  const PathTruth truth = path_truth(path, {0, 4});
+  std::vector<ErrorBounds> bounds(4);
+  certify_path_curves(truth, bounds);
+  EXPECT_EQ(bounds[0].upper, 0);
+  EXPECT_EQ(bounds[1].upper, 0);
+  EXPECT_EQ(bounds[2].upper, std::numbers::pi);
+  EXPECT_LT(bounds[3].upper, 1e-5);
+}
+
 TEST(PathCertificates, of_a_comparison_hold_every_sample_of_faces_and_vertices) {
   const Motion motion = test::curved_motion({0, 0.3, 0.7, 1}, 1.2, 16, 8);
   for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
