@@ -358,7 +358,7 @@ TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
       }
     }
     const IntegerNormals oracle(segment);
-    for (const std::string& name : {"polynomial", "linear", "cubic", "slerp"}) {
+    for (const char* const name : {"polynomial", "linear", "cubic", "slerp"}) {
       for (const bool is_settled : {true, false}) {
         const std::vector<ControlNormals> normals = is_settled ? all_group_control_normals(segment, groups) : plain;
         const ElementBlock block{&segment, {0, count}, normals, false};
