@@ -58,54 +58,80 @@ AreaAtTime vector_area_at(const Segment& segment, std::span<const std::uint32_t>
 constexpr std::size_t kPointDigits = 24, kAreaDigits = 50;
 using Point = std::array<WideInteger<kPointDigits>, 3>;
 
-// A vertex at t, in units of 2^-(149 + t.scale): from 2^t.scale + (to - from) t 2^t.scale.
-Point point_at(const Segment& segment, std::uint32_t vertex, const UnitFraction& t) {
-  const Vec3f from = segment.from[vertex], to = segment.to[vertex];
-  const std::array<float, 3> a{from.x, from.y, from.z}, b{to.x, to.y, to.z};
-  const FloatParts one{1, 0}, minus_one{-1, 0};
-  Point point;
-  for (std::size_t k = 0; k < 3; ++k) {
-    WideInteger<14> start, step;
-    start.add_product(FloatParts::of(a[k]), one);
-    start.settle();
-    step.add_product(FloatParts::of(b[k]), one);
-    step.add_product(FloatParts::of(a[k]), minus_one);
-    step.settle();
-    point[k].add_shifted(start, t.scale);
-    point[k].add_product(step, t);
-    point[k].settle();
-  }
-  return point;
-}
-
-// The sum of n(t) of some faces without any rounding but that of the result: the products of neighbouring corners add
-// up to the area, wherever the origin is.
-Vec3d exact_area_at(const Segment& segment, std::span<const std::uint32_t> faces, double t) {
-  const UnitFraction fraction = UnitFraction::of(t < 0x1p-200 ? 0 : t);
-  std::array<WideInteger<kAreaDigits>, 3> sum;
-  for (const std::uint32_t f : faces) {
-    const auto face = segment.topology->face(f);
-    Point before = point_at(segment, face.back(), fraction);
-    for (const std::uint32_t vertex : face) {
-      const Point here = point_at(segment, vertex, fraction);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-        sum[k].add_product(before[i], here[j]);
-        sum[k].add_product(before[j], here[i], -1);
-        sum[k].settle();
+// The sum of n(t) of some faces without any rounding but that of the result. All coordinates are integers in units of
+// 2^(base - 149), and those at t in units 2^-t.scale as large.
+class ExactArea {
+ public:
+  ExactArea(const Segment& segment, std::span<const std::uint32_t> faces) : segment_(segment), faces_(faces) {
+    for (const std::uint32_t f : faces) {
+      for (const std::uint32_t vertex : segment.topology->face(f)) {
+        for (const Vec3f& p : {segment.from[vertex], segment.to[vertex]}) {
+          for (const float x : {p.x, p.y, p.z}) {
+            const FloatParts parts = FloatParts::of(x);
+            if (parts.mantissa != 0) base_ = std::min(base_, parts.shift);
+          }
+        }
       }
-      before = here;
     }
   }
-  const int unit = -298 - 2 * static_cast<int>(fraction.scale);
-  return {sum[0].to_double(unit), sum[1].to_double(unit), sum[2].to_double(unit)};
-}
+
+  // The products of neighbouring corners add up to the area, wherever the origin is.
+  [[nodiscard]] Vec3d at(double time) const {
+    const UnitFraction t = UnitFraction::of(time < 0x1p-200 ? 0 : time);
+    std::array<WideInteger<kAreaDigits>, 3> sum;
+    for (const std::uint32_t f : faces_) {
+      const auto face = segment_.topology->face(f);
+      Point before = point(face.back(), t);
+      for (const std::uint32_t vertex : face) {
+        const Point here = point(vertex, t);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+          sum[k].add_product(before[i], here[j]);
+          sum[k].add_product(before[j], here[i], -1);
+          sum[k].settle();
+        }
+        before = here;
+      }
+    }
+    const int unit = 2 * static_cast<int>(base_) - 298 - 2 * static_cast<int>(t.scale);
+    return {sum[0].to_double(unit), sum[1].to_double(unit), sum[2].to_double(unit)};
+  }
+
+ private:
+  // from 2^t.scale + (to - from) t 2^t.scale
+  [[nodiscard]] Point point(std::uint32_t vertex, const UnitFraction& t) const {
+    const Vec3f from = segment_.from[vertex], to = segment_.to[vertex];
+    const std::array<float, 3> a{from.x, from.y, from.z}, b{to.x, to.y, to.z};
+    Point result;
+    for (std::size_t k = 0; k < 3; ++k) {
+      WideInteger<14> start, step;
+      start.add_product(parts(a[k]), {1, 0});
+      start.settle();
+      step.add_product(parts(b[k]), {1, 0});
+      step.add_product(parts(a[k]), {1, 0}, -1);
+      step.settle();
+      result[k].add_shifted(start, t.scale);
+      result[k].add_product(step, t);
+      result[k].settle();
+    }
+    return result;
+  }
+  [[nodiscard]] FloatParts parts(float x) const {
+    const FloatParts parts = FloatParts::of(x);
+    return {parts.mantissa, parts.mantissa == 0 ? 0 : parts.shift - base_};
+  }
+
+  const Segment& segment_;
+  std::span<const std::uint32_t> faces_;
+  unsigned base_ = 253;  // the highest shift of a float
+};
 
 Vec3d exact_normal_at(const Segment& segment, std::span<const std::uint32_t> faces, double t) {
-  const Vec3d n = exact_area_at(segment, faces, t);
+  const ExactArea area(segment, faces);
+  const Vec3d n = area.at(t);
   if (n == Vec3d{} || t <= 0 || t >= 1) return n;
   for (const double end : {0.0, 1.0}) {
-    const Vec3d beside = exact_area_at(segment, faces, std::nextafter(t, end));
+    const Vec3d beside = area.at(std::nextafter(t, end));
     if (max_abs(beside - n) > kMostTurned * max_abs(n)) return {};
   }
   return n;

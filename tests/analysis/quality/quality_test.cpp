@@ -9,6 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "chronormal/normals/normal_groups.h"
+#include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
+#include "tests/support/integer_normal.h"
+
 namespace chronormal::quality_test {
 namespace {
 
@@ -138,6 +143,45 @@ TEST(ReferenceNormals, far_from_the_origin_they_lose_nothing) {
     for (float& value : *points) value += 4096;
   const Vec3d far = reference(from, to, 0.3);
   EXPECT_LT(length(near - far), 1e-12);
+}
+
+// Of faces and of sums of them, against whole numbers of any size.
+TEST(ReferenceNormals, of_hard_motions_point_where_whole_numbers_say) {
+  constexpr std::uint64_t kSeed = 4950;
+  fixtures::Random random(kSeed);
+  std::size_t judged = 0, doubtful = 0;
+  for (const test::HardMotions& family : test::hard_motions()) {
+    for (int i = 0; i < 12; ++i) {
+      const Motion motion = family.make(random);
+      const Segment segment = motion.segment(0);
+      const std::size_t faces = motion.topology.face_count();
+      const NormalGroups vertices =
+          NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+      const test::IntegerNormals oracle(segment);
+      std::vector<Vec3d> found(faces);
+      for (const double t : {0.0, 1.0, 0.5, random.uniform(0, 1)}) {
+        const auto exact = oracle.at(test::IntegerTime::of(t));
+        const auto judge = [&](const Vec3d& n, const test::IntegerVector& truth) {
+          ++judged;
+          if (n == Vec3d{}) {
+            // Inside, a rounding of t may be what decides.
+            doubtful += test::is_zero(truth) ? 0U : 1U;
+            EXPECT_TRUE(test::is_zero(truth) || (0 < t && t < 1)) << family.name << " from seed " << kSeed;
+          } else {
+            const Vec3d u = unit(n);
+            EXPECT_FALSE(test::is_zero(truth)) << family.name << " from seed " << kSeed;
+            EXPECT_LE(test::angle_between(to_float(u), test::direction_of(truth)), 1e-5) << family.name << " at " << t;
+          }
+        };
+        reference_normals(segment, {0, faces}, t, found);
+        for (std::size_t f = 0; f < faces; ++f) judge(found[f], exact[f]);
+        for (std::size_t v = 0; v < vertices.size(); ++v)
+          judge(reference_normal(segment, vertices.faces(v), t), test::sum_of(exact, vertices.faces(v)));
+      }
+    }
+  }
+  EXPECT_GT(judged, 10000U);
+  EXPECT_LT(doubtful, judged / 20);
 }
 
 }  // namespace
