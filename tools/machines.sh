@@ -67,9 +67,9 @@ build_for_arm64() {
   ninja -C "$build"
 }
 
-# part_machines: installs, builds and runs.
 part_machines() {
-  install_packages run machines
   build_for_arm64
-  qemu-aarch64-static -L /usr/aarch64-linux-gnu build/arm64/tests --gtest_brief=1
+  rm -rf build/arm64/results
+  qemu-aarch64-static -L /usr/aarch64-linux-gnu build/arm64/tests --gtest_brief=1 --gtest_output=xml:build/arm64/results/tests.xml
+  report_results build/arm64/results
 }
