@@ -82,16 +82,6 @@ function(chronormal_compile_together target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
-# chronormal_compile_cheaply(TARGET LEVEL HEADERS...): parses HEADERS, which most files of the target include, once for all of
-# them, and in a release build of this project alone optimises the target at LEVEL. The loops that take time are in the
-# library `chronormal`, which has neither. A file must still include what it uses: ./test --full clang builds without.
-function(chronormal_compile_cheaply target level)
-  target_precompile_headers(${target} PRIVATE ${ARGN})
-  if(PROJECT_IS_TOP_LEVEL AND NOT EMSCRIPTEN)
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
-  endif()
-endfunction()
-
 # A shared object, such as an engine's plugin, can be linked from the static libraries, and exports nothing of them.
 set(linkable POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
 
@@ -125,8 +115,9 @@ function(chronormal_add_product suffix flags)
   add_library(chronormal_io${suffix} STATIC ${io_sources})
   set_target_properties(chronormal_io${suffix} PROPERTIES ${linkable})
   chronormal_compile_together(chronormal_io${suffix} ${io_sources})
-  chronormal_compile_cheaply(chronormal_io${suffix} -O2 <algorithm> <functional> <map> <memory> <optional> <string> <string_view>
-                             <vector> <nlohmann/json.hpp>)
+  # Most files include these, which are parsed once. A file must still include what it uses: ./test --full clang sees that.
+  target_precompile_headers(chronormal_io${suffix} PRIVATE <algorithm> <functional> <map> <memory> <optional> <string> <string_view>
+                                                           <vector> <nlohmann/json.hpp>)
   target_include_directories(chronormal_io${suffix} PRIVATE src)
   target_link_libraries(chronormal_io${suffix} PUBLIC chronormal${suffix}
                                                PRIVATE $<BUILD_INTERFACE:${flags}> ZLIB::ZLIB pugixml::pugixml
@@ -139,8 +130,11 @@ function(chronormal_add_product suffix flags)
   add_executable(chronormal_cli${suffix} ${cli_sources})
   set_target_properties(chronormal_cli${suffix} PROPERTIES OUTPUT_NAME chronormal${suffix})
   chronormal_compile_together(chronormal_cli${suffix} ${cli_sources})
-  chronormal_compile_cheaply(chronormal_cli${suffix} -O1 <algorithm> <functional> <map> <memory> <optional> <string> <string_view>
-                             <vector> <fmt/format.h> <nlohmann/json.hpp>)
+  target_precompile_headers(chronormal_cli${suffix} PRIVATE <algorithm> <functional> <map> <memory> <optional> <string> <string_view>
+                                                            <vector> <fmt/format.h> <nlohmann/json.hpp>)
+  if(PROJECT_IS_TOP_LEVEL AND NOT EMSCRIPTEN)  # no loop that takes time is in the program: these are in the libraries
+    target_compile_options(chronormal_cli${suffix} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   target_include_directories(chronormal_cli${suffix} PRIVATE . src)
   target_compile_definitions(chronormal_cli${suffix} PRIVATE CHRONORMAL_VERSION="${PROJECT_VERSION}")
   target_link_libraries(chronormal_cli${suffix} PRIVATE chronormal_io${suffix} ${flags} CLI11::CLI11 fmt::fmt
