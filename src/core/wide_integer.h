@@ -42,6 +42,19 @@ struct FloatParts {
   }
 };
 
+/// A finite double as mantissa * 2^(shift - 1074): a signed integer of 53 bits, and 0 <= shift <= 2045.
+struct DoubleParts {
+  std::int64_t mantissa = 0;
+  unsigned shift = 0;
+
+  [[nodiscard]] static DoubleParts of(double value) noexcept {
+    const auto bits = bit_cast<std::uint64_t>(value);
+    const std::uint64_t exponent = bits >> 52 & 0x7FF, fraction = bits & 0xFFFFFFFFFFFFF;
+    const auto size = static_cast<std::int64_t>(exponent == 0 ? fraction : fraction | 0x10000000000000);
+    return {(bits >> 63) != 0 ? -size : size, exponent == 0 ? 0 : static_cast<unsigned>(exponent - 1)};
+  }
+};
+
 /// A double t in [2^-200, 1], or 0, as an integer of 53 bits times 2^-scale; scale is as small as can be.
 struct UnitFraction {
   std::array<std::int64_t, 3> digits{};
@@ -77,6 +90,18 @@ class WideInteger {
     digits_[k] += low & kMask;
     digits_[k + 1] += (low >> kDigitBits) + (high & kMask);
     digits_[k + 2] += high >> kDigitBits;
+  }
+
+  /// Adds sign * a / 2^(shift - 1074); a must have no smaller shift unless it is 0. Up to 2^9 of them may be added before
+  /// settle().
+  void add(const DoubleParts& a, unsigned shift, std::int64_t sign = 1) noexcept {
+    if (a.mantissa == 0) return;
+    const std::int64_t mantissa = sign * a.mantissa;
+    const std::size_t k = (a.shift - shift) / kDigitBits;
+    const std::int64_t power = std::int64_t{1} << (a.shift - shift) % kDigitBits;
+    grow(k + 2);
+    digits_[k] += (mantissa & (kDigitBase - 1)) * power;
+    digits_[k + 1] += (mantissa >> kDigitBits) * power;
   }
 
   /// Adds factor * other. The digits of other must be settled, and |factor| at most 2^24.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,7 +15,24 @@ namespace {
 
 Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
 
-// The fewest digits that read back as the same number, so that it can be pasted.
+// A difference of two doubles as the sum of two: rounded, and what that lost (Knuth, The Art of Computer Programming,
+// volume 2, section 4.2.2).
+struct Difference {
+  double high, low;
+
+  [[nodiscard]] static Difference of(double a, double b) noexcept {
+    const double high = a - b, of_b = high - a;
+    return {high, (a - (high - of_b)) - (b + of_b)};
+  }
+};
+
+// a / b, rounded once; a <= b.
+double quotient(const Difference& a, const Difference& b) noexcept {
+  const double first = a.high / b.high;
+  if (a.low == 0 && b.low == 0) return first;
+  return first + ((std::fma(-first, b.high, a.high) + a.low) - first * b.low) / b.high;
+}
+
 }  // namespace
 
 std::string_view motion_kind_name(MotionKind kind) noexcept {
@@ -44,6 +62,27 @@ void Motion::connect(MotionKind as) {
   }
 }
 
+LocalTime LocalTime::between(double start, double time, double end) noexcept {
+  assert(start < end);
+  if (!(start < time)) return std::isnan(time) ? time : 0.0;
+  if (!(time < end)) return 1.0;
+  // Halves of numbers whose difference is beyond the range of double are exact where it matters.
+  const double scale = std::isfinite(end - start) ? 1 : 0.5;
+  const Difference done = Difference::of(scale * time, scale * start), left = Difference::of(scale * end, scale * time),
+                   whole = Difference::of(scale * end, scale * start);
+  LocalTime result(quotient(done, whole));
+  // Below this, the remainder of the division may be less than any double.
+  constexpr double kSmallest = 0x1p-900;
+  const bool is_exact =
+      done.low == 0 && whole.low == 0 && done.high >= kSmallest && std::fma(result.t, whole.high, -done.high) == 0;
+  if (is_exact) return result;
+  result.rest = quotient(left, whole);
+  result.start = start;
+  result.time = time;
+  result.end = end;
+  return result;
+}
+
 Result<Instant> find_instant(const Motion& motion, double time) {
   if (motion.segments.empty()) return misuse("the mesh stands still: it has no times");
   if (motion.kind == MotionKind::kTargets) return misuse("blend shapes have no times, but a weight for each target");
@@ -59,8 +98,7 @@ Result<Instant> find_instant(const Motion& motion, double time) {
   if (!found)
     return misuse("there is no motion at time " + shortest_text(time) + ": it goes from " + shortest_text(first) +
                   " to " + shortest_text(last));
-  const double t = (time - start_of(*found)) / (end_of(*found) - start_of(*found));
-  return Instant{*found, std::clamp(t, 0.0, 1.0)};
+  return Instant{*found, LocalTime::between(start_of(*found), time, end_of(*found))};
 }
 
 }  // namespace chronormal

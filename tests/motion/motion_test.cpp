@@ -134,7 +134,7 @@ TEST(FindInstant, keyframe_belongs_to_the_segment_that_begins_there) {
   const Motion motion = three_keyframes();
   const auto at = [&motion](double time) {
     const Instant instant = find_instant(motion, time).value();
-    return std::pair{instant.segment, instant.t};
+    return std::pair{instant.segment, instant.t.t};
   };
   EXPECT_EQ(at(2), (std::pair<std::size_t, double>{0, 0}));
   EXPECT_EQ(at(2.25), (std::pair<std::size_t, double>{0, 0.25}));

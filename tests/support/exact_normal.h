@@ -54,9 +54,8 @@ template <class S>
 
 [[nodiscard]] inline bool is_zero(const Vector& a) { return max_abs(a) == 0; }
 
-/// n(t) by eq. 1 on the corners at t.
-[[nodiscard]] inline Vector normal_at(const Triangle& triangle, double t) {
-  const Rational time(t);
+/// n(t) by eq. 1 on the corners at t, which may be any rational.
+[[nodiscard]] inline Vector normal_at(const Triangle& triangle, const Rational& time) {
   std::array<Vector, 3> corner;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -65,6 +64,8 @@ template <class S>
   }
   return cross(subtract(corner[1], corner[0]), subtract(corner[2], corner[0]));
 }
+
+[[nodiscard]] inline Vector normal_at(const Triangle& triangle, double t) { return normal_at(triangle, Rational(t)); }
 
 /// n(t) by eq. 5.
 [[nodiscard]] inline Vector normal_at(const ControlNormals& normals, double t) {

@@ -85,10 +85,29 @@ struct Motion {
 /// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);
 
+/// A local t in [0, 1], as exact as a time was: with keys at 0 and 3, time 1 is t = 1/3, which no double is. Where n(t)
+/// is so small that the rounding of t would turn it, integers take the quotient itself. A double is a LocalTime as it is.
+struct LocalTime {
+  double t = 0;     ///< rounded once
+  double rest = 1;  ///< 1 - t, rounded once as well: near t = 1 it has digits that t has not
+  /// t is (time - start) / (end - start) without any rounding.
+  double start = 0, time = 0, end = 1;
+
+  LocalTime() = default;
+  LocalTime(double local) noexcept : t(local), rest(1 - local), time(local) {}  // NOLINT(google-explicit-constructor)
+  operator double() const noexcept { return t; }                                // NOLINT(google-explicit-constructor)
+
+  /// Returns where a time lies between two others. Precondition: start < end, and both are finite. Outside, t is
+  /// that of the nearer end.
+  [[nodiscard]] static LocalTime between(double start, double time, double end) noexcept;
+
+  [[nodiscard]] bool is_double() const noexcept { return start == 0 && end == 1; }
+};
+
 /// Where a time lies in a motion.
 struct Instant {
   std::size_t segment = 0;
-  double t = 0;  ///< in [0, 1]
+  LocalTime t;
 };
 
 /// Finds the segment and the local t of a time in seconds. A keyframe between two segments is the beginning of the

@@ -89,10 +89,10 @@ class NormalCurves {
   /// where n is zero throughout. Returns the number of (0, 0, 0) written, usually 0. What other t than those in [0, 1]
   /// mean is said in control_normals.h.
   /// result must have size() elements
-  std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne) const;
+  std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne) const;
   /// The same in four bytes each; see normals/encodings.h for what becomes of (0, 0, 0).
-  std::size_t unit_normals(double t, std::span<Octahedral> result, Threads threads = Threads::kOne) const;
-  std::size_t unit_normals(double t, std::span<Rgb10A2> result, Threads threads = Threads::kOne) const;
+  std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result, Threads threads = Threads::kOne) const;
+  std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result, Threads threads = Threads::kOne) const;
 
   /// Writes the unit normals at many t, reading the curves from memory once: motion blur, or playing a block of frames.
   /// (Once for each t where results are neither all packed nor all planes.) results[k] is for times[k], and there are
@@ -104,7 +104,7 @@ class NormalCurves {
 
   /// Writes n(t) itself: length = 2 x area. A component beyond the range of float becomes the largest float.
   /// keeps_lengths() must hold; result must have size() elements
-  void normals(double t, VectorView<float> result) const noexcept;
+  void normals(const LocalTime& t, VectorView<float> result) const noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] bool keeps_lengths() const noexcept;

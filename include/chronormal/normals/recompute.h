@@ -35,7 +35,8 @@ namespace chronormal {
 /// Writes the unit normals at t of a range of faces; see NormalRecompute, whose bits they have. Pure: no allocation, no
 /// throw, and no scratch, so that meshes in no order and positions that are not packed are slower.
 /// result must have faces.count elements; faces must lie inside the topology
-std::size_t unit_normals_at(const Segment& segment, IndexRange faces, double t, VectorView<float> result) noexcept;
+std::size_t unit_normals_at(const Segment& segment, IndexRange faces, const LocalTime& t,
+                            VectorView<float> result) noexcept;
 
 /// The easy way from a motion and a time in seconds to normals: finds the segment of the time, and returns the unit
 /// normals of all faces, (F, 3), or those of all outputs of groups, (V, 3) or (corners, 3). On all cores. Everything is
@@ -60,7 +61,7 @@ class NormalRecompute {
   /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 that is the limit direction (see Direction), or (0, 0, 0)
   /// where n is zero throughout. Returns the number of (0, 0, 0) written.
   /// result must have size() elements
-  std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne);
+  std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne);
 
   /// How many elements there are.
   [[nodiscard]] std::size_t size() const noexcept;

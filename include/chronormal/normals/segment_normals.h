@@ -130,7 +130,7 @@ class SegmentNormals {
   /// Writes n(t) / |n(t)| of every element, and the limit or (0, 0, 0) where there is none; returns the number of
   /// (0, 0, 0) written.
   /// result must have size() elements
-  std::size_t unit_normals(double t, VectorView<float> result, Threads threads = Threads::kOne);
+  std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne);
 
   [[nodiscard]] std::size_t size() const noexcept;
   /// What was chosen, and why.
@@ -144,7 +144,7 @@ class SegmentNormals {
     FloatRecompute* recompute;
     Segment segment;
 
-    std::size_t unit_normals(double t, VectorView<float> result, Threads threads) {
+    std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) {
       return recompute->unit_normals(segment, t, result, threads);
     }
     [[nodiscard]] std::size_t size() const noexcept { return recompute->size(); }

@@ -76,17 +76,17 @@ inline constexpr std::array<WeightingInfo, 5> kWeightings = {{
 /// Writes n of a range of faces at t: twice the vector area, within 2^-30 of its length, and zero where it is exactly
 /// zero. (What other t than those in [0, 1] mean is said in control_normals.h.)
 /// result must have as many elements as the range
-void face_normals_at(const Segment& segment, double t, IndexRange faces, std::span<Vec3d> result) noexcept;
+void face_normals_at(const Segment& segment, const LocalTime& t, IndexRange faces, std::span<Vec3d> result) noexcept;
 
 /// Writes the weighted normals of a range of elements at t, of any length. Pure: no allocation, no throw. The terms are
 /// added in the order of NormalGroups: shuffling the faces of the mesh gives the same bits.
 /// of_faces must have the result of face_normals_at() for all faces at this t, result as many elements as the range
-void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, double t,
+void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 
 /// Returns those of all elements. Runs on all cores.
 [[nodiscard]] std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups,
-                                                         Weighting weighting, double t);
+                                                         Weighting weighting, const LocalTime& t);
 
 struct WeightingFit {
   std::vector<ControlNormals> normals;  ///< of each element

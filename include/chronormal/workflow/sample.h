@@ -113,11 +113,11 @@ class NormalSampler {
   [[nodiscard]] bool are_faces() const noexcept { return options_.elements.kind == ElementKind::kFaces; }
   [[nodiscard]] std::size_t element_count() const noexcept;
   // By area, and prepared for the next moment of the segment.
-  [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, double t, double evaluations);
+  [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, const LocalTime& t, double evaluations);
   // On a curved path, whose keyframes are held. Refuses positions beyond float32.
   [[nodiscard]] Result<Pose> pose_on_curve(std::size_t segment, double t);
   // Anew, and for this moment only.
-  [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, double t) const;
+  [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, const LocalTime& t) const;
   // Makes them units, where the options ask for that.
   [[nodiscard]] std::vector<float> as_asked(std::span<const Vec3d> exact) const;
   [[nodiscard]] bool are_exact_units() const noexcept {

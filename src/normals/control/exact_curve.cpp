@@ -1,6 +1,8 @@
 #include "normals/control/exact_curve.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace chronormal::inline internal {
@@ -41,6 +43,79 @@ using ValueVector = std::array<WideInteger<kValueDigits>, 3>;
 template <std::size_t kDigits>
 Vec3d to_doubles(const std::array<WideInteger<kDigits>, 3>& v, int exponent) noexcept {
   return {v[0].to_double(exponent), v[1].to_double(exponent), v[2].to_double(exponent)};
+}
+
+// t = part / whole, of integers. Doubles and their differences are integers times 2^-1074, of 2099 bits.
+constexpr std::size_t kTimeDigits = 89;
+struct TimeFraction {
+  WideInteger<kTimeDigits> part, whole;
+
+  [[nodiscard]] static TimeFraction of(const LocalTime& t) noexcept {
+    const DoubleParts start = DoubleParts::of(t.start), time = DoubleParts::of(t.time), end = DoubleParts::of(t.end);
+    unsigned shift = std::numeric_limits<unsigned>::max();
+    for (const DoubleParts& parts : {start, time, end})
+      if (parts.mantissa != 0) shift = std::min(shift, parts.shift);
+    TimeFraction result;
+    result.part.add(time, shift);
+    result.part.add(start, shift, -1);
+    result.whole.add(end, shift);
+    result.whole.add(start, shift, -1);
+    result.part.settle();
+    result.whole.settle();
+    return result;
+  }
+};
+
+template <std::size_t kMost, std::size_t kA, std::size_t kB>
+WideInteger<kMost> product(const WideInteger<kA>& a, const WideInteger<kB>& b) noexcept {
+  WideInteger<kMost> result;
+  result.add_product(a, b);
+  result.settle();
+  return result;
+}
+
+// Integers of one unit as doubles of one unit, which is chosen so that the largest is neither infinite nor subnormal.
+struct ScaledVector {
+  Vec3d vector;
+  int exponent = 0;
+
+  template <std::size_t kDigits>
+  [[nodiscard]] static ScaledVector of(std::array<WideInteger<kDigits>, 3>& v) noexcept {
+    std::size_t size = 0;
+    for (auto& component : v) {
+      component.settle();
+      size = std::max(size, component.size());
+    }
+    const int exponent = kDigitBits * static_cast<int>(size);
+    return {to_doubles(v, -exponent), exponent};
+  }
+};
+
+// n(t) times the square of the whole.
+ScaledVector value_at(const std::array<ExactCurve::CoefficientVector, 3>& c, const TimeFraction& t) noexcept {
+  constexpr std::size_t kInner = ExactCurve::kDigits + kTimeDigits + 1, kOuter = kInner + kTimeDigits + 1;
+  const auto square = product<2 * kTimeDigits>(t.whole, t.whole);
+  std::array<WideInteger<kOuter>, 3> value;
+  for (std::size_t k = 0; k < 3; ++k) {
+    WideInteger<kInner> inner;
+    inner.add_product(c[2][k], t.part);
+    inner.add_product(c[1][k], t.whole);
+    inner.settle();
+    value[k].add_product(inner, t.part);
+    value[k].add_product(c[0][k], square);
+  }
+  return ScaledVector::of(value);
+}
+
+// n'(t) times the whole.
+ScaledVector slope_at(const std::array<ExactCurve::CoefficientVector, 3>& c, const TimeFraction& t) noexcept {
+  std::array<WideInteger<ExactCurve::kDigits + kTimeDigits + 1>, 3> slope;
+  for (std::size_t k = 0; k < 3; ++k) {
+    slope[k].add_product(c[2][k], t.part);
+    slope[k].add_product(c[2][k], t.part);
+    slope[k].add_product(c[1][k], t.whole);
+  }
+  return ScaledVector::of(slope);
 }
 
 }  // namespace
@@ -148,7 +223,31 @@ std::array<ExactCurve::CoefficientVector, 3> ExactCurve::in_powers() const noexc
   return result;
 }
 
-Vec3d ExactCurve::normal_at(double t) const noexcept {
+Vec3d ExactCurve::normal_at(const LocalTime& t) const noexcept {
+  if (t.is_double()) return normal_at_double(t.t);
+  const TimeFraction fraction = TimeFraction::of(t);
+  const ScaledVector value = value_at(in_powers(), fraction);
+  const int exponent = kDigitBits * static_cast<int>(fraction.whole.size());
+  const double whole = fraction.whole.to_double(-exponent);
+  const auto scaled = [&](double component) {
+    return std::ldexp(component / (whole * whole), value.exponent - 2 * exponent + unit());
+  };
+  return {scaled(value.vector.x), scaled(value.vector.y), scaled(value.vector.z)};
+}
+
+UnitNormal ExactCurve::unit_normal_at(const LocalTime& t) const noexcept {
+  if (t.is_double()) return unit_normal_at_double(t.t);
+  // Inside the segment, as below.
+  const TimeFraction fraction = TimeFraction::of(t);
+  auto c = in_powers();
+  if (const Vec3d n = value_at(c, fraction).vector; n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
+  if (const Vec3d slope = slope_at(c, fraction).vector; slope != Vec3d{})
+    return {chronormal::unit(-slope), Direction::kDiscontinuous};
+  const Vec3d curvature = ScaledVector::of(c[2]).vector;
+  return {chronormal::unit(curvature), curvature != Vec3d{} ? Direction::kLimit : Direction::kNone};
+}
+
+Vec3d ExactCurve::normal_at_double(double t) const noexcept {
   const UnitFraction fraction = UnitFraction::of(t);
   const CoefficientVector c1 = linear(), c2 = bend();
   ValueVector value;
@@ -183,8 +282,8 @@ Vec3d ExactCurve::blossom_at(double s, double t) const noexcept {
   return to_doubles(value, unit() - 1 - static_cast<int>(a.scale + b.scale));
 }
 
-UnitNormal ExactCurve::unit_normal_at(double t) const noexcept {
-  const Vec3d n = normal_at(t);
+UnitNormal ExactCurve::unit_normal_at_double(double t) const noexcept {
+  const Vec3d n = normal_at_double(t);
   if (n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
 
   // n(t) = 0: near t the curve is (x - t) n'(t) + (x - t)^2 bend.

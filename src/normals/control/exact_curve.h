@@ -6,7 +6,8 @@
 ///
 ///     n(t) = n0 + t (2m - 2 n0 + t (n0 - 2m + n1))                             (eq. 5 in powers of t)
 ///
-/// is one more such integer. Whether it is zero, and which way it points, is therefore known and not estimated. This
+/// is one more such integer; where t is a quotient of differences of doubles (LocalTime), it is one over the square of
+/// the divisor. Whether it is zero, and which way it points, is therefore known and not estimated. This
 /// takes about a microsecond for each t, hundreds of times as long as in double, so it stands behind a filter: where a
 /// bound on the rounding error is small against |n(t)|, double has decided already.
 ///
@@ -46,13 +47,13 @@ class ExactCurve {
 
   /// The control normals, each component rounded once or twice.
   [[nodiscard]] ControlNormals rounded() const noexcept;
-  /// n(t), each component rounded once or twice. t is a local_time()
-  [[nodiscard]] Vec3d normal_at(double t) const noexcept;
+  /// n(t), each component rounded a few times. t is a local_time()
+  [[nodiscard]] Vec3d normal_at(const LocalTime& t) const noexcept;
   /// The middle control normal of the part [s, t] of the curve, rounded in the same way: the blossom of n at (s, t), of
-  /// which n(t) is the case s = t. s and t are local_time()s
+  /// which n(t) is the case s = t. Both are doubles, and are local_time()s
   [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
   /// n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
-  [[nodiscard]] UnitNormal unit_normal_at(double t) const noexcept;
+  [[nodiscard]] UnitNormal unit_normal_at(const LocalTime& t) const noexcept;
   /// The coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, settled: integers of one unit, a power of two.
   [[nodiscard]] std::array<CoefficientVector, 3> in_powers() const noexcept;
 
@@ -66,6 +67,9 @@ class ExactCurve {
   void for_components(const Body& body);
   template <class Body>
   void for_components(const Body& body) const;
+
+  [[nodiscard]] Vec3d normal_at_double(double t) const noexcept;
+  [[nodiscard]] UnitNormal unit_normal_at_double(double t) const noexcept;
 
   [[nodiscard]] int unit() const noexcept { return 2 * static_cast<int>(base_) - 298; }
 

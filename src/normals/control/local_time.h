@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "chronormal/motion/motion.h"
+
 namespace chronormal::inline internal {
 
 /// Below this t counts as 0. So t^2 times the smallest product of two floats is far above the smallest double.
@@ -13,6 +15,14 @@ inline constexpr double kSmallestTime = 0x1p-200;
 [[nodiscard]] inline double local_time(double t) noexcept {
   if (std::isnan(t)) return t;
   return t < kSmallestTime ? 0 : t > 1 ? 1 : t;
+}
+
+/// The same of a time that no double may be: what is closer than that to either end is at it.
+[[nodiscard]] inline LocalTime local_time(const LocalTime& time) noexcept {
+  if (time.is_double()) return local_time(time.t);
+  if (time.t < kSmallestTime) return 0.0;
+  if (time.rest < kSmallestTime) return 1.0;
+  return time;
 }
 
 }  // namespace chronormal::inline internal

@@ -65,7 +65,7 @@ struct CurveData {
 
 /// Writes the unit normals of the flagged elements at t, and returns how many have no direction.
 /// result must have as many elements as the curves
-std::size_t write_flagged(const CurveData& curves, double t, VectorView<float> result) noexcept;
+std::size_t write_flagged(const CurveData& curves, const LocalTime& t, VectorView<float> result) noexcept;
 
 }  // namespace chronormal::inline internal
 

@@ -66,7 +66,8 @@ std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t first,
 // Calls write(element, xyz, count) for neighbouring flagged elements of a range, with what double makes of them at t, and
 // then settle(index, element) for those that it cannot carry; `index` is that among the flagged.
 template <class Write, class Settle>
-void for_flagged(const CurveData& curves, IndexRange range, double t, const Write& write, const Settle& settle) {
+void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, const Write& write,
+                 const Settle& settle) {
   const auto index_of = [&flagged = curves.flagged.numbers](std::size_t element) {
     return static_cast<std::size_t>(std::lower_bound(flagged.begin(), flagged.end(), element) - flagged.begin());
   };
@@ -93,7 +94,8 @@ void for_flagged(const CurveData& curves, IndexRange range, double t, const Writ
 
 // Writes the flagged elements of a range. Returns how many have no direction.
 template <class Output>
-std::size_t write_flagged_range(const CurveData& curves, IndexRange range, double t, const Output& output) noexcept {
+std::size_t write_flagged_range(const CurveData& curves, IndexRange range, const LocalTime& t,
+                                const Output& output) noexcept {
   std::size_t without_direction = 0;
   for_flagged(
       curves, range, t,
@@ -117,7 +119,7 @@ std::size_t write_zeros(std::size_t size, const Output& output) {
 
 // One pass over the elements of a range, at one t. Returns how many have no direction.
 template <class Output>
-std::size_t evaluate_range(const CurveData& curves, IndexRange range, double t, const CurveWeights& weights,
+std::size_t evaluate_range(const CurveData& curves, IndexRange range, const LocalTime& t, const CurveWeights& weights,
                            const Output& output) noexcept {
   const std::size_t first_block = range.first / kTile;
   auto run = std::upper_bound(curves.runs.begin(), curves.runs.end(), first_block,
@@ -148,10 +150,10 @@ std::size_t over_pieces(std::size_t size, Threads threads, Body body) {
 }
 
 template <class Output>
-std::size_t evaluate_all(const CurveData& curves, double time, const Output& output, Threads threads) {
+std::size_t evaluate_all(const CurveData& curves, const LocalTime& time, const Output& output, Threads threads) {
   if (curves.size == 0) return 0;
   if (std::isnan(time)) return write_zeros(curves.size, output);
-  const double t = local_time(time);
+  const LocalTime t = local_time(time);
   const CurveWeights weights = CurveWeights::at(t, !curves.keeps_lengths);
   return over_pieces(curves.size, threads,
                      [&](IndexRange range) { return evaluate_range(curves, range, t, weights, output); });
@@ -191,7 +193,7 @@ std::size_t evaluate_many(const CurveData& curves, std::span<const double> times
 
 inline namespace internal {
 
-std::size_t write_flagged(const CurveData& curves, double t, VectorView<float> result) noexcept {
+std::size_t write_flagged(const CurveData& curves, const LocalTime& t, VectorView<float> result) noexcept {
   return write_flagged_range(curves, {0, curves.size}, local_time(t), PlanesOutput(result, MemoryAccess{}));
 }
 
@@ -230,21 +232,21 @@ CurveData* NormalCurves::data_of(NormalCurves* reuse) {
   return reuse->data_.get();
 }
 
-std::size_t NormalCurves::unit_normals(double t, VectorView<float> result, Threads threads) const {
+std::size_t NormalCurves::unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) const {
   const CurveData& curves = data();
   assert(result.count == curves.size);
   return with_output(result, access_of_pass(curves.blocks.size(), curves.size * 3 * sizeof(float)),
                      [&](const auto& output) { return evaluate_all(curves, t, output, threads); });
 }
 
-std::size_t NormalCurves::unit_normals(double t, std::span<Octahedral> result, Threads threads) const {
+std::size_t NormalCurves::unit_normals(const LocalTime& t, std::span<Octahedral> result, Threads threads) const {
   const CurveData& curves = data();
   assert(result.size() == curves.size);
   const MemoryAccess access = access_of_pass(curves.blocks.size(), curves.size * sizeof(Octahedral));
   return evaluate_all(curves, t, OctahedralOutput(result, access), threads);
 }
 
-std::size_t NormalCurves::unit_normals(double t, std::span<Rgb10A2> result, Threads threads) const {
+std::size_t NormalCurves::unit_normals(const LocalTime& t, std::span<Rgb10A2> result, Threads threads) const {
   const CurveData& curves = data();
   assert(result.size() == curves.size);
   const MemoryAccess access = access_of_pass(curves.blocks.size(), curves.size * sizeof(Rgb10A2));
@@ -299,14 +301,14 @@ std::size_t NormalCurves::uncertain_count(double time) const noexcept {
   return count;
 }
 
-void NormalCurves::normals(double time, VectorView<float> result) const noexcept {
+void NormalCurves::normals(const LocalTime& time, VectorView<float> result) const noexcept {
   const CurveData& curves = data();
   assert(result.count == curves.size && curves.keeps_lengths);
   if (std::isnan(time)) {
     for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});
     return;
   }
-  const double t = local_time(time);
+  const LocalTime t = local_time(time);
   const CurveWeights weights = CurveWeights::at(t, !curves.keeps_lengths);
   for (const CurveData::Run& run : curves.runs) {
     if (run.kind == BlockKind::kNone) continue;

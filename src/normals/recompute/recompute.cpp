@@ -45,9 +45,9 @@ struct NormalAtTime {
 // Edges, and both products of each component after them, are within 10 u of the absolute products; and
 // each triangle of a fan adds a rounding. No test can tell 10 from 5: it bounds roundings that all go the same way, and
 // climbing from 60 triangles finds no error above 3.4 u of these products.
-NormalAtTime normal_at_time(const Segment& segment, std::size_t f, double t) {
+NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTime& time) {
   const auto face = segment.topology->face(f);
-  const double s = 1 - t;
+  const double s = time.rest, t = time.t;
   const Vec3d a0 = to_double(segment.from[face[0]]), a1 = to_double(segment.to[face[0]]);
   struct Edge {
     Vec3d at;
@@ -87,11 +87,11 @@ bool in_range(float smallest, float largest) { return smallest >= 0x1p-100f && l
 
 // The normal of a thin triangle, from exact edges, where edges in float32 are not precise enough. a and b are those of
 // quick_normal().
-QuickNormal thin_normal(const Segment& segment, std::size_t f, double t, float a, float b) {
+QuickNormal thin_normal(const Segment& segment, std::size_t f, const LocalTime& t, float a, float b) {
   const auto face = segment.topology->face(f);
   const auto edge_to = [&](std::size_t c) {
-    return (1 - t) * (to_double(segment.from[face[c]]) - to_double(segment.from[face[0]])) +
-           t * (to_double(segment.to[face[c]]) - to_double(segment.to[face[0]]));
+    return t.rest * (to_double(segment.from[face[c]]) - to_double(segment.from[face[0]])) +
+           t.t * (to_double(segment.to[face[c]]) - to_double(segment.to[face[0]]));
   };
   const Vec3d exact = cross(edge_to(1), edge_to(2));
   if (!(max_abs(exact) <= kLargestNormal)) return {};
@@ -104,16 +104,18 @@ QuickNormal thin_normal(const Segment& segment, std::size_t f, double t, float a
   return {n, to_float(y * exact), 1.01f * (std::sqrt(square) + kThinError * std::sqrt(product)), true};
 }
 
-QuickNormal quick_normal(const Segment& segment, std::size_t f, double t) {
+QuickNormal quick_normal(const Segment& segment, std::size_t f, const LocalTime& t) {
   const auto face = segment.topology->face(f);
   const auto edge = [face](const VectorView<const float>& points, std::size_t c) {
     return points[face[c]] - points[face[0]];
   };
-  const auto at = [t](const Vec3f& start, const Vec3f& end) { return (1 - t) * to_double(start) + t * to_double(end); };
+  const auto at = [&t](const Vec3f& start, const Vec3f& end) {
+    return t.rest * to_double(start) + t.t * to_double(end);
+  };
   const Vec3f e0 = edge(segment.from, 1), e1 = edge(segment.to, 1), f0 = edge(segment.from, 2),
               f1 = edge(segment.to, 2);
   const Vec3d exact = cross(at(e0, e1), at(f0, f1));
-  const float start_weight = static_cast<float>(1 - t), end_weight = static_cast<float>(t);
+  const float start_weight = static_cast<float>(t.rest), end_weight = static_cast<float>(t.t);
   const float a = start_weight * dot(e0, e0) + end_weight * dot(e1, e1);
   const float b = start_weight * dot(f0, f0) + end_weight * dot(f1, f1);
   if (max_abs(exact) <= kLargestNormal) {
@@ -125,7 +127,7 @@ QuickNormal quick_normal(const Segment& segment, std::size_t f, double t) {
   return thin_normal(segment, f, t, a, b);
 }
 
-FaceNormal face_normal(const Segment& segment, std::size_t f, double t) {
+FaceNormal face_normal(const Segment& segment, std::size_t f, const LocalTime& t) {
   if (segment.topology->all_triangles()) {
     const QuickNormal quick = quick_normal(segment, f, t);
     if (quick.is_trusted) return {quick.n.x, quick.n.y, quick.n.z, quick.error};
@@ -136,18 +138,18 @@ FaceNormal face_normal(const Segment& segment, std::size_t f, double t) {
 // The direction of a sum of faces: in double where the rounding turns it by no more than 2^-23 = 1.2e-7 rad, and else
 // without any.
 UnitNormal unit_normal_of(const NormalAtTime& normal, const Segment& segment, std::span<const std::uint32_t> faces,
-                          double t) {
+                          const LocalTime& t) {
   constexpr double kLargestAngle = 0x1p-23;
   if (normal.error < kLargestAngle * max_abs(normal.n)) return {unit(normal.n), Direction::kRegular};
   return ExactCurve::of_faces(segment, faces).unit_normal_at(t);
 }
 
-UnitNormal fine_unit_normal(const Segment& segment, std::size_t f, double t) {
+UnitNormal fine_unit_normal(const Segment& segment, std::size_t f, const LocalTime& t) {
   const auto face = static_cast<std::uint32_t>(f);
   return unit_normal_of(normal_at_time(segment, f, t), segment, {&face, 1}, t);
 }
 
-UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, double t) {
+UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, const LocalTime& t) {
   if (segment.topology->all_triangles()) {
     const QuickNormal quick = quick_normal(segment, f, t);
     if (quick.is_trusted) return {to_double(quick.unit), Direction::kRegular};
@@ -155,7 +157,8 @@ UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, double t) 
   return fine_unit_normal(segment, f, t);
 }
 
-UnitNormal unit_normal_of_group(const Segment& segment, const NormalGroups& groups, std::size_t element, double t) {
+UnitNormal unit_normal_of_group(const Segment& segment, const NormalGroups& groups, std::size_t element,
+                                const LocalTime& t) {
   NormalAtTime sum;
   double magnitude = 0;
   for (const std::uint32_t f : groups.faces(element)) {
@@ -171,7 +174,7 @@ UnitNormal unit_normal_of_group(const Segment& segment, const NormalGroups& grou
 
 // The same where the kernel would trust the sum of what it makes of the faces; to the last bit.
 UnitNormal quick_unit_normal_of_group(const Segment& segment, const NormalGroups& groups, std::size_t element,
-                                      double t) {
+                                      const LocalTime& t) {
   Vec3d sum;
   double sum_of_errors = 0;
   for (const std::uint32_t f : groups.faces(element)) {
@@ -221,7 +224,7 @@ struct Scratch {
 class Call {
  public:
   // Of faces, without scratch. Element `first` goes to result[0].
-  Call(const Segment& segment, double t, VectorView<float> result, std::size_t first)
+  Call(const Segment& segment, const LocalTime& t, VectorView<float> result, std::size_t first)
       : segment_(segment), t_(t), result_(result), first_(first) {
     const Topology& topology = *segment.topology;
     by_kernel_ = topology.all_triangles() && is_packed(segment.from) && is_packed(segment.to);
@@ -233,7 +236,8 @@ class Call {
     triangles_.to = segment.to.x;
   }
 
-  Call(const Segment& segment, const NormalGroups* groups, Scratch& scratch, double t, VectorView<float> result)
+  Call(const Segment& segment, const NormalGroups* groups, Scratch& scratch, const LocalTime& t,
+       VectorView<float> result)
       : Call(segment, t, result, 0) {
     groups_ = groups;
     normals_ = reinterpret_cast<FaceNormal*>(scratch.normals.data());
@@ -362,7 +366,7 @@ class Call {
 
   const Segment& segment_;
   const NormalGroups* groups_ = nullptr;
-  double t_;
+  LocalTime t_;
   VectorView<float> result_;
   std::size_t first_;
   bool by_kernel_;  // else one by one
@@ -380,9 +384,10 @@ std::size_t write_zeros(VectorView<float> result) {
 
 }  // namespace
 
-std::size_t unit_normals_at(const Segment& segment, IndexRange faces, double t, VectorView<float> result) noexcept {
+std::size_t unit_normals_at(const Segment& segment, IndexRange faces, const LocalTime& t,
+                            VectorView<float> result) noexcept {
   assert(result.count == faces.count && faces.end() <= segment.topology->face_count());
-  if (std::isnan(t)) return write_zeros(result);
+  if (std::isnan(t.t)) return write_zeros(result);
   return Call(segment, local_time(t), result, faces.first).faces(faces);
 }
 
@@ -413,7 +418,7 @@ struct NormalRecompute::Parts {
   [[nodiscard]] std::size_t size() const noexcept {
     return groups == nullptr ? segment.topology->face_count() : groups->size();
   }
-  std::size_t unit_normals(double t, VectorView<float> result, Threads threads);
+  std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads);
 
   Segment segment;
   const NormalGroups* groups;  // nothing: faces
@@ -436,7 +441,7 @@ NormalRecompute::Parts::Parts(const Segment& of_segment, const NormalGroups* of_
   scratch.normals = AlignedBytes((scratch.window == 0 ? faces : parts * scratch.window) * sizeof(FaceNormal));
 }
 
-std::size_t NormalRecompute::Parts::unit_normals(double t, VectorView<float> result, Threads threads) {
+std::size_t NormalRecompute::Parts::unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) {
   if (size() == 0) return 0;
   // The same blocks whatever the threads.
   const auto in_blocks = [threads](std::size_t count, std::size_t block, const auto& body) {
@@ -479,10 +484,10 @@ NormalRecompute::NormalRecompute(const Segment& segment) : parts_(std::make_uniq
 NormalRecompute::NormalRecompute(const Segment& segment, const NormalGroups& groups)
     : parts_(std::make_unique<Parts>(segment, &groups)) {}
 
-std::size_t NormalRecompute::unit_normals(double t, VectorView<float> result, Threads threads) {
+std::size_t NormalRecompute::unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) {
   assert(result.count == size());
   if (!parts_) return 0;
-  return std::isnan(t) ? write_zeros(result) : parts_->unit_normals(local_time(t), result, threads);
+  return std::isnan(t.t) ? write_zeros(result) : parts_->unit_normals(local_time(t), result, threads);
 }
 
 std::size_t NormalRecompute::size() const noexcept { return parts_ ? parts_->size() : 0; }

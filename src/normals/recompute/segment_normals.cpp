@@ -408,7 +408,7 @@ SegmentNormals::SegmentNormals(const Segment& segment, const NormalGroups& group
     normals_ = NormalRecompute(segment, groups);
 }
 
-std::size_t SegmentNormals::unit_normals(double t, VectorView<float> result, Threads threads) {
+std::size_t SegmentNormals::unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) {
   return std::visit([&](auto& normals) { return normals.unit_normals(t, result, threads); }, normals_);
 }
 

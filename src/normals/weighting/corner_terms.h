@@ -32,10 +32,11 @@ struct MovingEdge {
   Vec3d vector;
   double size;
 
-  [[nodiscard]] static MovingEdge at(const Segment& segment, std::uint32_t from, std::uint32_t to, double t) noexcept {
+  [[nodiscard]] static MovingEdge at(const Segment& segment, std::uint32_t from, std::uint32_t to,
+                                     const LocalTime& t) noexcept {
     const Vec3d e0 = to_double(segment.from[to]) - to_double(segment.from[from]);
     const Vec3d e1 = to_double(segment.to[to]) - to_double(segment.to[from]);
-    return {lerp(e0, e1, t), (1 - t) * max_abs(e0) + t * max_abs(e1)};
+    return {t.rest * e0 + t.t * e1, t.rest * max_abs(e0) + t.t * max_abs(e1)};
   }
 };
 
@@ -44,7 +45,7 @@ inline constexpr double kCrossError = 32 * kUnitRoundoff;
 
 /// What a corner of a face with normal n adds; n is not zero. Zero where an edge has no length.
 [[nodiscard]] inline Vec3d corner_term(const Segment& segment, const CornerVertices& corner, const Vec3d& n,
-                                       Weighting weighting, double t) noexcept {
+                                       Weighting weighting, const LocalTime& t) noexcept {
   if (weighting == Weighting::kArea) return n;
   if (weighting == Weighting::kUniform) return unit(n);
   const MovingEdge e = MovingEdge::at(segment, corner.here, corner.next, t);

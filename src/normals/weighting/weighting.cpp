@@ -21,7 +21,7 @@ constexpr std::size_t kBlock = 1024;
 constexpr double kFaceError = 0x1p-30, kLargestAngle = 0x1p-23;
 
 // In double, and in integers where that is not enough.
-Vec3d face_normal_at(const Segment& segment, std::span<const std::uint32_t> face, double t) {
+Vec3d face_normal_at(const Segment& segment, std::span<const std::uint32_t> face, const LocalTime& t) {
   Vec3d n;
   double size = 0;
   const auto edge_to = [&](std::size_t c) { return MovingEdge::at(segment, face[0], face[c], t); };
@@ -56,20 +56,21 @@ Result<Weighting> make_weighting(std::string_view name) {
   return Error{ErrorCode::kUsage, "", std::move(message)};
 }
 
-void face_normals_at(const Segment& segment, double time, IndexRange faces, std::span<Vec3d> result) noexcept {
+void face_normals_at(const Segment& segment, const LocalTime& time, IndexRange faces,
+                     std::span<Vec3d> result) noexcept {
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
-  const double t = local_time(time);
-  if (std::isnan(t)) return std::fill(result.begin(), result.end(), Vec3d{});
+  const LocalTime t = local_time(time);
+  if (std::isnan(t.t)) return std::fill(result.begin(), result.end(), Vec3d{});
   for (std::size_t i = 0; i < faces.count; ++i)
     result[i] = face_normal_at(segment, segment.topology->face(faces.first + i), t);
 }
 
-void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, double time,
+void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, const LocalTime& time,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept {
   assert(result.size() == elements.count && elements.end() <= groups.size());
   assert(of_faces.size() == segment.topology->face_count());
-  const double t = local_time(time);
-  if (std::isnan(t)) return std::fill(result.begin(), result.end(), Vec3d{});
+  const LocalTime t = local_time(time);
+  if (std::isnan(t.t)) return std::fill(result.begin(), result.end(), Vec3d{});
   for (std::size_t i = 0; i < elements.count; ++i) {
     const auto corners = groups.corners(elements.first + i), faces = groups.faces(elements.first + i);
     Vec3d sum;
@@ -89,7 +90,7 @@ void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Wei
 }
 
 std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting,
-                                           double t) {
+                                           const LocalTime& t) {
   std::vector<Vec3d> of_faces(segment.topology->face_count()), result(groups.size());
   parallel_blocks(of_faces.size(), kBlock, [&](IndexRange faces) {
     face_normals_at(segment, t, faces, std::span(of_faces).subspan(faces.first, faces.count));

@@ -3,6 +3,7 @@
 #include "chronormal/workflow/query.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -29,7 +30,12 @@ std::string npy_of(const QueryColumn& column) {
   return NpyBytes(shape, std::get<std::vector<std::uint8_t>>(column.values)).bytes();
 }
 
-// The fewest digits that read back as the same number, so that it can be pasted.
+// The t of a time, and the next one towards an end of the segment where no double is that t: a part holds the whole span.
+double t_towards(const Segment& segment, double time, double end) {
+  const LocalTime t = LocalTime::between(segment.start_time, time, segment.end_time);
+  return t.is_double() ? t.t : std::nextafter(t.t, end);
+}
+
 Error no_motion(const char* option, double time, double first, double last) {
   return Error{ErrorCode::kUsage, option,
                "there is no motion " + std::string(option == std::string("--from") ? "after " : "before ") +
@@ -52,9 +58,7 @@ Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const Query
     const Segment segment = motion.segment(s);
     first = std::min(first, segment.start_time);
     last = std::max(last, segment.end_time);
-    const double length = segment.end_time - segment.start_time;
-    const double t0 = from <= segment.start_time ? 0 : (from - segment.start_time) / length;
-    const double t1 = to >= segment.end_time ? 1 : (to - segment.start_time) / length;
+    const double t0 = t_towards(segment, from, 0), t1 = t_towards(segment, to, 1);
     if (t0 < t1) parts.push_back({s, t0, t1});
   }
   if (!parts.empty()) return parts;

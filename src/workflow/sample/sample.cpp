@@ -81,7 +81,7 @@ Result<DoublePose> double_pose(const std::vector<Vec3d>& positions, const std::s
   return pose;
 }
 
-std::vector<Vec3d> all_face_normals_at(const Segment& segment, double t) {
+std::vector<Vec3d> all_face_normals_at(const Segment& segment, const LocalTime& t) {
   std::vector<Vec3d> normals(segment.topology->face_count());
   parallel_blocks(normals.size(), kBlock, [&](IndexRange faces) {
     face_normals_at(segment, t, faces, std::span(normals).subspan(faces.first, faces.count));
@@ -150,7 +150,7 @@ std::vector<float> NormalSampler::normals_of_outputs(const Pose& pose) const {
   return normals;
 }
 
-std::vector<float> NormalSampler::unit_normals(const Segment& segment, double t, double evaluations) {
+std::vector<float> NormalSampler::unit_normals(const Segment& segment, const LocalTime& t, double evaluations) {
   if (!segment_normals_ || segment_ != segment.index) {
     const StrategyOptions strategy{.evaluations = evaluations};
     segment_normals_ = are_faces() ? SegmentNormals(segment, strategy, Threads::kAll)
@@ -163,7 +163,7 @@ std::vector<float> NormalSampler::unit_normals(const Segment& segment, double t,
   return normals;
 }
 
-std::vector<float> NormalSampler::normals_anew(const Segment& segment, double t) const {
+std::vector<float> NormalSampler::normals_anew(const Segment& segment, const LocalTime& t) const {
   if (are_exact_units()) {
     std::vector<float> normals(3 * element_count());
     NormalRecompute recompute = are_faces() ? NormalRecompute(segment) : NormalRecompute(segment, *groups_);
@@ -188,7 +188,7 @@ std::vector<float> NormalSampler::as_asked(std::span<const Vec3d> exact) const {
 Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   const Result<Instant> instant = find_instant(*motion_, time);
   if (!instant) return instant.error();
-  const double t = instant.value().t;
+  const LocalTime t = instant.value().t;
   const std::size_t here = instant.value().segment;
   if (const Status status = hold_paths(*stream_, here, here, options_.path); !status) return status.error();
   if (options_.path != PathKind::kLinear) return pose_on_curve(here, t);

@@ -9,8 +9,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iostream>
 #include <limits>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chronormal/normals/encodings.h"
@@ -20,7 +23,9 @@
 #include "chronormal/normals/recompute.h"
 #include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
+#include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
 
 namespace chronormal::local_time_test {
 namespace {
@@ -35,6 +40,176 @@ TEST(LocalTime, is_moved_into_the_segment) {
   }
   for (const double t : {1 + 0x1p-52, 2.0, kInfinity}) EXPECT_EQ(local_time(t), 1);
   EXPECT_TRUE(std::isnan(local_time(kNan)));
+}
+
+// A time between two keys, all of them doubles: time - start and end - time are multiples of two small integers.
+struct Times {
+  double start, time, end;
+  double before, after;  // what comes before and after the time, in one unit, as few bits
+};
+
+Times random_times(fixtures::Random& random) {
+  const auto small = [&random] { return 1 + static_cast<double>(random.below(random.below(2) == 0 ? 12 : 4096)); };
+  const auto power = [&random](int low, int high) {
+    return std::ldexp(1.0, low + static_cast<int>(random.below(static_cast<std::uint64_t>(high - low + 1))));
+  };
+  Times t{0, 0, 0, small(), small()};
+  const std::uint64_t kind = random.below(4);
+  if (kind == 1) t.before *= power(0, 90);  // close to one of the keys
+  if (kind == 2) t.after *= power(0, 90);
+  t.time = kind == 0 ? static_cast<double>(random.below(1U << 30)) - 1e8 : 0;
+  t.start = t.time - t.before;
+  t.end = t.time + t.after;
+  const double unit =
+      kind == 3 ? std::ldexp(1.0, 1011) : power(-900, 900);  // the longest are beyond the range of double
+  for (double* one : {&t.start, &t.time, &t.end}) *one *= unit;
+  return t;
+}
+
+// A fan of triangles around vertex 0. The second edge of each has a component that is zero at the time, and only then,
+// and others that are tiny: that component times the rounding of t is more.
+Motion edge_on_at(const Times& times, fixtures::Random& random) {
+  Motion motion;
+  std::vector<std::uint32_t> corners;
+  Motion::Keyframe& from = motion.keyframes.emplace_back();
+  from.positions = {0, 0, 0};
+  Motion::Keyframe to = from;
+  from.time = times.start;
+  to.time = times.end;
+  const auto whole = [&random] { return static_cast<float>(static_cast<int>(random.below(7)) - 3); };
+  const std::uint64_t faces = 1 + random.below(4);
+  const std::size_t axis = random.below(3);
+  const float tiny = static_cast<float>(test::random_decade(random, -26, -4)), size = 1 + whole() * whole();
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    for (auto* end : {&from.positions, &to.positions}) {
+      for (int k = 0; k < 3; ++k) end->push_back(whole());
+      const double crossing = end == &from.positions ? times.before : -times.after;
+      for (std::size_t k = 0; k < 3; ++k)
+        end->push_back(k == axis ? static_cast<float>(crossing) * size * static_cast<float>(f + 1) : tiny * whole());
+    }
+    corners.insert(corners.end(), {0, 2 * f + 1, 2 * f + 2});
+  }
+  motion.keyframes.push_back(std::move(to));
+  motion.topology = Topology::triangles(2 * faces + 1, corners).value();
+  motion.connect_as_sequence();
+  return motion;
+}
+
+// n of some faces at a time in rational numbers, and where that is zero what n was a moment before.
+exact::Vector exact_direction(const Segment& segment, std::span<const std::uint32_t> faces, const Times& times) {
+  const exact::Rational start(times.start), time(times.time), end(times.end);
+  const auto sum_at = [&](const exact::Rational& t) {
+    exact::Vector sum;
+    for (const std::uint32_t f : faces) {
+      exact::Triangle triangle;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Vec3f a = segment.from[segment.topology->face(f)[c]], b = segment.to[segment.topology->face(f)[c]];
+        triangle.from[c] = exact::vector(a.x, a.y, a.z);
+        triangle.to[c] = exact::vector(b.x, b.y, b.z);
+      }
+      const exact::Vector n = exact::normal_at(triangle, t);
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += n[k];
+    }
+    return sum;
+  };
+  const exact::Rational t = (time - start) / (end - start);
+  const exact::Vector n = sum_at(t);
+  exact::Rational moment = 1;
+  mpq_div_2exp(moment.get_mpq_t(), moment.get_mpq_t(), 3000);
+  return exact::is_zero(n) ? sum_at(t - moment) : n;
+}
+
+TEST(LocalTime, is_a_quotient_without_rounding) {
+  constexpr std::uint64_t kSeed = 20261126;
+  fixtures::Random random(kSeed);
+  std::cout << "  from seed " << kSeed << '\n';
+  std::size_t no_doubles = 0;
+  double worst = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Times times = random_times(random);
+    const Motion motion = edge_on_at(times, random);
+    const Segment segment = motion.segment(0);
+    const LocalTime t = find_instant(motion, times.time).value().t;
+    if (!t.is_double()) ++no_doubles;
+    const NormalGroups groups =
+        NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+    std::vector<std::vector<std::uint32_t>> all_faces, all_groups;
+    for (std::uint32_t f = 0; f < motion.topology.face_count(); ++f) all_faces.push_back({f});
+    for (std::size_t e = 0; e < groups.size(); ++e) {
+      const auto faces = groups.faces(e);
+      all_groups.emplace_back(faces.begin(), faces.end());
+    }
+    const auto expect = [&](const char* door, const auto& elements, const auto& make, bool has_limits = true,
+                            double most = 1e-6) {
+      std::vector<float> normals(3 * elements.size());
+      make(VectorView<float>::packed(normals.data(), elements.size()));
+      for (std::size_t e = 0; e < elements.size(); ++e) {
+        const float* const u = &normals[3 * e];
+        const exact::Vector right = exact_direction(segment, elements[e], times);
+        const bool is_zero = u[0] == 0 && u[1] == 0 && u[2] == 0;
+        if (exact::is_zero(right) || (is_zero && !has_limits)) {
+          EXPECT_TRUE(is_zero) << door << ", case " << i << ", element " << e;
+          continue;
+        }
+        const double angle = exact::angle(u[0], u[1], u[2], right);
+        EXPECT_LT(angle, most) << door << ", case " << i << ", element " << e << ", t = " << t.t;
+        if (most == 1e-6) worst = std::max(worst, angle);
+      }
+    };
+    using View = VectorView<float>;
+    for (const double tolerance : {kExactTolerance, kCompactTolerance}) {
+      expect(
+          "curves of faces", all_faces,
+          [&](View view) { NormalCurves::of_faces(segment, {tolerance}).unit_normals(t, view); }, true, tolerance);
+      expect(
+          "curves of groups", all_groups,
+          [&](View view) { NormalCurves::of_groups(segment, groups, {tolerance}).unit_normals(t, view); }, true,
+          tolerance);
+    }
+    expect("recomputed faces", all_faces, [&](View view) { NormalRecompute(segment).unit_normals(t, view); });
+    expect("recomputed groups", all_groups, [&](View view) { NormalRecompute(segment, groups).unit_normals(t, view); });
+    expect("faces anew", all_faces, [&](View view) { unit_normals_at(segment, {0, view.count}, t, view); });
+    expect("a motion and a time", all_groups, [&](View view) {
+      const std::vector<float> of_vertices = unit_normals_at(motion, groups, times.time).value();
+      for (std::size_t v = 0; v < groups.element_of_output().size(); ++v)
+        view.set(groups.element_of_output()[v], {of_vertices[3 * v], of_vertices[3 * v + 1], of_vertices[3 * v + 2]});
+    });
+    expect("the normals of a segment", all_groups,
+           [&](View view) { SegmentNormals(segment, groups, {.evaluations = 9}).unit_normals(t, view); });
+    const auto as_units = [](const std::vector<Vec3d>& normals, View view) {
+      for (std::size_t e = 0; e < normals.size(); ++e) view.set(e, to_float(unit(normals[e])));
+    };
+    expect(
+        "areas of faces", all_faces,
+        [&](View view) {
+          std::vector<Vec3d> normals(view.count);
+          face_normals_at(segment, t, {0, view.count}, normals);
+          as_units(normals, view);
+        },
+        false);
+    expect(
+        "areas of groups", all_groups,
+        [&](View view) { as_units(all_weighted_normals_at(segment, groups, Weighting::kArea, t), view); }, false);
+  }
+  std::cout << "  " << no_doubles << " of 400 times are no doubles; at most " << worst << " rad\n";
+  EXPECT_GT(no_doubles, 200u);
+}
+
+TEST(LocalTime, that_is_a_double_keeps_its_bits) {
+  EXPECT_TRUE(LocalTime::between(0, 1, 4).is_double());
+  EXPECT_EQ(LocalTime::between(2, 5, 8).t, 0.5);
+  EXPECT_TRUE(LocalTime::between(2, 5, 8).is_double());
+  const LocalTime third = LocalTime::between(0, 1, 3);
+  EXPECT_FALSE(third.is_double());
+  EXPECT_EQ(third.t, 1.0 / 3);
+  EXPECT_EQ(third.rest, 2.0 / 3);
+  EXPECT_EQ(LocalTime::between(-1, 0, 0x1p-60).rest, 0x1p-60);
+  EXPECT_EQ(LocalTime::between(-1e308, 0, 1e308).t, 0.5);
+  EXPECT_EQ(LocalTime::between(0, 0x1p-1074, 0x3p-1074).rest, 2.0 / 3);
+  EXPECT_FALSE(LocalTime::between(0, 0x1p-1074, 0x3p-1074).is_double());
+  EXPECT_EQ(LocalTime::between(1, 0, 2).t, 0);
+  EXPECT_EQ(LocalTime::between(1, 3, 2).t, 1);
+  EXPECT_TRUE(std::isnan(LocalTime::between(1, kNan, 2).t));
 }
 
 // A way to normals: writes those at t and returns how many are (0, 0, 0).

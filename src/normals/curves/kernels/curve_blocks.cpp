@@ -42,8 +42,8 @@ std::array<std::int32_t, kCount> integer_weights(const std::array<double, kCount
 
 }  // namespace
 
-CurveWeights CurveWeights::at(double t, bool compact) noexcept {
-  const double s = 1 - t;
+CurveWeights CurveWeights::at(const LocalTime& time, bool compact) noexcept {
+  const double t = time.t, s = time.rest;
   CurveWeights weights{{static_cast<float>(s), static_cast<float>(t)},
                        {static_cast<float>(s * s), static_cast<float>(2 * t * s), static_cast<float>(t * t)}};
   if (compact) {

@@ -24,6 +24,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "chronormal/motion/motion.h"
 #include "normals/control/kernels/control_tile.h"
 
 namespace chronormal::inline internal {
@@ -87,7 +88,7 @@ struct CurveWeights {
   std::int32_t middle_low = 0;  ///< a 32nd of it
 
   /// The integers take a tenth of a microsecond to choose; without `compact` they are left 0.
-  [[nodiscard]] static CurveWeights at(double t, bool compact) noexcept;
+  [[nodiscard]] static CurveWeights at(const LocalTime& time, bool compact) noexcept;
 };
 
 /// The sum of the absolute errors of the int16 weights stays below this share of their sum, at every t.

@@ -27,8 +27,7 @@ HWY_INLINE Doubles3 NormalsAt(const FlaggedTile& tile, std::size_t lane, Doubles
   return (Scale(w0, vector(0)) + Scale(w1, vector(3))) + Scale(w2, vector(6));
 }
 
-void FlaggedUnitNormals(const FlaggedTile* tiles, std::size_t count, double t, FlaggedUnits* results) {
-  const double s = 1 - t;
+void FlaggedUnitNormals(const FlaggedTile* tiles, std::size_t count, double s, double t, FlaggedUnits* results) {
   const double weights[3] = {s * s, 2 * t * s, t * t};
   const Doubles w0 = hn::Set(kDoubles, weights[0]), w1 = hn::Set(kDoubles, weights[1]),
                 w2 = hn::Set(kDoubles, weights[2]);
@@ -77,9 +76,10 @@ FlaggedNormals FlaggedNormals::scaled(const ControlNormals& c, double certain) n
   return result;
 }
 
-void flagged_unit_normals(std::span<const FlaggedTile> tiles, double t, std::span<FlaggedUnits> results) noexcept {
+void flagged_unit_normals(std::span<const FlaggedTile> tiles, const LocalTime& t,
+                          std::span<FlaggedUnits> results) noexcept {
   assert(results.size() >= tiles.size());
-  HWY_DYNAMIC_DISPATCH(FlaggedUnitNormals)(tiles.data(), tiles.size(), t, results.data());
+  HWY_DYNAMIC_DISPATCH(FlaggedUnitNormals)(tiles.data(), tiles.size(), t.rest, t.t, results.data());
 }
 
 }  // namespace chronormal::inline internal

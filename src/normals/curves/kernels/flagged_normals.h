@@ -10,6 +10,7 @@
 #include <span>
 
 #include "chronormal/core/vec3.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 #include "normals/control/kernels/control_tile.h"
 
@@ -66,8 +67,9 @@ struct alignas(64) FlaggedUnits {
 };
 
 /// Evaluates n(t) in double, and rounds its direction to float32: within 2^-22 rad.
-/// t in [0, 1]; results must have a place for each tile
-void flagged_unit_normals(std::span<const FlaggedTile> tiles, double t, std::span<FlaggedUnits> results) noexcept;
+/// t is a local_time(); results must have a place for each tile
+void flagged_unit_normals(std::span<const FlaggedTile> tiles, const LocalTime& t,
+                          std::span<FlaggedUnits> results) noexcept;
 
 }  // namespace chronormal::inline internal
 

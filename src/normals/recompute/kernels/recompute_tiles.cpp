@@ -173,8 +173,8 @@ HWY_INLINE Doubles3 Lerp(Doubles s, const float (*a)[kBlock], Doubles t, const f
           hn::Add(hn::Mul(s, load(a[2])), hn::Mul(t, load(b[2])))};
 }
 
-HWY_INLINE Doubles3 CrossOfLerps(const EdgeBlock& block, std::size_t lane, double t) {
-  const Doubles s1 = hn::Set(kDoubles, 1 - t), t1 = hn::Set(kDoubles, t);
+HWY_INLINE Doubles3 CrossOfLerps(const EdgeBlock& block, std::size_t lane, const LocalTime& t) {
+  const Doubles s1 = hn::Set(kDoubles, t.rest), t1 = hn::Set(kDoubles, t.t);
   return Cross(Lerp(s1, block.start_e, t1, block.end_e, lane), Lerp(s1, block.start_f, t1, block.end_f, lane));
 }
 
@@ -190,7 +190,7 @@ struct Normals {
   hn::Mask<FloatTag> trusted;
 };
 
-HWY_INLINE Normals NormalsAt(const EdgeBlock& block, std::size_t lane, double t) {
+HWY_INLINE Normals NormalsAt(const EdgeBlock& block, std::size_t lane, const LocalTime& t) {
 #if HWY_TARGET == HWY_SCALAR
   const Doubles3 exact = CrossOfLerps(block, lane, t);
   const Lanes3 n = {hn::DemoteTo(kFloats, exact.x), hn::DemoteTo(kFloats, exact.y), hn::DemoteTo(kFloats, exact.z)};
@@ -198,7 +198,7 @@ HWY_INLINE Normals NormalsAt(const EdgeBlock& block, std::size_t lane, double t)
   const Doubles3 lower = CrossOfLerps(block, lane, t), upper = CrossOfLerps(block, lane + kLanes / 2, t);
   const Lanes3 n = {Joined(lower.x, upper.x), Joined(lower.y, upper.y), Joined(lower.z, upper.z)};
 #endif
-  const Floats s1 = hn::Set(kFloats, static_cast<float>(1 - t)), t1 = hn::Set(kFloats, static_cast<float>(t));
+  const Floats s1 = hn::Set(kFloats, static_cast<float>(t.rest)), t1 = hn::Set(kFloats, static_cast<float>(t.t));
   const Floats a = hn::Add(hn::Mul(s1, Square(block.start_e, lane)), hn::Mul(t1, Square(block.end_e, lane)));
   const Floats b = hn::Add(hn::Mul(s1, Square(block.start_f, lane)), hn::Mul(t1, Square(block.end_f, lane)));
   const Floats product = hn::Mul(a, b), square = Dot(n, n);
@@ -240,8 +240,8 @@ struct CornersAtEnd {
 
 // n(t) of half of the lanes, and its multiple of length 1; scale is 1 / |n| in float32.
 template <int kHalf>
-HWY_INLINE Doubles3 ExactNormal(const CornersAtEnd& from, const CornersAtEnd& to, double t) {
-  const Doubles s1 = hn::Set(kDoubles, 1 - t), t1 = hn::Set(kDoubles, t);
+HWY_INLINE Doubles3 ExactNormal(const CornersAtEnd& from, const CornersAtEnd& to, const LocalTime& t) {
+  const Doubles s1 = hn::Set(kDoubles, t.rest), t1 = hn::Set(kDoubles, t.t);
   const Doubles3 a0 = ToDouble<kHalf>(from.a), a1 = ToDouble<kHalf>(to.a);
   const Doubles3 e = Scale(s1, ToDouble<kHalf>(from.b) - a0) + Scale(t1, ToDouble<kHalf>(to.b) - a1);
   const Doubles3 f = Scale(s1, ToDouble<kHalf>(from.c) - a0) + Scale(t1, ToDouble<kHalf>(to.c) - a1);
@@ -258,7 +258,7 @@ HWY_INLINE Doubles3 ExactUnit(const Doubles3& n, Floats scale) {
 
 template <std::size_t kStride>
 HWY_NOINLINE FineNormals FineNormalsAt(const MovingTriangles& triangles, const EdgeBlock& block, std::size_t lane,
-                                       double t, Floats product, Floats smaller) {
+                                       const LocalTime& t, Floats product, Floats smaller) {
   const auto corners = [&](const float* points) HWY_ATTR {
     return CornersAtEnd{PointsOf<kStride>(points, block, lane, 0), PointsOf<kStride>(points, block, lane, 1),
                         PointsOf<kStride>(points, block, lane, 2)};
@@ -325,7 +325,8 @@ HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, s
 // Calls body(place, normals, fine) for every kLanes faces of a range, where fine() computes them from exact edges. The
 // next block is loaded before the current one is processed, so that the machine does both at once.
 template <std::size_t kStride, class Body>
-HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange faces, double t, const Body& body) {
+HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
+                                   const Body& body) {
   EdgeBlock blocks[2];
   LoadBlock<kStride>(triangles, faces.first, faces.count, blocks[0]);
   for (std::size_t i = 0; i < faces.count; i += kBlock) {
@@ -342,15 +343,15 @@ HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange 
 }
 
 template <class Body>
-HWY_INLINE void ForNormals(const MovingTriangles& triangles, IndexRange faces, double t, const Body& body) {
+HWY_INLINE void ForNormals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t, const Body& body) {
   if (triangles.is_paired)
     ForNormalsOfStride<8>(triangles, faces, t, body);
   else
     ForNormalsOfStride<3>(triangles, faces, t, body);
 }
 
-std::size_t RecomputeUnitNormals(const MovingTriangles& triangles, IndexRange faces, double t, VectorView<float> result,
-                                 bool stream, std::uint32_t* doubtful) {
+std::size_t RecomputeUnitNormals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
+                                 VectorView<float> result, bool stream, std::uint32_t* doubtful) {
   return WithLayout(result, stream, [&](auto layout) HWY_ATTR {
     std::size_t count = 0;
     const auto body = [&](std::size_t place, const Normals& normals, const auto& fine_normals) HWY_ATTR {
@@ -367,8 +368,8 @@ std::size_t RecomputeUnitNormals(const MovingTriangles& triangles, IndexRange fa
   });
 }
 
-std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange faces, double t, FaceNormal* result,
-                                 std::uint32_t* doubtful) {
+std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
+                                 FaceNormal* result, std::uint32_t* doubtful) {
   std::size_t count = 0;
   const auto body = [&](std::size_t place, const Normals& normals, const auto& fine_normals) HWY_ATTR {
     // 2.31 for the edges, 1 for rounding n, and a little for the rounding of the bound itself.
@@ -453,14 +454,14 @@ HWY_EXPORT(RecomputeFaceNormals);
 HWY_EXPORT(RecomputeGroupNormals);
 HWY_EXPORT(RangeOfIndices);
 
-std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, double t,
+std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept {
   assert(0 < faces.count && faces.end() <= triangles.face_count && result.count == faces.count);
   return HWY_DYNAMIC_DISPATCH(RecomputeUnitNormals)(triangles, faces, t, result, stream, doubtful);
 }
 
-std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange faces, double t, FaceNormal* result,
-                                   std::uint32_t* doubtful) noexcept {
+std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
+                                   FaceNormal* result, std::uint32_t* doubtful) noexcept {
   assert(0 < faces.count && faces.end() <= triangles.face_count);
   return HWY_DYNAMIC_DISPATCH(RecomputeFaceNormals)(triangles, faces, t, result, doubtful);
 }

@@ -23,6 +23,7 @@
 #include <span>
 
 #include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal::inline internal {
@@ -60,12 +61,12 @@ struct NormalWindow {
 /// Writes the unit normals of a range of faces, and into `doubtful` the places in it that are not to be trusted;
 /// returns how many those are. `stream`: past the caches, where the result is packed and aligned to 64 bytes.
 /// faces.count > 0; result must have faces.count elements, doubtful as much room
-std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, double t,
+std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
 
 /// The same of normals that keep their length, with their errors.
-std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange faces, double t, FaceNormal* result,
-                                   std::uint32_t* doubtful) noexcept;
+std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
+                                   FaceNormal* result, std::uint32_t* doubtful) noexcept;
 
 /// Adds up the normals around each element in the order of groups.faces(), and writes unit normals. Doubtful are those
 /// of elements whose faces cancel, and (0, 0, 0).
