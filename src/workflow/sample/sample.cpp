@@ -2,6 +2,7 @@
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -80,6 +81,30 @@ Result<DoublePose> double_pose(const std::vector<Vec3d>& positions, const std::s
   }
   return pose;
 }
+
+// A sum of products of doubles and floats in twice the digits of double, so that what cancels leaves no rounding: each
+// product is the sum of two that are exact, and what an addition loses is added up beside it.
+class LongSum {
+ public:
+  void add(double factor, float value) noexcept {
+    // The upper half of the digits of the factor has 26 of them (Dekker 1971), and so have products 50.
+    const double far = 0x1p27 * factor, large = far + factor - far;
+    const double upper = std::isfinite(large) ? large : factor;
+    add(upper * static_cast<double>(value));
+    add((factor - upper) * static_cast<double>(value));
+  }
+  void add(double term) noexcept {
+    const double sum = high_ + term, of_term = sum - high_;
+    low_ += (high_ - (sum - of_term)) + (term - of_term);
+    high_ = sum;
+  }
+  [[nodiscard]] double high() const noexcept { return high_; }
+  [[nodiscard]] double low() const noexcept { return low_; }
+  [[nodiscard]] double value() const noexcept { return high_ + low_; }
+
+ private:
+  double high_ = 0, low_ = 0;
+};
 
 std::vector<Vec3d> all_face_normals_at(const Segment& segment, const LocalTime& t) {
   std::vector<Vec3d> normals(segment.topology->face_count());
@@ -238,16 +263,29 @@ Result<Pose> NormalSampler::pose_on_curve(std::size_t segment, double t) {
 Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   if (Status status = check_weights(*motion_, weights); !status) return status.error();
   if (Status status = stream_->hold_all(); !status) return status.error();
+  // base + sum of w (target - base), in the order in which nothing is lost of a base or targets that are far apart: what
+  // is left of the base is 1 - sum of w, which is nothing for a single target of weight 1.
+  LongSum rest;
+  rest.add(1);
+  for (const double weight : weights) rest.add(-weight);
   const auto base = positions_of(*motion_, 0);
   std::vector<Vec3d> positions(base.count);
   parallel_blocks(base.count, kBlock, [&](IndexRange vertices) {
-    for (std::size_t v = vertices.first; v < vertices.end(); ++v) positions[v] = to_double(base[v]);
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      if (weights[i] == 0) continue;
-      const auto target = positions_of(*motion_, i + 1);
-      for (std::size_t v = vertices.first; v < std::min(vertices.end(), target.count); ++v)
-        positions[v] = positions[v] + weights[i] * (to_double(target[v]) - to_double(base[v]));
-    }
+    std::vector<std::array<LongSum, 3>> sums(vertices.count);
+    const auto add = [&](double weight, const VectorView<const float>& points) {
+      if (weight == 0) return;
+      for (std::size_t i = 0; i < vertices.count; ++i) {
+        const Vec3f p = points[vertices.first + i];
+        sums[i][0].add(weight, p.x);
+        sums[i][1].add(weight, p.y);
+        sums[i][2].add(weight, p.z);
+      }
+    };
+    add(rest.high(), base);
+    add(rest.low(), base);
+    for (std::size_t k = 0; k < weights.size(); ++k) add(weights[k], positions_of(*motion_, k + 1));
+    for (std::size_t i = 0; i < vertices.count; ++i)
+      positions[vertices.first + i] = {sums[i][0].value(), sums[i][1].value(), sums[i][2].value()};
   });
 
   Result<DoublePose> pose = double_pose(positions, "these weights move");

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iostream>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/support/elements.h"
+#include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
 #include "tests/support/integer_normal.h"
@@ -271,6 +273,62 @@ TEST(NormalSampler, poses_of_weights_are_those_of_the_positions_in_double) {
       }
     }
   }
+}
+
+// Weights of three targets: whole ones, some that leave nothing of the base, and others.
+std::vector<double> weights_of_three(test::Random& random) {
+  const double w = std::ldexp(static_cast<double>(random.below(65)), -6), any = random.uniform(-2, 2);
+  switch (random.below(5)) {
+    case 0:
+      return {0, 1, 0};
+    case 1:
+      return {w, 0, 1 - w};
+    case 2:
+      return {-any, 1, any};
+    case 3:
+      return {-1, 1, 1};
+    default:
+      return {w, random.uniform(-1, 1), 0.25};
+  }
+}
+
+// The normals of base + sum of w (target - base) in rational numbers.
+TEST(NormalSampler, poses_lose_nothing_of_a_base_that_is_far_from_its_targets) {
+  constexpr std::uint64_t kSeed = 20261127;
+  std::cout << "  from seed " << kSeed << '\n';
+  test::Random random(kSeed);
+  double worst = 0;
+  for (int i = 0; i < 400; ++i) {
+    Motion motion;
+    motion.topology = Topology::triangles(3, {0, 1, 2}).value();
+    const double far = std::ldexp(1.0, static_cast<int>(random.below(100)));
+    for (std::size_t k = 0; k < 4; ++k) {
+      Motion::Keyframe& keyframe = motion.keyframes.emplace_back();
+      keyframe.time = k == 0 ? 0 : 1;
+      for (int c = 0; c < 9; ++c)
+        keyframe.positions.push_back(static_cast<float>((k == 0 ? far : 1) * random.uniform(-1, 1)));
+    }
+    motion.connect_as_targets();
+    const std::vector<double> weights = weights_of_three(random);
+    std::array<exact::Vector, 3> corners;
+    for (std::size_t c = 0; c < 9; ++c) {
+      const auto at = [&](std::size_t k) { return exact::Rational(double{motion.keyframes[k].positions[c]}); };
+      exact::Rational& sum = corners[c / 3][c % 3];
+      sum = at(0);
+      for (std::size_t k = 0; k < 3; ++k) sum += exact::Rational(weights[k]) * (at(k + 1) - at(0));
+    }
+    const exact::Vector right =
+        exact::cross(exact::subtract(corners[1], corners[0]), exact::subtract(corners[2], corners[0]));
+    NormalSampler sampler = sampler_of(motion, options_of(ElementKind::kFaces));
+    const Pose pose = good(sampler.at_weights(weights));
+    const double angle = exact::angle(pose.normals[0], pose.normals[1], pose.normals[2], right);
+    EXPECT_LT(angle, 1e-6) << "case " << i << ", base " << far;
+    worst = std::max(worst, angle);
+    if (weights == std::vector<double>{0, 1, 0}) {
+      EXPECT_EQ(pose.positions, motion.keyframes[2].positions);
+    }
+  }
+  std::cout << "  at most " << worst << " rad\n";
 }
 
 TEST(NormalSampler, largest_positions_still_have_a_pose) {
