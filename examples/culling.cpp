@@ -17,7 +17,7 @@ namespace {
 
 using namespace chronormal;
 
-constexpr Vec3f kEye{4, -5, 2};
+constexpr Vec3d kEye{4, -5, 2};
 constexpr int kSamples = 21;
 constexpr double kGrazing = 2e-6;  // rad between face and line of sight; below, float32 may not decide (it has 1e-6)
 
@@ -53,7 +53,7 @@ struct Count {
 double reference_facing(const Segment& segment, std::size_t face, double t) {
   Vec3d n;
   reference_normals(segment, {face, 1}, t, {&n, 1});
-  return dot(unit(n), unit(to_double(kEye) - corner_at(segment, face, t)));
+  return dot(unit(n), unit(kEye - corner_at(segment, face, t)));
 }
 
 Count count(const Segment& segment) {
@@ -73,7 +73,7 @@ Count count(const Segment& segment) {
     for (std::size_t f = 0; f < faces; ++f) {
       const double truth = reference_facing(segment, f, t);
       if (std::fabs(truth) < kGrazing) continue;
-      const Vec3d to_eye = to_double(kEye) - corner_at(segment, f, t);
+      const Vec3d to_eye = kEye - corner_at(segment, f, t);
       const Vec3d linear = lerp(unit(control[f].n0), unit(control[f].n1), t);
       ++result.decisions;
       result.exact_wrong += (dot(to_double(normals[f]), to_eye) > 0) != (truth > 0);
@@ -96,7 +96,7 @@ Count count(const Segment& segment) {
 
 /// Lists the first faces of a segment that turn towards a far-away eye and away again. Returns the largest sine between
 /// a face and the line of sight at these times, by the reference: zero but for rounding, as the face is seen edge on.
-double print_turns(const Segment& segment, const Vec3f& direction, int wanted) {
+double print_turns(const Segment& segment, const Vec3d& direction, int wanted) {
   double largest = 0;
   for (std::size_t f = 0; f < segment.topology->face_count() && wanted > 0; ++f) {
     const Facing facing = find_facing(segment, f, View::of_direction(direction));
@@ -106,7 +106,7 @@ double print_turns(const Segment& segment, const Vec3f& direction, int wanted) {
     for (const FacingChange& turn : facing.changes()) {
       Vec3d edge_on;
       reference_normals(segment, {f, 1}, turn.lower, {&edge_on, 1});
-      largest = std::max(largest, std::fabs(dot(unit(edge_on), unit(to_double(direction)))));
+      largest = std::max(largest, std::fabs(dot(unit(edge_on), unit(direction))));
     }
   }
   return wanted == 0 ? largest : 1;

@@ -19,9 +19,9 @@ struct FacingOptions {
   bool silhouettes = false;
 };
 
-// Numbers between commas, as float32 has them.
-Result<std::vector<float>> parse_floats(const std::string& option, std::string_view list) {
-  std::vector<float> values;
+// Numbers between commas, within the range of float32.
+Result<std::vector<double>> parse_numbers(const std::string& option, std::string_view list) {
+  std::vector<double> values;
   for (;;) {
     const std::string_view word = list.substr(0, list.find(','));
     double value = 0;
@@ -29,7 +29,7 @@ Result<std::vector<float>> parse_floats(const std::string& option, std::string_v
     if (word.empty() || code != std::errc{} || end != word.data() + word.size() ||
         !std::isfinite(static_cast<float>(value)))
       return misuse(option, formatted("'{}' is not a number", word));
-    values.push_back(static_cast<float>(value));
+    values.push_back(value);
     if (word.size() == list.size()) return values;
     list.remove_prefix(word.size() + 1);
   }
@@ -39,9 +39,9 @@ Result<View> view_of(const FacingOptions& options) {
   if (options.direction.has_value() == options.eye.has_value())
     return misuse("--direction", "say who looks: --direction X,Y,Z or --eye X,Y,Z");
   const std::string option = options.eye ? "--eye" : "--direction";
-  const Result<std::vector<float>> numbers = parse_floats(option, options.eye ? *options.eye : *options.direction);
+  const Result<std::vector<double>> numbers = parse_numbers(option, options.eye ? *options.eye : *options.direction);
   if (!numbers) return numbers.error();
-  const std::vector<float>& n = numbers.value();
+  const std::vector<double>& n = numbers.value();
   if (n.size() == 6 && options.eye) return View::of_moving_eye({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
   if (n.size() != 3) return misuse(option, options.eye ? "it must be X,Y,Z or X,Y,Z,X,Y,Z" : "it must be X,Y,Z");
   if (options.eye) return View::of_eye({n[0], n[1], n[2]});

@@ -52,9 +52,9 @@ py::dict ask_collapse(const Positions& positions, const Indices& offsets, const 
 
 py::dict ask_facing(const Positions& positions, const Indices& offsets, const Indices& corners,
                     const Array<double>& times, std::optional<double> start, std::optional<double> end, bool is_eye,
-                    const Array<float>& from, const Array<float>& to, bool silhouettes) {
+                    const Array<double>& from, const Array<double>& to, bool silhouettes) {
   const Motion motion = motion_of(positions, offsets, corners, times);
-  const auto vector = [](const Array<float>& a) { return Vec3f{a.at(0), a.at(1), a.at(2)}; };
+  const auto vector = [](const Array<double>& a) { return Vec3d{a.at(0), a.at(1), a.at(2)}; };
   const View view{is_eye, vector(from), vector(to)};
   return answer_of([&] { return query_facing(motion, view, silhouettes, {start, end}); });
 }

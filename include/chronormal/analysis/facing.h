@@ -13,9 +13,9 @@
 ///
 /// Certain    the order of all sides, and that each root of f lies in its bracket and nowhere else: decided from the
 ///            float32 positions and the viewer as given, by floating point with a proven bound, and where that is not
-///            enough in integers. A bracket is about 1e-15 / (how fast f changes) wide, or two doubles beside each
-///            other, or one that is the root. Roots without a double between them count as one. Below 2^-200 a root
-///            cannot be told from 0.
+///            enough in integers. A bracket is about 1e-14 / (how fast f changes) wide and never more than
+///            kWidestBracket, or two doubles beside each other, or one that is the root. Roots without a double between
+///            them count as one. Below 2^-200 a root cannot be told from 0.
 /// Polygons   the side of a polygon that is not flat is that of its vector area, seen from its first corner.
 /// Units      t: fraction of the segment; directions: of any length but 0.
 /// Threads    pure; find_silhouettes() allocates, nothing else does or throws.
@@ -37,16 +37,19 @@
 
 namespace chronormal {
 
-/// Who looks. Coordinates are float32, as positions are, and count as they are.
+/// Who looks. Coordinates are doubles and count as they are; none may be beyond the range of float32.
 struct View {
   bool is_eye = false;
-  Vec3f from, to;  ///< the eye at t = 0 and at t = 1; of a direction both are the same
+  Vec3d from, to;  ///< the eye at t = 0 and at t = 1; of a direction both are the same
 
   /// A viewer infinitely far away in this direction: what has a normal along it is seen from its front.
-  [[nodiscard]] static View of_direction(const Vec3f& to_viewer) noexcept { return {false, to_viewer, to_viewer}; }
-  [[nodiscard]] static View of_eye(const Vec3f& eye) noexcept { return {true, eye, eye}; }
-  [[nodiscard]] static View of_moving_eye(const Vec3f& from, const Vec3f& to) noexcept { return {true, from, to}; }
+  [[nodiscard]] static View of_direction(const Vec3d& to_viewer) noexcept { return {false, to_viewer, to_viewer}; }
+  [[nodiscard]] static View of_eye(const Vec3d& eye) noexcept { return {true, eye, eye}; }
+  [[nodiscard]] static View of_moving_eye(const Vec3d& from, const Vec3d& to) noexcept { return {true, from, to}; }
 };
+
+/// No bracket of an instant is wider than this.
+inline constexpr double kWidestBracket = 0x1p-40;  // 9.1e-13
 
 enum class Side : std::int8_t {
   kBack = -1,

@@ -5,7 +5,7 @@
 // 2. The same coefficients with the bound that the face's own rounding has, and their roots: the only one in lanes
 //    (analysis/signs/kernels/facing_lanes.h), several one face at a time (analysis/signs/certain_roots.h).
 // 3. Integers (analysis/signs/exact_roots.h), for what touches edge-on, is edge-on at an end or in the middle, or has
-//    no area.
+//    no area. Where a bracket of the second stage is too wide, their signs close it in.
 
 #include "chronormal/analysis/facing.h"
 
@@ -14,7 +14,9 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
 
 #include "analysis/signs/certain_roots.h"
 #include "analysis/signs/exact_roots.h"
@@ -28,18 +30,26 @@ namespace {
 
 Side side_of(int sign) { return static_cast<Side>(sign); }
 
+// Whether products with the way to the viewer stay in the range of double: its components are no smaller than positions
+// can be. Else every face is left to integers.
+bool fits_double(const View& view) noexcept {
+  const auto fits = [](double component) { return component == 0 || std::fabs(component) >= 0x1p-149; };
+  return fits(view.from.x) && fits(view.from.y) && fits(view.from.z) && fits(view.to.x) && fits(view.to.y) &&
+         fits(view.to.z);
+}
+
 // The coefficients of f by the control normals of a block of faces.
 void glance(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
             FacingCoefficients& result) noexcept {
   if (!view.is_eye) {
-    facing_of_direction(normals, faces.count, to_double(view.from), result);
+    facing_of_direction(normals, faces.count, view.from, result);
     return;
   }
   FacingWays ways{};
-  const Vec3d from = to_double(view.from), to = to_double(view.to);
   for (std::size_t i = 0; i < faces.count; ++i) {
     const std::uint32_t corner = segment.topology->face(faces.first + i)[0];
-    const Vec3d at_start = from - to_double(segment.from[corner]), at_end = to - to_double(segment.to[corner]);
+    const Vec3d at_start = view.from - to_double(segment.from[corner]),
+                at_end = view.to - to_double(segment.to[corner]);
     ways.at[0][i] = at_start.x, ways.at[1][i] = at_start.y, ways.at[2][i] = at_start.z;
     ways.at[3][i] = at_end.x, ways.at[4][i] = at_end.y, ways.at[5][i] = at_end.z;
   }
@@ -115,50 +125,97 @@ void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, 
   roots.error[lane] = f.reach[i] * rounding_of(segment, face) + kRoundings * kUnitRoundoff / kDotShare * bound;
 }
 
-constexpr std::size_t kNormalDigits = ExactCurve::kDigits, kWayDigits = 14;
+// The way: sums of a few doubles up to 2^128, and so of 1,205 bits.
+constexpr std::size_t kNormalDigits = ExactCurve::kDigits, kWayDigits = 53;
+constexpr std::size_t kCoefficientDigits = kNormalDigits + kWayDigits + 1;
 using Way = std::array<WideInteger<kWayDigits>, 3>;
-using Coefficient = WideInteger<kNormalDigits + kWayDigits + 1>;
+using Coefficient = WideInteger<kCoefficientDigits>;
 
-void add_float(float value, std::int64_t sign, WideInteger<kWayDigits>& sum) noexcept {
-  sum.add_product(FloatParts::of(value), FloatParts{1, 0}, sign);
+// The smallest shift of a component of some vectors.
+unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
+  unsigned lowest = std::numeric_limits<unsigned>::max();
+  for (const Vec3d& v : vectors) {
+    for (const double component : {v.x, v.y, v.z}) {
+      const DoubleParts parts = DoubleParts::of(component);
+      if (parts.mantissa != 0) lowest = std::min(lowest, parts.shift);
+    }
+  }
+  return lowest;
 }
 
-void add_vector(const Vec3f& v, std::int64_t sign, Way& sum) noexcept {
-  add_float(v.x, sign, sum[0]);
-  add_float(v.y, sign, sum[1]);
-  add_float(v.z, sign, sum[2]);
+void add_vector(const Vec3d& v, unsigned shift, std::int64_t sign, Way& sum) noexcept {
+  sum[0].add(DoubleParts::of(v.x), shift, sign);
+  sum[1].add(DoubleParts::of(v.y), shift, sign);
+  sum[2].add(DoubleParts::of(v.z), shift, sign);
 }
 
 void add_dot(const ExactCurve::CoefficientVector& n, const Way& w, Coefficient& sum) noexcept {
   for (std::size_t k = 0; k < 3; ++k) sum.add_product(n[k], w[k]);
 }
 
-ExactRoots in_integers(const Segment& segment, std::size_t face, const View& view) noexcept {
+// f of one face, times a power of two; M as in find_in_block().
+template <std::size_t M>
+IntegerPolynomial<M - 1, kCoefficientDigits> in_integers(const Segment& segment, std::size_t face,
+                                                         const View& view) noexcept {
   const auto vertices = segment.topology->face(face);
   const auto c = ExactCurve::of_polygon(segment, vertices).in_powers();
   // w(t) = start + t change
   Way start, change;
-  add_vector(view.from, 1, start);
+  const Vec3d from = to_double(segment.from[vertices[0]]), to = to_double(segment.to[vertices[0]]);
   if (view.is_eye) {
-    const Vec3f from = segment.from[vertices[0]], to = segment.to[vertices[0]];
-    add_vector(from, -1, start);
-    add_vector(view.to, 1, change);
-    add_vector(view.from, -1, change);
-    add_vector(to, -1, change);
-    add_vector(from, 1, change);
+    const unsigned shift = lowest_shift(std::array{view.from, view.to, from, to});
+    add_vector(view.from, shift, 1, start);
+    add_vector(from, shift, -1, start);
+    add_vector(view.to, shift, 1, change);
+    add_vector(view.from, shift, -1, change);
+    add_vector(to, shift, -1, change);
+    add_vector(from, shift, 1, change);
+  } else {
+    add_vector(view.from, lowest_shift(std::array{view.from}), 1, start);
   }
   for (std::size_t k = 0; k < 3; ++k) {
     start[k].settle();
     change[k].settle();
   }
-  std::array<Coefficient, 4> f;
+  IntegerPolynomial<M - 1, kCoefficientDigits> f;
   for (std::size_t k = 0; k < 3; ++k) {
-    add_dot(c[k], start, f[k]);
-    if (view.is_eye) add_dot(c[k], change, f[k + 1]);
+    add_dot(c[k], start, f.a[k]);
+    if constexpr (M == 4) add_dot(c[k], change, f.a[k + 1]);
   }
-  for (Coefficient& coefficient : f) coefficient.settle();
-  if (!view.is_eye) return exact_roots(IntegerPolynomial<2, kNormalDigits + kWayDigits + 1>{{f[0], f[1], f[2]}});
-  return exact_roots(IntegerPolynomial<3, kNormalDigits + kWayDigits + 1>{f});
+  for (Coefficient& coefficient : f.a) coefficient.settle();
+  return f;
+}
+
+// Closes in a bracket of the only root between its ends, at which the signs are known and differ. Its middle is a good
+// guess of the root: a step to either side of it mostly does.
+template <class Polynomial>
+void close_in(const Polynomial& f, int before, double& lower, double& upper) noexcept {
+  double step = 0x1p-49, probe = lower + (upper - lower) / 2 - step;
+  while (upper - lower > kWidestBracket) {
+    // Beyond the ends there is nothing to find; and no t below 2^-200 is told from 0.
+    if (!(lower < probe && probe < upper && probe >= 0x1p-200)) probe = lower + (upper - lower) / 2;
+    const int sign = f.sign_at(UnitFraction::of(probe));
+    if (sign == 0) {
+      lower = upper = probe;
+    } else if (sign == before) {
+      lower = probe;
+      probe += 2 * step;
+    } else {
+      upper = probe;
+      probe -= 2 * step;
+    }
+    step *= 4;
+  }
+}
+
+bool is_wide(const ExactRoot& root) noexcept { return root.upper - root.lower > kWidestBracket; }
+
+Facing facing_of(const ExactRoots& roots) noexcept {
+  Facing facing;
+  facing.side = side_of(roots.sign);
+  for (const ExactRoot& root : roots.all())
+    facing.at[facing.count++] = {root.lower, root.upper, side_of(root.before), side_of(root.after)};
+  return facing;
 }
 
 // All roots of one face.
@@ -168,17 +225,23 @@ Facing facing_by_roots(const Segment& segment, std::size_t face, const View& vie
   std::array<double, M> p;
   for (std::size_t k = 0; k < M; ++k) p[k] = from.p[k][lane];
   ExactRoots roots;
-  if (!CertainRoots<M>::find(p, from.error[lane], roots)) roots = in_integers(segment, face, view);
-  Facing facing;
-  facing.side = side_of(roots.sign);
-  for (const ExactRoot& root : roots.all())
-    facing.at[facing.count++] = {root.lower, root.upper, side_of(root.before), side_of(root.after)};
-  return facing;
+  if (!CertainRoots<M>::find(p, from.error[lane], roots)) {
+    roots = exact_roots(in_integers<M>(segment, face, view));
+  } else if (std::any_of(roots.all().begin(), roots.all().end(), is_wide)) {
+    const auto f = in_integers<M>(segment, face, view);
+    for (std::size_t k = 0; k < roots.count; ++k) close_in(f, roots.at[k].before, roots.at[k].lower, roots.at[k].upper);
+  }
+  return facing_of(roots);
 }
 
 template <std::size_t M>
 void find_in_block(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
                    Facing* result) noexcept {
+  if (!fits_double(view)) {
+    for (std::size_t i = 0; i < faces.count; ++i)
+      result[i] = facing_of(exact_roots(in_integers<M>(segment, faces.first + i, view)));
+    return;
+  }
   FacingCoefficients f;
   glance(segment, faces, normals, view, f);
   SingleRoots roots{};
@@ -198,8 +261,11 @@ void find_in_block(const Segment& segment, IndexRange faces, const ControlNormal
     if (before == 0) {
       result[i] = facing_by_roots<M>(segment, faces.first + i, view, roots, lane);
     } else {
+      FacingChange& change = result[i].at[0];
       result[i].count = 1;
-      result[i].at[0] = {roots.lower[lane], roots.upper[lane], side_of(before), side_of(-before)};
+      change = {roots.lower[lane], roots.upper[lane], side_of(before), side_of(-before)};
+      if (change.upper - change.lower > kWidestBracket)
+        close_in(in_integers<M>(segment, faces.first + i, view), before, change.lower, change.upper);
     }
   }
 }
@@ -224,9 +290,10 @@ template <std::size_t M>
 void sides_in_block(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
                     double t0, double t1, ShutterSide* result) noexcept {
   FacingCoefficients f;
-  glance(segment, faces, normals, view, f);
+  const bool by_glance = fits_double(view);
+  if (by_glance) glance(segment, faces, normals, view, f);
   for (std::size_t i = 0; i < faces.count; ++i) {
-    if (const std::optional<ShutterSide> quick = side_by_glance<M>(f, i, t0, t1))
+    if (const auto quick = by_glance ? side_by_glance<M>(f, i, t0, t1) : std::nullopt)
       result[i] = *quick;
     else
       result[i] = side_over(find_facing(segment, faces.first + i, normals[i], view), t0, t1);

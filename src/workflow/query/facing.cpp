@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "chronormal/workflow/query.h"
@@ -53,10 +54,11 @@ void add_fronts(const Facing& facing, std::size_t face, const SegmentPart& part,
   if (is_front) close();
 }
 
-// The view of one segment: an eye moves evenly over the time of the motion.
+// The view of one segment: an eye moves evenly over the time of the motion. What does not move is not rounded.
 View view_in(const Segment& segment, const View& view, double first, double last) {
   const auto eye_at = [&](double time) {
-    return to_float(lerp(to_double(view.from), to_double(view.to), (time - first) / (last - first)));
+    const LocalTime t = LocalTime::between(first, time, last);
+    return t.rest == 0 ? view.to : view.from + t.t * (view.to - view.from);
   };
   return {view.is_eye, eye_at(segment.start_time), eye_at(segment.end_time)};
 }
@@ -115,7 +117,12 @@ QueryTable table_of(const char* name, const char* meaning, std::vector<QueryColu
 
 Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes, const QuerySpan& span,
                                  const QueryProgress& progress) {
-  if (!view.is_eye && view.from == Vec3f{}) return Error{ErrorCode::kUsage, "--direction", "it must not be 0,0,0"};
+  const std::string option = view.is_eye ? "--eye" : "--direction";
+  for (const Vec3d& v : {view.from, view.to}) {
+    if (!is_finite(v) || max_abs(v) > std::numeric_limits<float>::max())
+      return Error{ErrorCode::kUsage, option, "a coordinate is beyond the range of float32"};
+  }
+  if (!view.is_eye && view.from == Vec3d{}) return Error{ErrorCode::kUsage, option, "it must not be 0,0,0"};
   const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
   if (!parts) return parts.error();
   double first = std::numeric_limits<double>::infinity(), last = -first;
