@@ -40,12 +40,17 @@ namespace chronormal {
 /// Who looks. Coordinates are doubles and count as they are; none may be beyond the range of float32.
 struct View {
   bool is_eye = false;
-  Vec3d from, to;  ///< the eye at t = 0 and at t = 1; of a direction both are the same
+  Vec3d from, to;  ///< the eye where its way begins and ends; of a direction both are the same
+  /// Where on its way the eye is at t = 0 and at t = 1: a part of the way, where that is longer than the segment.
+  LocalTime start = 0.0, end = 1.0;
 
   /// A viewer infinitely far away in this direction: what has a normal along it is seen from its front.
   [[nodiscard]] static View of_direction(const Vec3d& to_viewer) noexcept { return {false, to_viewer, to_viewer}; }
   [[nodiscard]] static View of_eye(const Vec3d& eye) noexcept { return {true, eye, eye}; }
-  [[nodiscard]] static View of_moving_eye(const Vec3d& from, const Vec3d& to) noexcept { return {true, from, to}; }
+  [[nodiscard]] static View of_moving_eye(const Vec3d& from, const Vec3d& to, const LocalTime& start = 0.0,
+                                          const LocalTime& end = 1.0) noexcept {
+    return {true, from, to, start, end};
+  }
 };
 
 /// No bracket of an instant is wider than this.

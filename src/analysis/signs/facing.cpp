@@ -31,29 +31,53 @@ namespace {
 Side side_of(int sign) { return static_cast<Side>(sign); }
 
 // Whether products with the way to the viewer stay in the range of double: its components are no smaller than positions
-// can be. Else every face is left to integers.
+// can be.
 bool fits_double(const View& view) noexcept {
   const auto fits = [](double component) { return component == 0 || std::fabs(component) >= 0x1p-149; };
   return fits(view.from.x) && fits(view.from.y) && fits(view.from.z) && fits(view.to.x) && fits(view.to.y) &&
          fits(view.to.z);
 }
 
+// The eye somewhere on its way, within 3 u of the largest component of both ends.
+Vec3d eye_at(const View& view, const LocalTime& on_way) noexcept {
+  if (on_way.t == 0) return view.from;
+  return on_way.rest == 0 ? view.to : on_way.rest * view.from + on_way.t * view.to;
+}
+
+bool is_whole_way(const View& view) noexcept { return view.start.t == 0 && view.end.rest == 0; }
+
+// Leaves a face to integers.
+void leave(std::size_t i, FacingCoefficients& f) noexcept {
+  f.signs[i] = 0;
+  for (auto& bounds : f.bounds) bounds[i] = std::numeric_limits<double>::infinity();
+}
+
 // The coefficients of f by the control normals of a block of faces.
 void glance(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
             FacingCoefficients& result) noexcept {
+  const bool fits = fits_double(view);
   if (!view.is_eye) {
     facing_of_direction(normals, faces.count, view.from, result);
+    for (std::size_t i = 0; i < faces.count && !fits; ++i) leave(i, result);
     return;
   }
   FacingWays ways{};
+  const Vec3d from = eye_at(view, view.start), to = eye_at(view, view.end);
   for (std::size_t i = 0; i < faces.count; ++i) {
     const std::uint32_t corner = segment.topology->face(faces.first + i)[0];
-    const Vec3d at_start = view.from - to_double(segment.from[corner]),
-                at_end = view.to - to_double(segment.to[corner]);
+    const Vec3d at_start = from - to_double(segment.from[corner]), at_end = to - to_double(segment.to[corner]);
     ways.at[0][i] = at_start.x, ways.at[1][i] = at_start.y, ways.at[2][i] = at_start.z;
     ways.at[3][i] = at_end.x, ways.at[4][i] = at_end.y, ways.at[5][i] = at_end.z;
   }
   facing_of_eye(normals, faces.count, ways, result);
+  // A place on the way is rounded to 3 u of the eye, which is at most 6 u of a way to it that is half as long.
+  const double shortest = is_whole_way(view) ? 0 : 0.5 * std::max(max_abs(view.from), max_abs(view.to));
+  if (fits && shortest == 0) return;
+  for (std::size_t i = 0; i < faces.count; ++i) {
+    double longest = 0;
+    for (const auto& component : ways.at) longest = std::max(longest, std::fabs(component[i]));
+    if (!fits || longest < shortest) leave(i, result);
+  }
 }
 
 // What a shutter sees by the control normals alone, where they can tell.
@@ -119,17 +143,18 @@ void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, 
     roots.p[k][lane] = k == 0 || k == M - 1 ? f.values[k][i] : kShareOfInner * f.values[k][i];
     bound = std::max(bound, f.bounds[k][i]);
   }
-  // Up to 16 roundings of the way, of the products and sums of a dot product, and of a mean of three: the terms of one
-  // are at most bound / kDotShare.
+  // Up to 16 roundings of the eye and the way, of the products and sums of a dot product, and of a mean of three: the
+  // terms of one are at most bound / kDotShare.
   constexpr double kRoundings = 16;
   roots.error[lane] = f.reach[i] * rounding_of(segment, face) + kRoundings * kUnitRoundoff / kDotShare * bound;
 }
 
-// The way: sums of a few doubles up to 2^128, and so of 1,205 bits.
-constexpr std::size_t kNormalDigits = ExactCurve::kDigits, kWayDigits = 53;
-constexpr std::size_t kCoefficientDigits = kNormalDigits + kWayDigits + 1;
-using Way = std::array<WideInteger<kWayDigits>, 3>;
-using Coefficient = WideInteger<kCoefficientDigits>;
+// Differences of doubles up to 2^128, and so of 1,203 bits; and the way, which is some of them, or their multiples by
+// integers of two times.
+constexpr std::size_t kNormalDigits = ExactCurve::kDigits, kPlaceDigits = 52;
+constexpr std::size_t kWayDigits = kPlaceDigits + 1, kPartDigits = kPlaceDigits + 2 * TimeFraction::kDigits + 2;
+template <std::size_t kDigits>
+using WideVector = std::array<WideInteger<kDigits>, 3>;
 
 // The smallest shift of a component of some vectors.
 unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
@@ -143,47 +168,98 @@ unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
   return lowest;
 }
 
-void add_vector(const Vec3d& v, unsigned shift, std::int64_t sign, Way& sum) noexcept {
-  sum[0].add(DoubleParts::of(v.x), shift, sign);
-  sum[1].add(DoubleParts::of(v.y), shift, sign);
-  sum[2].add(DoubleParts::of(v.z), shift, sign);
+// p - q in integers of one unit.
+WideVector<kPlaceDigits> difference(const Vec3d& p, const Vec3d& q, unsigned shift) noexcept {
+  WideVector<kPlaceDigits> result;
+  const auto set = [shift](double a, double b, WideInteger<kPlaceDigits>& to) {
+    to.add(DoubleParts::of(a), shift);
+    to.add(DoubleParts::of(b), shift, -1);
+    to.settle();
+  };
+  set(p.x, q.x, result[0]);
+  set(p.y, q.y, result[1]);
+  set(p.z, q.z, result[2]);
+  return result;
 }
 
-void add_dot(const ExactCurve::CoefficientVector& n, const Way& w, Coefficient& sum) noexcept {
-  for (std::size_t k = 0; k < 3; ++k) sum.add_product(n[k], w[k]);
+// w(t) = start + t change, times a positive number.
+template <std::size_t kDigits>
+struct Way {
+  WideVector<kDigits> start, change;
+
+  void settle() noexcept {
+    for (std::size_t k = 0; k < 3; ++k) {
+      start[k].settle();
+      change[k].settle();
+    }
+  }
+};
+
+// The way from a corner to an eye that is at view.from and view.to at the ends of the segment, or to a direction.
+Way<kWayDigits> whole_way(const View& view, const Vec3d& from, const Vec3d& to) noexcept {
+  Way<kWayDigits> way;
+  const unsigned shift =
+      lowest_shift(std::array{view.from, view.to, view.is_eye ? from : Vec3d{}, view.is_eye ? to : Vec3d{}});
+  const auto start = difference(view.from, view.is_eye ? from : Vec3d{}, shift),
+             end = difference(view.to, view.is_eye ? to : Vec3d{}, shift);
+  for (std::size_t k = 0; k < 3; ++k) {
+    way.start[k].add(start[k], 1);
+    way.change[k].add(end[k], 1);
+    way.change[k].add(start[k], -1);
+  }
+  way.settle();
+  return way;
 }
 
-// f of one face, times a power of two; M as in find_in_block().
-template <std::size_t M>
-IntegerPolynomial<M - 1, kCoefficientDigits> in_integers(const Segment& segment, std::size_t face,
-                                                         const View& view) noexcept {
-  const auto vertices = segment.topology->face(face);
+// The way to an eye on a part of its own way, times both wholes of the times: with p / q and r / s for these,
+// q s (view.from - from) + p s (view.to - view.from), and what is added to that until t = 1.
+Way<kPartDigits> part_of_way(const View& view, const Vec3d& from, const Vec3d& to) noexcept {
+  constexpr std::size_t kProductDigits = 2 * TimeFraction::kDigits;
+  const TimeFraction start = TimeFraction::of(view.start), end = TimeFraction::of(view.end);
+  WideInteger<kProductDigits> whole, before, done;
+  whole.add_product(start.whole, end.whole);
+  before.add_product(start.part, end.whole);
+  done.add_product(end.part, start.whole);
+  done.add_product(start.part, end.whole, -1);
+  for (auto* one : {&whole, &before, &done}) one->settle();
+  const unsigned shift = lowest_shift(std::array{view.from, view.to, from, to});
+  const auto to_first = difference(view.from, from, shift), moved = difference(view.to, view.from, shift),
+             corner_moved = difference(to, from, shift);
+  Way<kPartDigits> way;
+  for (std::size_t k = 0; k < 3; ++k) {
+    way.start[k].add_product(to_first[k], whole);
+    way.start[k].add_product(moved[k], before);
+    way.change[k].add_product(moved[k], done);
+    way.change[k].add_product(corner_moved[k], whole, -1);
+  }
+  way.settle();
+  return way;
+}
+
+// f of one face, times a positive number.
+template <std::size_t kDegree, std::size_t kDigits>
+auto times_normal(const Segment& segment, std::span<const std::uint32_t> vertices, const Way<kDigits>& way) noexcept {
+  IntegerPolynomial<kDegree, kNormalDigits + kDigits + 1> f;
   const auto c = ExactCurve::of_polygon(segment, vertices).in_powers();
-  // w(t) = start + t change
-  Way start, change;
-  const Vec3d from = to_double(segment.from[vertices[0]]), to = to_double(segment.to[vertices[0]]);
-  if (view.is_eye) {
-    const unsigned shift = lowest_shift(std::array{view.from, view.to, from, to});
-    add_vector(view.from, shift, 1, start);
-    add_vector(from, shift, -1, start);
-    add_vector(view.to, shift, 1, change);
-    add_vector(view.from, shift, -1, change);
-    add_vector(to, shift, -1, change);
-    add_vector(from, shift, 1, change);
-  } else {
-    add_vector(view.from, lowest_shift(std::array{view.from}), 1, start);
-  }
   for (std::size_t k = 0; k < 3; ++k) {
-    start[k].settle();
-    change[k].settle();
+    for (std::size_t i = 0; i < 3; ++i) {
+      f.a[k].add_product(c[k][i], way.start[i]);
+      if constexpr (kDegree == 3) f.a[k + 1].add_product(c[k][i], way.change[i]);
+    }
   }
-  IntegerPolynomial<M - 1, kCoefficientDigits> f;
-  for (std::size_t k = 0; k < 3; ++k) {
-    add_dot(c[k], start, f.a[k]);
-    if constexpr (M == 4) add_dot(c[k], change, f.a[k + 1]);
-  }
-  for (Coefficient& coefficient : f.a) coefficient.settle();
+  for (auto& coefficient : f.a) coefficient.settle();
   return f;
+}
+
+// Calls body(f) with the exact f of one face; M as in find_in_block().
+template <std::size_t M, class Body>
+void in_integers(const Segment& segment, std::size_t face, const View& view, const Body& body) noexcept {
+  const auto vertices = segment.topology->face(face);
+  const Vec3d from = to_double(segment.from[vertices[0]]), to = to_double(segment.to[vertices[0]]);
+  if constexpr (M == 4) {
+    if (!is_whole_way(view)) return body(times_normal<3>(segment, vertices, part_of_way(view, from, to)));
+  }
+  body(times_normal<M - 1>(segment, vertices, whole_way(view, from, to)));
 }
 
 // Closes in a bracket of the only root between its ends, at which the signs are known and differ. Its middle is a good
@@ -210,14 +286,6 @@ void close_in(const Polynomial& f, int before, double& lower, double& upper) noe
 
 bool is_wide(const ExactRoot& root) noexcept { return root.upper - root.lower > kWidestBracket; }
 
-Facing facing_of(const ExactRoots& roots) noexcept {
-  Facing facing;
-  facing.side = side_of(roots.sign);
-  for (const ExactRoot& root : roots.all())
-    facing.at[facing.count++] = {root.lower, root.upper, side_of(root.before), side_of(root.after)};
-  return facing;
-}
-
 // All roots of one face.
 template <std::size_t M>
 Facing facing_by_roots(const Segment& segment, std::size_t face, const View& view, const SingleRoots& from,
@@ -226,22 +294,23 @@ Facing facing_by_roots(const Segment& segment, std::size_t face, const View& vie
   for (std::size_t k = 0; k < M; ++k) p[k] = from.p[k][lane];
   ExactRoots roots;
   if (!CertainRoots<M>::find(p, from.error[lane], roots)) {
-    roots = exact_roots(in_integers<M>(segment, face, view));
+    in_integers<M>(segment, face, view, [&roots](const auto& f) { roots = exact_roots(f); });
   } else if (std::any_of(roots.all().begin(), roots.all().end(), is_wide)) {
-    const auto f = in_integers<M>(segment, face, view);
-    for (std::size_t k = 0; k < roots.count; ++k) close_in(f, roots.at[k].before, roots.at[k].lower, roots.at[k].upper);
+    in_integers<M>(segment, face, view, [&roots](const auto& f) {
+      for (std::size_t k = 0; k < roots.count; ++k)
+        close_in(f, roots.at[k].before, roots.at[k].lower, roots.at[k].upper);
+    });
   }
-  return facing_of(roots);
+  Facing facing;
+  facing.side = side_of(roots.sign);
+  for (const ExactRoot& root : roots.all())
+    facing.at[facing.count++] = {root.lower, root.upper, side_of(root.before), side_of(root.after)};
+  return facing;
 }
 
 template <std::size_t M>
 void find_in_block(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
                    Facing* result) noexcept {
-  if (!fits_double(view)) {
-    for (std::size_t i = 0; i < faces.count; ++i)
-      result[i] = facing_of(exact_roots(in_integers<M>(segment, faces.first + i, view)));
-    return;
-  }
   FacingCoefficients f;
   glance(segment, faces, normals, view, f);
   SingleRoots roots{};
@@ -265,7 +334,8 @@ void find_in_block(const Segment& segment, IndexRange faces, const ControlNormal
       result[i].count = 1;
       change = {roots.lower[lane], roots.upper[lane], side_of(before), side_of(-before)};
       if (change.upper - change.lower > kWidestBracket)
-        close_in(in_integers<M>(segment, faces.first + i, view), before, change.lower, change.upper);
+        in_integers<M>(segment, faces.first + i, view,
+                       [&](const auto& f_of_face) { close_in(f_of_face, before, change.lower, change.upper); });
     }
   }
 }
@@ -290,10 +360,9 @@ template <std::size_t M>
 void sides_in_block(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
                     double t0, double t1, ShutterSide* result) noexcept {
   FacingCoefficients f;
-  const bool by_glance = fits_double(view);
-  if (by_glance) glance(segment, faces, normals, view, f);
+  glance(segment, faces, normals, view, f);
   for (std::size_t i = 0; i < faces.count; ++i) {
-    if (const auto quick = by_glance ? side_by_glance<M>(f, i, t0, t1) : std::nullopt)
+    if (const std::optional<ShutterSide> quick = side_by_glance<M>(f, i, t0, t1))
       result[i] = *quick;
     else
       result[i] = side_over(find_facing(segment, faces.first + i, normals[i], view), t0, t1);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace chronormal::inline internal {
@@ -45,26 +44,7 @@ Vec3d to_doubles(const std::array<WideInteger<kDigits>, 3>& v, int exponent) noe
   return {v[0].to_double(exponent), v[1].to_double(exponent), v[2].to_double(exponent)};
 }
 
-// t = part / whole, of integers. Doubles and their differences are integers times 2^-1074, of 2099 bits.
-constexpr std::size_t kTimeDigits = 89;
-struct TimeFraction {
-  WideInteger<kTimeDigits> part, whole;
-
-  [[nodiscard]] static TimeFraction of(const LocalTime& t) noexcept {
-    const DoubleParts start = DoubleParts::of(t.start), time = DoubleParts::of(t.time), end = DoubleParts::of(t.end);
-    unsigned shift = std::numeric_limits<unsigned>::max();
-    for (const DoubleParts& parts : {start, time, end})
-      if (parts.mantissa != 0) shift = std::min(shift, parts.shift);
-    TimeFraction result;
-    result.part.add(time, shift);
-    result.part.add(start, shift, -1);
-    result.whole.add(end, shift);
-    result.whole.add(start, shift, -1);
-    result.part.settle();
-    result.whole.settle();
-    return result;
-  }
-};
+constexpr std::size_t kTimeDigits = TimeFraction::kDigits;
 
 template <std::size_t kMost, std::size_t kA, std::size_t kB>
 WideInteger<kMost> product(const WideInteger<kA>& a, const WideInteger<kB>& b) noexcept {

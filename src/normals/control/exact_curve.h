@@ -16,9 +16,11 @@
 #ifndef CHRONORMAL_NORMALS_CONTROL_EXACT_CURVE_H_
 #define CHRONORMAL_NORMALS_CONTROL_EXACT_CURVE_H_
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,6 +30,28 @@
 #include "core/wide_integer.h"
 
 namespace chronormal::inline internal {
+
+/// t = part / whole, of integers. Doubles and their differences are integers times 2^-1074, of 2099 bits.
+struct TimeFraction {
+  static constexpr std::size_t kDigits = 89;
+
+  WideInteger<kDigits> part, whole;  ///< settled
+
+  [[nodiscard]] static TimeFraction of(const LocalTime& t) noexcept {
+    const DoubleParts start = DoubleParts::of(t.start), time = DoubleParts::of(t.time), end = DoubleParts::of(t.end);
+    unsigned shift = std::numeric_limits<unsigned>::max();
+    for (const DoubleParts& parts : {start, time, end})
+      if (parts.mantissa != 0) shift = std::min(shift, parts.shift);
+    TimeFraction result;
+    result.part.add(time, shift);
+    result.part.add(start, shift, -1);
+    result.whole.add(end, shift);
+    result.whole.add(start, shift, -1);
+    result.part.settle();
+    result.whole.settle();
+    return result;
+  }
+};
 
 class ExactCurve {
  public:

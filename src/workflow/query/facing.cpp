@@ -54,13 +54,11 @@ void add_fronts(const Facing& facing, std::size_t face, const SegmentPart& part,
   if (is_front) close();
 }
 
-// The view of one segment: an eye moves evenly over the time of the motion. What does not move is not rounded.
+// The view of one segment: an eye moves evenly over the time of the motion.
 View view_in(const Segment& segment, const View& view, double first, double last) {
-  const auto eye_at = [&](double time) {
-    const LocalTime t = LocalTime::between(first, time, last);
-    return t.rest == 0 ? view.to : view.from + t.t * (view.to - view.from);
-  };
-  return {view.is_eye, eye_at(segment.start_time), eye_at(segment.end_time)};
+  if (view.from == view.to) return view;
+  return View::of_moving_eye(view.from, view.to, LocalTime::between(first, segment.start_time, last),
+                             LocalTime::between(first, segment.end_time, last));
 }
 
 Found facing_of(const Segment& segment, const View& view, bool with_silhouettes, const SegmentPart& part) {

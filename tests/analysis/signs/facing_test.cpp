@@ -44,9 +44,18 @@ WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, cons
   std::array<test::Whole, 4> values;
   for (const long t : {-1L, 0L, 1L, 2L}) {
     const test::WholeVector a = test::on_line(whole(segment.from[vertices[0]]), whole(segment.to[vertices[0]]), t);
-    const test::WholeVector viewer = test::on_line(whole(view.from), whole(view.to), t);
-    const test::WholeVector n = test::whole_normal(segment, vertices, t);
-    values[static_cast<std::size_t>(t + 1)] = test::dot_of(n, view.is_eye ? test::minus(viewer, a) : viewer);
+    // Times both wholes.
+    const auto time = [](double difference) { return test::Whole(std::ldexp(difference, 60)); };
+    const test::WholeVector n = test::whole_normal(segment, vertices, t), from = whole(view.from), to = whole(view.to);
+    const test::Whole first = time(view.start.end - view.start.start), second = time(view.end.end - view.end.start);
+    const test::Whole start = time(view.start.time - view.start.start) * second,
+                      end = time(view.end.time - view.end.start) * first, part = start + t * (end - start);
+    test::WholeVector way;
+    for (std::size_t k = 0; k < 3; ++k) {
+      way[k] = first * second * from[k] + part * (to[k] - from[k]);
+      if (view.is_eye) way[k] -= first * second * a[k];
+    }
+    values[static_cast<std::size_t>(t + 1)] = test::dot_of(n, way);
   }
   return WholePolynomial::through(values[0], values[1], values[2], values[3]);
 }
@@ -62,7 +71,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   int side = facing.count == 0 ? sign_of(facing.side) : 0;
   std::vector<std::pair<double, int>> parts = {{0, side}};  // from where on the sign is known, and which it is
   for (const FacingChange& change : facing.changes()) {
-    if (!(last < change.lower || (last == change.lower && last > 0)) || change.lower > change.upper)
+    if (last > change.lower || change.lower > change.upper)
       return "not ascending";
     if (change.upper - change.lower > kWidestBracket) return "a wide bracket";
     if (change.lower == change.upper) {
@@ -71,7 +80,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
     } else {
       const int below = f.sign_at(change.lower), above = f.sign_at(change.upper);
       // A root that is a double has a bracket of its own, and another may follow before the next double.
-      const bool follows_a_root = below == 0 && change.lower > 0 && change.lower == last;
+      const bool follows_a_root = below == 0 && change.lower == last;
       if (below == 0 && change.lower > 0 && !follows_a_root) return "lower end is a root";
       const bool crosses = below * above < 0;
       inside += crosses ? 1 : f.count_roots(change.lower, change.upper) - (follows_a_root ? 1 : 0);
@@ -121,7 +130,7 @@ View some_view(const Segment& segment, std::size_t face, test::Random& random) {
   const auto clamped = [](const Vec3d& v) {
     return Vec3d{std::clamp(v.x, -3e38, 3e38), std::clamp(v.y, -3e38, 3e38), std::clamp(v.z, -3e38, 3e38)};
   };
-  switch (random.below(10)) {
+  switch (random.below(12)) {
     case 0:
       return View::of_direction(lattice());
     case 1:
@@ -139,6 +148,13 @@ View some_view(const Segment& segment, std::size_t face, test::Random& random) {
     case 7: {  // a component far below any float
       const Vec3d p = somewhere(1), q = lattice();
       return View::of_direction({std::ldexp(p.x, -static_cast<int>(random.below(1000))), q.y, q.z});
+    }
+    case 9:
+    case 10: {  // on a part of its way, of which the ends need not be doubles
+      const double before = static_cast<double>(random.below(9)), here = 1 + static_cast<double>(random.below(9)),
+                   all = before + here + static_cast<double>(random.below(9));
+      const Vec3d p = random.below(2) == 0 ? lattice() : clamped(a + somewhere(1)), q = somewhere(3);
+      return View::of_moving_eye(p, q, LocalTime::between(0, before, all), LocalTime::between(0, before + here, all));
     }
     case 8:  // closer to a corner than any float but itself
       return View::of_eye(a + std::ldexp(1.0, -static_cast<int>(random.below(300))) * somewhere(1));
