@@ -63,8 +63,23 @@ void AreaSums::write_areas(const PointRows& points, IndexRange faces, double* ar
   }
 }
 
-void AreaSums::each_block(const PointRows& a, const PointRows* b, const Body& body) const {
+void AreaSums::settle(const double* areas, std::size_t first_face, IndexRange elements, const Exact& exact,
+                      std::span<Vec3d> sums) const {
+  constexpr double kMostCancelled = 0x1p20;
+  for (std::size_t i = 0; i < elements.count; ++i) {
+    double size = 0;
+    for (const std::uint32_t f : groups_->faces(elements.first + i)) {
+      const double* const row = areas + kAreaRow * (f - first_face);
+      size += max_abs(Vec3d{row[0], row[1], row[2]});
+    }
+    if (size > 0 && !(kMostCancelled * max_abs(sums[i]) > size)) sums[i] = exact(elements.first + i);
+  }
+}
+
+void AreaSums::each_block(const PointRows& a, const PointRows* b, const Exact& of_a, const Exact& of_b,
+                          const Body& body) const {
   const std::array<const PointRows*, 2> points = {&a, b};
+  const std::array<const Exact*, 2> exact = {&of_a, &of_b};
   std::array<AlignedArray<double>, 2> all;  // areas of all faces
   for (std::size_t k = 0; k < points.size() && are_scattered_; ++k) {
     if (points[k] == nullptr) continue;
@@ -81,8 +96,10 @@ void AreaSums::each_block(const PointRows& a, const PointRows* b, const Body& bo
       if (points[k] == nullptr) continue;
       sums[k].resize(elements.count);
       if (!are_scattered_) write_areas(*points[k], faces, near.data());
-      sums_of_areas(are_scattered_ ? all[k].data() : near.data(), are_scattered_ ? 0 : faces.first, *groups_, elements,
-                    sums[k].data());
+      const double* const areas = are_scattered_ ? all[k].data() : near.data();
+      const std::size_t first_face = are_scattered_ ? 0 : faces.first;
+      sums_of_areas(areas, first_face, *groups_, elements, sums[k].data());
+      if (*exact[k]) settle(areas, first_face, elements, *exact[k], sums[k]);
     }
     body(elements, sums[0], sums[1]);
   });

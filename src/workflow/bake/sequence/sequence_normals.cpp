@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "chronormal/normals/weighting.h"
 #include "core/bits.h"
 #include "core/blocks.h"
+#include "normals/control/exact_curve.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -125,11 +128,57 @@ void SequenceNormals::write_displacements(std::size_t segment, PointRows& rows) 
              [=](std::size_t i) { return double{delta_of(to[i], base[i])} - double{delta_of(from[i], base[i])}; });
 }
 
-std::vector<Vec3d> SequenceNormals::vector_areas(const PointRows& points) const {
+namespace {
+
+// Makes the sums of the areas that the points a + b give, in integers, of two arrays that are made when they are first
+// needed. (At t = 1/2 of a segment from a to b, points are half of a + b, and areas a fourth.)
+template <class MakeA, class MakeB>
+AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups, const MakeA& make_a,
+                           const MakeB& make_b) {
+  struct Points {
+    std::once_flag made;
+    std::vector<float> a, b;
+  };
+  return [&topology, &groups, make_a, make_b, points = std::make_shared<Points>()](std::size_t element) {
+    std::call_once(points->made, [&] {
+      points->a = make_a();
+      points->b = make_b();
+    });
+    const auto view = [](const std::vector<float>& p) { return VectorView<const float>::packed(std::span(p)); };
+    const Segment segment{&topology, view(points->a), view(points->b)};
+    return 4.0 * ExactCurve::of_faces(segment, groups.faces(element)).normal_at(0.5);
+  };
+}
+
+// Multiplies the deltas of a keyframe by 1 or -1, on this thread.
+std::vector<float> signed_deltas(std::span<const float> positions, std::span<const float> base, float sign) {
+  std::vector<float> result(base.size());
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = sign * delta_of(positions[i], base[i]);
+  return result;
+}
+
+}  // namespace
+
+AreaSums::Exact SequenceNormals::exact_at_key(std::size_t key) const {
+  return exact_sums(
+      motion().topology, *groups_, [this] { return base_; },
+      [this, key] { return signed_deltas(motion().keyframes[key].positions, base_, 1); });
+}
+
+AreaSums::Exact SequenceNormals::exact_bend(std::size_t segment) const {
+  const auto deltas = [this](std::size_t key, float sign) {
+    return signed_deltas(motion().keyframes[key].positions, base_, sign);
+  };
+  return exact_sums(
+      motion().topology, *groups_, [=] { return deltas(segment + 1, 1); }, [=] { return deltas(segment, -1); });
+}
+
+std::vector<Vec3d> SequenceNormals::vector_areas(const PointRows& points, const AreaSums::Exact& exact) const {
   std::vector<Vec3d> result(elements());
-  sums_.each_block(points, nullptr, [&](IndexRange elements, std::span<const Vec3d> sums, std::span<const Vec3d>) {
-    std::copy(sums.begin(), sums.end(), result.begin() + static_cast<std::ptrdiff_t>(elements.first));
-  });
+  sums_.each_block(points, nullptr, exact, {},
+                   [&](IndexRange elements, std::span<const Vec3d> sums, std::span<const Vec3d>) {
+                     std::copy(sums.begin(), sums.end(), result.begin() + static_cast<std::ptrdiff_t>(elements.first));
+                   });
   return result;
 }
 
@@ -137,7 +186,7 @@ std::vector<Vec3d> SequenceNormals::at_key(std::size_t key) const {
   if (!fitted_keys_.empty()) return fitted_keys_[key];
   PointRows positions;
   write_positions(key, positions);
-  return vector_areas(positions);
+  return vector_areas(positions, exact_at_key(key));
 }
 
 // d = sum of de x df is twice the vector area of the polygon that the displacements of the corners make.
@@ -145,7 +194,7 @@ std::vector<Vec3d> SequenceNormals::bends(std::size_t segment) const {
   if (!fitted_bends_.empty()) return fitted_bends_[segment];
   PointRows displacements;
   write_displacements(segment, displacements);
-  return vector_areas(displacements);
+  return vector_areas(displacements, exact_bend(segment));
 }
 
 void SequenceNormals::each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const {
@@ -157,7 +206,7 @@ void SequenceNormals::each_block(std::size_t segment, Rows& rows, const AreaSums
   }
   write_positions(segment + 1, rows.positions);
   write_displacements(segment, rows.displacements);
-  sums_.each_block(rows.positions, &rows.displacements, body);
+  sums_.each_block(rows.positions, &rows.displacements, exact_at_key(segment + 1), exact_bend(segment), body);
 }
 
 }  // namespace chronormal::inline internal

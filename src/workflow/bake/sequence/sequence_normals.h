@@ -74,7 +74,10 @@ class SequenceNormals {
   // The points at a key, and how far they move in a segment.
   void write_positions(std::size_t key, PointRows& rows) const;
   void write_displacements(std::size_t segment, PointRows& rows) const;
-  [[nodiscard]] std::vector<Vec3d> vector_areas(const PointRows& points) const;
+  // Exact sums of areas at a key, and of the displacements in a segment, for those that cancel.
+  [[nodiscard]] AreaSums::Exact exact_at_key(std::size_t key) const;
+  [[nodiscard]] AreaSums::Exact exact_bend(std::size_t segment) const;
+  [[nodiscard]] std::vector<Vec3d> vector_areas(const PointRows& points, const AreaSums::Exact& exact) const;
 
   MotionStream* stream_;
   const NormalGroups* groups_;
