@@ -185,7 +185,7 @@ std::string fault_of(const Motion& motion, const NormalGroups* groups, Random& r
 
 TEST(Times, do_not_change_each_others_bytes) {
   constexpr std::uint64_t kSeed = 49001;
-  constexpr std::size_t kOfFamily = 4, kOfStars = 60;
+  constexpr std::size_t kOfFamily = 3, kOfStars = 40;
   std::vector<test::HardMotions> families = test::hard_motions();
   std::size_t wrong = 0, meshes = 0;
   for (std::size_t k = 0; k < families.size(); ++k) {
