@@ -25,10 +25,8 @@ function flagsOf(options) {
   const flags = [];
   for (const [name, value] of Object.entries(options)) {
     if (OWN.has(name) || value === undefined || value === false) continue;
-    const flag = flagOf(name), text = Array.isArray(value) ? value.join(',') : String(value);
-    if (value === true) flags.push(flag);
-    else if (text.startsWith('-')) flags.push(`${flag}=${text}`); // which would be an option by itself
-    else flags.push(flag, text);
+    flags.push(flagOf(name));
+    if (value !== true) flags.push(Array.isArray(value) ? value.join(',') : String(value));
   }
   return flags;
 }

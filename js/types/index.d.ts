@@ -10,7 +10,10 @@ export interface Progress {
 
 /** How a call is made. Every other option is one of the program, in camel case: `maxTargets: 112` is `--max-targets 112`. */
 export interface CallOptions {
-  /** The name of the input, with its extension, which tells its format: walk.npz. Default: input.glb or input.gltf. */
+  /**
+   * The name of the input, with its extension, which tells its format: walk.npz. It may have folders in it. A name that no
+   * file can have is refused with code 2. Default: input.glb or input.gltf.
+   */
   name?: string;
   /** The files that a .gltf names, by their URIs. */
   resources?: Record<string, Uint8Array | ArrayBuffer>;
@@ -75,6 +78,7 @@ export interface CompareOptions extends JudgeOptions {
   certify?: boolean;
 }
 
+/** Is copied before a call returns its promise, as resources are: the caller may use the memory again at once. */
 export type Bytes = Uint8Array | ArrayBuffer | ArrayBufferView;
 
 export function bake(input: Bytes, options?: BakeOptions): Promise<Baked>;

@@ -151,12 +151,6 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   }
 });
 
-test('an option whose value begins with "-" gets it', async () => {
-  const { stderr } = native(['audit', 'bumps.glb', '--json', '--animation=-walk']);
-  assert.match(stderr, /-walk/);
-  await assert.rejects(audit(face, { name: 'bumps.glb', animation: '-walk' }), ({ message }) => stderr.endsWith(`${message}\n`));
-});
-
 test('memory of the caller may be used again as soon as a call has returned its promise', async () => {
   const corners = new Uint8Array(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]).buffer), text = new TextEncoder().encode(JSON.stringify({
     asset: { version: '2.0' }, buffers: [{ uri: 'a.bin', byteLength: 36 }], bufferViews: [{ buffer: 0, byteLength: 36 }],
