@@ -50,6 +50,8 @@ class VectorSum {
     return chronormal::without_rounding(value_, 4 * kUnitRoundoff * static_cast<double>(terms_) * magnitude_);
   }
 
+  /// The largest sum of absolute values in any component.
+  [[nodiscard]] double size() const noexcept { return max_abs(magnitude_); }
   /// How far any component of without_rounding() may be from the sum of the terms as they are.
   [[nodiscard]] double error() const noexcept {
     return 8 * kUnitRoundoff * static_cast<double>(terms_) * max_abs(magnitude_);

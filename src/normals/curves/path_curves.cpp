@@ -14,6 +14,9 @@
 
 #include "core/blocks.h"
 #include "core/memory.h"
+#include "core/rounding.h"
+#include "core/twofold.h"
+#include "core/vector_area.h"
 #include "normals/control/local_time.h"
 #include "normals/curves/certificate.h"
 #include "normals/curves/kernels/evaluate_path.h"
@@ -128,6 +131,53 @@ class FaceSource {
   const PolynomialSegment<3>& segment_;
 };
 
+// The control normals of the sum of some faces, where those of double cancel: in twice its digits, and zero for what is
+// nothing but their rounding. Products are added up with whole factors, and divided last.
+Controls fine_normals(const PolynomialSegment<3>& segment, std::span<const std::uint32_t> faces) noexcept {
+  constexpr double kRounding = 0x1p-102;  // of a product and its additions, at most four for each triangle
+  std::size_t triangles = 0;
+  struct Edge {
+    Twofold at[4][3];
+    double size[4];
+  };
+  Twofold sums[kPathControls][3];
+  double sizes[kPathControls] = {};
+  for (const std::uint32_t f : faces) {
+    const auto face = segment.topology->face(f);
+    triangles += face.size() - 2;
+    const auto edge_to = [&](std::size_t c) {
+      Edge edge;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Vec3d a = segment.control[k][face[0]], b = segment.control[k][face[c]];
+        edge.at[k][0] = Twofold::sum(b.x, -a.x);
+        edge.at[k][1] = Twofold::sum(b.y, -a.y);
+        edge.at[k][2] = Twofold::sum(b.z, -a.z);
+        edge.size[k] = max_abs(b - a);
+      }
+      return edge;
+    };
+    for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& g) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+          const Twofold factor{binomial(3, i) * binomial(3, j), 0};
+          for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t x = (c + 1) % 3, y = (c + 2) % 3;
+            const Twofold product = e.at[i][x] * g.at[j][y] + -(e.at[i][y] * g.at[j][x]);
+            sums[i + j][c] = sums[i + j][c] + factor * product;
+          }
+          sizes[i + j] += factor.high * e.size[i] * g.size[j];
+        }
+      }
+    });
+  }
+  Controls result;
+  for (std::size_t k = 0; k < kPathControls; ++k) {
+    const Vec3d sum{sums[k][0].value(), sums[k][1].value(), sums[k][2].value()};
+    result[k] = 1 / binomial(6, k) * without_rounding(sum, kRounding * static_cast<double>(triangles + 1) * sizes[k]);
+  }
+  return result;
+}
+
 // The faces around these elements are computed once for all of them.
 class GroupSource {
  public:
@@ -147,7 +197,8 @@ class GroupSource {
     for (std::size_t i = 0; i < faces_.size(); ++i)
       polynomial_face_normals(segment_, {faces_[i], 1}, std::span(&of_faces_[i], 1));
     sum_path_normals<3>(
-        groups_, elements, [this](std::uint32_t f) -> const Controls& { return of_faces_[place_of_face_[f]]; }, result);
+        groups_, elements, [this](std::uint32_t f) -> const Controls& { return of_faces_[place_of_face_[f]]; }, result,
+        [&](std::size_t i) { result[i] = fine_normals(segment_, groups_.faces(elements.first + i)); });
     for (const std::uint32_t f : faces_) place_of_face_[f] = kNoPlace;
   }
 

@@ -14,18 +14,24 @@
 
 namespace chronormal::inline internal {
 
-/// Adds up the control normals of the faces of each element, in their order; of_face(f) returns those of face f.
+/// Adds up the control normals of the faces of each element, in their order; of_face(f) returns those of face f. Calls
+/// cancelled(i) where those of element i of the range cancel to less than 2^-20 of them, so that their rounding counts.
 /// result must have as many elements as the range
-template <std::size_t K, class OfFace>
+template <std::size_t K, class OfFace, class Cancelled>
 void sum_path_normals(const NormalGroups& groups, IndexRange elements, const OfFace& of_face,
-                      std::span<PolynomialNormals<K>> result) noexcept {
+                      std::span<PolynomialNormals<K>> result, const Cancelled& cancelled) noexcept {
   for (std::size_t i = 0; i < elements.count; ++i) {
     std::array<VectorSum, 2 * K + 1> sum;
     for (const std::uint32_t f : groups.faces(elements.first + i)) {
       const PolynomialNormals<K>& normals = of_face(f);
       for (std::size_t k = 0; k < sum.size(); ++k) sum[k].add(normals[k]);
     }
-    for (std::size_t k = 0; k < sum.size(); ++k) result[i][k] = sum[k].without_rounding();
+    bool has_cancelled = false;
+    for (std::size_t k = 0; k < sum.size(); ++k) {
+      result[i][k] = sum[k].without_rounding();
+      has_cancelled |= max_abs(result[i][k]) < 0x1p-20 * sum[k].size();
+    }
+    if (has_cancelled) cancelled(i);
   }
 }
 

@@ -258,7 +258,7 @@ void polynomial_group_normals(const NormalGroups& groups, std::span<const Polyno
     assert(f < of_faces.size());
     return of_faces[f];
   };
-  sum_path_normals<K>(groups, elements, of_face, result);
+  sum_path_normals<K>(groups, elements, of_face, result, [](std::size_t) {});
 }
 
 template <std::size_t N>

@@ -3,12 +3,15 @@
 
 #include "chronormal/normals/path_curves.h"
 
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "chronormal/core/parallel.h"
@@ -17,6 +20,8 @@
 #include "simd/targets.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
+#include "tests/support/integer_normal.h"
 #include "tests/support/reference_elements.h"
 
 namespace chronormal::path_curves_test {
@@ -222,6 +227,67 @@ TEST(PathCurves, of_a_segment_are_those_of_all_of_its_control_normals) {
     for (const double t : kTimes) {
       EXPECT_EQ(evaluated(made_of_faces, t), evaluated(faces, t)) << t << " with " << threads << " threads";
       EXPECT_EQ(evaluated(made_of_vertices, t), evaluated(vertices, t)) << t << " with " << threads << " threads";
+    }
+  }
+}
+
+// A double as a whole number of 2^-400, which all control positions of these stars are.
+mpz_class whole(double value) {
+  int exponent = 0;
+  mpz_class result(std::ldexp(std::frexp(value, &exponent), 53));
+  return result << static_cast<unsigned>(std::max(exponent - 53 + 400, 0));
+}
+
+// The sum of the normals of some faces at t, in whole numbers.
+test::IntegerVector exact_sum(const PolynomialSegment<3>& path, std::span<const std::uint32_t> faces, double time) {
+  const test::IntegerTime t = test::IntegerTime::of(time);
+  const mpz_class s = (mpz_class(1) << t.e) - t.t;
+  const mpz_class weights[4] = {s * s * s, 3 * s * s * t.t, 3 * s * t.t * t.t, t.t * t.t * t.t};
+  const auto at = [&](std::uint32_t v) {
+    test::IntegerVector p;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vec3d& c = path.control[k][v];
+      for (std::size_t i = 0; i < 3; ++i) p[i] += weights[k] * whole(i == 0 ? c.x : i == 1 ? c.y : c.z);
+    }
+    return p;
+  };
+  test::IntegerVector sum;
+  for (const std::uint32_t f : faces) {
+    const auto face = path.topology->face(f);
+    const test::IntegerVector a = at(face[0]), b = at(face[1]), c = at(face[2]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+      sum[k] += (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
+    }
+  }
+  return sum;
+}
+
+TEST(PathCurves, of_vertices_whose_faces_cancel_are_exact) {
+  constexpr std::uint64_t kSeed = 4952;
+  fixtures::Random random(kSeed);
+  for (int star = 0; star < 40; ++star) {
+    const Motion motion = test::cancelling_star(random);
+    const Segment straight = motion.segment(0);
+    PolynomialSegment<3> path{&motion.topology, {}, 0, 1};
+    // In eighths, so that control positions are whole numbers as well.
+    const double ways[] = {0, static_cast<double>(random.below(17)) / 8 - 1, 0.75, 1};
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t v = 0; v < straight.from.count; ++v)
+        path.control[k].push_back(lerp(to_double(straight.from[v]), to_double(straight.to[v]), ways[k]));
+    }
+    const NormalGroups groups =
+        NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+    const PathCurves curves(path, groups);
+    for (const double t : {0.0, 1.0, 0.5, random.uniform(0, 1)}) {
+      const std::vector<float> found = evaluated(curves, t);
+      for (std::size_t e = 0; e < groups.size(); ++e) {
+        const test::IntegerVector n = exact_sum(path, groups.faces(e), t);
+        if (test::is_zero(n)) continue;
+        const Vec3f u{found[3 * e], found[3 * e + 1], found[3 * e + 2]};
+        EXPECT_LE(test::angle_between(u, test::direction_of(n)), 2e-6)
+            << "star " << star << " from seed " << kSeed << ", vertex " << e << " at " << t;
+      }
     }
   }
 }
