@@ -1,9 +1,9 @@
-# Sourced by ./test: compiles the core of the library for a machine of another kind, 64-bit ARM, and runs there, which is an
-# emulator, the tests that say that the bits are the same everywhere.
+# Sourced by ./test: compiles the core of the library for a machine of another kind, 64-bit ARM, and runs in an emulator
+# of it the tests that say that the bits are the same everywhere.
 
-# fetch_arm64 FOLDER: unpacks the packages that tools/packages.txt lists under [machines-arm64] there, as they are on such a
-# machine; silent where they are there. Nothing is installed, and the lists of packages are kept here: what the machine is set
-# to stays as it is.
+# fetch_arm64 FOLDER: unpacks the packages that tools/packages.txt lists under [machines-arm64] there, as they are on
+# such a machine; silent where they are there. Nothing is installed, and the lists of packages are kept here: the
+# settings of this machine stay as they are.
 fetch_arm64() {
   local folder=$1 listed package
   listed=$(listed_packages machines-arm64 | xargs)
@@ -14,8 +14,8 @@ fetch_arm64() {
 deb [arch=arm64 signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian bookworm main
 LIST
   local options=(-o "Dir::Etc::SourceList=$folder/.apt/sources.list" -o Dir::Etc::SourceParts=/nonexistent
-                 -o "Dir::State::Lists=$folder/.apt/lists" -o "Dir::Cache=$folder/.apt/cache" -o APT::Sandbox::User="$(id -un)"
-                 -o APT::Architectures::=amd64 -o APT::Architectures::=arm64)
+                 -o "Dir::State::Lists=$folder/.apt/lists" -o "Dir::Cache=$folder/.apt/cache"
+                 -o APT::Sandbox::User="$(id -un)" -o APT::Architectures::=amd64 -o APT::Architectures::=arm64)
   if ! (cd "$folder" && apt-get -q "${options[@]}" update &&
         apt-get -q "${options[@]}" download $(printf '%s:arm64 ' $listed)) </dev/null >"$folder/.apt/log" 2>&1; then
     say "the ARM packages could not be fetched; the end of $folder/.apt/log says why:"
@@ -31,8 +31,7 @@ LIST
 machine_floors=(core simd motion normals)
 machine_tests=(tests/normals/curves/golden_bits_test.cpp tests/normals/times_test.cpp tests/support/random_seed.cpp)
 
-# build_for_arm64: compiles these, those files only that are newer than what was made of them, with the flags of the presets;
-# makes build/arm64/tests.
+# build_for_arm64: compiles these, as far as that is not done, with the flags of the presets; makes build/arm64/tests.
 build_for_arm64() {
   local build=$root/build/arm64 file
   fetch_arm64 "$root/build/arm64-packages" || return 1
@@ -53,7 +52,8 @@ build_for_arm64() {
     printf ' -march=armv8-a+crypto -std=c++20 -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math -Wno-psabi'
     printf ' -I%s -I%s/src -I%s/include -isystem %s/include -isystem %s/include/aarch64-linux-gnu\n' \
       "$root" "$root" "$root" "$packages" "$packages"
-    printf 'rule cxx\n  description = $in\n  command = $cxx $flags -MMD -MF $out.d -c $in -o $out\n  depfile = $out.d\n  deps = gcc\n'
+    printf 'rule cxx\n  description = $in\n  command = $cxx $flags -MMD -MF $out.d -c $in -o $out\n'
+    printf '  depfile = $out.d\n  deps = gcc\n'
     printf 'rule link\n  command = $cxx -o $out @$out.rsp -L%s/lib/aarch64-linux-gnu' "$packages"
     printf ' -Wl,-rpath,%s/lib/aarch64-linux-gnu' "$packages"
     printf ' -lhwy -lgtest_main -lgtest -lgmpxx -lgmp\n  rspfile = $out.rsp\n  rspfile_content = $in\n'

@@ -1,8 +1,8 @@
 /// Numbers of twice the digits of double, for sums of products that cancel: each is the sum of two, the second of which
 /// is at most half a unit in the last place of the first.
 ///
-/// Source: Dekker, A floating-point technique for extending the available precision (1971). Sums and products of doubles
-/// are exact where nothing leaves their range, and those of such numbers are within 2^-100 of their operands.
+/// Source: Dekker, A floating-point technique for extending the available precision (1971). Sums and products of
+/// doubles are exact where nothing leaves their range, and those of such numbers are within 2^-100 of their operands.
 #ifndef CHRONORMAL_CORE_TWOFOLD_H_
 #define CHRONORMAL_CORE_TWOFOLD_H_
 

@@ -1,4 +1,5 @@
-/// The weights of a sum of vectors as polynomials in t: what a certificate must know of a scheme beside its coefficients.
+/// The weights of a sum of vectors as polynomials in t: what a certificate must know of a scheme beside its
+/// coefficients.
 #ifndef CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
 #define CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
 
@@ -9,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Keeps the part of a polynomial after t, or the one before it, in place: the halves of de Casteljau's triangle over as
-/// many Bernstein coefficients as there are.
+/// Keeps the part of a polynomial after t, or the one before it, in place: the halves of de Casteljau's triangle over
+/// as many Bernstein coefficients as there are.
 template <class T>
 void keep_after(std::span<T> p, double t) {
   for (std::size_t level = 1; level < p.size(); ++level) {

@@ -273,8 +273,8 @@ template <class Make>
 }
 
 /// A fan of faces around vertex 0 that cancel but for next to nothing, and stand still but for next to nothing. The rim
-/// lies in a plane, in whole numbers, and goes there and back, so that it encloses no area; its height over the plane is
-/// a small whole number times a power of two that double loses beside the height of vertex 0.
+/// lies in a plane, in whole numbers, and goes there and back, so that it encloses no area; its height over the plane
+/// is a small whole number times a power of two that double loses beside the height of vertex 0.
 [[nodiscard]] inline Motion cancelling_star(Random& random) {
   const std::size_t half = 2 + random.below(6), across = random.below(3);
   const auto small = [&random] { return static_cast<double>(random.below(15)) - 7; };

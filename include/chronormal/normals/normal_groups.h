@@ -166,8 +166,8 @@ class NormalGroups {
 };
 
 /// Writes the control normals of a range of elements as the sums of those that are given: nine additions per corner. A
-/// component of a sum that is smaller than the rounding error of its own terms is written as exactly zero. What the faces
-/// themselves are off by stays, however far they cancel. Pure: no allocation, no throw.
+/// component of a sum that is smaller than the rounding error of its own terms is written as exactly zero. What the
+/// faces themselves are off by stays, however far they cancel. Pure: no allocation, no throw.
 /// of_faces must have the control normals of all faces, result as many elements as the range
 void group_control_normals(const NormalGroups& groups, std::span<const ControlNormals> of_faces, IndexRange elements,
                            std::span<ControlNormals> result) noexcept;

@@ -51,8 +51,9 @@ class ControlNormalsSum {
   return result;
 }
 
-/// Returns the control normals of an element, each within 2^-24 of its length of the exact one, and zero only where that
-/// is: where faces cancel so far that the rounding of double could be more than 2^-26, they are made of integers. Pure.
+/// Returns the control normals of an element, each within 2^-24 of its length of the exact one, and zero only where
+/// that is: where faces cancel so far that the rounding of double could be more than 2^-26, they are made of integers.
+/// Pure.
 /// of_faces must have face_control_normals() of all faces
 [[nodiscard]] inline BoundedNormals settled_group_normals(const Segment& segment, const NormalGroups& groups,
                                                           std::span<const ControlNormals> of_faces,

@@ -45,7 +45,8 @@ enum class Formula {
   return f == Formula::kSum || f == Formula::kSumOf2 || f == Formula::kSumOf3 || f == Formula::kSumOf4;
 }
 
-/// What a formula that is no sum asks for at one t: t itself, or the weights of Bernstein of a quadratic and its square.
+/// What a formula that is no sum asks for at one t: t itself, or the weights of Bernstein of a quadratic and of its
+/// square.
 [[nodiscard]] SharedValues shared_values(Formula formula, double t) noexcept;
 
 /// Coefficients in blocks, aligned to 64 bytes. The memory is the caller's.

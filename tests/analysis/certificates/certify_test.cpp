@@ -334,7 +334,8 @@ TEST(Certificates, give_the_same_bits_on_any_number_of_threads) {
 
 // ---- sums that cancel ----------------------------------------------------------------------------------------------
 
-// What double makes of faces that cancel is rounding; the certificate must know that, or the normals must not be so made.
+// What double makes of faces that cancel is rounding; the certificate must know that, or the normals must be made
+// in another way.
 TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
   std::size_t judged = 0, known = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -388,7 +389,7 @@ TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
   EXPECT_GT(known, 500u) << "control normals that were made of integers have small bounds";
 }
 
-// ---- schemes that somebody adds --------------------------------------------------------------------------------------
+// ---- schemes that somebody adds -------------------------------------------------------------------------------------
 
 // Takes its time at both ends: 3 t^2 - 2 t^3 in place of t.
 double eased(double t) { return t * t * (3 - 2 * t); }

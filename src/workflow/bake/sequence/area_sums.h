@@ -33,8 +33,8 @@ class AreaSums {
   /// a and b give. The sums are good until body returns. b may be nullptr: it has no sums then.
   using Body = std::function<void(IndexRange elements, std::span<const Vec3d> of_a, std::span<const Vec3d> of_b)>;
   void each_block(const PointRows& a, const PointRows* b, const Body& body) const { each_block(a, b, {}, {}, body); }
-  /// The same; where the areas of an element cancel to less than 2^-20 of them, so that the sum is hardly more than their
-  /// rounding, it is what the function of a or b says. It is called on several threads at once.
+  /// The same; where the areas of an element cancel to less than 2^-20 of them, so that the sum is hardly more than
+  /// their rounding, it is what the function of a or b says. It is called on several threads at once.
   using Exact = std::function<Vec3d(std::size_t element)>;
   void each_block(const PointRows& a, const PointRows* b, const Exact& of_a, const Exact& of_b, const Body& body) const;
 
