@@ -35,7 +35,7 @@ struct Question {
 
 Vec3d way_at(const Segment& segment, std::size_t face, const View& view, double t) {
   const std::uint32_t a = segment.topology->face(face)[0];
-  const Vec3d viewer = lerp(to_double(view.from), to_double(view.to), t);
+  const Vec3d viewer = lerp(view.from, view.to, t);
   if (!view.is_eye) return viewer;
   return viewer - lerp(to_double(segment.from[a]), to_double(segment.to[a]), t);
 }
