@@ -100,6 +100,10 @@ function(chronormal_add_product suffix flags)
   target_compile_definitions(
     chronormal${suffix}
     PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+    # GCC 12 forgets the pragma by which Highway asks for these instructions in constructors that it writes itself.
+    target_compile_options(chronormal${suffix} PRIVATE -march=armv8-a+crypto)
+  endif()
   if(TBB_FOUND)
     target_link_libraries(chronormal${suffix} PRIVATE TBB::tbb)
     target_compile_definitions(chronormal${suffix} PRIVATE CHRONORMAL_HAVE_TBB)

@@ -92,8 +92,8 @@ class WideInteger {
     digits_[k + 2] += high >> kDigitBits;
   }
 
-  /// Adds sign * a / 2^(shift - 1074); a must have no smaller shift unless it is 0. Up to 2^9 of them may be added before
-  /// settle().
+  /// Adds sign * a / 2^(shift - 1074); a must have no smaller shift unless it is 0. Up to 2^9 of them may be added
+  /// before settle().
   void add(const DoubleParts& a, unsigned shift, std::int64_t sign = 1) noexcept {
     if (a.mantissa == 0) return;
     const std::int64_t mantissa = sign * a.mantissa;

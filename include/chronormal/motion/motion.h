@@ -86,7 +86,7 @@ struct Motion {
 [[nodiscard]] Status validate(const Motion& motion);
 
 /// A local t in [0, 1], as exact as a time was: with keys at 0 and 3, time 1 is t = 1/3, which no double is. Where n(t)
-/// is so small that the rounding of t would turn it, integers take the quotient itself. A double is a LocalTime as it is.
+/// is so small that the rounding of t would turn it, integers take the quotient itself. A double is one as it is.
 struct LocalTime {
   double t = 0;     ///< rounded once
   double rest = 1;  ///< 1 - t, rounded once as well: near t = 1 it has digits that t has not

@@ -30,7 +30,7 @@ std::string npy_of(const QueryColumn& column) {
   return NpyBytes(shape, std::get<std::vector<std::uint8_t>>(column.values)).bytes();
 }
 
-// The t of a time, and the next one towards an end of the segment where no double is that t: a part holds the whole span.
+// Returns the t of a time, or where no double is that t the next one towards an end: a part holds the whole span.
 double t_towards(const Segment& segment, double time, double end) {
   const LocalTime t = LocalTime::between(segment.start_time, time, segment.end_time);
   return t.is_double() ? t.t : std::nextafter(t.t, end);

@@ -263,8 +263,8 @@ Result<Pose> NormalSampler::pose_on_curve(std::size_t segment, double t) {
 Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   if (Status status = check_weights(*motion_, weights); !status) return status.error();
   if (Status status = stream_->hold_all(); !status) return status.error();
-  // base + sum of w (target - base), in the order in which nothing is lost of a base or targets that are far apart: what
-  // is left of the base is 1 - sum of w, which is nothing for a single target of weight 1.
+  // base + sum of w (target - base), in an order in which nothing is lost where these are far apart: what is left of the
+  // base is 1 - sum of w, which is nothing for a single target of weight 1.
   LongSum rest;
   rest.add(1);
   for (const double weight : weights) rest.add(-weight);

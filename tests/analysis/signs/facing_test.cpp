@@ -71,8 +71,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   int side = facing.count == 0 ? sign_of(facing.side) : 0;
   std::vector<std::pair<double, int>> parts = {{0, side}};  // from where on the sign is known, and which it is
   for (const FacingChange& change : facing.changes()) {
-    if (last > change.lower || change.lower > change.upper)
-      return "not ascending";
+    if (last > change.lower || change.lower > change.upper) return "not ascending";
     if (change.upper - change.lower > kWidestBracket) return "a wide bracket";
     if (change.lower == change.upper) {
       if (f.sign_at(change.lower) != 0) return "no root at a double";
