@@ -3,11 +3,12 @@
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 
-#include "chronormal/core/parallel.h"    // one loop over all cores
-#include "chronormal/core/polynomial.h"  // small polynomials: Bernstein and power form, roots, restriction
-#include "chronormal/core/result.h"      // errors as values: code, place, message
-#include "chronormal/core/vec3.h"        // three-component vectors over any scalar
-#include "chronormal/core/views.h"       // vectors in the caller's memory, as planes or packed
+#include "chronormal/core/interruption.h"  // computations that their caller ends in the middle
+#include "chronormal/core/parallel.h"      // one loop over all cores
+#include "chronormal/core/polynomial.h"    // small polynomials: Bernstein and power form, roots, restriction
+#include "chronormal/core/result.h"        // errors as values: code, place, message
+#include "chronormal/core/vec3.h"          // three-component vectors over any scalar
+#include "chronormal/core/views.h"         // vectors in the caller's memory, as planes or packed
 
 #include "chronormal/motion/blend_set.h"      // a base and targets, with any weights at once
 #include "chronormal/motion/motion.h"         // keyframes, the straight segments between them, and where a time lies

@@ -1,5 +1,7 @@
 #include "chronormal/core/parallel.h"
 
+#include "chronormal/core/interruption.h"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -107,6 +109,57 @@ TEST(ThreadLimit, belongs_to_the_thread_that_made_it) {
   std::size_t elsewhere = 0;
   std::thread([&] { elsewhere = thread_count(); }).join();
   EXPECT_EQ(elsewhere, without);
+}
+
+// A loop in a loop that takes seconds, unless it is ended.
+void loop_for_long() {
+  parallel_for(40, [](std::size_t) {
+    parallel_for(40, [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(5)); });
+  });
+}
+
+TEST(Interruption, ends_loops_and_those_inside_them) {
+  for (const std::size_t threads : {1u, 2u, 8u}) {
+    const ThreadLimit limit(threads);
+    std::size_t asked = 0;
+    {
+      const Interruption interruption([&] { return ++asked == 2; });
+      EXPECT_THROW(loop_for_long(), Interrupted);
+      EXPECT_EQ(asked, 2u);
+      EXPECT_THROW(check_interruption(), Interrupted);
+    }
+    check_interruption();
+    std::atomic<std::size_t> sum = 0;
+    parallel_for(100, [&](std::size_t i) { sum += i; });
+    EXPECT_EQ(sum, 4950u);
+  }
+}
+
+TEST(Interruption, is_asked_by_the_thread_that_made_it_and_ends_no_loop_of_others) {
+  const auto here = std::this_thread::get_id();
+  std::atomic<std::size_t> calls = 0;
+  std::thread other([&] {
+    parallel_for(200, [&](std::size_t) { (++calls, std::this_thread::sleep_for(std::chrono::milliseconds(1))); });
+  });
+  {
+    const Interruption interruption([&] {
+      EXPECT_EQ(std::this_thread::get_id(), here);
+      return true;
+    });
+    EXPECT_THROW(loop_for_long(), Interrupted);
+  }
+  other.join();
+  EXPECT_EQ(calls, 200u);
+}
+
+TEST(Interruption, the_innermost_counts) {
+  const Interruption outer([] { return true; });
+  {
+    const Interruption inner([] { return false; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(60));
+    check_interruption();
+  }
+  EXPECT_THROW(check_interruption(), Interrupted);
 }
 
 }  // namespace

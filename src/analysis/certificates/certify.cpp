@@ -12,6 +12,7 @@
 #include "analysis/certificates/angle_bound.h"
 #include "analysis/certificates/line_bound.h"
 #include "analysis/certificates/scheme_curves.h"
+#include "chronormal/core/interruption.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/path_curves.h"
 #include "core/blocks.h"
@@ -267,6 +268,7 @@ void certify_each(const ElementBlock& block, std::span<const ControlErrors> erro
   assert(errors.empty() || errors.size() == result.size());
   double enough = options.enough;
   for (std::size_t i = 0; i < result.size(); ++i) {
+    check_interruption();
     result[i] = bounds(i, errors.empty() ? promised_errors(block.normals[i]) : errors[i], enough);
     if (options.only_worst) enough = std::max(enough, result[i].lower);
   }
@@ -295,6 +297,7 @@ void certify(const Scheme& scheme, const ElementBlock& block, const PathTruth& t
 void certify_path_curves(const PathTruth& truth, std::span<ErrorBounds> result) {
   assert(truth.normals.size() == result.size() && truth.errors.size() == result.size());
   for (std::size_t i = 0; i < result.size(); ++i) {
+    check_interruption();
     result[i] = {0, 0, 0, 0, 1};
     if (const std::optional<PathNormal> normal = without_zero_ends(truth.normals[i], truth.errors[i]))
       result[i] = computed_bounds(*normal);

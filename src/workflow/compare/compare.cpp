@@ -15,6 +15,7 @@
 #include "analysis/quality/kernels/reference_angles.h"
 #include "chronormal/analysis/certify.h"
 #include "chronormal/analysis/quality.h"
+#include "chronormal/core/interruption.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
 #include "normals/curves/path_stream.h"
@@ -169,6 +170,7 @@ ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOpti
     const double end_time = motion.keyframes[motion.segments[s].to].time;
     const bool is_weight = motion.kind == MotionKind::kTargets;
     for (std::size_t i = 0; i < options.samples; ++i) {
+      check_interruption();
       const double t = time_of_sample(i, options.samples);
       const double at = is_weight ? t : (1 - t) * start_time + t * end_time;
       const std::span<float> row = add_row(table, s, is_weight, at);
@@ -246,6 +248,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   }
   std::vector<double> evaluate_ns(schemes.size(), 0);
   for (std::size_t i = 0; i < samples; ++i) {
+    check_interruption();
     const double t = time_of_sample(i, samples);
     all.exact_normals(segment, range, triangles, t, exact);
     for (std::size_t s = 0; s < schemes.size(); ++s) {
