@@ -11,6 +11,8 @@ Faces    (F, k) of int32, int64, uint32 or any other integers; a list of lists f
          (offsets, corners) of two rows: face f has corners[offsets[f]:offsets[f + 1]].
 Errors   ValueError says where: "face 3, corner 1: ...". OSError is for files.
 Threads  Everything that takes long releases the GIL. One object works for one thread at a time; others wait.
+Signals  Their handlers run during a call that takes long. What one raises, as Ctrl-C does, ends the call.
+Forks    A child of fork() may use all objects of its parent; where that had several threads at work, the child has one.
 """
 
 import dataclasses as _dataclasses
@@ -76,6 +78,47 @@ def _polygons(faces):
     return _np.arange(0, (count + 1) * size, size, dtype=_np.uint32), corners
 
 
+def _text(value, place):
+    """A string that the library can have."""
+    if not isinstance(value, str):
+        raise TypeError(f"{place}: it must be a string, not {type(value).__name__}")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise ValueError(f"{place}: {value!r} is no text in UTF-8") from None
+    return value
+
+
+def _file(name, place):
+    """The name of a file as the system has it: bytes, which need not be UTF-8."""
+    try:
+        name = _os.fsencode(name)
+    except UnicodeEncodeError:
+        raise ValueError(f"{place}: {name!r} is no name of a file") from None
+    except TypeError:
+        raise TypeError(f"{place}: it must be the name of a file, not {type(name).__name__}") from None
+    if b"\0" in name:
+        raise ValueError(f"{place}: {_os.fsdecode(name)!r} is no name of a file")
+    return name
+
+
+def _float(value, place):
+    try:
+        return float(value)
+    except OverflowError:
+        raise ValueError(f"{place}: it is too large for a float") from None
+    except TypeError:
+        raise TypeError(f"{place}: it must be a number, not {type(value).__name__}") from None
+
+
+def _floats(array, place):
+    """A C-contiguous array of float64."""
+    array = _np.asarray(array)
+    if array.dtype.kind not in "fiu":
+        raise ValueError(f"{place}: the type is {array.dtype}, and must be float64 or other real numbers")
+    return _np.ascontiguousarray(array, dtype=_np.float64)
+
+
 def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False, velocities=False):
     """What to open, as the extension wants it."""
     if (source is None) == (sample is None):
@@ -84,12 +127,16 @@ def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False
     if isinstance(source, (bytes, bytearray, memoryview)):
         data = bytes(source)
     elif isinstance(source, (str, _os.PathLike)):
-        files = [_os.fspath(source)]
+        files = [_file(source, "source")]
     elif source is not None:
-        files = [_os.fspath(file) for file in source]
-    return {"files": files, "bytes": data, "samples": [sample] if sample is not None else [],
-            "base": _os.fspath(base) if base is not None else "", "fps": float(fps),
-            "animation": str(animation) if animation is not None else "", "world": bool(world),
+        try:
+            files = list(source)
+        except TypeError:
+            raise TypeError(f"source: it must be files or bytes, not {type(source).__name__}") from None
+        files = [_file(file, f"source[{i}]") for i, file in enumerate(files)]
+    return {"files": files, "bytes": data, "samples": [_text(sample, "sample")] if sample is not None else [],
+            "base": _file(base, "base") if base is not None else b"", "fps": _float(fps, "fps"),
+            "animation": _text(str(animation), "animation") if animation is not None else "", "world": bool(world),
             "velocities": bool(velocities)}
 
 
@@ -270,8 +317,8 @@ def _keyframes(positions, faces, times):
     positions = _vectors(positions, "positions")
     if positions.ndim != 3 or positions.shape[2] != 3:
         raise ValueError(f"positions: the shape is {positions.shape} and must be (T, V, 3)")
-    times = _np.arange(len(positions), dtype=_np.float64) if times is None else _np.asarray(times, dtype=_np.float64)
-    return positions, *_polygons(faces), _np.ascontiguousarray(times)
+    times = _np.arange(len(positions), dtype=_np.float64) if times is None else _floats(times, "times")
+    return positions, *_polygons(faces), times
 
 
 def collapse(positions, faces, times=None, *, start=None, end=None):
@@ -326,8 +373,7 @@ def contain(positions, faces, points, times=None, *, start=None, end=None):
     crossing_time, crossing_segment, crossing_face, crossing_normal (rows, 3)   when, and through which face
     crossing_inward  whether the winding number rises; otherwise it falls
     """
-    return _chronormal.query_contain(*_keyframes(positions, faces, times), start, end,
-                                     _np.ascontiguousarray(points, dtype=_np.float64))
+    return _chronormal.query_contain(*_keyframes(positions, faces, times), start, end, _floats(points, "points"))
 
 
 def cones(positions, faces, times=None, *, meshlets=None, start=None, end=None):

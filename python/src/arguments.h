@@ -30,8 +30,10 @@ struct Numbers {
   explicit Numbers(const py::object& given, const char* place) {
     if (PyFloat_Check(given.ptr()) || PyLong_Check(given.ptr())) {
       is_one = true;
-      one = given.cast<double>();
-      return;
+      one = PyFloat_AsDouble(given.ptr());
+      if (PyErr_Occurred() == nullptr) return;
+      PyErr_Clear();
+      refuse(place, "it is too large for a float");
     }
     many = Array<double>::ensure(given);
     if (!*many) {
@@ -44,6 +46,11 @@ struct Numbers {
       return;
     }
     if (many->ndim() != 1) refuse(place, "the shape is " + shape_text(*many) + " and must be (T,)");
+  }
+
+  // Copies numbers over which an array `out` will be written.
+  void keep_from(const py::object& out) {
+    if (many) *many = kept_from(std::move(*many), out);
   }
 
   [[nodiscard]] std::size_t count() const { return is_one ? 1 : static_cast<std::size_t>(many->size()); }

@@ -7,10 +7,12 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,13 +30,19 @@ using Array = py::array_t<T, py::array::c_style>;
 template <class T>
 using AnyArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-// Raises what stands for an error: OSError for files, ValueError for what the caller gave.
+// The string of a text from outside, as os.fsdecode() makes it of the name of a file: of any bytes.
+inline py::str string_of(std::string_view text) {
+  PyObject* const made = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape");
+  if (made == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(made);
+}
+
+// Raises what stands for an error, with the GIL or without: OSError for files, ValueError for what the caller gave.
 [[noreturn]] inline void raise(const Error& error) {
-  if (error.code == ErrorCode::kFailed) {
-    PyErr_SetString(PyExc_OSError, error.text().c_str());
-    throw py::error_already_set();
-  }
-  throw py::value_error(error.text());
+  const py::gil_scoped_acquire held;
+  PyObject* const kind = error.code == ErrorCode::kFailed ? PyExc_OSError : PyExc_ValueError;
+  PyErr_SetObject(kind, string_of(error.text()).ptr());
+  throw py::error_already_set();
 }
 
 template <class T>
@@ -90,6 +98,27 @@ Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offs
 // Returns the array into which (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself, where it
 // fits, or a new array where `out` is None.
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size);
+
+// The array itself, or a copy where it shares memory with an array `out` that is written while it is read.
+inline Array<double> kept_from(Array<double> numbers, const py::object& out) {
+  if (!py::isinstance<py::array>(out) || numbers.size() == 0) return numbers;
+  const auto other = py::reinterpret_borrow<py::array>(out);
+  const auto begin = [](const py::array& array) { return reinterpret_cast<std::uintptr_t>(array.data()); };
+  const auto end = [&](const py::array& array) { return begin(array) + static_cast<std::uintptr_t>(array.nbytes()); };
+  if (end(numbers) <= begin(other) || end(other) <= begin(numbers)) return numbers;
+  return Array<double>(numbers.size(), numbers.data());
+}
+
+// Makes pickle and copy say that objects of a class have memory that they cannot take. By themselves the protocols 0
+// and 1 of pickle make an object of the base class, for which pybind11 ends the process.
+template <class Class>
+void refuse_to_be_pickled(Class& made) {
+  const auto refuse = [](const py::object& self, const py::args&) -> py::object {
+    throw py::type_error("cannot pickle '" + py::type::of(self).attr("__qualname__").cast<std::string>() +
+                         "' object: make it again from what it was made of");
+  };
+  made.def("__reduce__", refuse).def("__reduce_ex__", refuse);
+}
 
 // Which threads a number asks for: 1 is the calling one, 0 all cores, and others are so many.
 class ChosenThreads {

@@ -1,5 +1,5 @@
 // Certificates as arrays.
-#include "arrays.h"
+#include "computation.h"
 
 namespace chronormal::python {
 namespace {
@@ -35,13 +35,11 @@ py::dict certify_faces(const Array<float>& from, const Array<float>& to, const A
   }
   motion.connect_as_sequence();
   value_or_raise(validate(motion));
-  Result<std::vector<ErrorBounds>> bounds = [&] {
-    const py::gil_scoped_release released;
+  const std::vector<ErrorBounds> all = without_gil([&] {
     const Segment segment = motion.segment(0);
     if (!velocities) return certify(scheme, segment, {}, chosen.threads());
     return certify(scheme, segment, path_segment(motion, 0, PathKind::kHermite), {}, chosen.threads());
-  }();
-  const std::vector<ErrorBounds> all = value_or_raise(std::move(bounds));
+  });
   py::dict result;
   const auto add = [&](const char* name, double ErrorBounds::*member, double unit) {
     std::vector<double> values(all.size());

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "arguments.h"
+#include "computation.h"
 
 namespace chronormal::python {
 namespace {
@@ -32,26 +33,27 @@ class Curves : public ZeroedObject {
     const ChosenThreads chosen(threads);
     options.threads = chosen.threads();
     Topology topology = topology_of(first.count, offsets, corners);
-    const py::gil_scoped_release released;
-    curves_.emplace(make(std::move(topology), first, last, options));
+    curves_.emplace(without_gil([&] { return ElementCurves::make(std::move(topology), first, last, options); }));
   }
 
   void next(const AnyArray<float>& from, const AnyArray<float>& to) {
     require_made(curves_.has_value());
     const auto first = vectors_of(from, "p0"), last = vectors_of(to, "p1");
+    Turns& turns = turns_.required_of_others();
     Status status = Success{};
     {
-      const py::gil_scoped_release released;
-      const std::lock_guard lock(mutex_);
+      const py::gil_scoped_release released;  // and no Interruption, which would leave half of a segment
+      const std::lock_guard turn(turns);
       status = curves_->next(first, last);
     }
     value_or_raise(std::move(status));
   }
 
   py::array unit_normals(const py::object& t, const py::object& out, int threads) {
-    const Numbers times(t, "t");
+    Numbers times(t, "t");
     const ChosenThreads chosen(threads);
     py::array result = result_array(out, times.rows(), size());
+    times.keep_from(out);
     write(times, chosen.threads(), static_cast<float*>(result.mutable_data()));
     return result;
   }
@@ -71,9 +73,13 @@ class Curves : public ZeroedObject {
     write(times, chosen.threads(), exact.data());
     {
       const float* const shown = normals.data();
-      const py::gil_scoped_release released;
-      write_errors(VectorView<const float>::packed(exact.data(), count), VectorView<const float>::packed(shown, count),
-                   degrees.data());
+      const Computation computing;
+      for (std::size_t k = 0; k < times.count(); ++k) {
+        check_interruption();
+        const std::size_t first = k * size();
+        write_errors(VectorView<const float>::packed(exact.data() + 3 * first, size()),
+                     VectorView<const float>::packed(shown + 3 * first, size()), degrees.data() + first);
+      }
     }
     return times.is_one ? array_of(std::move(degrees), {n}) : array_of(std::move(degrees), {rows, n});
   }
@@ -94,21 +100,14 @@ class Curves : public ZeroedObject {
   }
 
  private:
-  static ElementCurves make(Topology topology, VectorView<const float> from, VectorView<const float> to,
-                            const ElementCurvesOptions& options) {
-    Result<ElementCurves> made = ElementCurves::make(std::move(topology), from, to, options);
-    if (made) return std::move(made).value();
-    const py::gil_scoped_acquire held;
-    raise(made.error());
-  }
-
   void write(const Numbers& times, Threads threads, float* result) {
     const std::size_t count = size();
     const double* const values = times.data();
-    const py::gil_scoped_release released;
-    const std::lock_guard lock(mutex_);
-    for (std::size_t k = 0; k < times.count(); ++k)
+    const Computation computing(turns_);
+    for (std::size_t k = 0; k < times.count(); ++k) {
+      check_interruption();
       curves_->unit_normals(values[k], VectorView<float>::packed(result + 3 * count * k, count), threads);
+    }
   }
 
   [[nodiscard]] const ElementCurves& curves() const {
@@ -117,7 +116,7 @@ class Curves : public ZeroedObject {
   }
 
   std::optional<ElementCurves> curves_;
-  std::mutex mutex_;  // evaluations share scratch, and Python's threads run without the GIL meanwhile
+  Turns turns_;
 };
 
 class Blend : public ZeroedObject {
@@ -143,11 +142,7 @@ class Blend : public ZeroedObject {
     }
     const ElementOptions options = element_options(elements, crease, weld);
     kind_ = options.kind;
-    Result<ElementBlend> made = [&] {
-      const py::gil_scoped_release released;
-      return ElementBlend::make(std::move(set), options);
-    }();
-    blend_.emplace(value_or_raise(std::move(made)));
+    blend_.emplace(without_gil([&] { return ElementBlend::make(std::move(set), options); }));
   }
 
   py::array unit_normals(const Array<double>& weights, const py::object& out, int threads) {
@@ -161,10 +156,11 @@ class Blend : public ZeroedObject {
     const std::size_t rows = is_one ? 1 : static_cast<std::size_t>(weights.shape(0)), count = size();
     py::array result = result_array(out, is_one ? std::nullopt : std::optional(rows), count);
     float* const data = static_cast<float*>(result.mutable_data());
-    const double* const values = weights.data();
-    const py::gil_scoped_release released;
-    const std::lock_guard lock(mutex_);
+    const Array<double> kept = kept_from(weights, out);
+    const double* const values = kept.data();
+    const Computation computing(turns_);
     for (std::size_t r = 0; r < rows; ++r) {
+      check_interruption();
       blend_->unit_normals({values + r * targets_, targets_}, VectorView<float>::packed(data + 3 * count * r, count),
                            chosen.threads());
     }
@@ -189,7 +185,7 @@ class Blend : public ZeroedObject {
   std::size_t targets_;
   ElementKind kind_ = ElementKind::kVertices;
   std::optional<ElementBlend> blend_;
-  std::mutex mutex_;
+  Turns turns_;
 };
 
 }  // namespace
@@ -227,9 +223,12 @@ py::array result_array(const py::object& out, std::optional<std::size_t> rows, s
 }
 
 void add_curves(py::module_& module) {
-  py::class_<Curves>(module, "Curves", R"(Unit normals between two arrays of positions, exact for every t in [0, 1].
+  py::class_<Curves> curves(module, "Curves",
+                            R"(Unit normals between two arrays of positions, exact for every t in [0, 1].
 
-Made by chronormal.curves(). len() is the number of normals n: faces, vertices or corners.)")
+Made by chronormal.curves(). len() is the number of normals n: faces, vertices or corners.)");
+  refuse_to_be_pickled(curves);
+  curves
       .def(py::init<const Array<float>&, const Array<float>&, const Array<std::uint32_t>&, const Array<std::uint32_t>&,
                     const std::string&, std::optional<double>, const std::string&, double, bool, int>())
       .def("unit_normals", &Curves::unit_normals, py::arg("t"), py::arg("out") = py::none(), py::arg("threads") = 1,
@@ -253,9 +252,11 @@ NaN      where the exact normal or the given one has no direction)")
                              "Radians: how far the fit of another weighting than area may be off; 0 for area.")
       .def("__len__", &Curves::size)
       .def("__repr__", &Curves::text);
-  py::class_<Blend>(module, "Blend", R"(Unit normals of blend shapes, exact at any weights.
+  py::class_<Blend> blend(module, "Blend", R"(Unit normals of blend shapes, exact at any weights.
 
-Made by chronormal.blend(). len() is the number of normals n: faces, vertices or corners.)")
+Made by chronormal.blend(). len() is the number of normals n: faces, vertices or corners.)");
+  refuse_to_be_pickled(blend);
+  blend
       .def(py::init<const Array<float>&, const std::vector<std::pair<Array<std::uint32_t>, Array<float>>>&,
                     const Array<std::uint32_t>&, const Array<std::uint32_t>&, const std::string&, std::optional<double>,
                     bool>())

@@ -3,7 +3,7 @@
 #include <map>
 #include <string_view>
 
-#include "arrays.h"
+#include "computation.h"
 
 namespace chronormal::python {
 namespace {
@@ -42,11 +42,7 @@ Opened open(const py::dict& source, bool allow_mesh, KeepShading shading) {
   options.allow_mesh = allow_mesh;
   options.shading = shading;
   if (const Status status = check_input(options); !status) raise(status.error());
-  Result<Input> input = [&] {
-    const py::gil_scoped_release released;
-    return open_input(options);
-  }();
-  return {value_or_raise(std::move(input)), source["bytes"]};
+  return {without_gil([&] { return open_input(options); }), source["bytes"]};
 }
 
 // The path of a name, which must be linear for the weights of a glTF file. (The library checks other motions.)
@@ -60,22 +56,12 @@ void require_paths(const Input& input, PathKind path) {
           "the weights of a glTF file say how its vertices move: paths are of sequences");
 }
 
-// Does what takes long without the GIL, and raises its error with it.
-template <class Work>
-auto without_gil(const Work& work) {
-  auto result = [&] {
-    const py::gil_scoped_release released;
-    return work();
-  }();
-  return value_or_raise(std::move(result));
-}
-
 py::list dicts_of(std::vector<ErrorTable> tables) {
   py::list list;
   for (ErrorTable& table : tables) {
     const auto rows = static_cast<py::ssize_t>(table.rows()), columns = static_cast<py::ssize_t>(table.columns());
     py::dict dict;
-    dict["name"] = table.name;
+    dict["name"] = string_of(table.name);
     dict["errors"] = array_of(std::move(table.degrees), {rows, columns});
     dict["subjects"] = array_of(std::move(table.subjects), {rows});
     dict["times"] = array_of(std::move(table.times), {rows});
@@ -262,9 +248,9 @@ class ReadMotion : public ZeroedObject {
     for (const Motion::Keyframe& keyframe : motion().keyframes) times.push_back(keyframe.time);
     return array_of(std::move(times), {py::ssize_t(motion().keyframes.size())});
   }
-  [[nodiscard]] std::vector<std::string> names() const {
-    std::vector<std::string> names;
-    for (const Motion::Keyframe& keyframe : motion().keyframes) names.push_back(keyframe.name);
+  [[nodiscard]] py::list names() const {
+    py::list names;
+    for (const Motion::Keyframe& keyframe : motion().keyframes) names.append(string_of(keyframe.name));
     return names;
   }
   [[nodiscard]] py::array segments() const {
@@ -315,6 +301,7 @@ class ReadMotion : public ZeroedObject {
       }
       std::vector<float> normals;
       for (std::size_t r = 0; r < rows; ++r) {
+        check_interruption();
         const Result<Pose> pose = times     ? sampler.value().at_time(at[r], in_a_row[r])
                                   : weights ? sampler.value().at_weights({at.data() + r * width, width})
                                             : Result<Pose>(sampler.value().at_rest());
@@ -327,12 +314,12 @@ class ReadMotion : public ZeroedObject {
     return array_of(std::move(all), {py::ssize_t(rows), py::ssize_t(count), 3});
   }
 
-  [[nodiscard]] std::string text() const {
+  [[nodiscard]] py::str text() const {
     require_made(motion_ != nullptr);
-    return "<chronormal.Motion " + opened_.input.name() + ": " + kind() + ", " +
-           std::to_string(motion().keyframes.size()) + " keyframes of " +
-           std::to_string(motion().topology.vertex_count()) + " vertices, " +
-           std::to_string(motion().topology.face_count()) + " faces>";
+    return string_of("<chronormal.Motion " + opened_.input.name() + ": " + kind() + ", " +
+                     std::to_string(motion().keyframes.size()) + " keyframes of " +
+                     std::to_string(motion().topology.vertex_count()) + " vertices, " +
+                     std::to_string(motion().topology.face_count()) + " faces>");
   }
 
  private:
@@ -353,8 +340,10 @@ void add_files(py::module_& module) {
   module.def("compare", &compare_source);
   module.def("inspect", &inspect_source);
   module.def("bake", &bake_source);
-  py::class_<ReadMotion>(module, "Motion", R"(A motion that chronormal.read() read: T keyframes of V vertices.)")
-      .def(py::init<const py::dict&>())
+  py::class_<ReadMotion> motion(module, "Motion",
+                                R"(A motion that chronormal.read() read: T keyframes of V vertices.)");
+  refuse_to_be_pickled(motion);
+  motion.def(py::init<const py::dict&>())
       .def_property_readonly("positions", &ReadMotion::positions, "(T, V, 3) float32; the same array each time.")
       .def_property_readonly(
           "faces", &ReadMotion::faces,

@@ -1,9 +1,18 @@
 // The extension module behind python/chronormal, which is what users import.
-#include "arrays.h"
+#include "computation.h"
+
+namespace py = pybind11;
 
 PYBIND11_MODULE(_chronormal, module) {
   module.doc() = "The library behind the package chronormal.";
   module.attr("__version__") = CHRONORMAL_VERSION;
+  py::register_local_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const chronormal::Interrupted&) {  // what the handler of a signal raised is set
+    }
+  });
+  chronormal::python::hear_of_forks();
   chronormal::python::add_certificates(module);
   chronormal::python::add_curves(module);
   chronormal::python::add_files(module);

@@ -1,7 +1,6 @@
 // Normals of sequences on curved paths: the calls that are made for every frame.
-#include <mutex>
-
 #include "arguments.h"
+#include "computation.h"
 
 namespace chronormal::python {
 namespace {
@@ -25,18 +24,15 @@ class Paths : public ZeroedObject {
       for (std::size_t k = 0; k < motion.keyframes.size(); ++k)
         motion.keyframes[k].velocities.assign(velocities->data() + k * size, velocities->data() + (k + 1) * size);
     }
-    Result<ElementPaths> made = [&] {
-      const py::gil_scoped_release released;
-      return ElementPaths::make(std::move(motion), options);
-    }();
-    paths_.emplace(value_or_raise(std::move(made)));
+    paths_.emplace(without_gil([&] { return ElementPaths::make(std::move(motion), options); }));
   }
 
   py::array unit_normals(const py::object& time, const py::object& out, int threads) {
-    const Numbers times(time, "time");
+    Numbers times(time, "time");
     const ChosenThreads chosen(threads);
     const std::size_t count = size();
     py::array result = result_array(out, times.rows(), count);
+    times.keep_from(out);
     const Status status = write(times, chosen.threads(), static_cast<float*>(result.mutable_data()));
     if (!status) raise(status.error());
     return result;
@@ -55,9 +51,9 @@ class Paths : public ZeroedObject {
   Status write(const Numbers& times, Threads threads, float* result) {
     const std::size_t count = paths_->size();
     const double* const values = times.data();
-    const py::gil_scoped_release released;
-    const std::lock_guard lock(mutex_);
+    const Computation computing(turns_);
     for (std::size_t k = 0; k < times.count(); ++k) {
+      check_interruption();
       const auto row = VectorView<float>::packed(result + 3 * count * k, count);
       if (const auto written = paths_->unit_normals(values[k], row, threads); !written) return written.error();
     }
@@ -70,15 +66,18 @@ class Paths : public ZeroedObject {
   }
 
   std::optional<ElementPaths> paths_;
-  std::mutex mutex_;  // evaluations prepare segments, and Python's threads run without the GIL meanwhile
+  Turns turns_;
 };
 
 }  // namespace
 
 void add_paths(py::module_& module) {
-  py::class_<Paths>(module, "Paths", R"(Unit normals of a sequence whose vertices move on curves through its keyframes.
+  py::class_<Paths> paths(module, "Paths",
+                          R"(Unit normals of a sequence whose vertices move on curves through its keyframes.
 
-Made by chronormal.paths(). len() is the number of normals n: faces, vertices or corners.)")
+Made by chronormal.paths(). len() is the number of normals n: faces, vertices or corners.)");
+  refuse_to_be_pickled(paths);
+  paths
       .def(py::init<const Array<float>&, const Array<std::uint32_t>&, const Array<std::uint32_t>&, const Array<double>&,
                     const std::string&, const std::optional<Array<float>>&, const std::string&, std::optional<double>,
                     bool>())

@@ -3,7 +3,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "arrays.h"
+#include "computation.h"
 
 namespace chronormal::python {
 namespace {
@@ -28,11 +28,7 @@ py::array array_of_column(QueryColumn column) {
 // The arrays of an answer by the names that they have in a file. Asks without the GIL.
 template <class Ask>
 py::dict answer_of(const Ask& ask) {
-  Result<QueryAnswer> answer = [&] {
-    const py::gil_scoped_release released;
-    return ask();
-  }();
-  QueryAnswer found = value_or_raise(std::move(answer));
+  QueryAnswer found = without_gil(ask);
   py::dict arrays;
   for (QueryTable& table : found.tables) {
     const std::string prefix = table.name.empty() ? "" : table.name + '_';

@@ -127,7 +127,7 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   const below = (count) => Math.floor(count * random());
   const parts = ['', '.', '..', 'out', 'work', '-', '--', '-o', '--json', '-x.glb', 'a.glb', '%d', '*', '[a]', '?', ' ', 'é', '\n', '\0', '\ud800', '\ufeff',
                  '__proto__', 'dev', 'stdin', 'stdout', 'proc', 'x'.repeat(300)];
-  const drawn = Array.from({ length: 100 }, () => Array.from({ length: 1 + below(3) }, () => parts[below(parts.length)]).join(['/', ''][below(2)]));
+  const drawn = Array.from({ length: 60 }, () => Array.from({ length: 1 + below(3) }, () => parts[below(parts.length)]).join(['/', ''][below(2)]));
   let read = 0;
   for (const [i, name] of [...parts, ...drawn].entries()) {
     const said = JSON.stringify(name), found = await outcomeOf(inspect(tiny, { name, worker: false }));
@@ -137,9 +137,9 @@ test('a file of any name is read under it, or refused with it, in a worker and i
     } else {
       assert.deepEqual(found, { name: 'ChronormalError', code: 2, message: `${said}: no file can have this name` });
     }
-    if (i % 4 === 0) assert.deepEqual(await outcomeOf(inspect(tiny, { name })), found, said);
+    if (i % 6 === 0) assert.deepEqual(await outcomeOf(inspect(tiny, { name })), found, said);
   }
-  assert.ok(read > 50, `${read}`);
+  assert.ok(read > 30, `${read}`);
   const { bytes: baked } = await bake(face, { encode: 'endpoint' });
   for (const name of ['out', 'out/a.glb', '-x.glb', '../work/out/b.glb']) {
     assert.deepEqual((await bake(face, { name, encode: 'endpoint', worker: false })).bytes, baked, name);

@@ -1,0 +1,76 @@
+#include "computation.h"
+
+#include <condition_variable>
+#include <new>
+
+namespace chronormal::python {
+namespace {
+
+// The turns of all objects, and the forks that wait for them.
+class ForkGate {
+ public:
+  void begin_turn() {
+    std::unique_lock lock(mutex_);
+    change_.wait(lock, [&] { return forks_ == 0; });
+    ++turns_;
+    ++own_turns;
+  }
+  void end_turn() {
+    const std::lock_guard lock(mutex_);
+    --turns_;
+    --own_turns;
+    change_.notify_all();
+  }
+  // The turns of this thread, whose fork this is, go on in the child.
+  void begin_fork() {
+    std::unique_lock lock(mutex_);
+    ++forks_;
+    change_.wait(lock, [&] { return turns_ == own_turns; });
+  }
+  void end_fork() {
+    const std::lock_guard lock(mutex_);
+    --forks_;
+    change_.notify_all();
+  }
+  // In the child, where other threads may have held the mutex.
+  void begin_anew() {
+    new (this) ForkGate;
+    turns_ = own_turns;
+  }
+
+ private:
+  static thread_local std::size_t own_turns;
+
+  std::mutex mutex_;
+  std::condition_variable change_;
+  std::size_t turns_ = 0, forks_ = 0;
+};
+
+thread_local std::size_t ForkGate::own_turns = 0;
+
+ForkGate gate;
+
+}  // namespace
+
+void Turns::lock() {
+  gate.begin_turn();
+  mutex_.lock();
+  owner_ = std::this_thread::get_id();
+}
+
+void Turns::unlock() {
+  owner_ = std::thread::id();
+  mutex_.unlock();
+  gate.end_turn();
+}
+
+void hear_of_forks() {
+  const py::module_ system = py::module_::import("os");
+  if (!py::hasattr(system, "register_at_fork")) return;  // nor fork()
+  system.attr("register_at_fork")(
+      py::arg("before") = py::cpp_function([] { gate.begin_fork(); }, py::call_guard<py::gil_scoped_release>()),
+      py::arg("after_in_parent") = py::cpp_function([] { gate.end_fork(); }),
+      py::arg("after_in_child") = py::cpp_function([] { gate.begin_anew(); }));
+}
+
+}  // namespace chronormal::python
