@@ -165,8 +165,9 @@ inline constexpr std::array<Host, 9> kHosts = {{
 [[nodiscard]] Vec3f kept_delta(const Host& host, const Vec3f& normal, const Vec3f& kept_normal,
                                const Vec3f& delta) noexcept;
 
-/// Replaces weights that a host leaves out by zero. There is one for each target.
-void drop_weights(const Host& host, std::span<double> weights) noexcept;
+/// Replaces weights that a host leaves out by zero. There is one for each of some targets, or for all of them where
+/// these are not named.
+void drop_weights(const Host& host, std::span<double> weights, std::span<const std::size_t> targets = {}) noexcept;
 
 /// The sum that a host shows of one vertex: N' and then each target in their order, in float32.
 class HostSum {

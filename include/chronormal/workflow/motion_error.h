@@ -9,7 +9,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace chronormal {
@@ -31,21 +33,39 @@ struct AuditPlace {
   double at = 0;                               ///< weight of the target, or time in seconds
 };
 
-/// The counts in these bins. They take 18 kB, which is too much for a stack; an object that was moved from keeps them.
+/// The counts in these bins. Most errors of a small mesh are in a few of them, and a file may have thousands of motions,
+/// so that only those are kept that are not empty, 8 bytes each.
 class FineBins {
  public:
-  FineBins() : counts_(kAuditFineBins) {}
-  FineBins(const FineBins&) = default;
-  FineBins& operator=(const FineBins&) = default;
-  ~FineBins() = default;
+  class Bin {
+   public:
+    constexpr Bin(std::size_t number, std::uint64_t count) noexcept
+        : word_(std::uint64_t{number} << kCountBits | count) {}
+    [[nodiscard]] constexpr std::size_t number() const noexcept {
+      return static_cast<std::size_t>(word_ >> kCountBits);
+    }
+    [[nodiscard]] constexpr std::size_t count() const noexcept {
+      return static_cast<std::size_t>(word_ & ((std::uint64_t{1} << kCountBits) - 1));
+    }
+    friend bool operator==(const Bin&, const Bin&) = default;
 
-  [[nodiscard]] constexpr std::size_t size() const noexcept { return kAuditFineBins; }
-  [[nodiscard]] std::size_t& operator[](std::size_t bin) noexcept { return counts_[bin]; }
-  [[nodiscard]] std::size_t operator[](std::size_t bin) const noexcept { return counts_[bin]; }
+   private:
+    std::uint64_t word_;
+  };
+  static constexpr unsigned kCountBits = 48;
+  static constexpr std::uint64_t kMostCount = (std::uint64_t{1} << kCountBits) - 1;
+
+  /// The bins that are not empty, by number.
+  [[nodiscard]] std::span<const Bin> filled() const noexcept { return bins_; }
+  [[nodiscard]] std::size_t operator[](std::size_t number) const noexcept;
+
+  /// number < kAuditFineBins, count <= kMostCount
+  void add(std::size_t number, std::uint64_t count);
+  void add(const FineBins& other);
   friend bool operator==(const FineBins&, const FineBins&) = default;
 
  private:
-  std::vector<std::size_t> counts_;
+  std::vector<Bin> bins_;
 };
 
 struct MotionError {
@@ -75,9 +95,9 @@ struct MotionError {
   [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
   /// The same for a gate, which leaves out no pair that has a direction.
   [[nodiscard]] bool passes(double degrees) const noexcept { return is_within(degrees) && faint_worst <= degrees; }
-  void add(double degrees, const AuditPlace& place) noexcept;
-  void add_unlit(const AuditPlace& place) noexcept;
-  void add(const MotionError& other) noexcept;
+  void add(double degrees, const AuditPlace& place);
+  void add_unlit(const AuditPlace& place);
+  void add(const MotionError& other);
 };
 
 /// How far a skin turns right normals from those of the surface that it makes, over pairs of a vertex and a sample: what

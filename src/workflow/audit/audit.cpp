@@ -91,23 +91,63 @@ WorseRespects find_worse(const MotionError& after, const MotionError& before) no
   return {after.unlit > before.unlit, is_farther, after.worst > before.worst + kWorst};
 }
 
-void MotionError::add(double degrees, const AuditPlace& place) noexcept {
+std::size_t FineBins::operator[](std::size_t number) const noexcept {
+  const auto at =
+      std::partition_point(bins_.begin(), bins_.end(), [&](const Bin& bin) { return bin.number() < number; });
+  return at != bins_.end() && at->number() == number ? at->count() : 0;
+}
+
+void FineBins::add(std::size_t number, std::uint64_t count) {
+  if (count == 0) return;
+  const auto at =
+      std::partition_point(bins_.begin(), bins_.end(), [&](const Bin& bin) { return bin.number() < number; });
+  if (at != bins_.end() && at->number() == number)
+    *at = Bin(number, at->count() + count);
+  else
+    bins_.insert(at, Bin(number, count));
+}
+
+void FineBins::add(const FineBins& other) {
+  std::size_t before = bins_.size(), added = 0;
+  for (std::size_t i = 0, j = 0; j < other.bins_.size(); ++j) {
+    while (i < before && bins_[i].number() < other.bins_[j].number()) ++i;
+    if (i == before || bins_[i].number() != other.bins_[j].number()) ++added;
+  }
+  if (added > 0) bins_.reserve(before + added);  // no more than is needed
+  bins_.resize(before + added, Bin(0, 0));
+  // From the end, so that nothing is overwritten that is still to be read.
+  for (std::size_t to = bins_.size(), from = other.bins_.size(); from > 0;) {
+    const Bin& bin = other.bins_[from - 1];
+    --to;
+    if (before > 0 && bins_[before - 1].number() >= bin.number()) {
+      bins_[to] = bins_[--before];
+      if (bins_[to].number() != bin.number()) continue;
+      bins_[to] = Bin(bin.number(), bins_[to].count() + bin.count());
+    } else {
+      bins_[to] = bin;
+    }
+    --from;
+  }
+}
+
+void MotionError::add(double degrees, const AuditPlace& place) {
   ++judged;
   sum += degrees;
   sum_of_squares += degrees * degrees;
-  count_in_bins(degrees, *this);
+  ++histogram[bin_of(degrees)];
+  counts.add(fine_bin_of(degrees), 1);
   if (degrees > worst) {
     worst = degrees;
     worst_at = place;
   }
 }
 
-void MotionError::add_unlit(const AuditPlace& place) noexcept {
+void MotionError::add_unlit(const AuditPlace& place) {
   if (unlit++ == 0) unlit_at = place;
   add(180, place);
 }
 
-void MotionError::add(const MotionError& other) noexcept {
+void MotionError::add(const MotionError& other) {
   if (unlit == 0) unlit_at = other.unlit_at;
   judged += other.judged;
   sum += other.sum;
@@ -115,7 +155,7 @@ void MotionError::add(const MotionError& other) noexcept {
   no_normal += other.no_normal;
   unlit += other.unlit;
   for (std::size_t bin = 0; bin < histogram.size(); ++bin) histogram[bin] += other.histogram[bin];
-  for (std::size_t bin = 0; bin < counts.size(); ++bin) counts[bin] += other.counts[bin];
+  counts.add(other.counts);
   if (other.worst > worst) {
     worst = other.worst;
     worst_at = other.worst_at;
@@ -130,9 +170,9 @@ void MotionError::add(const MotionError& other) noexcept {
 double MotionError::percentile(double share) const noexcept {
   const double wanted = share * static_cast<double>(judged);
   std::size_t seen = 0;
-  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
-    seen += counts[bin];
-    if (static_cast<double>(seen) >= wanted) return std::min(end_of_fine_bin(bin), worst);
+  for (const FineBins::Bin& bin : counts.filled()) {
+    seen += bin.count();
+    if (static_cast<double>(seen) >= wanted) return std::min(end_of_fine_bin(bin.number()), worst);
   }
   return worst;
 }

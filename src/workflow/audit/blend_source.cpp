@@ -25,17 +25,18 @@ AuditPlace place_of(const GltfShading& shading, std::size_t vertex) {
 }
 
 BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule,
-                         const std::vector<bool>& involved, Weights weights, Moment moment, std::size_t samples,
+                         std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
                          MeshSkin* skin)
     : shading_(shading),
       part_(part),
       rule_(rule),
+      involved_(std::move(involved)),
       weights_at_(std::move(weights)),
       moment_(std::move(moment)),
       skin_(skin),
-      moved_(shading.set.targets.size()),
+      moved_(involved_.size()),
       samples_(samples),
-      sums_(shading, part.outputs(), involved) {
+      sums_(shading, part.outputs(), involved_) {
   std::vector<Vec3d> positions(part.vertices().size());
   place_base(positions);
   PartNormals normals;
@@ -174,7 +175,7 @@ AuditPlace BlendSource::at(std::size_t segment, double t, const JudgedOutput& ou
 }
 
 std::vector<double> BlendSource::weights(std::size_t segment, double t) const {
-  std::vector<double> result(shading_.set.targets.size());
+  std::vector<double> result(involved_.size());
   weights_at_(segment, t, result);
   return result;
 }
@@ -185,11 +186,11 @@ void BlendSource::place_base(std::span<Vec3d> positions) const {
     positions[i] = to_double(vector_at(shading_.set.base, vertices[i]));
 }
 
-// The deltas of a target, with vertices as the part numbers them.
+// The deltas of an involved target, with vertices as the part numbers them.
 const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   if (moved_[k]) return *moved_[k];
   std::vector<Delta>& result = moved_[k].emplace();
-  const BlendTarget& target = shading_.set.targets[k];
+  const BlendTarget& target = shading_.set.targets[involved_[k]];
   const auto vertices = part_.vertices();
   result.reserve(std::min(vertices.size(), target.vertices.size()));
   for (std::size_t i = 0, n = 0; i < vertices.size() && n < target.vertices.size();) {
@@ -214,14 +215,12 @@ std::vector<std::vector<double>> BlendSource::now_and_next() const {
   return result;
 }
 
-std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::vector<bool>& involved,
+std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, std::span<const std::size_t> involved,
                                          AuditRule rule) {
   const Topology& topology = shading.set.topology;
   std::vector<bool> moves(topology.vertex_count()), element_moves(shading.groups.size());
-  for (std::size_t k = 0; k < involved.size(); ++k) {
-    if (!involved[k]) continue;
+  for (const std::size_t k : involved)
     for (const std::uint32_t v : shading.set.targets[k].vertices) moves[v] = true;
-  }
   const auto corners = topology.corners();
   const auto element_of_vertex = shading.groups.element_of_output();
   for (std::size_t c = 0; c < corners.size(); ++c) {
@@ -233,11 +232,9 @@ std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::
     const std::uint32_t e = shading.element_of_vertex[v];
     if (e == GltfShading::kNoElement) return false;
     if (element_moves[e]) return true;
-    for (std::size_t k = 0; k < involved.size(); ++k) {
-      if (involved[k] && !shading.normal_deltas[k].empty() && vector_at(shading.normal_deltas[k], v) != Vec3f{})
-        return true;
-    }
-    return false;
+    return std::any_of(involved.begin(), involved.end(), [&](std::size_t k) {
+      return !shading.normal_deltas[k].empty() && vector_at(shading.normal_deltas[k], v) != Vec3f{};
+    });
   };
   std::vector<JudgedOutput> outputs;
   if (rule == AuditRule::kFlat) {

@@ -26,7 +26,7 @@ namespace chronormal::inline internal {
 /// A vertex of all parts together, as the file counts.
 [[nodiscard]] AuditPlace place_of(const GltfShading& shading, std::size_t vertex);
 
-/// The weights of all targets at t of a segment.
+/// The weights of the targets that are involved in a motion at t of a segment.
 using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
 /// The weight or the time that a person finds this by.
 using Moment = std::function<double(std::size_t segment, double t)>;
@@ -36,9 +36,9 @@ class BlendSource {
   static constexpr bool kNeedsEnds = false;
 
   /// shading and part must outlive this, and so must the skin through which the mesh is seen, if there is one; where its
-  /// joints move, moment says when. Outputs are those of the part. involved has one entry for each target: others have
-  /// no weight at any time. A segment is placed at `samples` moments, one after the other.
-  BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, const std::vector<bool>& involved,
+  /// joints move, moment says when. Outputs are those of the part. involved are targets, ascending: weights are those of
+  /// them alone, and the others have none at any time. A segment is placed at `samples` moments, one after the other.
+  BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, std::vector<std::size_t> involved,
               Weights weights, Moment moment, std::size_t samples, MeshSkin* skin = nullptr);
 
   /// Does nothing: all data are in memory.
@@ -84,12 +84,13 @@ class BlendSource {
   const GltfShading& shading_;
   const JudgedPart& part_;
   AuditRule rule_;
+  std::vector<std::size_t> involved_;
   Weights weights_at_;
   Moment moment_;
   MeshSkin* skin_;
   std::vector<AffineTransform> carriers_;  // of outputs, where there is a skin
   std::size_t placed_ = 0;
-  std::vector<std::optional<std::vector<Delta>>> moved_;  // of each target, once it was asked for
+  std::vector<std::optional<std::vector<Delta>>> moved_;  // of each involved target, once it was asked for
   std::vector<ShownTurn> turns_;                          // of outputs
   std::optional<SegmentEnds> ends_;
   bool known_ = false;
@@ -101,9 +102,9 @@ class BlendSource {
 };
 
 /// The vertices whose normal some targets move: by a face around them, or by a stored delta. Of the rule flat, their
-/// corners. involved has one entry for each target.
-[[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const std::vector<bool>& involved,
-                                                       AuditRule rule);
+/// corners.
+[[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading,
+                                                       std::span<const std::size_t> involved, AuditRule rule);
 
 }  // namespace chronormal::inline internal
 

@@ -87,12 +87,16 @@ Weighting note_offset(const GltfShading& shading, std::optional<Weighting> asked
   return weighting;
 }
 
-JudgedPart part_of(const MeshAudit& mesh, const std::vector<bool>& involved) {
+// Targets that take part in a motion, ascending.
+using Involved = std::vector<std::size_t>;
+
+JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
   return {mesh.shading.set.topology, mesh.shading.groups, mesh.weighting,
           moving_outputs(mesh.shading, involved, mesh.rule), mesh.rule == AuditRule::kFlat};
 }
 
-// The weights of a subject: those of the specification, and those that each host plays.
+// The weights of the targets that are involved in a subject: those of the specification, and those that each host
+// plays.
 struct SubjectWeights {
   Weights specified;
   std::vector<Weights> played;
@@ -104,8 +108,25 @@ struct Measured {
   std::vector<HostError> of_hosts;
 };
 
+// Spreads the weights of the targets that are involved over all.
+std::vector<double> of_all_targets(std::span<const double> weights, const Involved& involved, std::size_t targets) {
+  std::vector<double> all(targets);
+  for (std::size_t i = 0; i < involved.size(); ++i) all[involved[i]] = weights[i];
+  return all;
+}
+
+// The same weights, for the targets that are involved, of a function that fills in those of all.
+Weights of_involved(const Involved& involved, std::size_t targets, Weights all_weights) {
+  return [&involved, targets, all_weights = std::move(all_weights)](std::size_t segment, double t,
+                                                                    std::span<double> weights) {
+    std::vector<double> all(targets);
+    all_weights(segment, t, all);
+    for (std::size_t i = 0; i < involved.size(); ++i) weights[i] = all[involved[i]];
+  };
+}
+
 // Measures a subject that will be the one of this index; nothing where there is nothing to judge.
-std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const std::vector<bool>& involved,
+std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const Involved& involved,
                                      const SubjectWeights& weights, const Moment& moment, MeshSkin* skin,
                                      AuditSubject subject, std::size_t index) {
   if (part.outputs().empty()) {
@@ -119,8 +140,11 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
     hosts.add_sample(source, sample);
     skinning.add_sample(source, sample);
     if (!mesh.watch) return;
+    const std::size_t targets = mesh.shading.set.targets.size();
+    std::vector<std::vector<double>> played;
+    for (const std::vector<double>& now : hosts.now()) played.push_back(of_all_targets(now, involved, targets));
     mesh.watch({index, subject, sample.segment, sample.t, moment(sample.segment, sample.t), part, sample.largest,
-                sample.error, sample.each, source.now(), hosts.now()});
+                sample.error, sample.each, of_all_targets(source.now(), involved, targets), played});
   };
   const bool are_watched = static_cast<bool>(mesh.watch);
   // Nothing is read here, so that there can be no error.
@@ -143,14 +167,15 @@ void add_subject(Measured measured, Audit& result) {
 // Audits a target from weight 0 to 1. Extra targets of a bake get the weights that follow.
 void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const GltfShading& shading = mesh.shading;
-  std::vector<bool> involved(shading.set.targets.size());
-  involved[k] = true;
+  Involved involved = {k};
   if (shading.mark) {
     for (const GltfExtraTarget& extra : shading.mark->extras) {
       if (extra.target == k) return;
-      if (extra.follows(k)) involved[extra.target] = true;
+      if (extra.follows(k)) involved.push_back(extra.target);
     }
   }
+  std::sort(involved.begin(), involved.end());
+  involved.erase(std::unique(involved.begin(), involved.end()), involved.end());
   AuditSubject subject;
   subject.kind = AuditSubject::Kind::kTarget;
   const std::vector<std::string>& names = mesh.document.meshes()[shading.mesh].target_names;
@@ -161,15 +186,17 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   subject.segments = 1;
   subject.samples = samples_per_segment(mesh.options, 1);
   SubjectWeights weights;
-  weights.specified = [&](std::size_t, double t, std::span<double> of_targets) {
-    std::fill(of_targets.begin(), of_targets.end(), 0.0);
+  const auto with_extras = [&](std::size_t, double t, std::span<double> of_targets) {
     of_targets[k] = t;
     fill_extra_weights(shading, of_targets);
   };
+  // There may be thousands of targets, so that nothing is done for each of them here without need.
+  weights.specified = [](std::size_t, double t, std::span<double> alone) { alone[0] = t; };
+  if (shading.mark) weights.specified = of_involved(involved, shading.set.targets.size(), with_extras);
   for (const Host& host : mesh.options.hosts) {
-    weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> of_targets) {
-      weights.specified(segment, t, of_targets);
-      drop_weights(host, of_targets);
+    weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> played) {
+      weights.specified(segment, t, played);
+      drop_weights(host, played, involved);
     });
   }
   const auto moment = [](std::size_t, double t) { return t; };
@@ -181,7 +208,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
     return;
   }
   for (const AuditFinding& fault :
-       faults_of_target(mesh.document, shading, mesh.rule, measured->subject, part, weights.specified))
+       faults_of_target(mesh.document, shading, mesh.rule, measured->subject, part, involved, weights.specified))
     result.findings.push_back(fault);
   add_subject(std::move(*measured), result);
 }
@@ -198,9 +225,12 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
   if (!range) return range.error();
   const std::vector<double> times = keys.value().times;
   const std::size_t width = mesh.shading.set.targets.size();
-  std::vector<bool> involved(width);
+  std::vector<bool> is_involved(width);
   for (std::size_t i = 0; i < keys.value().values.size(); ++i)
-    if (keys.value().values[i] != 0) involved[i % width] = true;
+    if (keys.value().values[i] != 0) is_involved[i % width] = true;
+  Involved involved;
+  for (std::size_t k = 0; k < width; ++k)
+    if (is_involved[k]) involved.push_back(k);
   std::vector<PlayedTrack> played;
   for (const Host& host : mesh.options.hosts)
     played.emplace_back(host, keys.value(), track.interpolation, width, range.value());
@@ -213,8 +243,7 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
   subject.animation = animation;
   subject.track = index;
   subject.node = track.node;
-  for (std::size_t k = 0; k < width; ++k)
-    if (involved[k]) subject.driven.push_back(k);
+  subject.driven = involved;
   const bool moves = times.size() > 1;
   subject.segments = moves ? times.size() - 1 : 1;
   subject.samples = moves ? samples_per_segment(mesh.options, subject.segments) : 1;
@@ -223,13 +252,13 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
     return t == 1 ? times[segment + 1] : (1 - t) * times[segment] + t * times[segment + 1];
   };
   SubjectWeights weights;
-  weights.specified = [&](std::size_t segment, double t, std::span<double> of_targets) {
+  weights.specified = of_involved(involved, width, [&](std::size_t segment, double t, std::span<double> of_targets) {
     curve.at(moment(segment, t), moves && t == 1, of_targets);
-  };
+  });
   for (const PlayedTrack& by_host : played) {
-    weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> of_targets) {
-      by_host.at(moment(segment, t), moves && t == 1, of_targets);
-    });
+    weights.played.push_back(of_involved(involved, width, [&](std::size_t segment, double t, std::span<double> all) {
+      by_host.at(moment(segment, t), moves && t == 1, all);
+    }));
   }
   std::optional<MeshSkin> skin;
   if (mesh.options.skins && mesh.document.nodes()[track.node].has_skin)
@@ -276,8 +305,9 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
   const GltfExpression& expression = mesh.document.meshes()[mesh.shading.mesh].expressions[index];
   std::vector<double> full = expression.weights;
   fill_extra_weights(mesh.shading, full);
-  std::vector<bool> involved(full.size());
-  for (std::size_t k = 0; k < full.size(); ++k) involved[k] = full[k] != 0;
+  Involved involved;
+  for (std::size_t k = 0; k < full.size(); ++k)
+    if (full[k] != 0) involved.push_back(k);
   AuditSubject subject;
   subject.kind = AuditSubject::Kind::kExpression;
   subject.name = expression.name;
@@ -288,13 +318,13 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
   // The segment goes from full strength, where it is judged, to the base: how short a normal is follows from both.
   const auto moment = [](std::size_t, double t) { return 1 - t; };
   SubjectWeights weights;
-  weights.specified = [&](std::size_t, double t, std::span<double> of_targets) {
-    for (std::size_t k = 0; k < full.size(); ++k) of_targets[k] = (1 - t) * full[k];
+  weights.specified = [&](std::size_t, double t, std::span<double> now) {
+    for (std::size_t i = 0; i < involved.size(); ++i) now[i] = (1 - t) * full[involved[i]];
   };
   for (const Host& host : mesh.options.hosts) {
-    weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> of_targets) {
-      weights.specified(segment, t, of_targets);
-      drop_weights(host, of_targets);
+    weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> played) {
+      weights.specified(segment, t, played);
+      drop_weights(host, played, involved);
     });
   }
   std::optional<Measured> measured = measure_part(mesh, part_of(mesh, involved), involved, weights, moment,

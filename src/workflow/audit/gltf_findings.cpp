@@ -27,12 +27,11 @@ bool moves_vertices(const GltfShading& shading, std::size_t k, const GltfPart& p
 
 // How far tangents are from perpendicular to the right normal at weight 1, beyond what they are in the base.
 std::optional<AuditFinding> stale_tangents(const GltfShading& shading, AuditRule rule, std::size_t k,
-                                           const JudgedPart& part, const Weights& weights) {
+                                           const JudgedPart& part, std::span<const std::size_t> involved,
+                                           const Weights& weights) {
   if (shading.tangents.empty() || shading.set.targets[k].vertices.empty()) return std::nullopt;
-  // No normals are shown, so that no target needs to be involved.
   BlendSource source(
-      shading, part, rule, std::vector<bool>(shading.set.targets.size()), weights,
-      [](std::size_t, double t) { return t; }, 0);
+      shading, part, rule, {involved.begin(), involved.end()}, weights, [](std::size_t, double t) { return t; }, 0);
   std::vector<Vec3d> positions(part.vertices().size());
   PartNormals normals;
   source.place(0, 1, positions);
@@ -125,7 +124,7 @@ std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const 
 
 std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading, AuditRule rule,
                                            const AuditSubject& subject, const JudgedPart& part,
-                                           const Weights& weights) {
+                                           std::span<const std::size_t> involved, const Weights& weights) {
   const std::size_t k = *subject.target;
   const auto& primitives = document.meshes()[shading.mesh].primitives;
   const auto lacks_normals = [&](const GltfPart& p) {
@@ -144,7 +143,8 @@ std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const G
   } else if (std::optional<AuditFinding> wrong = find_wrong_normals(subject)) {
     faults.push_back(*wrong);
   }
-  if (std::optional<AuditFinding> stale = stale_tangents(shading, rule, k, part, weights)) faults.push_back(*stale);
+  if (std::optional<AuditFinding> stale = stale_tangents(shading, rule, k, part, involved, weights))
+    faults.push_back(*stale);
   return faults;
 }
 

@@ -26,10 +26,11 @@ namespace chronormal::inline internal {
 /// The hosts that take fewer targets than the mesh has.
 [[nodiscard]] std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Host> hosts);
 
-/// The faults of a target that was measured, at the weights that measured it.
+/// The faults of a target that was measured, at the weights that measured it, which are those of the involved targets.
 [[nodiscard]] std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading,
                                                          AuditRule rule, const AuditSubject& subject,
-                                                         const JudgedPart& part, const Weights& weights);
+                                                         const JudgedPart& part, std::span<const std::size_t> involved,
+                                                         const Weights& weights);
 
 /// The fault of a track that was measured. are_targets_judged says whether targets were judged one by one before, and
 /// worst_target how far off they were.

@@ -56,7 +56,7 @@ double largest_distance(std::span<const Vec3d> a, std::span<const Vec3d> b) noex
 }  // namespace
 
 HostErrors::HostErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Host> hosts,
-                       std::vector<Weights> weights, const std::vector<bool>& involved, bool is_skinned)
+                       std::vector<Weights> weights, std::span<const std::size_t> involved, bool is_skinned)
     : part_(part),
       is_skinned_(is_skinned),
       weights_(std::move(weights)),
@@ -76,9 +76,10 @@ HostErrors::HostErrors(const GltfShading& shading, const JudgedPart& part, std::
       kept.normals.push_back(kept_normal(host, vector_at(shading.normals, output.vertex)));
     kept.deltas.resize(involved.size());
     for (std::size_t k = 0; k < involved.size(); ++k) {
-      if (!involved[k] || shading.normal_deltas[k].empty()) continue;
+      const std::vector<float>& all = shading.normal_deltas[involved[k]];
+      if (all.empty()) continue;
       for (std::uint32_t i = 0; i < outputs.size(); ++i) {
-        const Vec3f delta = vector_at(shading.normal_deltas[k], outputs[i].vertex);
+        const Vec3f delta = vector_at(all, outputs[i].vertex);
         if (delta == Vec3f{}) continue;
         kept.deltas[k].emplace_back(
             i, kept_delta(host, vector_at(shading.normals, outputs[i].vertex), kept.normals[i], delta));

@@ -27,10 +27,10 @@ struct HostError {
 
 class HostErrors {
  public:
-  /// weights are those that each host plays. shading and part must outlive this. involved has one entry for each
-  /// target: others have no weight at any time. is_skinned: hosts may see the part through a skin in ways of their own.
+  /// weights are those that each host plays, of the involved targets, as BlendSource has them. shading and part must
+  /// outlive this. is_skinned: hosts may see the part through a skin in ways of their own.
   HostErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Host> hosts,
-             std::vector<Weights> weights, const std::vector<bool>& involved, bool is_skinned = false);
+             std::vector<Weights> weights, std::span<const std::size_t> involved, bool is_skinned = false);
 
   /// Judges every host at a sample that the source has placed. What shows the same as the source has its error.
   void add_sample(BlendSource& source, const MeasuredSample& sample);
@@ -46,7 +46,7 @@ class HostErrors {
   struct Kept {
     const Host* host = nullptr;
     std::vector<Vec3f> normals;  // of each output
-    // Of each target the outputs that it turns, ascending.
+    // Of each involved target the outputs that it turns, ascending.
     std::vector<std::vector<std::pair<std::uint32_t, Vec3f>>> deltas;
   };
 

@@ -30,12 +30,16 @@ inline constexpr double kVanished = 1e-4;
 
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditManySegments = 32;
 
-/// Counts an error of [0, 180] degrees in both histograms. Where a host rounds otherwise than to nearest, an angle may
-/// also be -0, or a little beyond 180: nothing may be indexed by such bits unchecked.
-inline void count_in_bins(double degrees, MotionError& errors) noexcept {
+/// The bin of the histogram for an error of [0, 180] degrees.
+[[nodiscard]] inline std::size_t bin_of(double degrees) noexcept {
   std::size_t bin = 0;
   for (const double edge : kAuditBinEdges) bin += degrees >= edge ? 1U : 0U;
-  ++errors.histogram[bin];
+  return bin;
+}
+
+/// The fine bin for it. Where a host rounds otherwise than to nearest, an angle may also be -0, or a little beyond 180:
+/// nothing may be indexed by such bits unchecked.
+[[nodiscard]] inline std::size_t fine_bin_of(double degrees) noexcept {
   // Each doubling is an exponent of double, and its bins are the first bits of the fraction; both together are one
   // number.
   static_assert(kAuditBinsOfDoubling == 128);
@@ -43,7 +47,7 @@ inline void count_in_bins(double degrees, MotionError& errors) noexcept {
   constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
   const std::uint64_t number = degrees > 0 ? bit_cast<std::uint64_t>(degrees) >> kFractionBits : 0;
   const std::uint64_t fine_bin = number >= kFirst ? number - kFirst + 1 : 0;
-  ++errors.counts[static_cast<std::size_t>(std::min<std::uint64_t>(fine_bin, kAuditFineBins - 1))];
+  return static_cast<std::size_t>(std::min<std::uint64_t>(fine_bin, kAuditFineBins - 1));
 }
 
 /// How far what is shown is from a right direction, in degrees, at least: less what may have turned it where rounding
@@ -135,6 +139,7 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
                 MotionError& result) {
   double sum = 0, sum_of_squares = 0, worst = 0;  // kept in registers
   std::size_t judged = 0;
+  std::array<std::uint32_t, kAuditFineBins> counts{};  // of at most kRange outputs
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const JudgedOutput& output = outputs[i];
     double degrees = degrees_of(output, i);
@@ -155,7 +160,8 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
     ++judged;
     sum += degrees;
     sum_of_squares += degrees * degrees;
-    count_in_bins(degrees, result);
+    ++result.histogram[bin_of(degrees)];
+    ++counts[fine_bin_of(degrees)];
     if (degrees > worst) {
       worst = degrees;
       result.worst_at = at(output);
@@ -165,6 +171,8 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
   result.sum = sum;
   result.sum_of_squares = sum_of_squares;
   result.worst = worst;
+  for (std::size_t bin = 0; bin < counts.size(); ++bin)
+    if (counts[bin] > 0) result.counts.add(bin, counts[bin]);
 }
 
 /// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows. each,

@@ -17,7 +17,8 @@ constexpr std::size_t kGroupsPerTask = 16;
 
 }  // namespace
 
-StoredSums::StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<bool> involved)
+StoredSums::StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs,
+                       std::vector<std::size_t> involved)
     : shading_(shading),
       outputs_(outputs),
       involved_(std::move(involved)),
@@ -29,8 +30,8 @@ void StoredSums::make_groups() {
     Group& group = groups_[g];
     const std::size_t first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);
     for (std::size_t k = 0; k < involved_.size(); ++k) {
-      const std::vector<float>& all = shading_.normal_deltas[k];
-      if (!involved_[k] || all.empty()) continue;
+      const std::vector<float>& all = shading_.normal_deltas[involved_[k]];
+      if (all.empty()) continue;
       std::array<float, 3 * kGroup> row{};
       for (std::size_t i = 0; i < count; ++i)
         std::copy_n(all.data() + 3 * std::size_t{outputs_[first + i].vertex}, 3, row.data() + 3 * i);
@@ -48,7 +49,7 @@ void StoredSums::add_up(std::vector<std::vector<double>> sets) {
   std::vector<float> by_target(involved_.size() * sets_.size());
   std::vector<bool> is_finite(sets_.size(), true);
   for (std::size_t k = 0; k < involved_.size(); ++k) {
-    if (!involved_[k] || shading_.normal_deltas[k].empty()) continue;
+    if (shading_.normal_deltas[involved_[k]].empty()) continue;
     for (std::size_t s = 0; s < sets_.size(); ++s) {
       const auto weight = static_cast<float>(sets_[s][k]);
       if (std::isfinite(weight))

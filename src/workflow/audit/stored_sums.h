@@ -19,8 +19,9 @@ class StoredSums {
  public:
   static constexpr std::size_t kAtOnce = 4;  ///< so many sets of weights take hardly longer than one
 
-  /// shading and outputs must outlive this. involved has one entry for each target: others have no weight at any time.
-  StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<bool> involved);
+  /// shading and outputs must outlive this. involved are targets, ascending: a set of weights has one for each of them,
+  /// and the others have none at any time.
+  StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<std::size_t> involved);
 
   /// Computes N + sum w D of every output at each set of weights, in float32, target after target, as hosts add. What
   /// was known before is forgotten. A delta of zero changes no sum, even where its weight is not finite: such a weight
@@ -33,7 +34,7 @@ class StoredSums {
  private:
   // Some neighbouring outputs, and a row of deltas for each target that turns any of them.
   struct Group {
-    std::vector<std::uint32_t> targets;  // ascending
+    std::vector<std::uint32_t> targets;  // ascending, as numbered in involved_
     std::vector<float> deltas;           // (targets, 3 kGroup)
   };
   static constexpr std::size_t kGroup = 64;
@@ -43,7 +44,7 @@ class StoredSums {
 
   const GltfShading& shading_;
   std::span<const JudgedOutput> outputs_;
-  std::vector<bool> involved_;
+  std::vector<std::size_t> involved_;
   std::vector<Group> groups_;  // empty until something is added up
   std::vector<std::vector<double>> sets_;
   std::size_t stride_;       // of the sums of a set: whole groups

@@ -180,9 +180,9 @@ Vec3f kept_delta(const Host& host, const Vec3f& normal, const Vec3f& kept_normal
   return delta;
 }
 
-void drop_weights(const Host& host, std::span<double> weights) noexcept {
+void drop_weights(const Host& host, std::span<double> weights, std::span<const std::size_t> targets) noexcept {
   for (std::size_t k = 0; k < weights.size(); ++k) {
-    const bool is_beyond = host.most_targets > 0 && k >= host.most_targets;
+    const bool is_beyond = host.most_targets > 0 && (targets.empty() ? k : targets[k]) >= host.most_targets;
     if (is_beyond || std::fabs(weights[k]) <= host.least_weight) weights[k] = 0;
   }
 }

@@ -77,10 +77,9 @@ Json error_json(const MotionError& error) {
       error.unlit_at.segment, error.unlit_at.at, error.faint,          error.faint_worst, error.faint_at.vertex,
       error.faint_at.segment, error.faint_at.at};
   for (const std::size_t count : error.histogram) json.push_back(count);
-  for (std::size_t bin = 0; bin < error.counts.size(); ++bin) {
-    if (error.counts[bin] == 0) continue;
-    json.push_back(bin);
-    json.push_back(error.counts[bin]);
+  for (const FineBins::Bin& bin : error.counts.filled()) {
+    json.push_back(bin.number());
+    json.push_back(bin.count());
   }
   return json;
 }
@@ -105,10 +104,12 @@ MotionError read_error(const JsonView& list) {
   for (std::size_t& count : error.histogram) count = numbers.count();
   while (!numbers.at_end()) {
     const std::size_t bin = numbers.count(), count = numbers.count();
-    if (bin < error.counts.size())
-      error.counts[bin] = count;
-    else
+    if (bin >= kAuditFineBins)
       list.complain("there is no bin " + std::to_string(bin));
+    else if (count > FineBins::kMostCount - error.counts[bin])
+      list.complain("bin " + std::to_string(bin) + " counts more than there can be");
+    else
+      error.counts.add(bin, count);
   }
   return error;
 }

@@ -66,7 +66,7 @@ TEST(StoredSums, are_those_that_a_host_makes_vertex_by_vertex) {
   std::uniform_real_distribution<double> weight(-2, 2);
   for (const std::size_t vertices : {1U, 95U, 96U, 97U, 3000U}) {
     const Fixture fixture = make_fixture(vertices, random);
-    StoredSums sums(fixture.shading, fixture.outputs, std::vector<bool>(6, true));
+    StoredSums sums(fixture.shading, fixture.outputs, {0, 1, 2, 3, 4, 5});
     for (std::size_t count = 1; count <= 5; ++count) {
       std::vector<std::vector<double>> sets(count, std::vector<double>(6));
       for (std::vector<double>& set : sets)
@@ -87,7 +87,7 @@ TEST(StoredSums, are_those_that_a_host_makes_vertex_by_vertex) {
 TEST(StoredSums, know_only_what_was_added_up_last) {
   std::mt19937 random(1);
   const Fixture fixture = make_fixture(10, random);
-  StoredSums sums(fixture.shading, fixture.outputs, std::vector<bool>(6, true));
+  StoredSums sums(fixture.shading, fixture.outputs, {0, 1, 2, 3, 4, 5});
   const std::vector<double> before(6, 0.5), after(6, 0.25);
   EXPECT_TRUE(sums.find(before).empty());
   sums.add_up({before});
@@ -100,7 +100,7 @@ TEST(StoredSums, know_only_what_was_added_up_last) {
 TEST(StoredSums, are_not_numbers_where_a_weight_is_beyond_float32) {
   std::mt19937 random(2);
   const Fixture fixture = make_fixture(200, random);
-  StoredSums sums(fixture.shading, fixture.outputs, std::vector<bool>(6, true));
+  StoredSums sums(fixture.shading, fixture.outputs, {0, 1, 2, 3, 4, 5});
   std::vector<double> plain(6, 0.5), infinite = plain, large = plain, without_deltas = plain;
   infinite[2] = kInfinity;
   large[5] = 1e39;
@@ -117,10 +117,12 @@ TEST(StoredSums, are_not_numbers_where_a_weight_is_beyond_float32) {
 TEST(StoredSums, leave_out_targets_that_are_not_involved) {
   std::mt19937 random(3);
   const Fixture fixture = make_fixture(200, random);
-  StoredSums sums(fixture.shading, fixture.outputs, {true, true, true, true, true, false});
-  const std::vector<double> all(6, 0.5), involved = {0.5, 0.5, 0.5, 0.5, 0.5, 0};
-  sums.add_up({all, involved});
-  const std::span<const float> a = sums.find(all), b = sums.find(involved);
+  StoredSums sums(fixture.shading, fixture.outputs, {0, 2, 3, 5});
+  StoredSums of_all(fixture.shading, fixture.outputs, {0, 1, 2, 3, 4, 5});
+  const std::vector<double> some = {0.5, 0.25, 2, -1}, all = {0.5, 0, 0.25, 2, 0, -1};
+  sums.add_up({some});
+  of_all.add_up({all});
+  const std::span<const float> a = sums.find(some), b = of_all.find(all);
   EXPECT_EQ(std::vector<float>(a.begin(), a.end()), std::vector<float>(b.begin(), b.end()));
 }
 

@@ -1,0 +1,106 @@
+// What an audit takes of memory and time grows with the file: small files can say a thing thousands of times.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "chronormal/workflow/audit.h"
+#include "tests/support/allocation_counter.h"
+#include "tests/support/audit_fixture.h"
+#include "tests/support/cpu_time.h"
+#include "tests/support/gltf_builder.h"
+
+namespace chronormal::audit_growth_test {
+namespace {
+
+using test::GltfBuilder;
+
+// A triangle with stored normals that do not follow its target, which stands there `targets` times.
+GltfBuilder triangle(std::size_t targets) {
+  GltfBuilder builder;
+  const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0}),
+                    lift = builder.add_positions({0, 0, 0, 0, 0, 0.5F, 0, 0, 0.25F}),
+                    normals = builder.add_positions({0, 0, 1, 0, 0, 1, 0, 0, 1}),
+                    corners = builder.add_indices<std::uint8_t>({0, 1, 2});
+  GltfBuilder::Json primitive =
+      GltfBuilder::primitive(base, corners, std::vector<GltfBuilder::Json>(targets, {{"POSITION", lift}}));
+  primitive["attributes"]["NORMAL"] = normals;
+  builder.add_node(builder.add_mesh(std::move(primitive)));
+  return builder;
+}
+
+// Clips of two keys, which share their arrays or have one each.
+GltfBuilder clips(std::size_t count, bool are_shared) {
+  GltfBuilder builder = triangle(1);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i == 0 || !are_shared)
+      builder.add_track<float>(builder.add_animation(""), 0, {0, 1}, {0, 1.0F + static_cast<float>(i)});
+    else
+      builder.add("animations", builder.json["animations"][0]);
+  }
+  return builder;
+}
+
+TEST(AuditGrowth, a_subject_takes_little_more_than_the_bins_that_it_fills) {
+  if (!test::AllocationCounter::works()) GTEST_SKIP() << "operator new is a sanitizer's";
+  constexpr std::size_t kMany = 400, kMostPerSubject = 6000;  // bytes; bins alone were 36 kB
+  for (const GltfBuilder& builder : {clips(kMany, true), clips(kMany, false), triangle(kMany)}) {
+    const test::GltfFixture fixture(builder);
+    ASSERT_TRUE(fixture.ok()) << fixture.error();
+    const test::AllocationCounter counter;
+    const Result<Audit> audited = audit(*fixture, {});
+    ASSERT_TRUE(audited.ok());
+    ASSERT_GE(audited.value().subjects.size(), kMany);
+    EXPECT_LT(static_cast<std::size_t>(counter.bytes()) / audited.value().subjects.size(), kMostPerSubject);
+    EXPECT_LT(counter.peak_bytes() / audited.value().subjects.size(), 2 * kMostPerSubject);
+  }
+}
+
+// Eight times as many targets take eight times as long, and not 64 times.
+TEST(AuditGrowth, time_is_linear_in_targets) {
+  const auto seconds = [](std::size_t targets) {
+    const test::GltfFixture fixture(triangle(targets));
+    EXPECT_TRUE(fixture.ok());
+    double least = 1e9;
+    for (int i = 0; i < 3; ++i) {
+      const test::CpuClock clock;
+      EXPECT_EQ(audit(*fixture, {}).value().subjects.size(), targets);
+      least = std::min(least, clock.seconds());
+    }
+    return least;
+  };
+  const double few = seconds(500), many = seconds(4000);
+  EXPECT_LT(many, 16 * few);
+}
+
+TEST(AuditGrowth, bins_count_as_a_map_does) {
+  constexpr unsigned kSeed = 2305;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  std::mt19937 random(kSeed);
+  for (int round = 0; round < 500; ++round) {
+    std::map<std::size_t, std::size_t> expected;
+    FineBins bins;
+    for (int part = 0; part < 4; ++part) {
+      FineBins more;
+      for (std::size_t n = random() % 20; n > 0; --n) {
+        const std::size_t bin = random() % 30 * 79 % kAuditFineBins, count = random() % 4;
+        more.add(bin, count);
+        if (count > 0) expected[bin] += count;
+      }
+      bins.add(more);
+    }
+    std::map<std::size_t, std::size_t> found;
+    for (const FineBins::Bin& bin : bins.filled()) found[bin.number()] = bin.count();
+    ASSERT_EQ(found, expected);
+    ASSERT_EQ(bins.filled().size(), expected.size());
+    for (std::size_t bin = 0; bin < kAuditFineBins; ++bin)
+      ASSERT_EQ(bins[bin], expected.contains(bin) ? expected[bin] : 0);
+  }
+}
+
+}  // namespace
+}  // namespace chronormal::audit_growth_test
