@@ -5,10 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "tests/support/cache_bytes.h"
@@ -405,6 +407,40 @@ TEST_F(HostileCli, a_small_stack_is_enough) {
         "report moving.glb -o out.bin", "compare a.obj b.obj", "query cones a.obj b.obj", "inspect moving.glb"}) {
     const ProcessResult result = run(arguments, "ulimit -s 256; ");
     EXPECT_EQ(result.exit_code, 0) << arguments << ": " << result.err;
+  }
+}
+
+// Files that seem to have a terabyte, of which nearly all was never written.
+TEST_F(HostileCli, sparse_files_are_refused_where_they_stop_being_text) {
+  folder_.write("mesh.obj", kFirst);
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n";
+  struct File {
+    std::string name, begin, arguments;
+  };
+  const std::vector<File> files = {{"a.obj", "", "inspect a.obj"},
+                                   {"b.obj", kFirst, "inspect b.obj"},
+                                   {"c.ply", "", "inspect c.ply"},
+                                   {"d.ply", header, "inspect d.ply"},
+                                   {"e.ply", header + "end_header\n0 0 0\n1 0", "inspect e.ply"},
+                                   {"f.gltf", "", "audit f.gltf"},
+                                   {"g.gltf", R"({"asset":{"version":"2.0"},)", "audit g.gltf"},
+                                   {"h.json", R"({"asset":")", "inspect h.json"},
+                                   {"i.target", "", "inspect --base mesh.obj i.target"},
+                                   {"j.target", "0 0 0 1\n", "inspect --base mesh.obj j.target"},
+                                   {"k.glb", "glTF", "audit k.glb"},
+                                   {"l.mdd", "", "inspect mesh.obj l.mdd"},
+                                   {"m.pc2", "", "inspect mesh.obj m.pc2"},
+                                   {"n.npz", "PK\3\4", "inspect n.npz"},
+                                   {"o.mcx", "FOR4", "inspect mesh.obj o.mcx"}};
+  for (const File& file : files) {
+    folder_.write(file.name, file.begin);
+    std::error_code error;
+    std::filesystem::resize_file(folder_ / file.name, std::uintmax_t{1} << 40U, error);
+    if (error) GTEST_SKIP() << "there are no sparse files here: " << error.message();
+    const ProcessResult result = run(file.arguments, "ulimit -t 10; ");
+    expect(result, 3, {file.name});
   }
 }
 

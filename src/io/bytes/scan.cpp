@@ -1,12 +1,14 @@
 // Parses numbers: a fast path for plain digits, and the strict functions for all others.
 #include "io/bytes/scan.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <system_error>
 
 #include "core/bits.h"
 #include "core/charconv.h"
+#include "io/bytes/binary.h"
 
 namespace chronormal::inline internal::scan {
 namespace {
@@ -42,6 +44,18 @@ bool is_large(std::string_view number) noexcept {
 }
 
 }  // namespace
+
+Status check_text(std::string_view bytes, const std::string& name) {
+  constexpr std::size_t kPage = 4096;
+  for (std::size_t at = bytes.find('\0'); at != std::string_view::npos; at = bytes.find('\0', at)) {
+    const std::string_view page = bytes.substr(at, kPage);
+    const std::size_t zeros = std::min(page.find_first_not_of('\0'), page.size());
+    if (zeros == kPage)
+      return invalid_input(binary::place(name, at), "this is no text: from here on there are thousands of zero bytes");
+    at += zeros;
+  }
+  return Success{};
+}
 
 NumberFault parse_float(std::string_view word, float& value) noexcept {
   word = without_plus(word);

@@ -166,6 +166,7 @@ Result<MakeHumanTarget> read_make_human_target(std::string_view bytes, const std
     unpacked = std::move(text).value();
     bytes = unpacked;
   }
+  if (Status text = scan::check_text(bytes, name); !text) return text.error();
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
   return TargetReader(bytes, name, base).read();
 }

@@ -347,10 +347,12 @@ void append_faces(std::string& text, const Topology& topology, std::span<const s
 }  // namespace
 
 Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name) {
+  if (Status text = scan::check_text(bytes, name); !text) return text.error();
   return ObjReader(without_byte_order_mark(bytes), name, nullptr).read();
 }
 
 Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name) {
+  if (Status text = scan::check_text(bytes, name); !text) return text.error();
   Shading read;
   Result<MeshFrame> mesh = ObjReader(without_byte_order_mark(bytes), name, &read).read();
   if (!mesh) return mesh;

@@ -16,7 +16,8 @@ struct Head {
 };
 
 std::optional<Head> read_head(std::string_view bytes, std::size_t expected) {
-  if (bytes.find('\n') == std::string_view::npos || bytes.starts_with("\xEF\xBB\xBF")) return std::nullopt;
+  if (!scan::check_text(bytes, "") || bytes.find('\n') == std::string_view::npos || bytes.starts_with("\xEF\xBB\xBF"))
+    return std::nullopt;
   Head head;
   head.positions.reserve(expected);
   for (scan::Lines lines(bytes, '\n'); lines.next(); head.end = lines.position()) {

@@ -315,8 +315,10 @@ class BodyReader {
 
 Result<MeshFrame> read_body(std::string_view bytes, const std::string& name, const Header& header,
                             bool has_velocities) {
-  if (header.encoding == PlyEncoding::kAscii)
+  if (header.encoding == PlyEncoding::kAscii) {
+    if (Status text = scan::check_text(bytes, name); !text) return text.error();
     return BodyReader<AsciiSource>(bytes, name, header, has_velocities).read();
+  }
   return BodyReader<BinarySource>(bytes, name, header, has_velocities).read();
 }
 

@@ -217,7 +217,11 @@ Status HeaderReader::check_elements() {
 
 }  // namespace
 
-Result<Header> read_header(std::string_view bytes, const std::string& name) { return HeaderReader(bytes, name).read(); }
+Result<Header> read_header(std::string_view bytes, const std::string& name) {
+  constexpr std::size_t kLongest = std::size_t{16}
+                                   << 20;  // of comments, mostly: a file that is no PLY may go on for long
+  return HeaderReader(bytes.substr(0, kLongest), name).read();
+}
 
 Result<bool> assign_velocities(Header& header, const std::string& name) {
   // Particle and simulation codes write the first names; exporters of attributes add the axis to the name "velocity".
