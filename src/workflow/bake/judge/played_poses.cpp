@@ -201,13 +201,16 @@ std::vector<SeenPose> seen_tracks(std::span<const DrivingTrack> tracks, const Me
   const std::vector<PlayedInstant> instants = played_instants(tracks, host, between_keys, phase, most);
   const std::vector<std::optional<MeshSkin>> as_they_are(1);
   std::vector<SeenPose> poses;
+  auto first = instants.begin();  // of the track, where its instants begin
   for (std::size_t t = 0; t < tracks.size(); ++t) {
+    const auto last = std::find_if(first, instants.end(), [&](const PlayedInstant& other) { return other.track != t; });
     for (const auto& skin : skins.of_tracks.empty() ? as_they_are : skins.of_tracks[t]) {
       const std::size_t share = std::max<std::size_t>(1, most / tracks.size());
       if (skin && add_skinned(tracks[t], *skin, host, phase, share, poses)) continue;
-      for (const PlayedInstant& instant : instants)
-        if (instant.track == t) add_seen(instant.weights, skin ? &*skin : nullptr, instant.time, poses);
+      for (auto instant = first; instant != last; ++instant)
+        add_seen(instant->weights, skin ? &*skin : nullptr, instant->time, poses);
     }
+    first = last;
   }
   return poses;
 }
