@@ -28,13 +28,13 @@ class ReadAhead {
   [[nodiscard]] bool is_of(std::size_t keyframe) const noexcept { return keyframe_ == keyframe; }
   [[nodiscard]] bool is_under_way() const noexcept { return keyframe_.has_value(); }
 
-  void start([[maybe_unused]] const MotionStream::Reader& read, [[maybe_unused]] const Motion& motion,
-             [[maybe_unused]] std::size_t keyframe, std::vector<float> room) {
+  // `read` takes the keyframe and its positions, and must stay there.
+  template <class Read>
+  void start([[maybe_unused]] const Read& read, [[maybe_unused]] std::size_t keyframe, std::vector<float> room) {
     positions_ = std::move(room);
 #ifdef CHRONORMAL_HAVE_TBB
     try {
-      done_ = std::async(std::launch::async,
-                         [&read, &motion, keyframe, this] { return read(motion, keyframe, positions_); });
+      done_ = std::async(std::launch::async, [read, keyframe, this] { return read(keyframe, positions_); });
       keyframe_ = keyframe;
     } catch (const std::system_error&) {
       keyframe_.reset();  // without a thread, it is read when it is asked for
@@ -67,6 +67,7 @@ struct MotionStream::State {
   const Motion* whole = nullptr;  // otherwise nullptr, and the rest counts:
   Motion outline = {};
   Reader read = {};
+  Watcher watcher = {};
   bool keeps_all = false;
   std::size_t first = 0, end = 0;              // the window
   std::vector<std::vector<float>> spare = {};  // memory of keyframes that left it
@@ -82,6 +83,20 @@ struct MotionStream::State {
     return positions;
   }
 
+  // Reads a keyframe, and tells the watcher of it.
+  [[nodiscard]] Status read_keyframe(std::size_t keyframe, std::span<float> positions) const {
+    const Status status = read(outline, keyframe, positions);
+    return status && watcher ? watcher(keyframe, positions) : status;
+  }
+
+  // Ends what is read ahead, and forgets it.
+  void drop_ahead() {
+    if (!ahead.is_under_way()) return;
+    std::vector<float> read_positions;
+    (void)ahead.finish(read_positions);
+    spare.push_back(std::move(read_positions));
+  }
+
   void leave(std::size_t keyframe) {
     std::vector<float>& positions = outline.keyframes[keyframe].positions;
     if (!positions.empty()) spare.push_back(std::move(positions));
@@ -91,16 +106,15 @@ struct MotionStream::State {
   [[nodiscard]] Status enter(std::size_t keyframe) {
     std::vector<float>& positions = outline.keyframes[keyframe].positions;
     if (!positions.empty()) return Success{};
-    if (ahead.is_under_way()) {
-      const bool is_wanted = ahead.is_of(keyframe);
-      std::vector<float> read_positions;
+    std::vector<float> read_positions;
+    if (ahead.is_under_way() && ahead.is_of(keyframe)) {
       const Status status = ahead.finish(read_positions);
-      if (is_wanted && status) positions = std::move(read_positions);
-      if (is_wanted) return status;
-      spare.push_back(std::move(read_positions));
+      if (status) positions = std::move(read_positions);
+      return status;
     }
-    std::vector<float> read_positions = room();
-    const Status status = read(outline, keyframe, read_positions);
+    drop_ahead();
+    read_positions = room();
+    const Status status = read_keyframe(keyframe, read_positions);
     if (status) positions = std::move(read_positions);
     return status;
   }
@@ -144,8 +158,23 @@ Status MotionStream::hold(std::size_t first, std::size_t last) {
   const bool is_more = state.end < state.outline.keyframes.size();
   if (ReadAhead::kCan && goes_on && is_more && !state.ahead.is_under_way() &&
       state.outline.keyframes[state.end].positions.empty())
-    state.ahead.start(state.read, state.outline, state.end, state.room());
+    state.ahead.start(
+        [&state](std::size_t keyframe, std::span<float> positions) { return state.read_keyframe(keyframe, positions); },
+        state.end, state.room());
   state.spare.clear();
+  return Success{};
+}
+
+Status MotionStream::watch(Watcher watcher) {
+  state_->drop_ahead();
+  state_->watcher = std::move(watcher);
+  if (!state_->watcher) return Success{};
+  const Motion& all = motion();
+  for (std::size_t k = 0; k < all.keyframes.size(); ++k) {
+    const std::vector<float>& positions = all.keyframes[k].positions;
+    if (positions.empty()) continue;
+    if (Status status = state_->watcher(k, positions); !status) return status;
+  }
   return Success{};
 }
 

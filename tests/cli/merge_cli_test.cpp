@@ -57,11 +57,34 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   ASSERT_EQ(run(audit + "--tolerance 2 --shard 3/3 -o other.json").exit_code, 0);
   const ProcessResult mixed = run("merge audit1.json audit2.json other.json");
   EXPECT_EQ(mixed.exit_code, 2);
-  EXPECT_NE(mixed.err.find("these are shards of two different audits"), std::string::npos) << mixed.err;
+  EXPECT_NE(mixed.err.find("other.json: it does not belong to audit1.json: they differ in the tolerance"),
+            std::string::npos)
+      << mixed.err;
   EXPECT_EQ(run("merge sample1.npy sample3.npy -o x.npy").exit_code, 2);
   EXPECT_EQ(run("merge compare1.json w_0.obj").exit_code, 3);
   EXPECT_EQ(run("merge sample1.npy gone.npy -o x.npy").exit_code, 1);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.npy"));
+}
+
+// The frames of another sequence have the same names, sizes and times; or one frame changes between the shards.
+TEST_F(Merge, parts_of_two_inputs_are_refused_with_the_names_of_both) {
+  const std::string changed = "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nv 1 1 0.25\nf 1 2 3\nf 2 4 3\n";
+  const std::string before = file("w_3.obj");
+  for (const std::string command :
+       {"compare 'w_*.obj'", "compare 'w_*.obj' --elements vertices", "audit 'w_*.obj'",
+        "sample 'w_*.obj' --times 0:0.5:5", "sample 'w_*.obj' --times 0.5,4.5 --elements faces"}) {
+    const bool is_array = command.starts_with("sample");
+    const std::string one = is_array ? "1.npy" : "1.json", two = is_array ? "2.npy" : "2.json";
+    ASSERT_EQ(run(command + " --shard 1/2 --force -o " + one).exit_code, 0);
+    folder_.write("w_3.obj", changed);
+    ASSERT_EQ(run(command + " --shard 2/2 --force -o " + two).exit_code, 0);
+    folder_.write("w_3.obj", before);
+    const ProcessResult merged = run("merge " + one + " " + two + " -o merged");
+    EXPECT_EQ(merged.exit_code, 2) << command;
+    const std::string message = two + ": it does not belong to " + one + ": they differ in keyframe 3";
+    EXPECT_NE(merged.err.find(message), std::string::npos) << command << '\n' << merged.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "merged"));
+  }
 }
 
 TEST_F(Merge, shards_are_refused_where_they_divide_nothing) {

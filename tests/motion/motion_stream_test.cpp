@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -73,6 +75,40 @@ TEST(MotionStream, any_order_of_keyframes_gives_the_right_ones) {
       EXPECT_EQ(stream.motion().keyframes[k].positions[4], static_cast<float>(k));
     }
     EXPECT_EQ(held(stream), 2U);
+  }
+}
+
+TEST(MotionStream, a_watcher_is_told_of_what_is_there_and_of_all_that_is_read) {
+  for (const std::size_t kept : {std::size_t{0}, MotionStream::kUsuallyKept}) {
+    Source source;
+    MotionStream stream = source.stream(12, kept);
+    ASSERT_TRUE(stream.hold(2, 3).ok());
+    ASSERT_TRUE(stream.hold(3, 4).ok());  // 5 is read ahead
+    std::mutex mutex;
+    std::vector<int> told(12);
+    const auto count = [&](std::size_t k, std::span<const float> positions) -> Status {
+      const std::lock_guard lock(mutex);
+      EXPECT_EQ(positions[8], static_cast<float>(k));
+      ++told[k];
+      if (k == 7) return invalid_input("frame 7", "odd");
+      return Success{};
+    };
+    ASSERT_TRUE(stream.watch(count).ok());
+    EXPECT_EQ(told, kept == 0 ? (std::vector{0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0})
+                              : (std::vector{0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0}));
+    ASSERT_TRUE(stream.hold(5, 6).ok());
+    EXPECT_EQ(stream.hold(6, 7).error().text(), "frame 7: odd");
+    ASSERT_TRUE(stream.watch({}).ok());
+    const std::vector<int> before = told;
+    EXPECT_EQ(before[5] + before[6] + before[7], 3);
+    ASSERT_TRUE(stream.hold(6, 7).ok());
+    EXPECT_EQ(told, before);
+    Motion whole = outline_of(9);
+    for (std::size_t k = 0; k < 9; ++k) whole.keyframes[k].positions.assign(9, static_cast<float>(k));
+    EXPECT_EQ(MotionStream(whole).watch(count).error().place, "frame 7");
+    whole.keyframes.resize(7);
+    EXPECT_TRUE(MotionStream(whole).watch(count).ok());
+    EXPECT_EQ(told[0], 2);
   }
 }
 

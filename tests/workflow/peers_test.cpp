@@ -20,7 +20,7 @@
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/parts.h"
 #include "chronormal/workflow/sample.h"
-#include "io/bytes/zip.h"
+#include "io/bytes/checksum.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/temporary_folder.h"
 
@@ -266,11 +266,11 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
   }
 }
 
-TEST(Zip, joined_checksums_are_those_of_the_whole) {
+TEST(Checksum, joined_checksums_are_those_of_the_whole) {
   const std::string text = "the quick brown fox jumps over the lazy dog";
   for (std::size_t cut = 0; cut <= text.size(); ++cut) {
     const std::string_view first = std::string_view(text).substr(0, cut), second = std::string_view(text).substr(cut);
-    EXPECT_EQ(zip::joined_checksum(zip::checksum(first), zip::checksum(second), second.size()), zip::checksum(text));
+    EXPECT_EQ(joined_checksum(checksum_of(first), checksum_of(second), second.size()), checksum_of(text));
   }
 }
 

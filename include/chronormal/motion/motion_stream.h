@@ -33,6 +33,9 @@ class MotionStream {
   /// thread at a time, not always from the same.
   using Reader = std::function<Status(const Motion& motion, std::size_t keyframe, std::span<float> positions)>;
 
+  /// Is told of the positions of a keyframe, as the reader has written them.
+  using Watcher = std::function<Status(std::size_t keyframe, std::span<const float> positions)>;
+
   static constexpr std::size_t kUsuallyKept = std::size_t{64} << 20;
 
   /// A motion that is in memory and stays there; it must outlive the stream, and it may stand still.
@@ -56,6 +59,11 @@ class MotionStream {
   [[nodiscard]] Status hold_segment(std::size_t segment) { return hold_segments(segment, segment); }
   /// The same of all keyframes: the motion is in memory then.
   [[nodiscard]] Status hold_all();
+
+  /// Tells the watcher at once of every keyframe that is there, and from now on of each that is read, before anybody
+  /// else sees it and by the thread that reads it. There is one watcher at a time; an empty one ends this. Errors:
+  /// those of the watcher, here and for each hold.
+  [[nodiscard]] Status watch(Watcher watcher);
 
   /// Whether keyframes stay where they are once they were held: to hold all is no more than to read them.
   [[nodiscard]] bool keeps_all() const noexcept;

@@ -206,6 +206,7 @@ struct Audit {
   /// same keys have rows once, as the first of their subjects.
   std::vector<ErrorTable> errors;
   std::vector<SegmentErrors> measured;  ///< of a shard: one for each of its segments; all else covers these alone
+  TaskChecksums checksums = {};         ///< of a shard
 
   /// Whether there was anything to judge. Where nothing turns normals, or no face ever has an area, nothing is known to
   /// be right.

@@ -137,6 +137,7 @@ struct Comparison {
   std::optional<std::size_t> cheapest = {};    ///< of those judged: within the tolerance for certain; nothing: none is
   std::array<double, 2> span = {};             ///< the times of the first and the last keyframe
   std::vector<ComparedSegment> compared = {};  ///< of a shard: one for each of its segments; the rows cover these alone
+  TaskChecksums checksums = {};                ///< of a shard
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.

@@ -6,7 +6,9 @@
 ///
 /// A part of a comparison or an audit is a JSON object. It describes the whole task, and has the sums of each segment
 /// of the share with all of their bits. Only merge reads it, and only where both have the same version of this format.
-/// A part of samples is a .npy array of the rows of its share; a comment in its header says which of how many they are.
+/// A part of samples is a .npy array of the rows of its share, behind which an object of JSON says which of how many
+/// they are. Either ends with a checksum of all bytes before, and has the TaskChecksums of workflow/shard.h, so that
+/// neither a damaged part nor one of another input or task is joined.
 ///
 /// Threads    everything here is pure, apart from reading and writing files.
 #ifndef CHRONORMAL_WORKFLOW_PARTS_H_
@@ -49,8 +51,8 @@ struct MergedParts {
 };
 
 /// Joins the parts of one comparison or one audit, which may come in any order. Errors: kInvalidInput for a text that
-/// is no part, with the place in it; kUsage for parts of two different tasks, and unless each segment is in exactly one
-/// of them.
+/// is no part, with the place in it, or that was damaged; kUsage for parts of two different tasks or inputs, with the
+/// names of both, and unless each segment is in exactly one of them.
 /// There must be at least one part
 [[nodiscard]] Result<MergedParts> merge_parts(std::span<const Part> parts);
 
@@ -60,8 +62,8 @@ struct MergedParts {
 [[nodiscard]] Result<Audit> merge_audit_parts(std::span<const Part> parts);
 
 /// Writes the array of which the files have the rows, in any order. Memory: a megabyte. Errors: kFailed for files that
-/// cannot be read; kInvalidInput for those that no shard of samples has left; kUsage for shards of different samples,
-/// and unless each row is in exactly one of them; those of write_output() in io/output.h.
+/// cannot be read; kInvalidInput for those that no shard of samples has left, or that were damaged; kUsage for shards of
+/// different samples or inputs, and unless each row is in exactly one of them; those of write_output() in io/output.h.
 /// There must be at least one path
 [[nodiscard]] Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force);
 

@@ -11,35 +11,14 @@
 #include <utility>
 
 #include "chronormal/io/output.h"
+#include "io/bytes/checksum.h"
 #include "io/bytes/file.h"
-#include "io/bytes/zip.h"
 
 namespace chronormal::inline internal {
-namespace {
-
-constexpr std::size_t kDigits = 8;
-
-std::string checksum_digits(std::string_view text) {
-  std::uint32_t sum = zip::checksum(text);
-  std::string digits(kDigits, '0');
-  for (std::size_t i = kDigits; i-- > 0; sum >>= 4U) digits[i] = "0123456789abcdef"[sum & 0xFU];
-  return digits;
-}
-
-std::string line_of(std::string_view text) { return checksum_digits(text).append(" ").append(text).append("\n"); }
-
-// The text of a line without its end; nothing where it is damaged.
-std::optional<std::string_view> text_of(std::string_view line) {
-  if (line.size() <= kDigits || line[kDigits] != ' ') return std::nullopt;
-  const std::string_view text = line.substr(kDigits + 1);
-  return line.starts_with(checksum_digits(text)) ? std::optional(text) : std::nullopt;
-}
-
-}  // namespace
 
 bool Journal::read(std::string_view bytes) {
   for (std::size_t begin = 0, end = 0; (end = bytes.find('\n', begin)) != std::string_view::npos; begin = end + 1) {
-    const std::optional<std::string_view> text = text_of(bytes.substr(begin, end - begin));
+    const std::optional<std::string_view> text = text_of_checked(bytes.substr(begin, end - begin));
     if (!text) break;
     if (ends_.empty())
       run_ = *text;
@@ -53,7 +32,7 @@ bool Journal::read(std::string_view bytes) {
 Result<Journal> Journal::open(const std::string& path, std::string_view run) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 && errno == ENOENT) {
-    if (const Status begun = write_output(path, line_of(run), false); !begun) return begun.error();
+    if (const Status begun = write_output(path, checked_line(run), false); !begun) return begun.error();
   }
   Journal journal(path, Descriptor(open_descriptor(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK)));
   const int file = journal.file_.number();
@@ -73,7 +52,7 @@ Result<Journal> Journal::open(const std::string& path, std::string_view run) {
 }
 
 Status Journal::append(std::string_view record) {
-  const std::string line = line_of(record);
+  const std::string line = checked_line(record);
   std::string_view rest = line;
   while (!rest.empty()) {
     const ssize_t count = ::write(file_.number(), rest.data(), rest.size());

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "io/bytes/binary.h"
+#include "io/bytes/checksum.h"
 #include "io/bytes/scan.h"
 
 namespace chronormal::inline internal::zip {
@@ -116,14 +117,6 @@ std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end
 
 }  // namespace
 
-std::uint32_t checksum(std::string_view bytes, std::uint32_t so_far) {
-  return static_cast<std::uint32_t>(::crc32_z(so_far, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
-std::uint32_t joined_checksum(std::uint32_t first, std::uint32_t second, std::uint64_t second_size) {
-  return static_cast<std::uint32_t>(::crc32_combine(first, second, static_cast<z_off_t>(second_size)));
-}
-
 Result<std::vector<Member>> read_directory(std::string_view file, const std::string& name) {
   const std::optional<std::size_t> end = find_end(file);
   if (!end) return invalid_input(binary::place(name, file.size()), "this is no zip file, or its end is missing");
@@ -198,7 +191,7 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
       return error("the deflated data are damaged, or more than the directory says");
     result = storage;
   }
-  if (result.size() == member.size && checksum(result) != member.checksum)
+  if (result.size() == member.size && checksum_of(result) != member.checksum)
     return error("the data do not have the checksum that the directory says");
   return result;
 }
@@ -299,7 +292,7 @@ Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from) 
 
 std::string write(std::span<const Part> parts, std::uint64_t zip64_from) {
   std::vector<StoredMember> members;
-  for (const Part& part : parts) members.push_back({part.name, part.bytes.size(), checksum(part.bytes)});
+  for (const Part& part : parts) members.push_back({part.name, part.bytes.size(), checksum_of(part.bytes)});
   const Frame frame = frame_of(members, zip64_from);
   std::string file;
   file.reserve(static_cast<std::size_t>(frame.directory.end()));

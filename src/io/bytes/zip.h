@@ -38,12 +38,6 @@ struct Member {
 [[nodiscard]] Result<std::string_view> read_member(std::string_view file, const Member& member, std::uint64_t most,
                                                    std::string& storage, const std::string& name);
 
-/// Continues a checksum: `so_far` is that of all bytes before these.
-[[nodiscard]] std::uint32_t checksum(std::string_view bytes, std::uint32_t so_far = 0);
-
-/// The checksum of some bytes and of others behind them, which are so many, from the checksums of both.
-[[nodiscard]] std::uint32_t joined_checksum(std::uint32_t first, std::uint32_t second, std::uint64_t second_size);
-
 /// A stored member that is to be written: its name, and the size and the checksum of its bytes.
 struct StoredMember {
   std::string_view name;

@@ -67,15 +67,6 @@ class Python {
     (void)sign('\0');
     return text_.empty();
   }
-  // Returns the text behind a '#', without blanks at its ends; it is empty where there is no '#'.
-  [[nodiscard]] std::string_view comment() {
-    if (!sign('#')) return {};
-    const std::string_view line = text_.substr(0, text_.find('\n'));
-    text_.remove_prefix(line.size());
-    const std::size_t first = line.find_first_not_of(' ');
-    return first == std::string_view::npos ? line.substr(0, 0)
-                                           : line.substr(first, line.find_last_not_of(' ') + 1 - first);
-  }
 
  private:
   static constexpr std::size_t kMostDimensions = 32;  // as in NumPy
@@ -104,7 +95,7 @@ bool read_type(std::string_view type, bool allow_text, Array& array) {
 }
 
 // The header of an array of numbers, or where it is allowed of text.
-Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, bool allow_text,
+Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, bool allow_text, bool more_may_follow,
                               const std::string& place) {
   const auto error = [&](std::string message) { return invalid_input(place, std::move(message)); };
   if (!start.starts_with(kFirstWord)) return error("this is not a NumPy array: it does not begin with \\x93NUMPY");
@@ -153,7 +144,6 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
       break;
     }
   }
-  array.comment = header.comment();
   if (!header.at_end() || !has_type || !has_order || !has_shape) return broken();
 
   const std::uint64_t left = total_size - array.data_begin;
@@ -164,7 +154,7 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
     fits = fits && binary::fits(length, size, left);
     if (fits) size *= length;
   }
-  if (!fits || size != left)
+  if (!fits || (size != left && !more_may_follow))
     return error("its header says " + array.text() + ", but it has " + std::to_string(left) + " bytes of elements");
   return array;
 }
@@ -217,12 +207,13 @@ std::string Array::text() const {
   return result + std::to_string(item_size) + "'";
 }
 
-Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place) {
-  return read_any_header(start, total_size, false, place);
+Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place,
+                          bool more_may_follow) {
+  return read_any_header(start, total_size, false, more_may_follow, place);
 }
 
 Result<std::string> read_text(std::string_view bytes, const std::string& place) {
-  const Result<Array> array = read_any_header(bytes, bytes.size(), true, place);
+  const Result<Array> array = read_any_header(bytes, bytes.size(), true, false, place);
   if (!array) return array.error();
   const Array& found = array.value();
   const std::size_t step = found.kind == Kind::kText ? 4 : 1;
@@ -245,13 +236,12 @@ std::string write_text(std::string_view text) {
   return bytes;
 }
 
-std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape, std::string_view comment) {
+std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape) {
   std::string text = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (";
   for (const std::uint64_t length : shape) text += std::to_string(length) + ", ";
   if (!shape.empty()) text.pop_back();
   if (shape.size() > 1) text.pop_back();  // (5,) keeps its comma
   text += "), }";
-  if (!comment.empty()) text.append(" # ").append(comment);
   while ((10 + text.size() + 1) % 64 != 0) text += ' ';
   text += '\n';
 

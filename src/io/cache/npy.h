@@ -30,7 +30,6 @@ struct Array {
   std::endian order = std::endian::little;
   bool is_fortran = false;
   std::vector<std::uint64_t> shape;
-  std::string comment;         ///< what stands behind "# " in the header; NumPy passes over it
   std::size_t data_begin = 0;  ///< byte of the first element
   std::string_view data;       ///< the elements; set by the caller, which has them
 
@@ -39,6 +38,8 @@ struct Array {
     for (const std::uint64_t length : shape) count *= length;
     return count;
   }
+  /// The byte behind the last element.
+  [[nodiscard]] std::uint64_t data_end() const noexcept { return data_begin + element_count() * item_size; }
   /// The element that is so many items after the first.
   [[nodiscard]] double real(std::size_t item) const noexcept;           ///< kFloat
   [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;  ///< else; negative: 2^64 - 1
@@ -56,13 +57,13 @@ struct Array {
 [[nodiscard]] std::string write_text(std::string_view text);
 
 /// Reads the header of an array of total_size bytes, of which start are the first (all, or kLongestHeader + 12).
-/// Afterwards the elements of shape, none of whose products overflow, are exactly what follows data_begin. Errors:
-/// kInvalidInput with place: the message says what.
-[[nodiscard]] Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place);
+/// Afterwards the elements of shape, none of whose products overflow, are exactly what follows data_begin, or, where
+/// more may follow, its first data_end() - data_begin bytes. Errors: kInvalidInput with place: the message says what.
+[[nodiscard]] Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place,
+                                        bool more_may_follow = false);
 
 /// The header of an array in C order, padded so that what follows is aligned to 64 bytes.
-[[nodiscard]] std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape,
-                                       std::string_view comment = {});
+[[nodiscard]] std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape);
 
 }  // namespace chronormal::inline internal::npy
 

@@ -14,6 +14,7 @@
 
 #include "chronormal/io/expansion.h"
 #include "io/bytes/binary.h"
+#include "io/bytes/checksum.h"
 #include "io/bytes/scan.h"
 #include "io/bytes/zip.h"
 #include "io/cache/npy.h"
@@ -421,7 +422,7 @@ Status NpzOutput::begin() {
 
 Status NpzOutput::append(std::size_t array, std::string_view bytes) {
   Member& member = members_[array];
-  member.checksum = zip::checksum(bytes, member.checksum);
+  member.checksum = checksum_of(bytes, member.checksum);
   Status status = file_->put(member.end, bytes);
   member.end += bytes.size();
   return status;
@@ -433,7 +434,7 @@ void NpzOutput::join() {
 }
 
 void NpzOutput::add_checksum(std::size_t array, std::uint32_t checksum, std::uint64_t bytes) {
-  members_[array].checksum = zip::joined_checksum(members_[array].checksum, checksum, bytes);
+  members_[array].checksum = joined_checksum(members_[array].checksum, checksum, bytes);
 }
 
 Status NpzOutput::finish() {

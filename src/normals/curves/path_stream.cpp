@@ -9,11 +9,17 @@
 
 namespace chronormal {
 
-Status internal::hold_paths(MotionStream& stream, std::size_t first, std::size_t last, PathKind path) {
-  if (path == PathKind::kLinear) return stream.hold_segments(first, last);
-  const std::size_t end = stream.motion().keyframes.size() - 1;
+std::pair<std::size_t, std::size_t> internal::keyframes_of_paths(const Motion& motion, std::size_t first,
+                                                                 std::size_t last, PathKind path) {
+  if (path == PathKind::kLinear) return {motion.segments[first].from, motion.segments[last].to};
+  const std::size_t end = motion.keyframes.size() - 1;
   const std::size_t from = std::min(first - std::min<std::size_t>(first, 1), end - std::min<std::size_t>(end, 3));
-  return stream.hold(from, std::min(std::max<std::size_t>(last + 2, 3), end));
+  return {from, std::min(std::max<std::size_t>(last + 2, 3), end)};
+}
+
+Status internal::hold_paths(MotionStream& stream, std::size_t first, std::size_t last, PathKind path) {
+  const auto [from, to] = keyframes_of_paths(stream.motion(), first, last, path);
+  return stream.hold(from, to);
 }
 
 BendSums internal::bend_at(const Motion& motion, std::size_t at, std::size_t every) {

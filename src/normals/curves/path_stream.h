@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "chronormal/core/result.h"
@@ -13,6 +14,10 @@
 #include "chronormal/normals/paths.h"
 
 namespace chronormal::inline internal {
+
+/// The first and the last of the keyframes from which the paths in segments first to last follow.
+[[nodiscard]] std::pair<std::size_t, std::size_t> keyframes_of_paths(const Motion& motion, std::size_t first,
+                                                                     std::size_t last, PathKind path);
 
 /// Holds the keyframes from which the paths in segments first to last follow: their ends, and on curved paths of a
 /// sequence one keyframe more on each side; in the first and the last segment two on the one side that there is. So

@@ -12,6 +12,7 @@
 #include "workflow/audit/measure.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/errors/shards.h"
+#include "workflow/sample/task_checksums.h"
 
 namespace chronormal {
 namespace {
@@ -40,13 +41,18 @@ bool are_of_one(const Audit& a, const Audit& b) {
 
 Result<Audit> merge(std::vector<Audit> shards) {
   std::vector<SegmentErrors> measured;
-  for (Audit& shard : shards) {
+  KnownParts known_parts;
+  for (std::size_t i = 0; i < shards.size(); ++i) {
+    Audit& shard = shards[i];
+    const Status known = known_parts.add("shard " + std::to_string(i), shard.checksums);
+    if (!known) return known.error();
     if (!are_of_one(shard, shards.front()))
       return Error{ErrorCode::kUsage, "", "these are shards of two different audits"};
     std::move(shard.measured.begin(), shard.measured.end(), std::back_inserter(measured));
   }
   Audit all = std::move(shards.front());
   all.measured.clear();
+  all.checksums.clear();
   if (all.subjects.empty()) return all;
   const Status complete = put_in_order(all.subjects.front().segments, measured);
   if (!complete) return complete.error();

@@ -11,11 +11,13 @@
 #include "core/blocks.h"
 #include "core/float32.h"
 #include "core/portable_math.h"
+#include "io/bytes/checksum.h"
 #include "normals/curves/path_stream.h"
 #include "workflow/audit/measure.h"
 #include "workflow/audit/measure_blocks.h"
 #include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
+#include "workflow/sample/task_checksums.h"
 #include "workflow/shading/authored_weighting.h"
 
 namespace chronormal {
@@ -133,6 +135,29 @@ class SequenceSource {
   double t_ = 0;
   std::vector<Vec3d> start_, end_;
 };
+
+std::uint32_t checksum_of_options(const AuditOptions& options, AuditRule rule, bool stored) {
+  NumberChecksum sum;
+  for (const std::uint64_t number :
+       {static_cast<std::uint64_t>(rule), std::uint64_t{options.samples.value_or(kAuditSamples)},
+        std::uint64_t{options.weighting.has_value()},
+        static_cast<std::uint64_t>(options.weighting.value_or(Weighting::kArea)),
+        static_cast<std::uint64_t>(options.path), std::uint64_t{options.weld}, std::uint64_t{stored}})
+    sum.add(number);
+  return sum.value();
+}
+
+std::uint32_t checksum_of_normals(const StoredNormals& normals) {
+  NumberChecksum sum;
+  for (const std::vector<float>& of_keyframe : normals.of_keyframes) sum.add(std::span<const float>(of_keyframe));
+  return sum.value();
+}
+
+std::uint32_t checksum_of_flags(const std::vector<bool>& flags) {
+  NumberChecksum sum;
+  sum.add(std::string(flags.begin(), flags.end()));
+  return sum.value();
+}
 
 Status check_normals(const Motion& motion, const StoredNormals& normals) {
   const std::size_t count = normals.of_keyframes.size(), corners = motion.topology.corner_count();
@@ -273,6 +298,12 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
         "a shard, or a run that goes on, is of the segments of a sequence, and keeps sums and no single errors"};
   result.path = options.path;
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
+  KeyframeChecksums seen(stream);
+  if (options.shard) {
+    result.checksums["the options"] = checksum_of_options(options, result.rule, result.stored);
+    result.checksums["the stored normals"] = checksum_of_normals(normals);
+    if (const Status status = seen.begin(); !status) return status.error();
+  }
   Result<NormalGroups> groups = audited_groups(stream, normals, options.weld);
   if (!groups) return groups.error();
   const auto outputs_of = [&](const std::vector<bool>& moves) {
@@ -336,6 +367,12 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     const Result<std::vector<bool>> moves = moving_vertices(
         stream, options.peers ? std::span(segments).subspan(own.first, own.count) : std::span(segments), options.peers);
     if (!moves) return moves.error();
+    if (options.shard) {
+      NumberChecksum sharing;
+      sharing.add(groups.value().element_of_output());
+      result.checksums["who shares a normal"] = sharing.value();
+      result.checksums["which vertices move"] = checksum_of_flags(moves.value());
+    }
     const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
     if (!is_targets) groups = NormalGroups();  // the part has all that is needed of the groups
     if (part.outputs().empty()) {
@@ -382,6 +419,12 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   }
   if (result.subjects.empty()) result.errors.clear();
   result.bend = bend.bend();
+  if (options.shard) {
+    // Without peers, what follows from the whole motion is found out from all keyframes.
+    const Shard read = options.peers != nullptr ? share : Shard{};
+    const Status status = seen.finish(keyframes_of_shard(motion, read, options.path), result.checksums);
+    if (!status) return status.error();
+  }
   finish(result);
   return result;
 }

@@ -18,11 +18,13 @@
 #include "chronormal/core/interruption.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "io/bytes/checksum.h"
 #include "normals/curves/path_stream.h"
 #include "normals/groups/group_sum.h"
 #include "workflow/compare/compared.h"
 #include "workflow/compare/curved_segments.h"
 #include "workflow/errors/error_rows.h"
+#include "workflow/sample/task_checksums.h"
 
 namespace chronormal {
 namespace {
@@ -202,6 +204,20 @@ CertifiedError certified_error(const std::string& name, const Scheme& scheme, co
   return all;
 }
 
+// What is asked for, as a checksum.
+std::uint32_t checksum_of_options(const CompareOptions& options, const std::vector<std::string>& names) {
+  NumberChecksum sum;
+  for (const std::string& name : names) sum.add(name);
+  sum.add(std::uint64_t{options.samples});
+  for (const std::uint64_t number :
+       {static_cast<std::uint64_t>(options.access), static_cast<std::uint64_t>(options.path),
+        static_cast<std::uint64_t>(options.elements.kind), std::uint64_t{options.certify},
+        std::uint64_t{options.tolerance.has_value()}})
+    sum.add(number);
+  sum.add(options.tolerance.value_or(0));
+  return sum.value();
+}
+
 // Prepares every scheme on one block of elements, evaluates it at every sample, and holds it against the exact normals.
 // Each scheme that `each` has an array for gets its errors there.
 std::vector<Tally> compare_block(const Segment& segment, const Elements& all, IndexRange range,
@@ -337,6 +353,8 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   }
   if (std::find(names.begin(), names.end(), "linear") == names.end()) names.emplace_back("linear");
 
+  KeyframeChecksums seen(stream);
+  if (const Status status = options.shard ? seen.begin() : Success{}; !status) return status.error();
   std::optional<Elements> all;
   if (kind == ElementKind::kFaces) {
     all.emplace(motion.topology);
@@ -450,6 +468,14 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     if (const Status status = stream.hold(0, 0); !status) return status.error();
     comparison.errors.push_back(table_of(motion, *all, options, each.size() > 1 ? row.scheme : "", each[s]));
     each[s] = {};
+  }
+  if (options.shard) {
+    NumberChecksum sharing;
+    sharing.add(all->element_of_output());
+    comparison.checksums["the options"] = checksum_of_options(options, names);
+    comparison.checksums["who shares a normal"] = sharing.value();
+    const Status status = seen.finish(keyframes_of_shard(motion, *options.shard, options.path), comparison.checksums);
+    if (!status) return status.error();
   }
   conclude(totals, share.count, certified, comparison);
   return comparison;

@@ -8,6 +8,7 @@
 
 #include "normals/curves/path_stream.h"
 #include "workflow/errors/shards.h"
+#include "workflow/sample/task_checksums.h"
 
 namespace chronormal {
 namespace {
@@ -81,7 +82,11 @@ void internal::conclude(const std::vector<SchemeTally>& totals, std::size_t segm
 
 Result<Comparison> merge(std::vector<Comparison> shards) {
   std::vector<ComparedSegment> compared;
-  for (Comparison& shard : shards) {
+  KnownParts known_parts;
+  for (std::size_t i = 0; i < shards.size(); ++i) {
+    Comparison& shard = shards[i];
+    const Status known = known_parts.add("shard " + std::to_string(i), shard.checksums);
+    if (!known) return known.error();
     if (!are_of_one(shard, shards.front()))
       return Error{ErrorCode::kUsage, "", "these are shards of two different comparisons"};
     std::move(shard.compared.begin(), shard.compared.end(), std::back_inserter(compared));
@@ -98,6 +103,7 @@ Result<Comparison> merge(std::vector<Comparison> shards) {
   const bool certified = all.schemes.front().certified.has_value();
   for (SchemeComparison& row : all.schemes) row.prepare_ns = row.evaluate_ns = 0;
   all.compared.clear();
+  all.checksums.clear();
   conclude(totals, all.segments, certified, all);
   return all;
 }

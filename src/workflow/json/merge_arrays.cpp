@@ -7,10 +7,11 @@
 #include <vector>
 
 #include "chronormal/workflow/parts.h"
+#include "io/bytes/checksum.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/positioned_file.h"
 #include "io/cache/npy.h"
-#include "workflow/sample/array_place.h"
+#include "workflow/sample/sample_part.h"
 
 namespace chronormal {
 namespace {
@@ -19,12 +20,14 @@ namespace {
 struct ShardRows {
   PositionedFile file;
   npy::Array array;
-  ArrayPlace place;
+  SamplePart place;
+  std::string name;
 
   [[nodiscard]] std::uint64_t end() const { return place.first + array.shape.front(); }
 
-  [[nodiscard]] bool is_of_the_samples_of(const ShardRows& other) const {
-    return place.samples == other.place.samples && place.total == other.place.total &&
+  // Checked checksums have it that this is so, unless somebody made the parts up.
+  [[nodiscard]] bool is_like(const ShardRows& other) const {
+    return place.total == other.place.total &&
            std::equal(array.shape.begin() + 1, array.shape.end(), other.array.shape.begin() + 1);
   }
 };
@@ -34,15 +37,23 @@ Result<ShardRows> open_rows(const std::string& path) {
   if (!file) return Error{ErrorCode::kFailed, path, "there is no such file, or it can not be read"};
   std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), npy::kLongestHeader + 12)), '\0');
   if (Status status = file->read(0, start); !status) return status.error();
-  Result<npy::Array> array = npy::read_header(start, file->size(), path);
+  Result<npy::Array> array = npy::read_header(start, file->size(), path, true);
   if (!array) return array.error();
   const npy::Array& found = array.value();
-  const std::optional<ArrayPlace> place = ArrayPlace::read(found.comment);
-  const bool is_part = place && !found.is_fortran && found.shape.size() == 3 && found.kind == npy::Kind::kFloat &&
-                       found.item_size == sizeof(float) && found.order == std::endian::little &&
-                       place->first <= place->total && found.shape.front() <= place->total - place->first;
-  if (!is_part) return invalid_input(path, "this is no part that sample --shard has left, but " + found.text());
-  return ShardRows{std::move(*file), std::move(array).value(), *place};
+  const std::uint64_t end = found.data_end();
+  const bool is_array = !found.is_fortran && found.shape.size() == 3 && found.kind == npy::Kind::kFloat &&
+                        found.item_size == sizeof(float) && found.order == std::endian::little;
+  if (!is_array || end == file->size())
+    return invalid_input(path, "this is no part that sample --shard has left, but " + found.text());
+  if (file->size() - end > kLongestEndOfPart) return invalid_input(path, std::string(kDamagedPart));
+  std::string text(static_cast<std::size_t>(file->size() - end), '\0');
+  if (Status status = file->read(end, text); !status) return status.error();
+  Result<SamplePart> place = SamplePart::read(text, path);
+  if (!place) return place.error();
+  const auto [first, total] = std::pair(place.value().first, place.value().total);
+  if (first > total || found.shape.front() > total - first)
+    return invalid_input(path, "its rows are beyond the last one");
+  return ShardRows{std::move(*file), std::move(array).value(), std::move(place).value(), path};
 }
 
 // Whether every row is in exactly one of the shards, which are in order.
@@ -64,11 +75,13 @@ Status check_rows(const std::vector<ShardRows>& all) {
 
 Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force) {
   std::vector<ShardRows> all;
+  KnownParts known;
   for (const std::string& path : paths) {
     Result<ShardRows> rows = open_rows(path);
     if (!rows) return rows.error();
-    if (!all.empty() && !rows.value().is_of_the_samples_of(all.front()))
-      return Error{ErrorCode::kUsage, path, "it is a shard of other samples than the first part"};
+    if (const Status status = known.add(path, rows.value().place.checksums); !status) return status;
+    if (!all.empty() && !rows.value().is_like(all.front()))
+      return Error{ErrorCode::kUsage, path, "its rows are no rows of the array of " + all.front().name};
     all.push_back(std::move(rows).value());
   }
   std::stable_sort(all.begin(), all.end(), [](const ShardRows& a, const ShardRows& b) {
@@ -83,11 +96,23 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
   if (Status status = file.value().append(npy::write_header("<f4", shape)); !status) return status;
   std::string block(std::size_t{1} << 20, '\0');
   for (const ShardRows& rows : all) {
-    for (std::uint64_t at = rows.array.data_begin; at < rows.file.size(); at += block.size()) {
-      const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), rows.file.size() - at));
-      if (Status status = rows.file.read(at, std::span(block).first(size)); !status) return status;
-      if (Status status = file.value().append(std::string_view(block).substr(0, size)); !status) return status;
-    }
+    std::uint32_t sum = 0;
+    std::uint64_t at = 0;
+    // Copies the bytes of a part up to a place, or reads them alone.
+    const auto pass = [&](std::uint64_t end, bool is_copied) -> Status {
+      while (at < end) {
+        const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), end - at));
+        if (Status status = rows.file.read(at, std::span(block).first(size)); !status) return status;
+        const std::string_view bytes = std::string_view(block).substr(0, size);
+        sum = checksum_of(bytes, sum);
+        if (Status status = is_copied ? file.value().append(bytes) : Status(Success{}); !status) return status;
+        at += size;
+      }
+      return Success{};
+    };
+    if (Status status = pass(rows.array.data_begin, false); !status) return status;
+    if (Status status = pass(rows.array.data_end(), true); !status) return status;
+    if (sum != rows.place.array) return invalid_input(rows.name, std::string(kDamagedPart));
   }
   return file.value().finish();
 }

@@ -9,14 +9,15 @@
 #include <utility>
 
 #include "chronormal/schemes/scheme.h"
+#include "io/bytes/checksum.h"
 #include "io/json/json.h"
 #include "workflow/compare/curved_segments.h"
 #include "workflow/json/object.h"
+#include "workflow/sample/task_checksums.h"
 
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kVersion = 3;
 constexpr double kMostCount = 9007199254740992;  // up to here a double holds every integer
 
 // Reads the numbers of a list one after the other.
@@ -149,8 +150,9 @@ AuthoredOffset read_offset(const JsonView& list) {
   return offset;
 }
 
-Json part_json(const char* command, const std::string& input, std::optional<double> tolerance) {
-  Json json = {{"chronormal_part", kVersion}, {"command", command}, {"input", input}};
+Json part_json(const char* command, const std::string& input, std::optional<double> tolerance,
+               const TaskChecksums& checksums) {
+  Json json = {{"chronormal_part", kPartVersion}, {"command", command}, {"input", input}, {"checksums", checksums}};
   if (tolerance) json["tolerance_degrees"] = {*tolerance};
   return json;
 }
@@ -260,6 +262,7 @@ NamedComparison read_comparison(const JsonView& part) {
   c.tolerance = read_tolerance(part);
   c.span = read_span(part);
   c.path = read_path(part);
+  c.checksums = read_task_checksums(part);
   if (c.segments == 0) part.complain("segment_count", "there are no segments");
   const bool is_sequential = part.flag("sequential"), is_certified = part.flag("certified");
   bool has_linear = false;
@@ -303,6 +306,7 @@ NamedAudit read_audit(const JsonView& part) {
   Audit& audit = named.audit;
   audit.span = read_span(part);
   audit.path = read_path(part);
+  audit.checksums = read_task_checksums(part);
   audit.rule = static_cast<AuditRule>(part.required_count("rule", static_cast<std::size_t>(AuditRule::kFlat)));
   audit.weighting = read_weighting(part.required_count("weighting", kWeightings.size()), part);
   audit.stored = part.flag("stored");
@@ -321,14 +325,9 @@ NamedAudit read_audit(const JsonView& part) {
   return named;
 }
 
-Error of_other_inputs(const std::string& one, const std::string& other) {
-  return Error{ErrorCode::kUsage, "", "these are shards of different inputs: " + one + " and " + other};
-}
-
 Result<NamedComparison> merge_comparisons(std::vector<NamedComparison> named) {
   std::vector<Comparison> shards;
   for (NamedComparison& one : named) {
-    if (one.name != named.front().name) return of_other_inputs(named.front().name, one.name);
     shards.push_back(std::move(one.comparison));
   }
   Result<Comparison> all = merge(std::move(shards));
@@ -340,8 +339,6 @@ Result<NamedAudit> merge_audits(std::vector<NamedAudit> named) {
   const std::optional<double> tolerance = named.front().tolerance;
   std::vector<Audit> shards;
   for (NamedAudit& one : named) {
-    if (one.name != named.front().name) return of_other_inputs(named.front().name, one.name);
-    if (one.tolerance != tolerance) return Error{ErrorCode::kUsage, "", "these are shards of two different audits"};
     shards.push_back(std::move(one.audit));
   }
   Result<Audit> all = merge(std::move(shards));
@@ -355,8 +352,20 @@ struct ReadParts {
   std::vector<NamedAudit> audits;
 };
 
+// The checksums of a part, with what it has as a text.
+TaskChecksums checksums_of(const JsonView& part) {
+  TaskChecksums checksums = read_task_checksums(part);
+  NumberChecksum input, tolerance;
+  input.add(part.required_text("input"));
+  tolerance.add(read_tolerance(part).value_or(-1));
+  checksums["the name of the input"] = input.value();
+  checksums["the tolerance"] = tolerance.value();
+  return checksums;
+}
+
 Result<ReadParts> read_parts(std::span<const Part> parts) {
   ReadParts read;
+  KnownParts known_parts;
   for (const Part& part : parts) {
     const Result<nlohmann::json> json = parse_json(part.text, part.name, 0, {});
     if (!json) return json.error();
@@ -364,8 +373,8 @@ Result<ReadParts> read_parts(std::span<const Part> parts) {
     const JsonView view(json.value(), "", complaint);
     if (!view.is_object() || !view.has("chronormal_part"))
       return invalid_input(part.name, "this is no part that a --shard has left");
-    if (view.required_count("chronormal_part", kMost) != kVersion)
-      view.complain("chronormal_part", "the part is of another version");
+    check_part_version(view);
+    if (!complaint.first() && !has_its_checksum(part.text)) return invalid_input(part.name, std::string(kDamagedPart));
     const std::string command = view.required_text("command");
     if (command == "compare")
       read.comparisons.push_back(read_comparison(view));
@@ -373,10 +382,12 @@ Result<ReadParts> read_parts(std::span<const Part> parts) {
       read.audits.push_back(read_audit(view));
     else
       view.complain("command", "there are parts of compare and of audit");
+    const TaskChecksums checksums = checksums_of(view);
     if (complaint.first()) return *complaint.first();
+    if (!read.comparisons.empty() && !read.audits.empty())
+      return Error{ErrorCode::kUsage, "", "there are parts of comparisons and of audits: merge either"};
+    if (const Status known = known_parts.add(part.name, checksums); !known) return known.error();
   }
-  if (!read.comparisons.empty() && !read.audits.empty())
-    return Error{ErrorCode::kUsage, "", "there are parts of comparisons and of audits: merge either"};
   return read;
 }
 
@@ -384,7 +395,7 @@ Result<ReadParts> read_parts(std::span<const Part> parts) {
 
 std::string compare_part(const NamedComparison& shard) {
   const Comparison& c = shard.comparison;
-  Json json = part_json("compare", shard.name, c.tolerance);
+  Json json = part_json("compare", shard.name, c.tolerance, c.checksums);
   json["kind"] = static_cast<int>(c.kind);
   json["motion"] = static_cast<int>(c.motion);
   json["vertices"] = c.vertices;
@@ -398,11 +409,11 @@ std::string compare_part(const NamedComparison& shard) {
   json["certified"] = c.schemes.front().certified.has_value();
   for (const SchemeComparison& row : c.schemes) json["schemes"].push_back(row.scheme);
   for (const ComparedSegment& segment : c.compared) json["segments"].push_back(segment_json(segment));
-  return line_of(json) + '\n';
+  return with_checksum(line_of(json));
 }
 
 std::string audit_part(const std::string& input, const Audit& shard, std::optional<double> tolerance) {
-  Json json = part_json("audit", input, tolerance);
+  Json json = part_json("audit", input, tolerance, shard.checksums);
   json["rule"] = static_cast<int>(shard.rule);
   json["weighting"] = static_cast<int>(shard.weighting.value_or(Weighting::kArea));
   json["stored"] = shard.stored;
@@ -417,7 +428,7 @@ std::string audit_part(const std::string& input, const Audit& shard, std::option
     json["vertices"] = subject.vertices;
   }
   for (const SegmentErrors& segment : shard.measured) json["segments"].push_back(segment_json(segment));
-  return line_of(json) + '\n';
+  return with_checksum(line_of(json));
 }
 
 std::string segment_part(const ComparedSegment& segment) { return line_of(segment_json(segment)); }

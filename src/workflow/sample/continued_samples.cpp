@@ -6,9 +6,10 @@
 #include <system_error>
 
 #include "core/charconv.h"
+#include "io/bytes/checksum.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/positioned_file.h"
-#include "io/bytes/zip.h"
+#include "workflow/sample/sample_part.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -31,14 +32,14 @@ Result<bool> has_row(const PositionedFile& file, std::uint64_t at, std::size_t r
   for (std::size_t done = 0; done < row_bytes; done += block.size()) {
     const auto part = std::span(block).first(std::min(block.size(), row_bytes - done));
     if (const Status status = file.read(at + done, part); !status) return status.error();
-    sum = zip::checksum({part.data(), part.size()}, sum);
+    sum = checksum_of({part.data(), part.size()}, sum);
   }
   return sum == row.checksum;
 }
 
 }  // namespace
 
-WrittenRow WrittenRow::of(std::string_view bytes, std::size_t zeros) { return {zip::checksum(bytes), zeros}; }
+WrittenRow WrittenRow::of(std::string_view bytes, std::size_t zeros) { return {checksum_of(bytes), zeros}; }
 
 std::string WrittenRow::text() const { return std::to_string(checksum) + " " + std::to_string(zeros); }
 
@@ -66,8 +67,13 @@ Result<WrittenRows> find_written_rows(const std::string& output, std::string_vie
       found.rows.push_back(*row);
     }
     if (!is_partial) {
-      found.is_whole = found.rows.size() == count && file->size() == header.size() + std::uint64_t{row_bytes} * count;
-      if (!found.is_whole) found.rows.clear();
+      const std::uint64_t rows_end = header.size() + std::uint64_t{row_bytes} * count;
+      if (found.rows.size() == count && file->size() - rows_end <= kLongestEndOfPart) {
+        found.end.emplace(static_cast<std::size_t>(file->size() - rows_end), '\0');
+        if (const Status status = file->read(rows_end, *found.end); !status) return status.error();
+      } else {
+        found.rows.clear();
+      }
     }
   }
   if (const Status status = journal.keep_first(found.rows.size()); !status) return status.error();

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,7 +36,9 @@ struct WrittenRow {
 /// What earlier runs left.
 struct WrittenRows {
   std::vector<WrittenRow> rows;
-  bool is_whole = false;  ///< the output itself is there, with all rows: only the journal was not removed any more
+  /// What follows the last row in the output itself, where that is there with all rows: then nothing is left to do but
+  /// to remove the journal, if this is how the output ends.
+  std::optional<std::string> end = {};
 };
 
 /// Finds the rows of the journal that are in the file, each of row_bytes bytes behind the header, and drops the other

@@ -13,13 +13,14 @@
 #include "chronormal/io/output.h"
 #include "core/charconv.h"
 #include "io/bytes/binary.h"
+#include "io/bytes/checksum.h"
 #include "io/bytes/output_file.h"
 #include "io/cache/npy.h"
 #include "io/cache/npz.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
-#include "workflow/sample/array_place.h"
 #include "workflow/sample/continued_samples.h"
+#include "workflow/sample/sample_part.h"
 
 namespace chronormal {
 namespace {
@@ -90,6 +91,7 @@ class ArrayFile {
     const std::vector<std::uint64_t> shape = {output.peers ? moments.count() : share.count, outputs, 3};
     const std::uint64_t before = std::uint64_t{share.first} * 3 * sizeof(float);  // bytes, of each output
     if (!npz_) {
+      checksum_ = checksum_of(header);
       if (output.peers == nullptr) return file_->append(header);
       at_ = header.size() + before * outputs;
       return is_first ? file_->put(0, header) : Status(Success{});
@@ -118,12 +120,20 @@ class ArrayFile {
     if (!npz_) {
       const std::string_view bytes = bytes_of(normals);
       if (at_) return file_->put(std::exchange(*at_, *at_ + bytes.size()), bytes);
+      checksum_ = checksum_of(bytes, checksum_);
       if (Status status = file_->append(bytes); !status || journal == nullptr) return status;
       return journal->append(WrittenRow::of(bytes, zeros).text());
     }
     const Status status = npz_->append(normals_, bytes_of(normals));
     return status ? npz_->append(positions_, bytes_of(pose.positions)) : status;
   }
+
+  // Goes on behind bytes of a .npy file that have this checksum.
+  void go_on(std::uint32_t checksum) { checksum_ = checksum; }
+  // The checksum of all bytes of a .npy file so far.
+  [[nodiscard]] std::uint32_t checksum() const { return checksum_; }
+  // Writes the text of a part behind the last row.
+  [[nodiscard]] Status append_end(std::string_view text) { return file_->append(text); }
 
   // The checksums of the rows that this process has written; the first process adds those of each of the others.
   [[nodiscard]] std::array<std::uint32_t, 2> checksums() const {
@@ -154,6 +164,7 @@ class ArrayFile {
   std::optional<NpzOutput> npz_;
   std::size_t normals_ = 0, positions_ = 0;  // numbers of arrays in npz_
   std::optional<std::uint64_t> at_;          // where the next row goes in the .npy file of all peers
+  std::uint32_t checksum_ = 0;               // of a .npy file that has no peers
   std::string storage_;
 };
 
@@ -255,6 +266,20 @@ Result<SampleSummary> finish_with_peers(const SampleOutput& output, Written own,
   return own.summary;
 }
 
+// The text that ends the part of a share, whose bytes before that have this checksum.
+Result<std::string> end_of_part(const Motion& motion, const SampleOptions& options, const Moments& moments,
+                                const Shard& shard, const NormalSampler& sampler, std::uint32_t array,
+                                KeyframeChecksums& seen) {
+  SamplePart part{shard.of(moments.count()).first, moments.count(), array};
+  NumberChecksum sharing;
+  sharing.add(sampler.element_of_output());
+  part.checksums["the options"] = checksum_of_options(options, moments);
+  part.checksums["who shares a normal"] = sharing.value();
+  const Status status = seen.finish(keyframes_of_moments(motion, moments, shard, options.path), part.checksums);
+  if (!status) return status.error();
+  return part.text();
+}
+
 // Writes all moments of the share, but for rows that an earlier run wrote, as the journal has it.
 Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& options, const Moments& moments,
                                 const SampleOutput& output, Journal* journal,
@@ -267,6 +292,9 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
   const Result<std::vector<std::string>> names = sample_files(checked, kind, count);
   if (!names) return names.error();
   if (Status status = check_moments(motion, moments); !status) return status.error();
+  const bool is_part = output.format == SampleFormat::kNpy && output.peers == nullptr && !output.shard.is_all();
+  KeyframeChecksums seen(stream);
+  if (Status status = is_part ? seen.begin() : Success{}; !status) return status.error();
   Result<NormalSampler> made = NormalSampler::make(stream, options);
   if (!made) return made.error();
   NormalSampler& sampler = made.value();
@@ -277,7 +305,11 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
   EmptyPartial partial;
   std::optional<ArrayFile> arrays;
   SampleSummary summary;
-  std::size_t written = 0;  // rows, by an earlier run
+  std::size_t written = 0;        // rows, by an earlier run
+  std::uint32_t written_sum = 0;  // the checksum of the header and of these
+  const auto end = [&](std::uint32_t array) {
+    return is_part ? end_of_part(motion, options, moments, output.shard, sampler, array, seen) : std::string();
+  };
   if (is_array(output.format)) {
     const std::size_t per_moment = sampler.output_count() + vertices;
     const bool is_gathered = output.format == SampleFormat::kNpz && is_stream(output.path);
@@ -285,17 +317,25 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
       return Error{ErrorCode::kUsage, output.path,
                    "the arrays would take more than 4 GiB, and a stream gets them at once: write to a file"};
     const std::size_t outputs = sampler.output_count(), row_bytes = 3 * sizeof(float) * outputs;
-    const ArrayPlace place{share.first, count, checksum_of(motion.topology, options, moments)};
-    const bool is_whole = output.peers != nullptr || output.shard.is_all();
-    const std::string header =
-        npy::write_header("<f4", {is_whole ? count : share.count, outputs, 3}, is_whole ? "" : place.text());
+    const std::string header = npy::write_header("<f4", {output.peers != nullptr ? count : share.count, outputs, 3});
     if (journal != nullptr) {
       const auto found = find_written_rows(output.path, header, row_bytes, share.count, *journal);
       if (!found) return found.error();
+      written_sum = checksum_of(header);
+      for (const WrittenRow& row : found.value().rows) {
+        written_sum = joined_checksum(written_sum, row.checksum, row_bytes);
+        summary.zeros += row.zeros;
+      }
       written = found.value().rows.size();
       summary.normals = written * outputs;
-      for (const WrittenRow& row : found.value().rows) summary.zeros += row.zeros;
-      if (found.value().is_whole) return summary;
+      if (found.value().end) {
+        const Result<std::string> wanted = end(written_sum);
+        if (!wanted) return wanted.error();
+        if (*found.value().end == wanted.value()) return summary;
+        if (Status status = journal->keep_first(0); !status) return status.error();
+        written = 0;
+        summary = {};
+      }
     }
     const std::uint64_t kept = written > 0 ? header.size() + std::uint64_t{row_bytes} * written : 0;
     Result<OutputFile> file =
@@ -306,6 +346,7 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
       partial.name = OutputFile::partial_name(output.path);
     }
     arrays.emplace(std::move(file).value(), output.format);
+    if (kept > 0) arrays->go_on(written_sum);
     if (Status status = kept > 0 ? Success{} : arrays->begin(motion, moments, output, outputs, header); !status)
       return status.error();
   }
@@ -335,6 +376,11 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
     return finish_with_peers(output, own, arrays ? &*arrays : nullptr, meshes);
   }
   if (Status status = finish_all(meshes); !status) return status.error();
+  if (is_part) {
+    const Result<std::string> text = end(arrays->checksum());
+    if (!text) return text.error();
+    if (Status status = arrays->append_end(text.value()); !status) return status.error();
+  }
   if (Status status = arrays ? arrays->finish() : Status(Success{}); !status) return status.error();
   return summary;
 }

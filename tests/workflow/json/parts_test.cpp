@@ -6,9 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "chronormal/io/output.h"
+#include "io/bytes/checksum.h"
+#include "tests/support/strict_stream.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::parts_test {
@@ -61,6 +68,15 @@ std::vector<Part> audit_parts(const Motion& motion, const StoredNormals& normals
     parts.push_back({"part_" + std::to_string(i), audit_part("walk", audit(motion, normals, options).value(), 1)});
   }
   return parts;
+}
+
+// The text of a part in which something else stands, with the checksum that it has then.
+std::string edited(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  text.erase(text.find(",\"checksum\":\"")).push_back('}');
+  return with_checksum(text);
 }
 
 TEST(Shard, shares_are_a_partition_and_of_nearly_equal_size) {
@@ -221,10 +237,12 @@ TEST(MergeParts, refuses_shards_that_do_not_make_a_whole) {
   EXPECT_EQ(merged({audits[0], audits[1]}), "segment 5 is in none of the shards");
   CompareOptions other;
   other.samples = 5;
-  EXPECT_EQ(merged({three[0], compare_parts(motion, other, 3)[1]}), "these are shards of two different comparisons");
+  EXPECT_EQ(merged({three[0], compare_parts(motion, other, 3)[1]}),
+            "part_0: it does not belong to part_1: they differ in the options");
   AuditOptions stepping;
   stepping.rule = AuditRule::kStep;
-  EXPECT_EQ(merged({audits[0], audit_parts(motion, {}, stepping, 3)[1]}), "these are shards of two different audits");
+  EXPECT_EQ(merged({audits[0], audit_parts(motion, {}, stepping, 3)[1]}),
+            "part_0: it does not belong to part_1: they differ in the options");
   EXPECT_EQ(merged({three[0], audits[1]}), "there are parts of comparisons and of audits: merge either");
 }
 
@@ -233,31 +251,25 @@ TEST(MergeParts, refuses_shards_of_other_inputs_and_of_other_times) {
   Motion later = motion;
   for (Motion::Keyframe& keyframe : later.keyframes) keyframe.time += 1;
   const std::vector<Part> two = compare_parts(motion, {}, 2), audits = audit_parts(motion, {}, {}, 2);
-  EXPECT_EQ(merged({two[0], compare_parts(later, {}, 2)[1]}), "these are shards of two different comparisons");
-  EXPECT_EQ(merged({audits[0], audit_parts(later, {}, {}, 2)[1]}), "these are shards of two different audits");
+  const std::string differ = "part_0: it does not belong to part_1: they differ in ";
+  EXPECT_EQ(merged({two[0], compare_parts(later, {}, 2)[1]}), differ + "the times of the keyframes");
+  EXPECT_EQ(merged({audits[0], audit_parts(later, {}, {}, 2)[1]}), differ + "the times of the keyframes");
   for (const auto& [first, second] : {std::pair(two[0], two[1]), std::pair(audits[0], audits[1])}) {
-    Part other = second;
-    const std::size_t name = other.text.find("\"walk\"");
-    ASSERT_NE(name, std::string::npos);
-    other.text.replace(name, 6, "\"run\"");
-    EXPECT_EQ(merged({first, other}), "these are shards of different inputs: run and walk");
+    const Part other{second.name, edited(second.text, "\"walk\"", "\"run\"")};
+    EXPECT_EQ(merged({first, other}), differ + "the name of the input");
   }
 }
 
 TEST(MergeParts, refuses_parts_that_no_shard_writes) {
   std::string text = compare_parts(bending(), {}, 1)[0].text;
-  const std::size_t count = text.find("\"segment_count\":");
-  ASSERT_NE(count, std::string::npos);
-  text.replace(count, text.find(',', count) - count, "\"segment_count\":0");
-  EXPECT_NE(merged({{"a", text}}).find("there are no segments"), std::string::npos);
+  EXPECT_NE(merged({{"a", edited(text, "\"segment_count\":8", "\"segment_count\":0")}}).find("there are no segments"),
+            std::string::npos);
   CompareOptions options;
   options.certify = true;
   options.tolerance = 90;
   options.schemes = {"linear"};
   text = compare_parts(bending(), options, 1)[0].text;
-  const std::size_t certified = text.find("\"certified\":true");
-  ASSERT_NE(certified, std::string::npos);
-  text.replace(certified, 16, "\"certified\":false");
+  text = edited(text, "\"certified\":true", "\"certified\":false");
   EXPECT_NE(merged({{"a", text}}).find("a tolerance without certificates"), std::string::npos);
 }
 
@@ -291,11 +303,12 @@ TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
   EXPECT_EQ(merged({{"a", "{}"}}), "a: this is no part that a --shard has left");
   EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "compare"})"}}).find("another version"),
             std::string::npos);
-  EXPECT_NE(merged({{"a", R"({"chronormal_part": 3, "command": "bake"})"}}).find("of compare and of audit"),
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 4, "command": "bake"})"}}).find("the part is damaged"),
             std::string::npos);
-  std::string text = audit_parts(motion, {}, {}, 2)[0].text;
-  const std::size_t list = text.find("\"error\":[");
-  EXPECT_NE(merged({{"a", text.replace(list + 9, 1, "-1.5,")}}).find("must be a count"), std::string::npos);
+  const std::string text = audit_parts(motion, {}, {}, 2)[0].text;
+  EXPECT_NE(merged({{"a", edited(text, "\"audit\"", "\"bake\"")}}).find("of compare and of audit"), std::string::npos);
+  EXPECT_NE(merged({{"a", edited(text, "\"error\":[", "\"error\":[-1.5,")}}).find("must be a count"),
+            std::string::npos);
 }
 
 TEST(MergeArrays, shards_of_samples_give_the_bytes_of_one_run) {
@@ -344,10 +357,206 @@ TEST(MergeArrays, refuses_shards_that_do_not_make_a_whole) {
   EXPECT_EQ(merged_arrays({first, second}), "row 3 is in none of the shards");
   EXPECT_EQ(merged_arrays({first, second, second, third}), "row 1 is in two of the shards");
   for (const std::string& foreign : {other, later})
-    EXPECT_EQ(merged_arrays({first, foreign, third}), "it is a shard of other samples than the first part");
+    EXPECT_EQ(merged_arrays({first, foreign, third}),
+              "it does not belong to " + first + ": they differ in the options");
   EXPECT_EQ(merged_arrays({first, folder / "all.npy"}),
             "this is no part that sample --shard has left, but (5, 80, 3) of '<f4'");
   EXPECT_EQ(merge_arrays(std::vector{folder / "gone.npy"}, folder / "x.npy", true).error().code, ErrorCode::kFailed);
+}
+
+// The three ways to divide a task, each as: write the part of a shard of a motion to a file; and merge files, which
+// returns the text of the result, or an error.
+struct Task {
+  std::string name;
+  std::function<void(MotionStream& stream, const Shard& shard, const std::string& path)> write;
+  std::function<Result<std::string>(const std::vector<std::string>& paths)> merge;
+};
+
+std::vector<Task> tasks(const std::string& merged_path) {
+  const auto merge_texts = [](const std::vector<std::string>& paths) -> Result<std::string> {
+    std::vector<Part> parts;
+    for (const std::string& path : paths) parts.push_back({path, test::read_whole(path)});
+    const Result<MergedParts> all = merge_parts(parts);
+    return all ? Result<std::string>(all.value().json) : Result<std::string>(all.error());
+  };
+  const auto merge_rows = [merged_path](const std::vector<std::string>& paths) -> Result<std::string> {
+    std::filesystem::remove(merged_path);
+    const Status status = merge_arrays(paths, merged_path, false);
+    EXPECT_EQ(std::filesystem::exists(merged_path), status.ok());
+    return status ? Result<std::string>(test::read_whole(merged_path)) : Result<std::string>(status.error());
+  };
+  const auto write = [](const std::string& path, const std::string& text) {
+    ASSERT_TRUE(write_output(path, text, true).ok());
+  };
+  return {{"compare",
+           [write](MotionStream& stream, const Shard& shard, const std::string& path) {
+             CompareOptions options;
+             options.schemes = {"linear"};
+             options.samples = 3;
+             options.shard = shard;
+             write(path, compare_part({"walk", compare(stream, options).value()}));
+           },
+           merge_texts},
+          {"compare of vertices",
+           [write](MotionStream& stream, const Shard& shard, const std::string& path) {
+             CompareOptions options;
+             options.schemes = {"slerp"};
+             options.samples = 2;
+             options.shard = shard;
+             options.elements.kind = ElementKind::kVertices;
+             write(path, compare_part({"walk", compare(stream, options).value()}));
+           },
+           merge_texts},
+          {"audit",
+           [write](MotionStream& stream, const Shard& shard, const std::string& path) {
+             AuditOptions options;
+             options.samples = 3;
+             options.shard = shard;
+             write(path, audit_part("walk", audit(stream, {}, options).value(), 1));
+           },
+           merge_texts},
+          {"sample",
+           [](MotionStream& stream, const Shard& shard, const std::string& path) {
+             Moments moments;
+             for (int i = 0; i < 8; ++i) moments.times.push_back(0.1 * i + 0.05);
+             ASSERT_TRUE(write_samples(stream, {}, moments, {path, SampleFormat::kNpy, true, shard}).ok());
+           },
+           merge_rows},
+          {"sample of faces at two times that have no keyframe in common",
+           [](MotionStream& stream, const Shard& shard, const std::string& path) {
+             const Moments moments{{0.05, 0.65}, {}};
+             SampleOptions options;
+             options.elements.kind = ElementKind::kFaces;
+             const Shard half{shard.index % 2, 2};
+             ASSERT_TRUE(write_samples(stream, options, moments, {path, SampleFormat::kNpy, true, half}).ok());
+           },
+           [merge_rows](const std::vector<std::string>& paths) {
+             return merge_rows(
+                 {paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(2, paths.size()))});
+           }}};
+}
+
+// Writes the part of a shard of a motion that is in memory, or of a stream that keeps nothing.
+void write_part(const Task& task, const Motion& motion, bool is_kept, const Shard& shard, const std::string& path) {
+  MotionStream whole(motion);
+  if (is_kept) return task.write(whole, shard, path);
+  std::size_t most_held = 0;
+  MotionStream stream = test::strict(whole, most_held);
+  task.write(stream, shard, path);
+}
+
+TEST(Parts, no_damage_gives_other_bytes) {
+  constexpr unsigned kSeed = 49;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  std::mt19937 random(kSeed);
+  const test::TemporaryFolder folder;
+  const Motion motion = bending();
+  for (const Task& task : tasks(folder / "merged")) {
+    SCOPED_TRACE(task.name);
+    const std::vector<std::string> paths = {folder / "0", folder / "1"};
+    for (std::size_t i = 0; i < 2; ++i) write_part(task, motion, true, {i, 2}, paths[i]);
+    const Result<std::string> whole = task.merge(paths);
+    ASSERT_TRUE(whole.ok()) << whole.error().text();
+    const std::string part = test::read_whole(paths[1]);
+    const auto try_damaged = [&](std::string damaged, const std::string& what) {
+      if (damaged == part) return;
+      ASSERT_TRUE(write_output(paths[1], damaged, true).ok());
+      const Result<std::string> merged = task.merge(paths);
+      EXPECT_FALSE(merged.ok()) << what;
+    };
+    // Every byte of the ends of the file, which say what the part is, and some of the others.
+    for (std::size_t at = 0; at < part.size(); at += at < 128 || at + 128 > part.size() ? 1 : 1 + random() % 97) {
+      std::string damaged = part;
+      damaged[at] = static_cast<char>(random());
+      try_damaged(damaged, "byte " + std::to_string(at));
+    }
+    for (int i = 0; i < 40; ++i) {
+      const std::size_t at = random() % part.size(), count = 1 + random() % 100;
+      std::string more(count, '\0');
+      for (char& c : more) c = static_cast<char>(random());
+      try_damaged(part.substr(0, at), "cut at " + std::to_string(at));
+      try_damaged(part + (i == 0 ? "\n" : more), "extended");
+      try_damaged(std::string(part).insert(at, more), "inserted at " + std::to_string(at));
+      try_damaged(std::string(part).erase(at, count), "removed at " + std::to_string(at));
+    }
+  }
+}
+
+// A keyframe changes between the shards, drawn at random together with the number of shards. A motion that is kept is
+// looked at as a whole by every shard; of one that is not, keyframes that two shards read must be the same.
+TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together) {
+  constexpr unsigned kSeed = 20261126;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  std::mt19937 random(kSeed);
+  const test::TemporaryFolder folder;
+  for (const Task& task : tasks(folder / "merged")) {
+    for (int round = 0; round < 12; ++round) {
+      const bool is_kept = round % 2 == 0;
+      const std::size_t count = 2 + random() % 3, later = 1 + random() % (count - 1);
+      const Motion before = bending();
+      Motion after = before;
+      // Where streams keep nothing, the one with which the first of the later shards begins; 0 and the last one, too.
+      const std::size_t boundary = Shard{later, count}.of(8).first;
+      const std::size_t changed = is_kept ? random() % 9 : std::vector<std::size_t>{0, boundary, 8}[random() % 3];
+      std::vector<float>& positions = after.keyframes[changed].positions;
+      float& coordinate = positions[6 + random() % (positions.size() - 6)];  // the first two vertices stand still
+      coordinate = std::nextafter(coordinate, 2.0F);
+      std::vector<std::string> paths;
+      for (std::size_t i = 0; i < count; ++i) {
+        paths.push_back(folder / std::to_string(i));
+        write_part(task, i < later ? before : after, is_kept, {i, count}, paths.back());
+      }
+      const bool is_of_two = task.name.find("two times") != std::string::npos;
+      if (is_of_two && (later != 1 || (!is_kept && changed == boundary))) continue;
+      const Result<std::string> merged = task.merge(paths);
+      ASSERT_FALSE(merged.ok()) << task.name << ", keyframe " << changed << ", " << is_kept;
+      EXPECT_EQ(merged.error().code, ErrorCode::kUsage);
+      const std::string text = merged.error().text();
+      EXPECT_TRUE(text.starts_with(paths[later] + ": it does not belong to " + folder.path())) << task.name << text;
+      EXPECT_TRUE(text.ends_with(": they differ in keyframe " + std::to_string(changed))) << task.name << text;
+    }
+  }
+}
+
+TEST(Parts, of_two_sequences_with_the_same_faces_and_times_do_not_belong_together) {
+  constexpr unsigned kSeed = 7;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  std::mt19937 random(kSeed);
+  const test::TemporaryFolder folder;
+  const Motion one = bending();
+  Motion other = one;
+  for (Motion::Keyframe& keyframe : other.keyframes)
+    for (float& coordinate : keyframe.positions) coordinate += static_cast<float>(random() % 1000) * 0.001F;
+  for (const Task& task : tasks(folder / "merged")) {
+    for (const bool is_kept : {true, false}) {
+      const std::vector<std::string> paths = {folder / "0", folder / "1"};
+      for (const std::size_t from_other : {0U, 1U}) {
+        for (std::size_t i = 0; i < 2; ++i) write_part(task, i == from_other ? other : one, is_kept, {i, 2}, paths[i]);
+        const Result<std::string> merged = task.merge(paths);
+        ASSERT_FALSE(merged.ok()) << task.name;
+        EXPECT_TRUE(merged.error().text().starts_with(paths[1] + ": it does not belong to " + paths[0])) << task.name;
+      }
+    }
+  }
+}
+
+// A keyframe that one pass of an audit reads again, and that is another one then.
+TEST(Parts, are_not_written_of_a_keyframe_that_changes_while_it_is_read) {
+  const Motion motion = bending();
+  std::vector<int> reads(9);
+  Motion outline = motion;
+  for (Motion::Keyframe& keyframe : outline.keyframes) keyframe.positions.clear();
+  MotionStream stream(
+      outline,
+      [&](const Motion&, std::size_t k, std::span<float> positions) -> Status {
+        std::copy(motion.keyframes[k].positions.begin(), motion.keyframes[k].positions.end(), positions.begin());
+        if (++reads[k] > 1 && k == 5) positions[0] += 1;
+        return Success{};
+      },
+      0);
+  AuditOptions options;
+  options.shard = Shard{1, 2};
+  EXPECT_EQ(audit(stream, {}, options).error().text(), "keyframe 5 has changed since it was read first");
 }
 
 }  // namespace

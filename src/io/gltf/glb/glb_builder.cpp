@@ -44,11 +44,13 @@ GlbBuilder::Take GlbBuilder::gather_in(std::string& file) {
   };
 }
 
+std::string_view generator_name() noexcept { return "chronormal " CHRONORMAL_VERSION; }
+
 GlbBuilder::GlbBuilder(std::optional<std::size_t> most_bytes, Spool spool)
     : document_(Json::object()),
       arrays_(std::move(spool)),
       most_bytes_(std::min(most_bytes.value_or(kMostBytes), kMostBytes)) {
-  document_["asset"] = {{"version", "2.0"}, {"generator", "chronormal " CHRONORMAL_VERSION}};
+  document_["asset"] = {{"version", "2.0"}, {"generator", generator_name()}};
 }
 
 std::size_t GlbBuilder::set_triangles(std::span<const std::uint32_t> corners, std::size_t vertex_count) {

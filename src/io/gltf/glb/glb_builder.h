@@ -34,6 +34,9 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::vector<std::uint32_t> fan_triangles(const Topology& topology,
                                                        std::span<const std::uint32_t> vertex_of_corner);
 
+/// "chronormal 0.2.0": what files say that made them.
+[[nodiscard]] std::string_view generator_name() noexcept;
+
 class GlbBuilder {
  public:
   /// Takes bytes that follow those that it took before, of a file that has file_size bytes in the end.
