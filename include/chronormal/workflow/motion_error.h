@@ -33,8 +33,8 @@ struct AuditPlace {
   double at = 0;                               ///< weight of the target, or time in seconds
 };
 
-/// The counts in these bins. Most errors of a small mesh are in a few of them, and a file may have thousands of motions,
-/// so that only those are kept that are not empty, 8 bytes each.
+/// The counts in these bins. Most errors of a small mesh are in a few of them, and a file may have thousands of
+/// motions, so that only those are kept that are not empty, 8 bytes each.
 class FineBins {
  public:
   class Bin {

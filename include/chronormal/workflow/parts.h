@@ -62,9 +62,9 @@ struct MergedParts {
 [[nodiscard]] Result<Audit> merge_audit_parts(std::span<const Part> parts);
 
 /// Writes the array of which the files have the rows, in any order. Memory: a megabyte. Errors: kFailed for files that
-/// cannot be read; kInvalidInput for those that no shard of samples has left, or that were damaged; kUsage for shards of
-/// different samples or inputs, and unless each row is in exactly one of them; those of write_output() in io/output.h.
-/// There must be at least one path
+/// cannot be read; kInvalidInput for those that no shard of samples has left, or that were damaged; kUsage for shards
+/// of different samples or inputs, and unless each row is in exactly one of them; those of write_output() in
+/// io/output.h. There must be at least one path
 [[nodiscard]] Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force);
 
 }  // namespace chronormal

@@ -20,8 +20,8 @@ namespace chronormal::inline internal::scan {
 [[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
 /// Checks that bytes may be text, before lines are looked for in them: text has no page of zero bytes, which is what
-/// files have where nothing was ever written. Such a file may seem to be a terabyte long. Errors: kInvalidInput with the
-/// place "NAME, byte N"
+/// files have where nothing was ever written. Such a file may seem to be a terabyte long. Errors: kInvalidInput with
+/// the place "NAME, byte N"
 [[nodiscard]] Status check_text(std::string_view bytes, const std::string& name);
 
 /// Hands out the lines of a text without their ends, counted from 1.

@@ -199,7 +199,7 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
   }
   if (text.starts_with(kByteOrderMark))  // which the library would skip too
     return invalid_input(binary::place(name, offset), "this is no JSON: a second byte order mark");
-  // No JSON has a zero byte. The parser complains about it; a file that was never written to may have a terabyte of them.
+  // No JSON has a zero byte. The parser complains about it; a sparse file may have a terabyte of them.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) text = text.substr(0, zero + 1);
   const Scan scan = scan_json(text);
   if (scan.too_deep != std::string_view::npos)

@@ -1,5 +1,5 @@
-/// The checksums by which parts of one task are told from parts of another (TaskChecksums in workflow/shard.h), taken of
-/// keyframes as a shard reads them. Private to workflow.
+/// The checksums by which parts of one task are told from parts of another (TaskChecksums in workflow/shard.h), taken
+/// of keyframes as a shard reads them. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SAMPLE_TASK_CHECKSUMS_H_
 #define CHRONORMAL_WORKFLOW_SAMPLE_TASK_CHECKSUMS_H_
 
