@@ -32,6 +32,17 @@ void reference_normals(const Segment& segment, IndexRange faces, double t, std::
 /// these cancel. Threads: pure. t in [0, 1]
 [[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept;
 
+/// n(t) of a face in double, and the size of the products that it is the sum of, by which its rounding is judged.
+struct ReferenceArea {
+  Vec3d n;
+  double products = 0;
+};
+[[nodiscard]] ReferenceArea reference_area(const Segment& segment, std::uint32_t face, double t) noexcept;
+
+/// Returns the same normal from what reference_area() has of these faces at t, which vertices of a large polygon share.
+[[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces,
+                                     std::span<const ReferenceArea> areas, double t) noexcept;
+
 /// Where an angular error was found.
 struct ErrorPlace {
   std::size_t segment = 0;

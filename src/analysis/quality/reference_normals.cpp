@@ -27,15 +27,9 @@ struct Interpolated {
   }
 };
 
-// n(t) in double, and the products by which its rounding is judged.
-struct AreaAtTime {
-  Vec3d n;
-  double products = 0;
+bool is_certain(const ReferenceArea& area) noexcept { return max_abs(area.n) > kDoubtfulShare * area.products; }
 
-  [[nodiscard]] bool is_certain() const noexcept { return max_abs(n) > kDoubtfulShare * products; }
-};
-
-AreaAtTime vector_area_at(const Segment& segment, std::span<const std::uint32_t> face, double t) {
+ReferenceArea vector_area_at(const Segment& segment, std::span<const std::uint32_t> face, double t) {
   // The first corner is the origin: differences of float32 positions are exact in double, or nearly so.
   const Vec3d origin = to_double(segment.from[face[0]]);
   const auto vertex_at = [&](std::uint32_t vertex) {
@@ -43,7 +37,7 @@ AreaAtTime vector_area_at(const Segment& segment, std::span<const std::uint32_t>
     return Interpolated{lerp(from, to, t), (1 - t) * max_abs(from) + t * max_abs(to)};
   };
   const Interpolated a = vertex_at(face[0]);
-  AreaAtTime area;
+  ReferenceArea area;
   Interpolated e = vertex_at(face[1]) - a;
   for (std::size_t c = 2; c < face.size(); ++c) {
     const Interpolated f = vertex_at(face[c]) - a;
@@ -143,19 +137,34 @@ void reference_normals(const Segment& segment, IndexRange faces, double t, std::
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
   for (std::size_t i = 0; i < faces.count; ++i) {
     const auto face = static_cast<std::uint32_t>(faces.first + i);
-    const AreaAtTime area = vector_area_at(segment, segment.topology->face(face), t);
-    result[i] = area.is_certain() ? area.n : exact_normal_at(segment, {&face, 1}, t);
+    const ReferenceArea area = reference_area(segment, face, t);
+    result[i] = is_certain(area) ? area.n : exact_normal_at(segment, {&face, 1}, t);
   }
 }
 
+ReferenceArea reference_area(const Segment& segment, std::uint32_t face, double t) noexcept {
+  return vector_area_at(segment, segment.topology->face(face), t);
+}
+
 Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept {
-  AreaAtTime sum;
+  ReferenceArea sum;
   for (const std::uint32_t face : faces) {
-    const AreaAtTime area = vector_area_at(segment, segment.topology->face(face), t);
+    const ReferenceArea area = reference_area(segment, face, t);
     sum.n = sum.n + area.n;
     sum.products += area.products;
   }
-  return sum.is_certain() ? sum.n : exact_normal_at(segment, faces, t);
+  return is_certain(sum) ? sum.n : exact_normal_at(segment, faces, t);
+}
+
+Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces,
+                       std::span<const ReferenceArea> areas, double t) noexcept {
+  assert(areas.size() == faces.size());
+  ReferenceArea sum;
+  for (const ReferenceArea& area : areas) {
+    sum.n = sum.n + area.n;
+    sum.products += area.products;
+  }
+  return is_certain(sum) ? sum.n : exact_normal_at(segment, faces, t);
 }
 
 }  // namespace chronormal

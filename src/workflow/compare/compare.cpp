@@ -18,6 +18,7 @@
 #include "chronormal/core/interruption.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "core/rounding.h"
 #include "io/bytes/checksum.h"
 #include "normals/curves/path_stream.h"
 #include "normals/groups/group_sum.h"
@@ -72,7 +73,14 @@ double time_of_sample(std::size_t i, std::size_t samples) {
 class Elements {
  public:
   explicit Elements(const Topology& topology) : count_(topology.face_count()) {}
-  explicit Elements(NormalGroups groups) : groups_(std::move(groups)), count_(groups_->size()) {}
+  Elements(const Topology& topology, NormalGroups groups, std::size_t samples)
+      : groups_(std::move(groups)),
+        count_(groups_->size()),
+        samples_(samples),
+        many_corners_(std::max<std::size_t>(32, samples / 16)) {
+    for (std::uint32_t f = 0; f < topology.face_count() && !topology.all_triangles(); ++f)
+      if (topology.face(f).size() > many_corners_) large_.push_back(f);
+  }
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   // The element of each output; empty where they are faces, which are both.
@@ -105,11 +113,18 @@ class Elements {
     if (curved_) curved_->enter(first, last);
     if (!groups_) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
+    of_large_.erase(of_large_.begin(), of_large_.lower_bound(first));
     for (std::size_t s = first; s <= last; ++s) {
       if (of_faces_.contains(s)) continue;
       const auto start = Clock::now();
-      of_faces_.emplace(s, all_face_control_normals(motion.segment(s)));
+      const Segment segment = motion.segment(s);
+      of_faces_.emplace(s, all_face_control_normals(segment));
       shared_ns_ = nanoseconds_since(start) * static_cast<double>(thread_count()) / static_cast<double>(count_);
+      std::vector<ReferenceArea>& large = of_large_[s];
+      large.resize(large_.size() * samples_);
+      parallel_for(large.size(), [&](std::size_t i) {
+        large[i] = area_of(segment, large_[i / samples_], time_of_sample(i % samples_, samples_));
+      });
     }
   }
   // What the faces of a segment cost one thread, for each of the elements that share them.
@@ -138,20 +153,49 @@ class Elements {
     if (groups_ || curved_ || !segment.topology->all_triangles()) return std::nullopt;
     return ReferenceTriangles(segment, range);
   }
-  // Exact normals, of any length.
+  // Exact normals at a sample, of any length.
   void exact_normals(const Segment& segment, IndexRange range, const std::optional<ReferenceTriangles>& triangles,
-                     double t, std::span<Vec3d> result) const noexcept {
-    if (curved_) return curved_->exact_normals(segment.index, range, t, result);
+                     std::size_t sample, std::size_t samples, std::span<Vec3d> result) const {
+    const double t = time_of_sample(sample, samples);
+    if (!groups_ && curved_) return curved_->face_normals(segment.index, range, t, result);
     if (triangles) return triangles->normals(t, result);
     if (!groups_) return reference_normals(segment, range, t, result);
-    for (std::size_t i = 0; i < range.count; ++i)
-      result[i] = reference_normal(segment, groups_->faces(range.first + i), t);
+    std::vector<ReferenceArea> areas;
+    for (std::size_t i = 0; i < range.count; ++i) {
+      const auto faces = groups_->faces(range.first + i);
+      areas.clear();
+      for (const std::uint32_t f : faces)
+        areas.push_back(segment.topology->face(f).size() > many_corners_ ? area_of_large(segment.index, f, sample)
+                                                                         : area_of(segment, f, t));
+      result[i] = curved_ ? sum_without_rounding(areas) : reference_normal(segment, faces, areas, t);
+    }
   }
 
  private:
+  [[nodiscard]] ReferenceArea area_of(const Segment& segment, std::uint32_t face, double t) const noexcept {
+    if (!curved_) return reference_area(segment, face, t);
+    ReferenceArea area;
+    curved_->face_normals(segment.index, {face, 1}, t, std::span(&area.n, 1));
+    return area;
+  }
+  [[nodiscard]] const ReferenceArea& area_of_large(std::size_t segment, std::uint32_t face, std::size_t sample) const {
+    const auto number = static_cast<std::size_t>(std::lower_bound(large_.begin(), large_.end(), face) - large_.begin());
+    return of_large_.find(segment)->second[number * samples_ + sample];
+  }
+  static Vec3d sum_without_rounding(std::span<const ReferenceArea> areas) noexcept {
+    VectorSum sum;
+    for (const ReferenceArea& area : areas) sum.add(area.n);
+    return sum.without_rounding();
+  }
+
   std::optional<NormalGroups> groups_;
   std::size_t count_;
+  std::size_t samples_ = 0;  // for groups
+  // Faces of more corners have their normals computed once for all of these; they take less than 400 bytes a corner.
+  std::size_t many_corners_ = 0;
   std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // by segment, for groups
+  std::vector<std::uint32_t> large_;                             // these faces, for groups
+  std::map<std::size_t, std::vector<ReferenceArea>> of_large_;   // theirs at each sample, by segment
   std::optional<CurvedSegments> curved_;                         // where vertices move on curves
   double shared_ns_ = 0;
 };
@@ -266,7 +310,7 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   for (std::size_t i = 0; i < samples; ++i) {
     check_interruption();
     const double t = time_of_sample(i, samples);
-    all.exact_normals(segment, range, triangles, t, exact);
+    all.exact_normals(segment, range, triangles, i, samples, exact);
     for (std::size_t s = 0; s < schemes.size(); ++s) {
       const auto start = Clock::now();
       if (playbacks[s])
@@ -361,7 +405,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   } else {
     Result<NormalGroups> groups = make_groups(stream, options.elements);
     if (!groups) return groups.error();
-    all.emplace(std::move(groups).value());
+    all.emplace(motion.topology, std::move(groups).value(), options.samples);
   }
   if (curved) {
     all->follow(motion, options.path, certified);

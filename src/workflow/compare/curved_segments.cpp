@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdint>
 #include <utility>
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/path_curves.h"
 #include "core/blocks.h"
-#include "core/rounding.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -71,19 +69,9 @@ void CurvedSegments::enter(std::size_t first, std::size_t last) {
   }
 }
 
-void CurvedSegments::exact_normals(std::size_t segment, IndexRange range, double t,
-                                   std::span<Vec3d> result) const noexcept {
-  const PolynomialSegment<3>& curve = segments_.find(segment)->second.curve;
-  if (groups_ == nullptr) return polynomial_face_normals_at(curve, t, range, result);
-  for (std::size_t i = 0; i < range.count; ++i) {
-    VectorSum sum;
-    for (const std::uint32_t f : groups_->faces(range.first + i)) {
-      Vec3d normal;
-      polynomial_face_normals_at(curve, t, {f, 1}, std::span(&normal, 1));
-      sum.add(normal);
-    }
-    result[i] = sum.without_rounding();
-  }
+void CurvedSegments::face_normals(std::size_t segment, IndexRange range, double t,
+                                  std::span<Vec3d> result) const noexcept {
+  polynomial_face_normals_at(segments_.find(segment)->second.curve, t, range, result);
 }
 
 std::vector<PolynomialNormals<3>> CurvedSegments::control_normals(std::size_t segment, IndexRange range) const {

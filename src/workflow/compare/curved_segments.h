@@ -36,8 +36,8 @@ class CurvedSegments {
   /// The time, in nanoseconds of one thread, for the faces of a segment that groups share; 0 for faces.
   [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
 
-  /// The normals of a range of elements of a segment that was entered, from the positions of vertices at t.
-  void exact_normals(std::size_t segment, IndexRange range, double t, std::span<Vec3d> result) const noexcept;
+  /// The normals of a range of faces of a segment that was entered, from the positions of vertices at t.
+  void face_normals(std::size_t segment, IndexRange range, double t, std::span<Vec3d> result) const noexcept;
   /// The control normals of degree 6 of a range of elements.
   [[nodiscard]] std::vector<PolynomialNormals<3>> control_normals(std::size_t segment, IndexRange range) const;
   /// The same with their errors, for certificates.

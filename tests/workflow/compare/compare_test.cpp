@@ -6,12 +6,15 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <numbers>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "chronormal/io/builtin_morphs.h"
+#include "tests/support/cpu_time.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
@@ -443,6 +446,69 @@ TEST(BuiltinMorphs, eversion_turns_inside_out) {
   };
   EXPECT_GT(volume(motion.segment(0).from), 3);
   EXPECT_LT(volume(motion.segment(0).to), -1);
+}
+
+// A polygon that bends, on straight or curved paths.
+Motion polygon(std::uint32_t corners) {
+  Motion motion;
+  std::vector<std::uint32_t> around(corners);
+  std::iota(around.begin(), around.end(), 0U);
+  motion.topology = Topology::polygons(corners, {0, corners}, around).value();
+  for (int k = 0; k < 3; ++k) {
+    Motion::Keyframe& keyframe = motion.keyframes.emplace_back();
+    keyframe.time = k;
+    for (std::uint32_t v = 0; v < corners; ++v) {
+      const double angle = 2 * std::numbers::pi * v / corners;
+      for (const double x : {std::cos(angle), std::sin(angle), 0.3 * k * std::cos(angle + k)})
+        keyframe.positions.push_back(static_cast<float>(x));
+    }
+  }
+  motion.connect_as_sequence();
+  return motion;
+}
+
+// Each corner of a polygon shows its normal, which is computed once for all of them.
+TEST(Compare, time_is_linear_in_the_corners_of_a_polygon) {
+  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
+    CompareOptions options;
+    options.schemes = {"linear"};
+    options.elements.kind = ElementKind::kVertices;
+    options.path = path;
+    const auto seconds = [&](std::uint32_t corners) {
+      const Motion motion = polygon(corners);
+      double least = 1e9;
+      for (int i = 0; i < 3; ++i) {
+        const test::CpuClock clock;
+        EXPECT_EQ(compare(motion, options).value().elements, corners);
+        least = std::min(least, clock.seconds());
+      }
+      return least;
+    };
+    const double few = seconds(1000), many = seconds(8000);
+    EXPECT_LT(many, 16 * few) << path_name(path);
+  }
+}
+
+// The normal of a vertex is that of its polygon, however many corners that has: of some that are few enough to be
+// computed for each corner, and of some that are not.
+TEST(Compare, vertices_of_a_polygon_have_the_errors_of_its_face) {
+  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
+    for (const std::uint32_t corners : {3U, 5U, 32U, 33U, 34U, 200U}) {
+      for (const std::size_t samples : {std::size_t{2}, std::size_t{5}, std::size_t{1000}}) {
+        CompareOptions options;
+        options.schemes = {"linear"};
+        options.samples = samples;
+        options.path = path;
+        const Motion motion = polygon(corners);
+        const Comparison face = compare(motion, options).value();
+        options.elements.kind = ElementKind::kVertices;
+        const Comparison vertices = compare(motion, options).value();
+        EXPECT_EQ(vertices.schemes[0].quality.max, face.schemes[0].quality.max) << corners;
+        EXPECT_NEAR(vertices.schemes[0].quality.mean(), face.schemes[0].quality.mean(), 1e-12) << corners;
+        EXPECT_EQ(vertices.schemes[0].quality.count, corners * face.schemes[0].quality.count);
+      }
+    }
+  }
 }
 
 }  // namespace
