@@ -354,8 +354,8 @@ def facing(positions, faces, times=None, *, direction=None, eye=None, eye_to=Non
         raise ValueError("direction: say who looks, by a direction or an eye")
     if eye_to is not None and eye is None:
         raise ValueError("eye_to: there must be an eye that moves there")
-    first = _np.ascontiguousarray(eye if direction is None else direction, dtype=_np.float64)
-    last = first if eye_to is None else _np.ascontiguousarray(eye_to, dtype=_np.float64)
+    first = _floats(eye, "eye") if direction is None else _floats(direction, "direction")
+    last = first if eye_to is None else _floats(eye_to, "eye_to")
     if first.shape != (3,) or last.shape != (3,):
         raise ValueError("direction: a place or a direction is an array of 3 numbers")
     return _chronormal.query_facing(*_keyframes(positions, faces, times), start, end, eye is not None, first, last,
