@@ -9,25 +9,15 @@
 #include <utility>
 
 #include "core/text.h"
+#include "core/twofold.h"
 
 namespace chronormal {
 namespace {
 
 Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
 
-// A difference of two doubles as the sum of two: rounded, and what that lost (Knuth, The Art of Computer Programming,
-// volume 2, section 4.2.2).
-struct Difference {
-  double high, low;
-
-  [[nodiscard]] static Difference of(double a, double b) noexcept {
-    const double high = a - b, of_b = high - a;
-    return {high, (a - (high - of_b)) - (b + of_b)};
-  }
-};
-
-// a / b, rounded once; a <= b.
-double quotient(const Difference& a, const Difference& b) noexcept {
+// Returns a / b, rounded once; a <= b.
+double quotient(const Twofold& a, const Twofold& b) noexcept {
   const double first = a.high / b.high;
   if (a.low == 0 && b.low == 0) return first;
   return first + ((std::fma(-first, b.high, a.high) + a.low) - first * b.low) / b.high;
@@ -68,8 +58,8 @@ LocalTime LocalTime::between(double start, double time, double end) noexcept {
   if (!(time < end)) return 1.0;
   // Halves of numbers whose difference is beyond the range of double are exact where it matters.
   const double scale = std::isfinite(end - start) ? 1 : 0.5;
-  const Difference done = Difference::of(scale * time, scale * start), left = Difference::of(scale * end, scale * time),
-                   whole = Difference::of(scale * end, scale * start);
+  const Twofold done = Twofold::sum(scale * time, -scale * start), left = Twofold::sum(scale * end, -scale * time),
+                whole = Twofold::sum(scale * end, -scale * start);
   LocalTime result(quotient(done, whole));
   // Below this, the remainder of the division may be less than any double.
   constexpr double kSmallest = 0x1p-900;

@@ -132,7 +132,7 @@ class BlockedValues {
   AlignedArray<float> values_;
 };
 
-/// Whether a policy says itself what all elements have in common at t.
+/// A policy that computes by itself the values that all elements have in common at t.
 template <class Policy>
 concept SharesValues = requires(const Policy& policy, float* values) {
   policy.shared(0.0, values);

@@ -49,7 +49,7 @@ class WeightBasis {
   [[nodiscard]] const Coefficients& weight(std::size_t k) const noexcept { return weights_[k]; }
   /// At least the sum of the |weights| at any t.
   [[nodiscard]] double most_weight() const noexcept { return most_weight_; }
-  /// How far a curve through unit vectors is off where its Bernstein coefficients are made and cut in double.
+  /// Returns the error of a curve through unit vectors whose Bernstein coefficients are made and cut in double.
   [[nodiscard]] double conversion_error() const noexcept { return conversion_error_; }
 
  private:

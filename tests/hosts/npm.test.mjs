@@ -141,6 +141,7 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   }
   assert.ok(read > 30, `${read}`);
   const { bytes: baked } = await bake(face, { encode: 'endpoint' });
+  // The program sees its files in a folder /work of its own (js/src/task.js), and its outputs in out/ there.
   for (const name of ['out', 'out/a.glb', '-x.glb', '../work/out/b.glb']) {
     assert.deepEqual((await bake(face, { name, encode: 'endpoint', worker: false })).bytes, baked, name);
   }

@@ -41,7 +41,7 @@ namespace chronormal {
 struct View {
   bool is_eye = false;
   Vec3d from, to;  ///< the eye where its way begins and ends; of a direction both are the same
-  /// Where on its way the eye is at t = 0 and at t = 1: a part of the way, where that is longer than the segment.
+  /// The eye's place on its way at t = 0 and at t = 1, for a way that is longer than the segment.
   LocalTime start = 0.0, end = 1.0;
 
   /// A viewer infinitely far away in this direction: what has a normal along it is seen from its front.

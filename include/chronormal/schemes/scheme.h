@@ -111,7 +111,7 @@ class Scheme {
   /// Operations per element and step of a playback, counted likewise; nothing where there is no incremental form.
   [[nodiscard]] virtual std::optional<OperationCounts> sequential_operations() const { return std::nullopt; }
 
-  /// Whether every normal that evaluate() writes is promised to be within kExactTolerance of the exact one.
+  /// Returns true if every normal that evaluate() writes is promised to be within kExactTolerance of the exact one.
   [[nodiscard]] virtual bool is_exact() const noexcept { return false; }
   /// Returns the curves that the block was fitted with, for certify() in analysis/certify.h; nothing where they are not
   /// known, so that no bound can be certified. They are valid until the next prepare().

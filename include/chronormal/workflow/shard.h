@@ -28,7 +28,7 @@ struct Shard {
   [[nodiscard]] bool is_all() const noexcept { return count == 1; }
 };
 
-/// What the result of a shard depends on, by name ("the faces", "the options", "keyframe 3"), and the checksum of each.
+/// Checksums of everything that the result of a shard depends on, by name ("the faces", "the options", "keyframe 3").
 /// Shards of one task have the same checksum for every name that they share. A keyframe is there where the shard has
 /// read it: those that it needs, the first and the last one, and the one with which the next shard begins, which tie
 /// shards together that have no other keyframe in common; all of them where they are few (MotionStream::keeps_all()).

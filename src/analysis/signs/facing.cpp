@@ -30,8 +30,8 @@ namespace {
 
 Side side_of(int sign) { return static_cast<Side>(sign); }
 
-// Whether products with the way to the viewer stay in the range of double: its components are no smaller than positions
-// can be.
+// Returns true if products with the way to the viewer stay in the range of double, because no component is smaller than
+// a position can be.
 bool fits_double(const View& view) noexcept {
   const auto fits = [](double component) { return component == 0 || std::fabs(component) >= 0x1p-149; };
   return fits(view.from.x) && fits(view.from.y) && fits(view.from.z) && fits(view.to.x) && fits(view.to.y) &&

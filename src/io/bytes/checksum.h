@@ -42,7 +42,7 @@ class NumberChecksum {
 /// Adds the checksum of everything before it to the text of a JSON object, as its last member: {"a": 1} becomes
 /// {"a": 1,"checksum":"1a2b3c4d"} and a line feed.
 [[nodiscard]] std::string with_checksum(std::string object);
-/// Whether a text ends like that, and nothing in it was changed since.
+/// Returns true if a text ends with its checksum, and nothing in it was changed since.
 [[nodiscard]] bool has_its_checksum(std::string_view text);
 
 }  // namespace chronormal::inline internal

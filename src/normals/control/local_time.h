@@ -17,7 +17,7 @@ inline constexpr double kSmallestTime = 0x1p-200;
   return t < kSmallestTime ? 0 : t > 1 ? 1 : t;
 }
 
-/// The same of a time that no double may be: what is closer than that to either end is at it.
+/// Handles a time that may be no double in this way, too: a time closer than that to either end is taken as that end.
 [[nodiscard]] inline LocalTime local_time(const LocalTime& time) noexcept {
   if (time.is_double()) return local_time(time.t);
   if (time.t < kSmallestTime) return 0.0;

@@ -40,13 +40,13 @@ enum class Formula {
   kDeCasteljau,
 };
 
-/// Whether it adds up vectors by weights that all elements share.
+/// Returns true if a formula adds up vectors by weights that all elements share.
 [[nodiscard]] constexpr bool is_sum(Formula f) noexcept {
   return f == Formula::kSum || f == Formula::kSumOf2 || f == Formula::kSumOf3 || f == Formula::kSumOf4;
 }
 
-/// What a formula that is no sum asks for at one t: t itself, or the weights of Bernstein of a quadratic and of its
-/// square.
+/// Returns the values that a formula which is no sum needs at one t: t itself, or the Bernstein weights of a quadratic
+/// and of its square.
 [[nodiscard]] SharedValues shared_values(Formula formula, double t) noexcept;
 
 /// Coefficients in blocks, aligned to 64 bytes. The memory is the caller's.
