@@ -65,6 +65,23 @@ template <class S>
   return cross(subtract(corner[1], corner[0]), subtract(corner[2], corner[0]));
 }
 
+/// The sum of n(t) of some triangles of a segment, a chronormal::Segment.
+template <class SegmentOfMesh, class Faces>
+[[nodiscard]] Vector sum_of_faces_at(const SegmentOfMesh& segment, const Faces& faces, const Rational& time) {
+  Vector sum;
+  for (const auto f : faces) {
+    Triangle triangle;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto a = segment.from[segment.topology->face(f)[c]], b = segment.to[segment.topology->face(f)[c]];
+      triangle.from[c] = vector(a.x, a.y, a.z);
+      triangle.to[c] = vector(b.x, b.y, b.z);
+    }
+    const Vector n = normal_at(triangle, time);
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += n[k];
+  }
+  return sum;
+}
+
 [[nodiscard]] inline Vector normal_at(const Triangle& triangle, double t) { return normal_at(triangle, Rational(t)); }
 
 /// n(t) by eq. 5.

@@ -98,20 +98,7 @@ Motion edge_on_at(const Times& times, fixtures::Random& random) {
 // n of some faces at a time in rational numbers, and where that is zero what n was a moment before.
 exact::Vector exact_direction(const Segment& segment, std::span<const std::uint32_t> faces, const Times& times) {
   const exact::Rational start(times.start), time(times.time), end(times.end);
-  const auto sum_at = [&](const exact::Rational& t) {
-    exact::Vector sum;
-    for (const std::uint32_t f : faces) {
-      exact::Triangle triangle;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const Vec3f a = segment.from[segment.topology->face(f)[c]], b = segment.to[segment.topology->face(f)[c]];
-        triangle.from[c] = exact::vector(a.x, a.y, a.z);
-        triangle.to[c] = exact::vector(b.x, b.y, b.z);
-      }
-      const exact::Vector n = exact::normal_at(triangle, t);
-      for (std::size_t k = 0; k < 3; ++k) sum[k] += n[k];
-    }
-    return sum;
-  };
+  const auto sum_at = [&](const exact::Rational& t) { return exact::sum_of_faces_at(segment, faces, t); };
   const exact::Rational t = (time - start) / (end - start);
   const exact::Vector n = sum_at(t);
   exact::Rational moment = 1;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,21 +53,6 @@ NormalStrategy chosen(const MeshShape& shape, double evaluations, double toleran
   return choose_strategy(shape, {.evaluations = evaluations, .tolerance = tolerance}).strategy;
 }
 
-exact::Vector exact_sum(const Segment& segment, std::span<const std::uint32_t> faces, double t) {
-  exact::Vector sum;
-  for (const std::uint32_t f : faces) {
-    exact::Triangle triangle;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3f a = segment.from[segment.topology->face(f)[c]], b = segment.to[segment.topology->face(f)[c]];
-      triangle.from[c] = exact::vector(a.x, a.y, a.z);
-      triangle.to[c] = exact::vector(b.x, b.y, b.z);
-    }
-    const exact::Vector n = exact::normal_at(triangle, t);
-    for (std::size_t k = 0; k < 3; ++k) sum[k] += n[k];
-  }
-  return sum;
-}
-
 TEST(SegmentNormals, both_strategies_are_within_the_promise_of_exact_arithmetic) {
   const Motion motion = fixtures::smooth_morph(8);
   const Segment segment = motion.segment(0);
@@ -79,11 +65,13 @@ TEST(SegmentNormals, both_strategies_are_within_the_promise_of_exact_arithmetic)
       ASSERT_EQ(of_vertices.size(), 81u);
       for (std::uint32_t f = 0; f < of_faces.size(); ++f) {
         const Vec3f u = of_faces[f];
-        EXPECT_LE(exact::angle(u.x, u.y, u.z, exact_sum(segment, {&f, 1}, t)), 1e-6) << name_of(strategy);
+        EXPECT_LE(exact::angle(u.x, u.y, u.z, exact::sum_of_faces_at(segment, std::span(&f, 1), t)), 1e-6)
+            << name_of(strategy);
       }
       for (std::size_t v = 0; v < of_vertices.size(); ++v) {
         const Vec3f u = of_vertices[v];
-        EXPECT_LE(exact::angle(u.x, u.y, u.z, exact_sum(segment, groups.faces(v), t)), 1e-6) << name_of(strategy);
+        EXPECT_LE(exact::angle(u.x, u.y, u.z, exact::sum_of_faces_at(segment, groups.faces(v), t)), 1e-6)
+            << name_of(strategy);
       }
     }
   }
