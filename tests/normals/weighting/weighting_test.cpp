@@ -6,9 +6,11 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -117,6 +119,38 @@ RC_GTEST_PROP(Weighting, shuffled_faces_give_the_same_bits, ()) {
   const Motion shuffled = test::with_faces_in_order(motion, test::shuffled_order(motion.topology.face_count(), seed));
   for (const WeightingInfo& info : kWeightings)
     RC_ASSERT(weighted(shuffled, info.weighting, 0.3) == weighted(motion, info.weighting, 0.3));
+}
+
+// What decides whether double is enough has no unit, so that the same face is decided in the same way at any size.
+TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
+  constexpr std::uint64_t kSeed = 20261126;
+  fixtures::Random random(kSeed);
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  for (int i = 0; i < 1000; ++i) {
+    Motion motion{Topology::triangles(3, {0, 1, 2}).value(), std::vector<Motion::Keyframe>(2), {}};
+    for (std::size_t k = 0; k < 2; ++k) {
+      // The three corners are on a line but for the last digits of the third.
+      std::array<float, 3> a{}, b{};
+      for (auto* const point : {&a, &b})
+        for (float& x : *point) x = static_cast<float>(random.uniform(-1, 1));
+      Motion::Keyframe& keyframe = motion.keyframes[k];
+      keyframe.time = static_cast<double>(k);
+      for (const float share : {0.0F, 1.0F, 0.3F})
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          keyframe.positions.push_back(a[axis] + share * (b[axis] - a[axis]));
+    }
+    motion.connect_as_sequence();
+    const double t = random.below(2) == 0 ? 0 : 1;
+    Vec3d n, scaled;
+    face_normals_at(motion.segment(0), t, {0, 1}, std::span(&n, 1));
+    for (const int power : {-30, 30}) {
+      Motion other = motion;
+      for (Motion::Keyframe& keyframe : other.keyframes)
+        for (float& x : keyframe.positions) x = std::ldexp(x, power);
+      face_normals_at(other.segment(0), t, {0, 1}, std::span(&scaled, 1));
+      EXPECT_EQ(scaled, std::ldexp(1.0, 2 * power) * n) << "case " << i << ", 2^" << power;
+    }
+  }
 }
 
 TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
