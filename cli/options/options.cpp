@@ -230,7 +230,6 @@ Result<int> understand_and_run(const std::vector<Command>& commands, int argumen
   running = chosen->name;
   if (has_ranks() && !chosen->shares)
     return Error{ErrorCode::kUsage, "mpirun", "it divides compare, audit and sample: run this on one rank"};
-  prepare_threads();
   return chosen->run();
 }
 

@@ -11,7 +11,6 @@
 #include <exception>
 #include <new>
 
-#include "chronormal/core/parallel.h"
 #include "chronormal/io/output.h"
 #include "cli/terminal/print.h"
 
@@ -133,15 +132,5 @@ void prepare_process() noexcept {
 }
 
 void say_at_end(const char* text) noexcept { last_words = text; }
-
-void prepare_threads() noexcept {
-#ifdef NDEBUG
-  install(SIGSEGV, end_by_abort);
-#endif
-  parallel_for(2, [](std::size_t) {});
-#ifdef NDEBUG
-  install(SIGSEGV, SIG_DFL);
-#endif
-}
 
 }  // namespace chronormal::cli

@@ -21,11 +21,6 @@ namespace chronormal::cli {
 /// those that it starts, round to nearest. To be called first of all.
 void prepare_process() noexcept;
 
-/// Has oneTBB load what it needs, so that it happens once and here: where memory runs out just then, dlopen() of the C
-/// library 2.36 writes to address 0, and the program ends with exit code 1 and a line all the same. To be called before
-/// a command runs.
-void prepare_threads() noexcept;
-
 /// What is said after the line of a signal or of memory that ran out, with its line feed; nullptr for nothing. The text
 /// must live as long as it may be said.
 void say_at_end(const char* text) noexcept;

@@ -1,3 +1,13 @@
+// A pool of threads for the whole process. A loop is a Job on the stack of its caller, in the pool's list while pieces
+// of it may be left. The caller takes pieces from the first to the last, and so do those workers that find a seat.
+//
+//     a loop in a piece   is a job whose parent is the job of that piece. It shares the seats of the outermost job, so
+//                         that a ThreadLimit holds for all that goes on inside. Loops inside get workers as they find
+//                         pieces; there is no queue that a thread could wait in.
+//     waiting             A caller that has no piece left waits for the helpers that work on its last ones, and helps
+//                         with the jobs inside its own meanwhile, and with no others: whatever it waits for is on the
+//                         stack of a thread that goes on, so that nothing can lock up.
+//     fork()              The child has the thread that called fork(), and makes no others where its parent had some.
 #include "chronormal/core/parallel.h"
 
 #include <algorithm>
@@ -5,20 +15,22 @@
 
 #include "chronormal/core/interruption.h"
 
-#ifdef CHRONORMAL_HAVE_TBB
+#ifndef __EMSCRIPTEN__
 #include <atomic>
+#include <cfenv>
+#include <condition_variable>
 #include <exception>
+#include <mutex>
+#include <new>
 #include <thread>
 #include <vector>
 
 #if __has_include(<pthread.h>)
 #include <pthread.h>
 #endif
-
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#ifdef __linux__
+#include <sched.h>
+#endif
 #endif
 
 namespace chronormal {
@@ -26,7 +38,10 @@ namespace {
 
 constexpr std::size_t kMostThreads = 64;
 
-thread_local std::size_t thread_limit = 0;          // of the innermost ThreadLimit, 0: none
+struct Job;
+
+thread_local std::size_t thread_limit = 0;          // of the innermost ThreadLimit, or of the current job; 0: none
+thread_local Job* current_job = nullptr;            // the job whose piece this thread runs
 thread_local Interruption* interruption = nullptr;  // of the computation that this thread works for
 
 constexpr std::chrono::milliseconds kBetweenQuestions(50);
@@ -70,73 +85,238 @@ ThreadLimit::ThreadLimit(std::size_t threads) : before_(thread_limit) {
 
 ThreadLimit::~ThreadLimit() { thread_limit = before_; }
 
-#ifdef CHRONORMAL_HAVE_TBB
+#ifndef __EMSCRIPTEN__
 
 namespace {
 
-// Whether the system lets this process have so many threads at once, beside the one that it has: by having them.
-bool can_have_threads(std::size_t count) noexcept {
-  std::atomic<bool> may_end = false;
-  std::vector<std::thread> threads;
-  bool all = true;
-  try {
-    threads.reserve(count);
-    while (threads.size() < count) threads.emplace_back([&may_end] { may_end.wait(false); });
-  } catch (const std::exception&) {  // no thread, or no memory for one
-    all = false;
+// A loop that runs. The pool's mutex guards what is not constant or atomic.
+struct Job {
+  const std::function<void(std::size_t)>& body;
+  const std::size_t count;
+  const std::size_t threads;  // that the outermost job and those inside it may have
+  Job* const parent;          // nullptr for an outermost job
+  Job* const outermost = parent != nullptr ? parent->outermost : this;
+  Interruption* const asked = interruption;
+  std::fenv_t rounding = {};
+
+  std::atomic<std::size_t> next = 0;  // the piece that is taken next
+  std::size_t seated = 1;             // threads that the outermost job and those inside it have
+  std::size_t helpers = 0;            // threads that run pieces of this job, beside its caller
+  std::exception_ptr failure = nullptr;
+  Job* after = nullptr;  // in the pool's list
+
+  [[nodiscard]] bool has_pieces() const noexcept { return next.load(std::memory_order_relaxed) < count; }
+  [[nodiscard]] bool is_inside(const Job& other) const noexcept {
+    for (const Job* job = parent; job != nullptr; job = job->parent)
+      if (job == &other) return true;
+    return false;
   }
-  may_end = true;
-  may_end.notify_all();
-  for (std::thread& thread : threads) thread.join();
-  return all;
+};
+
+// The number of processors that this process may run on.
+std::size_t processor_count() noexcept {
+#ifdef __linux__
+  cpu_set_t allowed;
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) == 0) return static_cast<std::size_t>(CPU_COUNT(&allowed));
+#endif
+  return std::max(std::thread::hardware_concurrency(), 1U);
 }
 
-// A child that fork() made has one thread. Where oneTBB has been asked for others before, it goes on waiting for them
-// there.
-std::atomic<bool> has_asked_for_threads = false, has_lost_threads = false;
-#if __has_include(<pthread.h>)
-[[maybe_unused]] const int kHeardOfForks = pthread_atfork(nullptr, nullptr, [] {
-  if (has_asked_for_threads) has_lost_threads = true;
-});
-#endif
+std::size_t thread_count_without_limit() noexcept {
+  static const std::size_t count = processor_count();
+  return count;
+}
 
-// oneTBB does not go on where it cannot make the threads that it wants: so this is found out before it is asked.
-bool has_threads() noexcept {
-  if (has_lost_threads) return false;
-  has_asked_for_threads = true;
-  static const bool found =
-      can_have_threads(static_cast<std::size_t>(std::max(tbb::info::default_concurrency() - 1, 1)));
-  return found;
+class Pool {
+ public:
+  // Makes the threads that are missing beside the caller's; returns how many there are with it, at most `wanted`.
+  std::size_t provide(std::size_t wanted) noexcept {
+    if (wanted <= 1 || is_forked_) return 1;
+    if (worker_count_ + 1 < wanted) {
+      const std::lock_guard lock(mutex_);
+      try {
+        while (!has_all_ && workers_.size() + 1 < wanted) workers_.emplace_back([this] { work(); });
+      } catch (const std::exception&) {  // no thread, or no memory for one: it stays at those that there are
+        has_all_ = true;
+      }
+      worker_count_ = workers_.size();
+    }
+    return std::min(wanted, worker_count_ + 1);
+  }
+
+  void run(Job& job) {
+    std::fegetenv(&job.rounding);
+    open(job);
+    take_pieces(job);
+    finish(job);
+    if (job.failure) std::rethrow_exception(job.failure);
+  }
+
+  void begin_fork() noexcept { mutex_.lock(); }
+  void end_fork() noexcept { mutex_.unlock(); }
+  void begin_anew() noexcept {
+    is_forked_ = !workers_.empty();
+    mutex_.unlock();
+  }
+
+  // Ends all workers when the process ends, or the library is unloaded. Where loops still run, no thread is waited for.
+  void end() noexcept {
+    if (is_forked_) return;
+    {
+      const std::lock_guard lock(mutex_);
+      has_all_ = has_ended_ = true;
+      worker_count_ = 0;
+      if (busy_ > 0) return;
+    }
+    opened_.notify_all();
+    for (std::thread& worker : workers_) worker.join();
+    workers_.clear();
+    workers_.shrink_to_fit();
+  }
+
+ private:
+  void open(Job& job) noexcept {
+    const std::lock_guard lock(mutex_);
+    Job** last = &jobs_;
+    while (*last != nullptr) last = &(*last)->after;
+    *last = &job;
+    const std::size_t useful = std::min({job.count - 1, job.threads - 1, workers_.size() - busy_});
+    for (std::size_t i = 0; i < useful; ++i) opened_.notify_one();
+    if (waiting_ > 0) changed_.notify_all();
+  }
+
+  void take_pieces(Job& job) noexcept {
+    const InterruptionScope scope(job.asked);
+    Job* const job_before = std::exchange(current_job, &job);
+    const std::size_t limit_before = std::exchange(thread_limit, job.outermost->threads);
+    for (std::size_t i; (i = job.next.fetch_add(1, std::memory_order_relaxed)) < job.count;) {
+      try {
+        check_interruption();
+        job.body(i);
+      } catch (...) {
+        fail(job, std::current_exception());
+      }
+    }
+    current_job = job_before;
+    thread_limit = limit_before;
+  }
+
+  void fail(Job& job, std::exception_ptr failure) noexcept {
+    job.next = job.count;
+    const std::lock_guard lock(mutex_);
+    if (!job.failure) job.failure = std::move(failure);
+  }
+
+  void help(Job& job, std::unique_lock<std::mutex>& lock) noexcept {
+    ++job.helpers;
+    lock.unlock();
+    std::fesetenv(&job.rounding);
+    take_pieces(job);
+    lock.lock();
+    if (--job.helpers == 0 && waiting_ > 0) changed_.notify_all();
+  }
+
+  // Waits until no other thread works on the job, and helps with those inside it.
+  void finish(Job& job) noexcept {
+    std::unique_lock lock(mutex_);
+    Job** place = &jobs_;
+    while (*place != &job) place = &(*place)->after;
+    *place = job.after;
+    while (job.helpers > 0) {
+      if (is_forked_) {  // the pieces that helpers had begun are not done in this process
+        job.failure = std::make_exception_ptr(Interrupted());
+        return;
+      }
+      Job* inside = jobs_;
+      while (inside != nullptr && !(inside->has_pieces() && inside->is_inside(job))) inside = inside->after;
+      if (inside != nullptr) {
+        help(*inside, lock);
+        continue;
+      }
+      ++waiting_;
+      if (job.asked != nullptr) {
+        changed_.wait_for(lock, kBetweenQuestions);
+      } else {
+        changed_.wait(lock);
+      }
+      --waiting_;
+      if (job.asked != nullptr) {  // by this thread, perhaps, which alone may ask whether to end
+        lock.unlock();
+        try {
+          check_interruption();
+        } catch (...) {
+          fail(job, std::current_exception());
+        }
+        lock.lock();
+      }
+    }
+  }
+
+  void work() noexcept {
+    std::unique_lock lock(mutex_);
+    while (!has_ended_) {
+      Job* job = jobs_;
+      while (job != nullptr && !(job->has_pieces() && job->outermost->seated < job->outermost->threads))
+        job = job->after;
+      if (job == nullptr) {
+        opened_.wait(lock);
+        continue;
+      }
+      // The outermost job may be over as soon as nobody helps with this one.
+      Job& outermost = *job->outermost;
+      ++outermost.seated, ++busy_;
+      help(*job, lock);
+      --outermost.seated, --busy_;
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable opened_;   // for workers: there is a job
+  std::condition_variable changed_;  // for callers: nobody helps with a job any more, or there is one to help with
+  std::vector<std::thread> workers_;
+  std::atomic<std::size_t> worker_count_ = 0;
+  std::atomic<bool> is_forked_ = false;
+  bool has_all_ = false, has_ended_ = false;
+  std::size_t busy_ = 0;     // workers that help
+  std::size_t waiting_ = 0;  // callers that wait for helpers
+  Job* jobs_ = nullptr;      // in the order in which they were opened
+};
+
+// The pool is never destroyed, since a thread may use it until the very end.
+Pool& pool() {
+  alignas(Pool) static std::byte room[sizeof(Pool)];
+  static Pool* const made = [] {
+    Pool* const begun = new (room) Pool;
+#if __has_include(<pthread.h>)
+    (void)::pthread_atfork([] { pool().begin_fork(); }, [] { pool().end_fork(); }, [] { pool().begin_anew(); });
+#endif
+    return begun;
+  }();
+  static const struct Ending {
+    ~Ending() { pool().end(); }
+  } ending;
+  return *made;
 }
 
 }  // namespace
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
-  if (count == 0) return;
-  const auto piece = [&body, of = interruption](std::size_t i) {
-    const InterruptionScope scope(of);
-    check_interruption();
-    body(i);
-  };
-  if (count == 1 || thread_limit == 1 || !has_threads()) {
-    for (std::size_t i = 0; i < count; ++i) piece(i);
-  } else if (thread_limit == 0) {
-    tbb::parallel_for(std::size_t{0}, count, piece);
-  } else {
-    // An arena beyond the number of cores gets its threads only where oneTBB may make that many; told once and for all,
-    // since a new permission for each call often comes too late for it.
-    static const tbb::global_control allowed(
-        tbb::global_control::max_allowed_parallelism,
-        std::max(kMostThreads, static_cast<std::size_t>(tbb::info::default_concurrency())));
-    tbb::task_arena arena(static_cast<int>(thread_limit));
-    arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, piece); });
+  const std::size_t threads = count < 2 ? 1 : thread_count();
+  if (threads == 1) {
+    for (std::size_t i = 0; i < count; ++i) {
+      check_interruption();
+      body(i);
+    }
+    return;
   }
+  const bool is_inside = current_job != nullptr && current_job->outermost->threads == threads;
+  Job job = {.body = body, .count = count, .threads = threads, .parent = is_inside ? current_job : nullptr};
+  pool().run(job);
 }
 
 std::size_t thread_count() noexcept {
-  if (!has_threads()) return 1;
-  if (thread_limit != 0) return thread_limit;
-  return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t wanted = thread_limit != 0 ? thread_limit : thread_count_without_limit();
+  return wanted == 1 ? 1 : pool().provide(wanted);
 }
 
 #else

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#ifdef CHRONORMAL_HAVE_TBB
+#ifndef __EMSCRIPTEN__
 #include <future>
 #include <system_error>
 #endif
@@ -19,7 +19,7 @@ namespace {
 // A keyframe that is read while the caller computes. Where there are no threads, nothing is read ahead.
 class ReadAhead {
  public:
-#ifdef CHRONORMAL_HAVE_TBB
+#ifndef __EMSCRIPTEN__
   static constexpr bool kCan = true;
 #else
   static constexpr bool kCan = false;
@@ -32,7 +32,7 @@ class ReadAhead {
   template <class Read>
   void start([[maybe_unused]] const Read& read, [[maybe_unused]] std::size_t keyframe, std::vector<float> room) {
     positions_ = std::move(room);
-#ifdef CHRONORMAL_HAVE_TBB
+#ifndef __EMSCRIPTEN__
     try {
       done_ = std::async(std::launch::async, [read, keyframe, this] { return read(keyframe, positions_); });
       keyframe_ = keyframe;
@@ -45,7 +45,7 @@ class ReadAhead {
   // Waits until the keyframe is read, and returns its memory.
   Status finish(std::vector<float>& positions) {
     Status status = Success{};
-#ifdef CHRONORMAL_HAVE_TBB
+#ifndef __EMSCRIPTEN__
     if (keyframe_) status = done_.get();
 #endif
     keyframe_.reset();
@@ -56,7 +56,7 @@ class ReadAhead {
  private:
   std::optional<std::size_t> keyframe_;
   std::vector<float> positions_;
-#ifdef CHRONORMAL_HAVE_TBB
+#ifndef __EMSCRIPTEN__
   std::future<Status> done_;
 #endif
 };

@@ -4,9 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <atomic>
+#include <cfenv>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <iostream>
+#include <random>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -14,11 +22,22 @@
 namespace chronormal::parallel_test {
 namespace {
 
-// Whether this build has threads at all.
-bool is_serial() {
-  const ThreadLimit two(2);
-  return thread_count() == 1;
-}
+using namespace std::chrono_literals;
+
+// Counts how many threads are in it at the same time, and keeps the largest number.
+class Crowd {
+ public:
+  void pass(std::chrono::microseconds time) {
+    const std::size_t now = ++inside_;
+    for (std::size_t before = most_; before < now && !most_.compare_exchange_weak(before, now);) continue;
+    std::this_thread::sleep_for(time);
+    --inside_;
+  }
+  [[nodiscard]] std::size_t most() const { return most_; }
+
+ private:
+  std::atomic<std::size_t> inside_ = 0, most_ = 0;
+};
 
 TEST(ParallelFor, calls_every_index_once) {
   for (const std::size_t threads : {1u, 2u, 3u, 8u, 33u}) {
@@ -55,24 +74,175 @@ TEST(ParallelFor, may_be_called_from_its_body) {
 }
 
 TEST(ParallelFor, runs_on_as_many_threads_as_the_limit_says) {
-  if (is_serial()) GTEST_SKIP() << "built without oneTBB";
   for (const std::size_t threads : {1u, 2u, 3u, 8u}) {
     const ThreadLimit limit(threads);
-    std::atomic<std::size_t> at_once = 0, most = 0;
-    // Bodies that wait for each other show how many run at the same time.
-    parallel_for(64, [&](std::size_t) {
-      const std::size_t now = ++at_once;
-      for (std::size_t before = most; before < now && !most.compare_exchange_weak(before, now);) continue;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-      --at_once;
-    });
-    EXPECT_LE(most, threads);
-    EXPECT_EQ(most > 1, threads > 1);
+    Crowd crowd;
+    parallel_for(64, [&](std::size_t) { crowd.pass(2ms); });
+    EXPECT_LE(crowd.most(), threads);
+    EXPECT_EQ(crowd.most() > 1, threads > 1);
   }
 }
 
+TEST(ParallelFor, in_its_body_shares_the_threads_of_the_outer_loop) {
+  for (const std::size_t threads : {2u, 3u, 6u}) {
+    const ThreadLimit limit(threads);
+    Crowd crowd;
+    parallel_for(8, [&](std::size_t) { parallel_for(8, [&](std::size_t) { crowd.pass(1ms); }); });
+    EXPECT_LE(crowd.most(), threads);
+    EXPECT_GT(crowd.most(), 1u);
+  }
+}
+
+TEST(ParallelFor, helps_with_the_loops_inside_while_it_waits) {
+  const ThreadLimit two(2);
+  Crowd crowd;
+  // The other thread cannot be through with its piece before this one waits, and has work for two then.
+  const auto caller = std::this_thread::get_id();
+  std::atomic<bool> is_helped = false;
+  std::atomic<std::size_t> begun = 0;
+  parallel_for(2, [&](std::size_t) {
+    ++begun;
+    while (begun < 2) std::this_thread::yield();
+    if (std::this_thread::get_id() == caller) return;
+    parallel_for(100, [&](std::size_t) {
+      crowd.pass(1ms);
+      if (std::this_thread::get_id() == caller) is_helped = true;
+    });
+  });
+  EXPECT_TRUE(is_helped);
+  EXPECT_EQ(crowd.most(), 2u);
+}
+
+TEST(ParallelFor, gives_every_thread_its_pieces_in_order) {
+  const ThreadLimit limit(4);
+  std::atomic<std::size_t> disorders = 0;
+  for (std::size_t round = 0; round < 20; ++round) {
+    parallel_for(200, [&disorders, round](std::size_t i) {
+      thread_local std::size_t last_round = 0, last = 0;
+      if (last_round == round && last > i) ++disorders;
+      last_round = round, last = i;
+    });
+  }
+  EXPECT_EQ(disorders, 0u);
+}
+
+// Runs a random tree of loops, and returns a number that depends on every piece.
+std::uint64_t run_tree(std::uint64_t seed, std::size_t depth,
+                       const std::function<void(std::size_t, const std::function<void(std::size_t)>&)>& loop) {
+  std::mt19937_64 random(seed);
+  const std::size_t count = random() % (depth == 0 ? 2 : 12);
+  std::vector<std::uint64_t> results(count);
+  const std::size_t limit = random() % 5;
+  const auto body = [&](std::size_t i) { results[i] = run_tree(seed * 31 + i, depth - 1, loop); };
+  if (depth > 0 && limit > 0) {
+    const ThreadLimit some(limit);
+    loop(count, body);
+  } else if (depth > 0) {
+    loop(count, body);
+  }
+  std::uint64_t sum = seed;
+  for (const std::uint64_t result : results) sum = sum * 6364136223846793005u + result;
+  return sum;
+}
+
+TEST(ParallelFor, of_random_trees_of_loops_on_many_threads_gives_what_plain_loops_give) {
+  constexpr std::uint64_t kSeed = 20261126;
+  std::cout << "seed " << kSeed << '\n';
+  const auto plain = [](std::size_t count, const std::function<void(std::size_t)>& body) {
+    for (std::size_t i = 0; i < count; ++i) body(i);
+  };
+  std::vector<std::uint64_t> expected;
+  for (std::uint64_t k = 0; k < 30; ++k) expected.push_back(run_tree(kSeed + k, 4, plain));
+  std::vector<std::thread> callers;
+  for (const std::size_t threads : {0u, 2u, 3u, 7u}) {
+    callers.emplace_back([threads, &expected] {
+      const ThreadLimit limit(threads == 0 ? thread_count() : threads);
+      for (std::uint64_t k = 0; k < 30; ++k) EXPECT_EQ(run_tree(kSeed + k, 4, parallel_for), expected[k]) << k;
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+}
+
+TEST(ParallelFor, rounds_on_all_threads_as_its_caller_does) {
+  const ThreadLimit limit(4);
+  for (const int mode : {FE_UPWARD, FE_TONEAREST, FE_DOWNWARD, FE_TONEAREST}) {
+    std::fesetround(mode);
+    std::atomic<std::size_t> others = 0;
+    parallel_for(32, [&](std::size_t) {
+      if (std::fegetround() != mode) ++others;
+      std::this_thread::sleep_for(200us);
+    });
+    EXPECT_EQ(others, 0u) << mode;
+  }
+}
+
+// Returns the exit code of a child of fork(), in which `body` runs.
+int exit_code_of_child(const std::function<int()>& body) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(30);  // ends it where it hangs
+    ::_exit(body());
+  }
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(ParallelFor, in_a_child_of_fork_has_one_thread_and_does_all_pieces) {
+  const ThreadLimit limit(4);
+  std::atomic<bool> is_over = false;
+  parallel_for(4, [](std::size_t) {});
+  std::thread busy([&] {  // whose loops go on while the others fork
+    const ThreadLimit others(3);
+    while (!is_over) parallel_for(8, [](std::size_t) {});
+  });
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(exit_code_of_child([] {
+                if (thread_count() != 1) return 1;
+                std::size_t sum = 0;
+                parallel_for(100, [&](std::size_t k) { parallel_for(10, [&](std::size_t j) { sum += 10 * k + j; }); });
+                return sum == 999 * 1000 / 2 ? 0 : 2;
+              }),
+              0);
+  }
+  is_over = true;
+  busy.join();
+  EXPECT_EQ(thread_count(), 4u);
+}
+
+// The pieces that other threads had begun are not done in the child, which hears of that.
+TEST(ParallelFor, that_is_forked_in_the_middle_ends_as_interrupted_in_the_child) {
+  const ThreadLimit two(2);
+  const auto caller = std::this_thread::get_id();
+  const pid_t parent = ::getpid();
+  std::atomic<std::size_t> begun = 0;
+  std::atomic<bool> may_end = false;
+  int code = -1;
+  bool is_interrupted = false;
+  try {
+    parallel_for(2, [&](std::size_t) {
+      ++begun;
+      while (begun < 2) std::this_thread::yield();
+      if (std::this_thread::get_id() != caller) {
+        while (!may_end) std::this_thread::yield();
+        return;
+      }
+      const pid_t child = ::fork();
+      if (child == 0) return void(::alarm(30));
+      int status = -1;
+      ::waitpid(child, &status, 0);
+      code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+      may_end = true;
+    });
+  } catch (const Interrupted&) {
+    is_interrupted = true;
+  }
+  if (::getpid() != parent) ::_exit(is_interrupted ? 0 : 1);
+  EXPECT_FALSE(is_interrupted);
+  EXPECT_EQ(code, 0);
+}
+
 TEST(ThreadLimit, is_what_thread_count_says_and_the_innermost_counts) {
-  if (is_serial()) GTEST_SKIP() << "built without oneTBB";
   const std::size_t without = thread_count();
   {
     const ThreadLimit outer(3);
@@ -133,6 +303,28 @@ TEST(Interruption, ends_loops_and_those_inside_them) {
     parallel_for(100, [&](std::size_t i) { sum += i; });
     EXPECT_EQ(sum, 4950u);
   }
+}
+
+TEST(Interruption, is_asked_while_its_thread_waits_for_another) {
+  const ThreadLimit two(2);
+  const auto caller = std::this_thread::get_id();
+  std::atomic<std::size_t> begun = 0;
+  std::atomic<bool> is_ended = false;
+  const Interruption interruption([&] { return begun == 2; });
+  EXPECT_THROW(parallel_for(2,
+                            [&](std::size_t) {
+                              ++begun;
+                              while (begun < 2) std::this_thread::yield();
+                              if (std::this_thread::get_id() == caller) return;
+                              try {
+                                for (int i = 0; i < 10'000; ++i, std::this_thread::sleep_for(1ms)) check_interruption();
+                              } catch (const Interrupted&) {
+                                is_ended = true;
+                                throw;
+                              }
+                            }),
+               Interrupted);
+  EXPECT_TRUE(is_ended);
 }
 
 TEST(Interruption, is_asked_by_the_thread_that_made_it_and_ends_no_loop_of_others) {

@@ -18,8 +18,8 @@ class Interrupted : public std::exception {
 };
 
 /// While it lives, the computations that this thread starts ask it whether to end: between the pieces of every
-/// parallel_for, and wherever check_interruption() stands. Computations that other threads start do not, also where
-/// oneTBB lets this thread help them.
+/// parallel_for, while this thread waits for other threads, and wherever check_interruption() stands. Computations that
+/// other threads start do not.
 ///
 /// Threads    the thread that made this calls `ask`, with no lock held, at most every 50 ms. Where `ask` returns true,
 ///            all threads of the computation throw Interrupted, and so does the function that was called.

@@ -8,9 +8,13 @@
 namespace chronormal {
 
 /// Calls body(i) once for every i in [0, count), in any order and from several threads at once; returns when all are
-/// done. The first exception that body throws is thrown here. Over oneTBB; one after the other in a build without it,
-/// and where the system gives this process no threads (found out once, when it is first asked).
-/// A result must not depend on the order: write to slot i, and combine the slots in order afterwards.
+/// done. The first exception that body throws is thrown here. All threads round as this one does.
+///
+/// Threads    those of one pool, which are made when they are first asked for; where the system grants fewer, the loop
+///            runs on these. A body may call parallel_for, whose loop shares the threads of the outer one. A child of
+///            fork() has one thread, and a loop that was under way on several ends with Interrupted there. In wasm
+///            there is one thread.
+/// Order      a result must not depend on it: write to slot i, and combine the slots in order afterwards.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// Whether a function runs on the thread that calls it, or on all cores where there is enough to do.
@@ -20,8 +24,9 @@ enum class Threads { kOne, kAll };
 [[nodiscard]] std::size_t thread_count() noexcept;
 
 /// While it lives, parallel_for on this thread uses this many threads, also more than there are cores (64 at
-/// most): for tests, benchmarks, and programs that want some cores for themselves. Limits may be nested; the innermost
-/// counts. A build without oneTBB, or a process that gets no threads, has one whatever the limit.
+/// most): for tests, benchmarks, and programs that want some cores for themselves. Loops inside its loops share these
+/// threads. Limits may be nested; the innermost counts. Where the system grants no threads, there is one whatever the
+/// limit.
 class ThreadLimit {
  public:
   explicit ThreadLimit(std::size_t threads);
