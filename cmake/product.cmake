@@ -8,8 +8,18 @@
 if(EMSCRIPTEN)
   include(cmake/wasm.cmake)
 else()
-  find_package(hwy REQUIRED)
+  find_package(hwy QUIET)
   find_package(Threads REQUIRED)
+endif()
+if(TARGET hwy::hwy)
+  set(has_highway ON)
+else()
+  set(has_highway OFF)
+  message(STATUS "Google Highway was not found (Debian: libhwy-dev): kernels are plain C++, of one instruction set")
+endif()
+option(CHRONORMAL_HIGHWAY "Compile kernels with Google Highway, for every instruction set; OFF: in plain C++" ${has_highway})
+if(CHRONORMAL_HIGHWAY AND NOT has_highway)
+  message(FATAL_ERROR "CHRONORMAL_HIGHWAY is ON, and Google Highway was not found (Debian: libhwy-dev)")
 endif()
 if(CHRONORMAL_IO AND NOT EMSCRIPTEN)
   find_package(ZLIB REQUIRED)
@@ -63,7 +73,7 @@ function(chronormal_compile_together target)
     foreach(source ${sources})
       math(EXPR group "${i} / ${size}")
       math(EXPR i "${i} + 1")
-      file(STRINGS ${source} targets REGEX "hwy/foreach_target.h")
+      file(STRINGS ${source} targets REGEX "simd/foreach_target-inl.h")
       if(targets)
         set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
       else()
@@ -89,15 +99,18 @@ function(chronormal_add_product suffix flags)
   target_compile_features(chronormal${suffix} PUBLIC cxx_std_20)
   set_target_properties(chronormal${suffix} PROPERTIES ${linkable})
   chronormal_compile_together(chronormal${suffix} ${library_sources})
-  target_link_libraries(chronormal${suffix} PRIVATE $<BUILD_INTERFACE:${flags}> hwy::hwy)
-  # Kernels are compiled for every x86-64 (Highway's plain C++), SSE4, AVX2 and AVX-512, and nothing between them.
-  # Vectors whose size is not known to the compiler (SVE) cannot be members of structs, as ours are.
-  target_compile_definitions(
-    chronormal${suffix}
-    PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
-    # GCC 12 forgets the pragma by which Highway asks for these instructions in constructors that it writes itself.
-    target_compile_options(chronormal${suffix} PRIVATE -march=armv8-a+crypto)
+  target_link_libraries(chronormal${suffix} PRIVATE $<BUILD_INTERFACE:${flags}>)
+  if(CHRONORMAL_HIGHWAY)
+    target_link_libraries(chronormal${suffix} PRIVATE hwy::hwy)
+    # Kernels are compiled for every x86-64 (Highway's plain C++), SSE4, AVX2 and AVX-512, and nothing between them.
+    # Vectors whose size is not known to the compiler (SVE) cannot be members of structs, as ours are.
+    target_compile_definitions(
+      chronormal${suffix}
+      PRIVATE CHRONORMAL_HIGHWAY "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+      # GCC 12 forgets the pragma by which Highway asks for these instructions in constructors that it writes itself.
+      target_compile_options(chronormal${suffix} PRIVATE -march=armv8-a+crypto)
+    endif()
   endif()
   if(NOT EMSCRIPTEN)
     target_link_libraries(chronormal${suffix} PRIVATE Threads::Threads)

@@ -38,10 +38,7 @@ namespace {
 
 constexpr std::size_t kMostThreads = 64;
 
-struct Job;
-
 thread_local std::size_t thread_limit = 0;          // of the innermost ThreadLimit, or of the current job; 0: none
-thread_local Job* current_job = nullptr;            // the job whose piece this thread runs
 thread_local Interruption* interruption = nullptr;  // of the computation that this thread works for
 
 constexpr std::chrono::milliseconds kBetweenQuestions(50);
@@ -88,6 +85,9 @@ ThreadLimit::~ThreadLimit() { thread_limit = before_; }
 #ifndef __EMSCRIPTEN__
 
 namespace {
+
+struct Job;
+thread_local Job* current_job = nullptr;  // whose piece this thread runs
 
 // A loop that runs. The pool's mutex guards what is not constant or atomic.
 struct Job {

@@ -1,8 +1,8 @@
 /// Functions of <cmath> that are not exactly rounded, with the same bits on every machine and from every compiler.
 ///
 /// The standard library's differ from system to system, and even from processor to processor, in the last bits; what is
-/// computed with them would make files and reports differ. These are Highway's polynomials for a single lane, without
-/// fused operations. Square roots, rounding and remainders are exact anyway, and stay those of the standard library.
+/// computed with them would make files and reports differ. These are polynomials of Google Highway, without fused
+/// operations. Square roots, rounding and remainders are exact anyway, and stay those of the standard library.
 ///
 /// Errors     below 5 units in the last place; arguments that are not finite as in <cmath>, but sin() and cos() of them
 /// Threads    pure

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "chronormal/schemes/scheme.h"
-#include "core/trigonometry.h"
+#include "simd/trigonometry.h"
 
 namespace chronormal::inline internal {
 

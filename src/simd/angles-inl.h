@@ -4,7 +4,7 @@
 // This file is included once for each instruction set, as lanes-inl.h is. The polynomial is that of Highway for the arc
 // tangent on [0, 1], in the same order but never fused, as core/portable_math has it for one number.
 
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,7 +3,7 @@
 //
 // Included once for each instruction set, as lanes-inl.h is.
 
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include <cstddef>
 

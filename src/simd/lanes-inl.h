@@ -4,7 +4,7 @@
 // operation here is one IEEE operation or a selection, so that all instruction sets give the same bits: no fused
 // multiply-add, no approximate reciprocal, and sums in a fixed order.
 
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,12 @@
 #include "simd/targets.h"
 
+#ifdef CHRONORMAL_HIGHWAY
 #include <hwy/targets.h>
+#endif
 
 namespace chronormal::inline internal {
+
+#ifdef CHRONORMAL_HIGHWAY
 
 std::vector<std::int64_t> supported_targets() {
   std::vector<std::int64_t> targets;
@@ -27,5 +31,15 @@ ScopedTarget::~ScopedTarget() {
   hwy::SetSupportedTargetsForTest(0);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
+
+#else
+
+std::vector<std::int64_t> supported_targets() { return {current_target()}; }
+std::string target_name(std::int64_t) { return "plain"; }
+std::int64_t current_target() { return 1; }
+ScopedTarget::ScopedTarget(std::int64_t) {}
+ScopedTarget::~ScopedTarget() {}
+
+#endif
 
 }  // namespace chronormal::inline internal

@@ -11,7 +11,7 @@ namespace chronormal::inline internal {
 
 /// Those that the kernels are compiled for and that this machine runs, the best first. Values of Highway's HWY_TARGET.
 [[nodiscard]] std::vector<std::int64_t> supported_targets();
-/// As Highway names them: "SSE4", "AVX2", "AVX3" (AVX-512).
+/// As Highway names them: "SSE4", "AVX2", "AVX3" (AVX-512); without it there is one, "plain".
 [[nodiscard]] std::string target_name(std::int64_t target);
 /// The one that runs now.
 [[nodiscard]] std::int64_t current_target();

@@ -14,8 +14,8 @@
 
 #include "chronormal/schemes/scheme.h"
 #include "core/memory.h"
-#include "core/trigonometry.h"
 #include "simd/targets.h"
+#include "simd/trigonometry.h"
 #include "tests/support/fixtures.h"
 
 namespace chronormal::curve_kernels_test {

@@ -3,7 +3,7 @@
 
 #include "chronormal/normals/float_recompute.h"
 
-#include <hwy/cache_control.h>
+#include "simd/highway-inl.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,7 +1,7 @@
 // Recomputes normals tile by tile, and looks at doubtful elements one by one.
 #include "chronormal/normals/recompute.h"
 
-#include <hwy/cache_control.h>
+#include "simd/highway-inl.h"
 
 #include <algorithm>
 #include <array>

@@ -10,10 +10,10 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "schemes/kernels/curve_kernels.cpp"
 
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "simd/foreach_target-inl.h"
+#include "simd/highway-inl.h"
 
-#include <hwy/cache_control.h>
+#include "simd/highway-inl.h"
 
 #include "schemes/kernels/formulas-inl.h"
 #include "simd/intrinsics-inl.h"

@@ -11,12 +11,12 @@
 // Lanes do not branch: what depends on an element is selected, and a rare case is skipped where no lane has it.
 // Coefficients that are zero give (0, 0, 0).
 
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include <cstddef>
 
-#include "core/trigonometry-inl.h"
 #include "schemes/kernels/scalars-inl.h"
+#include "simd/trigonometry-inl.h"
 
 #if defined(CHRONORMAL_SCHEMES_KERNELS_FORMULAS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CHRONORMAL_SCHEMES_KERNELS_FORMULAS_INL_H_

@@ -4,7 +4,7 @@
 // S is Lanes, which runs, or Counting, which counts; so each formula stands once. Included once for each instruction
 // set, inside no namespace.
 
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include <cstddef>
 
@@ -70,7 +70,7 @@ HWY_INLINE Lanes select(const LanesMask& mask, const Lanes& a, const Lanes& b) {
 HWY_INLINE bool any(const LanesMask& mask) { return !hn::AllFalse(kFloats, hn::Or(mask.low, mask.high)); }
 HWY_INLINE bool any(bool mask) { return mask; }
 
-// See core/trigonometry-inl.h.
+// See simd/trigonometry-inl.h.
 HWY_INLINE Lanes absolute(const Lanes& a) { return {hn::Abs(a.low), hn::Abs(a.high)}; }
 HWY_INLINE Lanes larger_of(const Lanes& a, const Lanes& b) { return {hn::Max(a.low, b.low), hn::Max(a.high, b.high)}; }
 HWY_INLINE Lanes smaller_of(const Lanes& a, const Lanes& b) { return {hn::Min(a.low, b.low), hn::Min(a.high, b.high)}; }

@@ -3,7 +3,6 @@
 #include "chronormal/normals/float_recompute.h"
 
 #include <gtest/gtest.h>
-#include <hwy/cache_control.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +17,7 @@
 
 #include "chronormal/normals/normal_groups.h"
 #include "core/memory.h"
+#include "normals/curves/kernels/evaluate.h"
 #include "normals/recompute/kernels/float_rings.h"
 #include "simd/targets.h"
 #include "tests/support/elements.h"
@@ -348,7 +348,7 @@ TEST(FloatRecompute, results_past_the_caches_have_the_same_bits) {
                                       VectorView<float>::packed(result.data(), n), stream),
                 0U);
     }
-    hwy::FlushStream();
+    flush_stream();
     EXPECT_TRUE(std::equal(cached.data(), cached.data() + cached.size(), streamed.data())) << target_name(target);
   }
 }

@@ -3,7 +3,6 @@
 #include "chronormal/normals/recompute.h"
 
 #include <gtest/gtest.h>
-#include <hwy/cache_control.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +18,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/schemes/scheme.h"
 #include "core/memory.h"
+#include "normals/curves/kernels/evaluate.h"
 #include "normals/recompute/kernels/recompute_tiles.h"
 #include "simd/targets.h"
 #include "tests/support/elements.h"
@@ -324,7 +324,7 @@ TEST(Recompute, results_past_the_caches_have_the_same_bits) {
     const std::size_t count = evaluate_to(cached, false, doubtful);
     EXPECT_GT(count, 150u);
     EXPECT_EQ(evaluate_to(streamed, true, doubtful_streamed), count);
-    hwy::FlushStream();
+    flush_stream();
     EXPECT_EQ(doubtful, doubtful_streamed);
     EXPECT_TRUE(std::equal(cached.data(), cached.data() + cached.size(), streamed.data())) << target_name(target);
   }

@@ -13,8 +13,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "analysis/cones/kernels/cones_of_three.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "simd/foreach_target-inl.h"
+#include "simd/highway-inl.h"
 
 #include "simd/intrinsics-inl.h"
 #include "simd/rows-inl.h"

@@ -3,8 +3,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "analysis/signs/kernels/face_glance.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "simd/foreach_target-inl.h"
+#include "simd/highway-inl.h"
 
 #include "analysis/signs/near_collapse.h"
 #include "simd/intrinsics-inl.h"

@@ -6,8 +6,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/control/kernels/face_tiles.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "simd/foreach_target-inl.h"
+#include "simd/highway-inl.h"
 
 #include "normals/control/kernels/tile_degrees-inl.h"
 #include "normals/control/kernels/triangles-inl.h"

@@ -2,7 +2,7 @@
 //
 // Included once for each instruction set, as lanes-inl.h.
 
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include <cstddef>
 #include <cstdint>

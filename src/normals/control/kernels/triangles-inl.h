@@ -6,8 +6,7 @@
 // Positions in rows, as (n, 3), are loaded by the point, 16 bytes each, and transposed in registers. The 16 bytes of
 // the last point would end beyond its array, so triangles with that point are loaded in another way.
 
-#include <hwy/cache_control.h>
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -11,8 +11,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/certify.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "simd/foreach_target-inl.h"
+#include "simd/highway-inl.h"
 
 #include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"

@@ -5,10 +5,9 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/evaluate.cpp"
-#include <hwy/foreach_target.h>
+#include "simd/foreach_target-inl.h"
 // After it, so that it is of one instruction set at a time.
-#include <hwy/cache_control.h>
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"
@@ -16,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-constexpr std::size_t kCacheLine = 64;
+constexpr std::size_t kPrefetchStep = 64;
 
 // A kind of block: its weights in registers, and how `direction` makes kLanes vectors from the lanes at `lane`. They
 // need no length of 1 unless kUnitLength says that they have it.
@@ -273,7 +272,8 @@ HWY_NOINLINE void WholeBlocks(const BlockSpan& span, const CurveWeights& weights
   for (std::size_t b = 0; b < block_count; ++b) {
     const std::byte* const block = blocks + b * kTile * Kind::kBytes;
     if (ahead > 0)
-      for (std::size_t line = 0; line < kTile * Kind::kBytes; line += kCacheLine) hwy::Prefetch(block + ahead + line);
+      for (std::size_t line = 0; line < kTile * Kind::kBytes; line += kPrefetchStep)
+        hwy::Prefetch(block + ahead + line);
     for (std::size_t lane = 0; lane < kTile; lane += kLanes)
       to.template Put<Kind>(kind.direction(block, lane), b * kTile + lane);
   }

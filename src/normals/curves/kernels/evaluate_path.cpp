@@ -4,10 +4,9 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/evaluate_path.cpp"
-#include <hwy/foreach_target.h>
+#include "simd/foreach_target-inl.h"
 // This header comes after highway.h, so that it is compiled for one instruction set at a time.
-#include <hwy/cache_control.h>
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include "simd/intrinsics-inl.h"
 #include "simd/lanes-inl.h"

@@ -7,8 +7,6 @@
 // (p[i] - c) x (p[i + 1] - p[i - 1]), where the two factors are of the same time or of both.
 #include "normals/groups/kernels/group_tiles.h"
 
-#include <hwy/cache_control.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
@@ -20,8 +18,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/groups/kernels/group_tiles.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "simd/foreach_target-inl.h"
+#include "simd/highway-inl.h"
 
 #include "normals/control/kernels/tile_degrees-inl.h"
 #include "normals/control/kernels/triangles-inl.h"

@@ -1,15 +1,13 @@
 // Adds up cross products along paths in lanes of float32, one for every second point (groups/rings.h).
 #include "normals/recompute/kernels/float_rings.h"
 
-#include <hwy/cache_control.h>
-
 #include <algorithm>
 #include <cassert>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/recompute/kernels/float_rings.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "simd/foreach_target-inl.h"
+#include "simd/highway-inl.h"
 
 #include "normals/recompute/kernels/results-inl.h"
 #include "simd/intrinsics-inl.h"
@@ -20,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
 // The number of rows of indices ahead at which points are prefetched.
-constexpr std::size_t kRowsAhead = 12;
+constexpr std::size_t kRingRowsAhead = 12;
 
 // Loads the points with the numbers index(0) ... index(kLanes - 1).
 template <class IndexOf>
@@ -83,9 +81,9 @@ std::size_t RingUnitNormals(const RingPoints& points, const RingSlices& all, Ind
     for (std::size_t s = slices.first; s < slices.end(); ++s) {
       const std::size_t first = all.first_row[s], count = all.first_row[s + 1] - first;
       const std::uint32_t* const indices = all.indices + kRingLanes * first;
-      if (points.fetch && first + count + kRowsAhead <= row_end) {
+      if (points.fetch && first + count + kRingRowsAhead <= row_end) {
         for (std::size_t i = 0; i < kRingLanes * count; ++i)
-          hwy::Prefetch(points.rows + 4 * std::size_t{indices[kRingLanes * kRowsAhead + i]});
+          hwy::Prefetch(points.rows + 4 * std::size_t{indices[kRingLanes * kRingRowsAhead + i]});
       }
       for (std::size_t lane = 0; lane < kRingLanes; lane += kLanes) {
         const auto index = [=](std::size_t r, std::size_t i) HWY_ATTR { return indices[kRingLanes * r + lane + i]; };
@@ -99,7 +97,7 @@ std::size_t RingUnitNormals(const RingPoints& points, const RingSlices& all, Ind
 
 std::size_t TriangleUnitNormals(const RingPoints& points, const std::uint32_t* corners, std::size_t face_count,
                                 IndexRange faces, VectorView<float> result, bool stream) {
-  constexpr std::size_t kAhead = 4 * kRowsAhead;  // faces
+  constexpr std::size_t kAhead = 4 * kRingRowsAhead;  // faces
   return WithLayout(result, stream, [&](auto layout) HWY_ATTR {
     std::size_t zeros = 0;
     for (std::size_t i = 0; i < faces.count; i += kRingLanes) {

@@ -1,15 +1,13 @@
 // Evaluates triangles in lanes of float32, thin ones in lanes of double, and marks the doubtful ones.
 #include "normals/recompute/kernels/recompute_tiles.h"
 
-#include <hwy/cache_control.h>
-
 #include <algorithm>
 #include <cassert>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/recompute/kernels/recompute_tiles.cpp"
-#include <hwy/foreach_target.h>
-#include <hwy/highway.h>
+#include "simd/foreach_target-inl.h"
+#include "simd/highway-inl.h"
 
 #include "normals/recompute/kernels/results-inl.h"
 #include "simd/index_range-inl.h"

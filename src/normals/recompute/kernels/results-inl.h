@@ -3,7 +3,7 @@
 //
 // This file is included once for each instruction set, as lanes-inl.h is.
 
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include <cstddef>
 #include <cstdint>

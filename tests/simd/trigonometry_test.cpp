@@ -1,4 +1,4 @@
-#include "core/trigonometry.h"
+#include "simd/trigonometry.h"
 
 #include <gtest/gtest.h>
 

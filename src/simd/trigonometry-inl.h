@@ -9,18 +9,18 @@
 //     negated_by_bit_1(s, v)  v, its sign changed where the second lowest bit of s is set
 //     next_bits(s)            the representation plus one, as if it were an integer
 
-#include <hwy/highway.h>
+#include "simd/highway-inl.h"
 
 #include <cstdint>
 
 #include "core/bits.h"
-#include "core/trigonometry.h"
+#include "simd/trigonometry.h"
 
-#if defined(CHRONORMAL_CORE_TRIGONOMETRY_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef CHRONORMAL_CORE_TRIGONOMETRY_INL_H_
-#undef CHRONORMAL_CORE_TRIGONOMETRY_INL_H_
+#if defined(CHRONORMAL_SIMD_TRIGONOMETRY_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef CHRONORMAL_SIMD_TRIGONOMETRY_INL_H_
+#undef CHRONORMAL_SIMD_TRIGONOMETRY_INL_H_
 #else
-#define CHRONORMAL_CORE_TRIGONOMETRY_INL_H_
+#define CHRONORMAL_SIMD_TRIGONOMETRY_INL_H_
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -83,4 +83,4 @@ HWY_INLINE S upper_angle(const S& y, const S& x) {
 }  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // CHRONORMAL_CORE_TRIGONOMETRY_INL_H_
+#endif  // CHRONORMAL_SIMD_TRIGONOMETRY_INL_H_

@@ -1,10 +1,10 @@
 /// Sine, cosine and arc tangent in float32, from plain arithmetic.
 ///
 /// The standard library's differ from machine to machine in the last bit; these give the same bits everywhere and have
-/// no branch. src/core/trigonometry-inl.h has them for vectors of lanes, the same text and the same bits. Polynomials:
+/// no branch. src/simd/trigonometry-inl.h has them for vectors of lanes, the same text and the same bits. Polynomials:
 /// interpolation at Chebyshev nodes (own fit).
-#ifndef CHRONORMAL_CORE_TRIGONOMETRY_H_
-#define CHRONORMAL_CORE_TRIGONOMETRY_H_
+#ifndef CHRONORMAL_SIMD_TRIGONOMETRY_H_
+#define CHRONORMAL_SIMD_TRIGONOMETRY_H_
 
 namespace chronormal::inline internal {
 
@@ -21,4 +21,4 @@ struct SinCos {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_CORE_TRIGONOMETRY_H_
+#endif  // CHRONORMAL_SIMD_TRIGONOMETRY_H_

@@ -1,6 +1,6 @@
-#include "core/trigonometry.h"
+#include "simd/trigonometry.h"
 
-#include "core/trigonometry-inl.h"
+#include "simd/trigonometry-inl.h"
 
 namespace chronormal::inline internal {
 
