@@ -48,7 +48,7 @@ build_for_arm64() {
     # cryptography, by a pragma that GCC forgets in constructors that it writes itself.
     local disabled
     disabled=$(sed -n 's/.*"\(HWY_DISABLED_TARGETS=[^"]*\)".*/\1/p' cmake/product.cmake)
-    printf "flags = '-D%s'" "$disabled"
+    printf "flags = -DCHRONORMAL_HIGHWAY '-D%s'" "$disabled"
     printf ' -march=armv8-a+crypto -std=c++20 -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math -Wno-psabi'
     printf ' -I%s -I%s/src -I%s/include -isystem %s/include -isystem %s/include/aarch64-linux-gnu\n' \
       "$root" "$root" "$root" "$packages" "$packages"
@@ -67,7 +67,23 @@ build_for_arm64() {
   ninja -C "$build"
 }
 
+# compile_two_files NAME COMPILER FLAGS RUN: writes and compiles the two files of tools/two_files.py, and compares what they
+# compute with what the library of build/release computes.
+compile_two_files() {
+  say "the two files by $1"
+  cmake -DSOURCE="$root" -DFOLDER="$root/build/release/two_files" "-DCOMPILER=$2" "-DFLAGS=$3" "-DRUN=$4" \
+    -P tests/install/two_files/run.cmake
+}
+
 part_machines() {
+  part_build
+  run_ctest release two_files -L two_files
+  compile_two_files "GCC for this machine alone" g++ "-march=native -O3" ""
+  compile_two_files "GCC without its vectors" g++ "-DCHRONORMAL_PLAIN_ARRAYS" ""
+  compile_two_files Clang clang++-14 "" ""
+  compile_two_files "GCC for 64-bit ARM" aarch64-linux-gnu-g++ "" "qemu-aarch64-static -L /usr/aarch64-linux-gnu"
+  # As in tools/wasm.sh: Debian's Emscripten looks for modules of Node.js where Debian has them.
+  NODE_PATH=/usr/share/nodejs EM_NODE_JS=$(command -v node) compile_two_files Emscripten em++ "" node
   build_for_arm64
   rm -rf build/arm64/results
   qemu-aarch64-static -L /usr/aarch64-linux-gnu build/arm64/tests --gtest_brief=1 --gtest_output=xml:build/arm64/results/tests.xml

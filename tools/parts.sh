@@ -16,7 +16,7 @@ tidy        14  clang             ^\.clang-tidy
 fuzz        26  clang             ^fuzz/
 hosts       20  web,node,wasm     ^tests/hosts/.*_page
 pipelines   15  web,node,blender  ^tests/hosts/(pipelines|blender)
-machines    8   machines          ^src/simd/|/kernels/|^tools/machines
+machines    14  machines,node     ^src/simd/|/kernels/|^tools/(machines|two_files)|^tests/install/two_files
 exact       20  -                 ^tests/support/exact_|^src/normals/control/exact
 faults      20  -                 ^tests/faults/
 embedding   28  embedding,node    ^(capi|tests/install)/|^cmake/(install|product)|^python/setup

@@ -1,6 +1,38 @@
 #include "core/charconv.h"
 
 #ifndef __cpp_lib_to_chars
+#ifdef CHRONORMAL_ALONE  // the two files of tools/two_files.py, which write numbers into messages alone, without fmt
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace chronormal::inline internal {
+namespace {
+
+std::to_chars_result print(char* first, char* last, const char* format, int precision, double value) {
+  const auto room = static_cast<std::size_t>(last - first);
+  const int count = std::snprintf(first, room, format, precision, value);
+  if (count < 0 || static_cast<std::size_t>(count) >= room) return {last, std::errc::value_too_large};
+  return {first + count, std::errc()};
+}
+
+}  // namespace
+
+std::to_chars_result to_chars(char* first, char* last, double value) {
+  std::to_chars_result result{};
+  for (int digits = 1; digits <= 17; ++digits) {
+    result = print(first, last, "%.*g", digits, value);
+    if (result.ec != std::errc() || std::strtod(first, nullptr) == value) break;
+  }
+  return result;
+}
+std::to_chars_result to_chars(char* first, char* last, double value, std::chars_format format, int precision) {
+  return print(first, last, format == std::chars_format::fixed ? "%.*f" : "%.*g", precision, value);
+}
+
+}  // namespace chronormal::inline internal
+
+#else
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
@@ -82,4 +114,5 @@ std::to_chars_result to_chars(char* first, char* last, double value, std::chars_
 
 }  // namespace chronormal::inline internal
 
+#endif  // CHRONORMAL_ALONE
 #endif

@@ -16,7 +16,7 @@ namespace {
 using Indices = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
-constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kTermsTogether = 1024;
 constexpr std::size_t kFewFaces = 100000;  // of which it takes little memory to keep what each adds
 constexpr std::size_t kFarApart = 16;      // faces lie so far apart on average that a table of all between is too large
 
@@ -215,7 +215,7 @@ Vec3d BlendTerms::base_of(std::uint32_t element) const {
 
 BlendTerm BlendTerms::base_term() const {
   std::vector<Term::Rounded> of_faces(set_.topology.face_count());
-  numbered_blocks(of_faces.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+  numbered_blocks(of_faces.size(), kTermsTogether, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t f = first; f < last; ++f) {
       const CornerVectors b = positions_of(set_, set_.topology.face(f));
       ProductSum normal;
@@ -226,7 +226,7 @@ BlendTerm BlendTerms::base_term() const {
   BlendTerm result;
   result.values.resize(size());
   result.noise.resize(size());
-  numbered_blocks(size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+  numbered_blocks(size(), kTermsTogether, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e) {
       ElementSum sum;
       for_faces_of(static_cast<std::uint32_t>(e),
@@ -284,7 +284,7 @@ void BlendTerms::Term::keep_all(std::span<const std::uint32_t> faces) {
   const std::size_t range = faces.back() - faces.front() + std::size_t{1};
   if (range > kFarApart * faces.size()) return;
   std::vector<Rounded> of_all(faces.size());
-  numbered_blocks(faces.size(), kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+  numbered_blocks(faces.size(), kTermsTogether, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) (void)find_face(faces[n], of_all[n]);
   });
   first_face_ = faces.front();
@@ -354,7 +354,7 @@ BlendTerm BlendTerms::listed(Term term, std::span<const std::uint32_t> faces, In
   const std::size_t count = result.elements.size();
   result.values.resize(count);
   result.noise.resize(count);
-  numbered_blocks(count, kChunk, [&](std::size_t, std::size_t first, std::size_t last) {
+  numbered_blocks(count, kTermsTogether, [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
       const Term::Rounded value = term.at(result.elements[n]);
       result.values[n] = value.value;

@@ -14,7 +14,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kElementsAtOnce = 1024;
 
 // The normal of a face is within this share of itself, so that sums of them are right to 2^-23 = 1.2e-7 rad until they
 // have cancelled to a hundredth.
@@ -92,10 +92,10 @@ void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Wei
 std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting,
                                            const LocalTime& t) {
   std::vector<Vec3d> of_faces(segment.topology->face_count()), result(groups.size());
-  parallel_blocks(of_faces.size(), kBlock, [&](IndexRange faces) {
+  parallel_blocks(of_faces.size(), kElementsAtOnce, [&](IndexRange faces) {
     face_normals_at(segment, t, faces, std::span(of_faces).subspan(faces.first, faces.count));
   });
-  parallel_blocks(result.size(), kBlock, [&](IndexRange elements) {
+  parallel_blocks(result.size(), kElementsAtOnce, [&](IndexRange elements) {
     weighted_normals_at(segment, groups, weighting, t, of_faces, elements,
                         std::span(result).subspan(elements.first, elements.count));
   });
