@@ -231,6 +231,7 @@ class Pool {
       while (inside != nullptr && !(inside->has_pieces() && inside->is_inside(job))) inside = inside->after;
       if (inside != nullptr) {
         help(*inside, lock);
+        std::fesetenv(&job.rounding);
         continue;
       }
       ++waiting_;

@@ -176,6 +176,26 @@ TEST(ParallelFor, rounds_on_all_threads_as_its_caller_does) {
   }
 }
 
+TEST(ParallelFor, that_helps_with_a_loop_of_another_rounding_goes_on_with_its_own) {
+  const ThreadLimit two(2);
+  const auto caller = std::this_thread::get_id();
+  std::atomic<std::size_t> begun = 0;
+  std::atomic<bool> is_helped = false;
+  parallel_for(2, [&](std::size_t) {
+    ++begun;
+    while (begun < 2) std::this_thread::yield();
+    if (std::this_thread::get_id() == caller) return;
+    std::fesetround(FE_UPWARD);
+    parallel_for(100, [&](std::size_t) {
+      EXPECT_EQ(std::fegetround(), FE_UPWARD);
+      if (std::this_thread::get_id() == caller) is_helped = true;
+      std::this_thread::sleep_for(1ms);
+    });
+  });
+  EXPECT_TRUE(is_helped);
+  EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+}
+
 // Returns the exit code of a child of fork(), in which `body` runs.
 int exit_code_of_child(const std::function<int()>& body) {
   const pid_t child = ::fork();
