@@ -410,12 +410,18 @@ TEST_F(HostileCli, a_small_stack_is_enough) {
   }
 }
 
-// Files that seem to have a terabyte, of which nearly all was never written.
-TEST_F(HostileCli, sparse_files_are_refused_where_they_stop_being_text) {
+// Files that seem to have a terabyte, of which nearly all was never written. (p.ply and q.ply are as long as their
+// headers say.)
+TEST_F(HostileCli, sparse_files_are_refused_at_once_and_whole) {
   folder_.write("mesh.obj", kFirst);
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nelement face 1\nproperty list uchar int vertex_indices\n";
+  const auto binary = [](const std::string& vertices, const std::string& faces) {
+    return "ply\nformat binary_little_endian 1.0\nelement vertex " + vertices +
+           "\nproperty float x\nproperty float y\nproperty float z\nelement face " + faces +
+           "\nproperty list uchar int vertex_indices\nend_header\n";
+  };
   struct File {
     std::string name, begin, arguments;
   };
@@ -433,7 +439,9 @@ TEST_F(HostileCli, sparse_files_are_refused_where_they_stop_being_text) {
                                    {"l.mdd", "", "inspect mesh.obj l.mdd"},
                                    {"m.pc2", "", "inspect mesh.obj m.pc2"},
                                    {"n.npz", "PK\3\4", "inspect n.npz"},
-                                   {"o.mcx", "FOR4", "inspect mesh.obj o.mcx"}};
+                                   {"o.mcx", "FOR4", "inspect mesh.obj o.mcx"},
+                                   {"p.ply", binary("4000000000", "1"), "inspect p.ply"},
+                                   {"q.ply", binary("3", "80000000000"), "inspect q.ply"}};
   for (const File& file : files) {
     folder_.write(file.name, file.begin);
     std::error_code error;

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "chronormal/io/expansion.h"
 #include "io/bytes/descriptor.h"
 
 namespace chronormal {
@@ -39,6 +40,40 @@ bool read_all(int descriptor, OnWait on_wait, std::size_t most, std::string& byt
   return true;
 }
 
+// How many bytes of a file were ever written, the rest being holes: counted up to `enough`, and all of them where the
+// system does not say.
+std::uint64_t written_bytes(int descriptor, std::uint64_t size, std::uint64_t enough) {
+#if defined(SEEK_DATA) && defined(SEEK_HOLE)
+  std::uint64_t written = 0;
+  off_t hole = 0;
+  while (written < enough) {
+    const off_t data = ::lseek(descriptor, hole, SEEK_DATA);
+    if (data < 0 && errno == ENXIO) break;  // there is a hole to the end
+    hole = data < 0 ? -1 : ::lseek(descriptor, data, SEEK_HOLE);
+    if (hole <= data) {
+      written = size;
+      break;
+    }
+    written += static_cast<std::uint64_t>(hole - data);
+  }
+  (void)::lseek(descriptor, 0, SEEK_SET);
+  return written;
+#else
+  (void)descriptor;
+  (void)enough;
+  return size;
+#endif
+}
+
+// Refuses a file that is nearly all holes: it would make us hold far more than there is of it.
+Status check_holes(int descriptor, std::uint64_t size, const std::string& place) {
+  if (size <= Expansion::kAlways) return Success{};
+  const std::uint64_t enough = size / Expansion::kUsual, written = written_bytes(descriptor, size, enough);
+  if (written >= enough) return Success{};
+  return invalid_input(place, "of its " + std::to_string(size) + " bytes only " + std::to_string(written) +
+                                  " were ever written: the rest are holes, and no data");
+}
+
 // Whether reading would come to an end: not that of devices, of which /dev/zero is one; terminals end with a key.
 bool may_have_no_end(int descriptor, const struct stat& status) {
   return S_ISBLK(status.st_mode) || (S_ISCHR(status.st_mode) && ::isatty(descriptor) == 0);
@@ -64,6 +99,7 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
   if (!is_stdin && S_ISREG(status.st_mode) && status.st_size == 0) (void)::fcntl(descriptor, F_SETFL, O_NONBLOCK);
   if (!is_stdin && S_ISREG(status.st_mode) && status.st_size > 0) {
     const auto size = static_cast<std::size_t>(status.st_size);
+    if (Status status_of_holes = check_holes(descriptor, size, place); !status_of_holes) return status_of_holes.error();
     void* const mapping = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
     if (mapping != MAP_FAILED) {
       (void)::madvise(mapping, size, MADV_SEQUENTIAL);

@@ -201,6 +201,7 @@ class BodyReader {
       : name_(name), header_(header), source_(bytes, header), has_velocities_(has_velocities) {}
 
   Result<MeshFrame> read() {
+    if (Status status = check_counts(); !status) return status.error();
     for (std::size_t e = 0; e < header_.elements.size(); ++e) {
       if (Status status = read_element(e); !status) return status.error();
     }
@@ -217,8 +218,7 @@ class BodyReader {
   [[nodiscard]] Status read_element(std::size_t e) {
     const Element& element = header_.elements[e];
     if (element.properties.empty()) return Success{};  // takes no space, however many there are
-    if (Status status = check_count(element); !status) return status;
-    // The count now is in proportion to the size of the file.
+    // The count is in proportion to the size of the file.
     if (e == header_.vertex_element) positions_.reserve(3 * static_cast<std::size_t>(element.count));
     if (e == header_.face_element) faces_.reserve_triangles(static_cast<std::size_t>(element.count));
     for (std::uint64_t row = 0; row < element.count; ++row) {
@@ -229,13 +229,20 @@ class BodyReader {
     return Success{};
   }
 
-  [[nodiscard]] Status check_count(const Element& element) const {
-    std::size_t row_bytes = 0;
-    for (const Property& property : element.properties) row_bytes += Source::fewest_bytes(property);
-    if (element.count <= source_.bytes_left() / row_bytes) return Success{};
-    return invalid_input(name_ + ", " + source_.place(), "the header declares " + std::to_string(element.count) +
-                                                             " elements " + scan::quoted(element.name) +
-                                                             ", for which the file is too short");
+  // Checks that the file can hold all elements, before the first is read.
+  [[nodiscard]] Status check_counts() const {
+    std::uint64_t left = source_.bytes_left();
+    for (const Element& element : header_.elements) {
+      if (element.properties.empty()) continue;
+      std::uint64_t row_bytes = 0;
+      for (const Property& property : element.properties) row_bytes += Source::fewest_bytes(property);
+      if (element.count > left / row_bytes)
+        return invalid_input(name_ + ", " + source_.place(), "the header declares " + std::to_string(element.count) +
+                                                                 " elements " + scan::quoted(element.name) +
+                                                                 ", for which the file is too short");
+      left -= element.count * row_bytes;
+    }
+    return Success{};
   }
 
   [[nodiscard]] bool read_row(std::size_t e) {
