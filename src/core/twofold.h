@@ -6,6 +6,12 @@
 #ifndef CHRONORMAL_CORE_TWOFOLD_H_
 #define CHRONORMAL_CORE_TWOFOLD_H_
 
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
 namespace chronormal::inline internal {
 
 struct Twofold {
@@ -35,6 +41,61 @@ struct Twofold {
     const Twofold high = product(a.high, b.high);
     return sum(high.high, high.low + (a.high * b.low + a.low * b.high));
   }
+};
+
+/// Returns a + a_low - (b + b_low), rounded once but for 2^-9 of a rounding, whatever cancels. a_low and b_low are at most
+/// 2^-23 of a and b.
+[[nodiscard]] inline double difference(double a, double a_low, double b, double b_low) noexcept {
+  const double of_high = a - b, of_low = a_low - b_low, sum = of_high + of_low;
+  // Most differences of floats are exact, and large beside those of what floats lack.
+  if (a - of_high == b && b + of_high == a && std::fabs(of_low) <= 0x1p-10 * std::fabs(sum)) return sum;
+  const Twofold high = Twofold::sum(a, -b), low = Twofold::sum(a_low, -b_low), both = Twofold::sum(high.high, low.high);
+  return both.high + (both.low + (high.low + low.low));
+}
+
+/// Sums of products, many side by side, in twice the digits of double, so that what cancels leaves no rounding: what an
+/// addition loses is added up beside the sum.
+class LongSums {
+ public:
+  explicit LongSums(std::size_t count) : high_(count), low_(count) {}
+
+  /// Adds factor * values. Each product is the sum of two that are exact.
+  void add(double factor, std::span<const float> values) noexcept {
+    // The upper half of the digits of the factor has 26 of them (Dekker 1971), and so have products 50.
+    const double far = 0x1p27 * factor, large = far + factor - far;
+    const double upper = std::isfinite(large) ? large : factor;
+    add_products(upper, values);
+    if (upper != factor) add_products(factor - upper, values);
+  }
+  /// The same of values with 53 digits, whose products are rounded; for those that are small against the sums.
+  void add(double factor, std::span<const double> values) noexcept { add_products(factor, values); }
+
+  /// The sums are high + low, of which low is at most half a unit in the last place of high once it is settled.
+  void settle() noexcept {
+    for (std::size_t i = 0; i < high_.size(); ++i) set(i, Twofold::sum(high_[i], low_[i]));
+  }
+  [[nodiscard]] std::span<const double> high() const noexcept { return high_; }
+  [[nodiscard]] std::span<const double> low() const noexcept { return low_; }
+
+  [[nodiscard]] Twofold operator[](std::size_t i) const noexcept { return {high_[i], low_[i]}; }
+  void set(std::size_t i, const Twofold& sum) noexcept {
+    high_[i] = sum.high;
+    low_[i] = sum.low;
+  }
+
+ private:
+  template <class Value>
+  void add_products(double factor, std::span<const Value> values) noexcept {
+    assert(values.size() == high_.size());
+    double *const high = high_.data(), *const low = low_.data();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Twofold sum = Twofold::sum(high[i], factor * static_cast<double>(values[i]));
+      high[i] = sum.high;
+      low[i] += sum.low;
+    }
+  }
+
+  std::vector<double> high_, low_;
 };
 
 }  // namespace chronormal::inline internal

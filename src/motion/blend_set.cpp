@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/twofold.h"
+
 namespace chronormal {
 namespace {
 
@@ -39,7 +41,10 @@ Result<BlendSet> blend_set_of(const Motion& star) {
                    std::string("it begins at keyframe ").append(std::to_string(segment.from)) + " and not at the base"};
     const Motion::Keyframe& end = star.keyframes[segment.to];
     std::vector<float> deltas(end.positions);
-    for (std::size_t i = 0; i < deltas.size(); ++i) deltas[i] -= set.base[i];
+    const std::vector<double>&of_end = end.residuals, &of_base = star.keyframes.front().residuals;
+    for (std::size_t i = 0; i < deltas.size(); ++i)
+      deltas[i] = static_cast<float>(
+          difference(end.positions[i], of_end.empty() ? 0 : of_end[i], set.base[i], of_base.empty() ? 0 : of_base[i]));
     if (!all_finite(deltas)) return invalid_input(place(), "a delta is beyond the range of float32");
     set.targets.push_back(BlendTarget::from_dense(deltas, end.name));
   }

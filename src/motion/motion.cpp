@@ -23,6 +23,17 @@ double quotient(const Twofold& a, const Twofold& b) noexcept {
   return first + ((std::fma(-first, b.high, a.high) + a.low) - first * b.low) / b.high;
 }
 
+Segment between(const Topology& topology, const Motion::Keyframe& from, const Motion::Keyframe& to, double start,
+                double end, std::size_t index) noexcept {
+  const auto positions = [&](const Motion::Keyframe& keyframe) {
+    return VectorView<const float>::packed(keyframe.positions.data(), topology.vertex_count());
+  };
+  const auto residuals = [](const Motion::Keyframe& keyframe) {
+    return VectorView<const double>::packed(keyframe.residuals);
+  };
+  return {&topology, positions(from), positions(to), start, end, index, residuals(from), residuals(to)};
+}
+
 }  // namespace
 
 std::string_view motion_kind_name(MotionKind kind) noexcept {
@@ -34,13 +45,24 @@ Segment Motion::segment(std::size_t i) const noexcept {
   assert(i < segments.size());
   const Keyframe& from = keyframes[segments[i].from];
   const Keyframe& to = keyframes[segments[i].to];
-  const std::size_t count = topology.vertex_count();
-  return {&topology,
-          VectorView<const float>::packed(from.positions.data(), count),
-          VectorView<const float>::packed(to.positions.data(), count),
-          from.time,
-          to.time,
-          i};
+  return between(topology, from, to, from.time, to.time, i);
+}
+
+void Motion::Keyframe::set_positions(std::span<const double> high, std::span<const double> low) {
+  assert(high.size() == low.size());
+  positions.resize(high.size());
+  residuals.resize(high.size());
+  bool is_rounded = false;
+  for (std::size_t i = 0; i < high.size(); ++i) {
+    positions[i] = static_cast<float>(high[i]);
+    residuals[i] = (high[i] - double{positions[i]}) + low[i];
+    is_rounded |= residuals[i] != 0;
+  }
+  if (!is_rounded) residuals = {};
+}
+
+Segment still_segment(const Topology& topology, const Motion::Keyframe& keyframe) noexcept {
+  return between(topology, keyframe, keyframe, 0, 1, 0);
 }
 
 void Motion::connect(MotionKind as) {

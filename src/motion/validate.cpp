@@ -38,6 +38,19 @@ Status check_mesh(const Motion& motion) {
   return Success{};
 }
 
+Status check_residuals(const Motion& motion, std::size_t k) {
+  const Motion::Keyframe& keyframe = motion.keyframes[k];
+  if (keyframe.residuals.empty()) return Success{};
+  if (keyframe.residuals.size() != keyframe.positions.size())
+    return invalid_input(keyframe_place(motion, k), "there is not one residual for each coordinate");
+  for (std::size_t i = 0; i < keyframe.residuals.size(); ++i) {
+    if (static_cast<float>(double{keyframe.positions[i]} + keyframe.residuals[i]) != keyframe.positions[i])
+      return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
+                           "the residual is more than rounding to float32 leaves");
+  }
+  return Success{};
+}
+
 // Checks everything in a keyframe except its positions.
 Status check_rest(const Motion& motion, std::size_t k) {
   const Motion::Keyframe& keyframe = motion.keyframes[k];
@@ -102,6 +115,7 @@ Status validate(const Motion& motion) {
   if (Status status = check_mesh(motion); !status) return status;
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     if (Status status = validate_positions(motion, k, motion.keyframes[k].positions); !status) return status;
+    if (Status status = check_residuals(motion, k); !status) return status;
     if (Status status = check_rest(motion, k); !status) return status;
   }
   return check_segments(motion);

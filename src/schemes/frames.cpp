@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/portable_math.h"
+#include "motion/segment_end.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -22,15 +23,12 @@ Vec3d within_plane(const Vec3d& v, const Vec3d& unit_normal) { return v - dot(v,
 
 EdgeMotion edges_of(const ElementMotion& element) {
   const auto face = element.segment().topology->face(element.element());
-  const auto edge = [&face](VectorView<const float> positions, std::size_t corner) {
-    return to_double(positions[face[corner]]) - to_double(positions[face[0]]);
-  };
+  const auto edge = [&face](const SegmentEnd& end, std::size_t corner) { return end.edge(face[0], face[corner]); };
   const std::size_t last = face.size() - 1;
-  const auto edges = [&](VectorView<const float> positions, const Vec3d& u) {
-    return FaceEdges{within_plane(edge(positions, 1), u), within_plane(edge(positions, last), u)};
+  const auto edges = [&](const SegmentEnd& end, const Vec3d& u) {
+    return FaceEdges{within_plane(edge(end, 1), u), within_plane(edge(end, last), u)};
   };
-  const auto& from = element.segment().from;
-  const auto& to = element.segment().to;
+  const SegmentEnd from = SegmentEnd::from(element.segment()), to = SegmentEnd::to(element.segment());
   return {edges(from, element.start().vector), edges(to, element.end().vector), edge(to, 1) - edge(from, 1)};
 }
 

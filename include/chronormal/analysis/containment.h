@@ -10,7 +10,7 @@
 ///     w(later) - w(earlier) = inward crossings - outward crossings
 ///
 /// holds without exception, also where a point goes through an edge or a vertex, along a face, or touches the surface:
-/// every decision is exact, in integers where double cannot decide, on the float32 positions as they are.
+/// every decision is exact, in integers where double cannot decide, on the positions as they are.
 ///
 /// Ties       A point that is on the surface is taken as moved by an infinitely small step along +x, and where that
 ///            leaves it on the surface along +y, then +z. So of two closed meshes that share a face, a point on it is

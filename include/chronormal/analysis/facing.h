@@ -12,7 +12,7 @@
 ///     for (const FacingChange& change : facing.changes()) ...    // seen edge-on at a t in [change.lower, change.upper]
 ///
 /// Certain    the order of all sides, and that each root of f lies in its bracket and nowhere else: decided from the
-///            float32 positions and the viewer as given, by floating point with a proven bound, and where that is not
+///            positions and the viewer as given, by floating point with a proven bound, and where that is not
 ///            enough in integers. A bracket is about 1e-14 / (how fast f changes) wide and never more than
 ///            kWidestBracket, or two doubles beside each other, or one that is the root. Roots without a double between
 ///            them count as one. Below 2^-200 a root cannot be told from 0.

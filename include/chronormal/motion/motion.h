@@ -7,6 +7,10 @@
 ///
 /// find_instant() says which segment, and which t in it, belong to a time.
 ///
+/// Positions are float32. Those of a keyframe that was computed (the targets of a glTF file, or its animation of their
+/// weights) had to be rounded to that, by far more than the length of a short edge beside large coordinates allows for.
+/// Such a keyframe keeps what the rounding left out, and all normals are those of the positions before it.
+///
 /// Shapes     V = vertices; a keyframe has V positions, packed as (V, 3) float32.
 /// Units      positions: any length; times: seconds, double; of targets, weights: 0 for the base, 1 for a target.
 #ifndef CHRONORMAL_MOTION_MOTION_H_
@@ -14,6 +18,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +38,8 @@ struct Segment {
   double start_time = 0;         ///< seconds, at t = 0; of a target, its weight
   double end_time = 1;           ///< the same at t = 1
   std::size_t index = 0;         ///< which segment of its motion it is
+  /// What `from` and `to` lack since they were rounded to float32 (Motion::Keyframe); empty: nothing.
+  VectorView<const double> from_residuals = {}, to_residuals = {};
 };
 
 /// What the segments of a motion are.
@@ -54,6 +61,13 @@ struct Motion {
     /// (V, 3) per second, of an end of a part of a sequence: the velocities that curves through the whole sequence have
     /// there (PathKind::kCatmullRom in normals/paths.h). Empty: they follow from the keyframes of the motion.
     std::vector<float> end_velocities = {};
+    /// (V, 3), or empty where nothing was rounded: a vertex is at its position and its residual, added up. Files hold
+    /// positions alone.
+    std::vector<double> residuals = {};
+
+    /// Sets the positions to these coordinates rounded to float32, and the residuals to the rest of them.
+    /// low must have the digits of each coordinate that high has not, below half a unit in its last place
+    void set_positions(std::span<const double> high, std::span<const double> low);
   };
   struct SegmentKeys {
     std::size_t from = 0;  ///< index of the keyframe at t = 0
@@ -78,9 +92,12 @@ struct Motion {
   void connect_as_targets() { connect(MotionKind::kTargets); }
 };
 
+/// Returns a keyframe as a segment that does not move, from time 0 to 1. Both must outlive it.
+[[nodiscard]] Segment still_segment(const Topology& topology, const Motion::Keyframe& keyframe) noexcept;
+
 /// The one check between data from outside and everything that computes. Checks what the rest of the library takes for
 /// granted: at least one face and one segment; every keyframe with 3 x vertex_count finite coordinates, and as many
-/// velocities or none; a body for each vertex or none; segments between keyframes that exist; finite times that ascend
+/// velocities or none; residuals of rounding to float32, as many or none; a body for each vertex or none; segments between keyframes that exist; finite times that ascend
 /// along every segment; and segments as the kind of the motion has them. (A Topology checks its own indices.)
 /// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);

@@ -14,7 +14,7 @@
 /// Scales are those of the element: a direction needs none, so none is stored. Runs of less than 4 blocks join a
 /// neighbour that can hold them, where both lie within the same 32 blocks.
 ///
-/// Accuracy   The direction of every element is within `tolerance` of the exact n(t) of the float32 positions at the
+/// Accuracy   The direction of every element is within `tolerance` of the exact n(t) of the positions at the
 ///            double t, by a bound and not by measurement (docs/theory.md, sections 5 and 13): where n(t) gets small
 ///            against its control normals, their rounding counts more, so each element carries a certificate of how
 ///            small it can get. Where float32 cannot promise 1e-6 rad the element is *flagged* and evaluated in double;

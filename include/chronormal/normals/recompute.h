@@ -3,7 +3,7 @@
 /// The rival of NormalCurves, and what wins for one evaluation or two. Nothing is prepared but scratch memory;
 /// positions and topology are read at every call, must stay alive, and positions may change between calls.
 ///
-/// Accuracy   within 1e-6 rad of the exact n(t) of the float32 positions at the double t, whatever they are: edges in
+/// Accuracy   within 1e-6 rad of the exact n(t) of the positions at the double t, whatever they are: edges in
 ///            float32 and all that follows in double where a bound on the rounding shows that it suffices (edges are
 ///            interpolated, not vertices, so the distance from the origin does not matter), double throughout where
 ///            that suffices, and integers behind it (docs/theory.md, section 5). The limit direction where n(t) is

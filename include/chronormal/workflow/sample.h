@@ -10,7 +10,7 @@
 /// at times by curves of the segment or from its positions, whichever costs less for as many times as are asked for
 /// there (normals/segment_normals.h), areas themselves and a mesh that stands still from positions; on curved paths by
 /// the control normals of the curve, as PathCurves has them (normals/path_curves.h). At weights that
-/// holds for positions that are rounded to 48 bits, and not to float32. Other weightings, which are no polynomials, are
+/// holds for positions before they are rounded to float32. Other weightings, which are no polynomials, are
 /// computed anew in double.
 ///
 /// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and those

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/cones/interval_normals.h"
+#include "motion/segment_end.h"
 #include "normals/control/local_time.h"
 
 namespace chronormal {
@@ -140,7 +141,7 @@ class Cluster {
   }
 
   [[nodiscard]] Ends corner(std::uint32_t vertex) const {
-    const Vec3d a = to_double(segment_.from[vertex]), b = to_double(segment_.to[vertex]);
+    const Vec3d a = SegmentEnd::from(segment_)[vertex], b = SegmentEnd::to(segment_)[vertex];
     return {lerp(a, b, t0_), lerp(a, b, t1_), 0x1p-50 * (max_abs(a) + max_abs(b))};
   }
 

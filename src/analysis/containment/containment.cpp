@@ -13,6 +13,7 @@
 #include "analysis/containment/moving_boxes.h"
 #include "chronormal/core/parallel.h"
 #include "core/text.h"
+#include "motion/segment_end.h"
 
 namespace chronormal {
 namespace {
@@ -182,7 +183,10 @@ class Passage {
 
   [[nodiscard]] CrossingSigns signs_of(std::uint32_t i) const {
     const auto v = mesh_.segment.topology->face(i);
-    const auto corner = [&](std::size_t k) { return MovingPoint{mesh_.segment.from[v[k]], mesh_.segment.to[v[k]]}; };
+    const SegmentEnd from = SegmentEnd::from(mesh_.segment), to = SegmentEnd::to(mesh_.segment);
+    const auto corner = [&](std::size_t k) {
+      return MovingPoint{from.position(v[k]), to.position(v[k]), from.residual(v[k]), to.residual(v[k])};
+    };
     return {{corner(0), corner(1), corner(2)}, point_};
   }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/twofold.h"
 #include "core/wide_integer.h"
 
 namespace chronormal::inline internal {
@@ -77,9 +78,13 @@ class ExactCell {
   ExactCell(const std::array<MovingPoint, 3>& corners, const MovingPoint& point, const Cell& cell) noexcept
       : corners_(corners), point_(point) {
     const auto lower = [this](const MovingPoint& p) {
-      for (const float x : {p.from.x, p.from.y, p.from.z, p.to.x, p.to.y, p.to.z}) {
-        const FloatParts parts = FloatParts::of(x);
-        if (parts.mantissa != 0) base_ = std::min(base_, parts.shift);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
+          at_end(p, end, axis).for_parts([this](float x) {
+            const FloatParts parts = FloatParts::of(x);
+            if (parts.mantissa != 0) base_ = std::min(base_, parts.shift);
+          });
+        }
       }
     };
     for (const MovingPoint& corner : corners) lower(corner);
@@ -164,24 +169,47 @@ class ExactCell {
     Coordinate& result = seen_[end][corner][axis];
     bool& is_made = is_made_[end][corner][axis];
     if (is_made) return result;
-    const auto of = [axis](const Vec3f& p) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; };
-    add_difference(of(corners_[corner].from), of(point_.from), weights_[end][0], result);
-    add_difference(of(corners_[corner].to), of(point_.to), weights_[end][1], result);
+    add_difference(at_end(corners_[corner], 0, axis), at_end(point_, 0, axis), weights_[end][0], result);
+    add_difference(at_end(corners_[corner], 1, axis), at_end(point_, 1, axis), weights_[end][1], result);
     result.settle();
     is_made = true;
     return result;
   }
 
+  // A coordinate at an end of the segment, and what it lacks.
+  struct Unrounded {
+    float value;
+    double residual;
+
+    // Calls body(part) for floats that add up to it.
+    template <class Body>
+    void for_parts(const Body& body) const {
+      body(value);
+      double left = residual;
+      for (auto part = static_cast<float>(left); part != 0; part = static_cast<float>(left)) {
+        body(part);
+        left -= double{part};
+      }
+    }
+  };
+  static Unrounded at_end(const MovingPoint& p, std::size_t end, std::size_t axis) noexcept {
+    const Vec3f& at = end == 0 ? p.from : p.to;
+    const Vec3d& left = end == 0 ? p.from_residual : p.to_residual;
+    return {axis == 0 ? at.x : axis == 1 ? at.y : at.z, axis == 0 ? left.x : axis == 1 ? left.y : left.z};
+  }
+
   // Adds (a - b) * weight.
-  void add_difference(float a, float b, const UnitFraction& weight, Coordinate& result) const noexcept {
+  void add_difference(const Unrounded& p, const Unrounded& q, const UnitFraction& weight,
+                      Coordinate& result) const noexcept {
     if (weight.digits[0] == 0 && weight.digits[1] == 0) return;
     WideInteger<kCoordinateDigits> difference;
     // Most differences are exact in double, and whole numbers of few bits.
     constexpr double kMost = 0x1p62;
+    const float a = p.value, b = q.value;
     const double rounded = double{a} - double{b}, back = double{a} - rounded;
     const bool is_exact = (double{a} - (rounded + back)) + (back - double{b}) == 0;
     const double units = std::ldexp(rounded, 149 - static_cast<int>(base_));
-    if (is_exact && std::fabs(units) < kMost) {
+    if (is_exact && std::fabs(units) < kMost && p.residual == 0 && q.residual == 0) {
       const auto whole = static_cast<std::int64_t>(units);
       difference.set_digit(0, whole & (kDigitBase - 1));
       difference.set_digit(1, whole >> kDigitBits & (kDigitBase - 1));
@@ -192,8 +220,8 @@ class ExactCell {
         of_x.shift = of_x.mantissa == 0 ? 0 : of_x.shift - base_;
         return of_x;
       };
-      difference.add_product(parts(a), {1, 0});
-      difference.add_product(parts(b), {1, 0}, -1);
+      p.for_parts([&](float x) { difference.add_product(parts(x), {1, 0}); });
+      q.for_parts([&](float x) { difference.add_product(parts(x), {1, 0}, -1); });
       difference.settle();
     }
     result.add_product(difference, weight);
@@ -238,13 +266,15 @@ std::array<int, kCount> rounded_signs(const std::array<double, kCount>& values, 
 
 CrossingSigns::CrossingSigns(const std::array<MovingPoint, 3>& corners, const MovingPoint& point) noexcept
     : corners_(corners), point_(point) {
-  const auto seen = [](const Vec3f& corner, const Vec3f& origin) {
-    return Seen{double{corner.x} - origin.x, double{corner.y} - origin.y, double{corner.z} - origin.z};
+  const auto seen = [](const Vec3f& corner, const Vec3d& residual, const Vec3f& origin, const Vec3d& of_origin) {
+    return Seen{difference(corner.x, residual.x, origin.x, of_origin.x),
+                difference(corner.y, residual.y, origin.y, of_origin.y),
+                difference(corner.z, residual.z, origin.z, of_origin.z)};
   };
   Seen size{};
   for (std::size_t k = 0; k < 3; ++k) {
-    from_[k] = seen(corners[k].from, point.from);
-    to_[k] = seen(corners[k].to, point.to);
+    from_[k] = seen(corners[k].from, corners[k].from_residual, point.from, point.from_residual);
+    to_[k] = seen(corners[k].to, corners[k].to_residual, point.to, point.to_residual);
     for (std::size_t i = 0; i < 3; ++i)
       size[i] = std::max(size[i], std::max(std::fabs(from_[k][i]), std::fabs(to_[k][i])));
   }

@@ -18,7 +18,7 @@
 ///                V - e . n(t)   and   S_ab - e1 (b - a)_y + e2 (b - a)_x
 ///            The first term that is not zero decides. A sign is 0 only where the triangle is then without area.
 /// Numbers    In double with a bound on the rounding error, and where that is not enough in integers of any size
-///            (core/wide_integer.h), on the floats as they are. Times are multiples of 2^-48.
+///            (core/wide_integer.h), on the floats and their residuals as they are. Times are multiples of 2^-48.
 ///
 /// Source: Edelsbrunner, Muecke, Simulation of Simplicity (1990); for the cubic, Provot, Collision and self-collision
 /// handling (1997).
@@ -47,6 +47,7 @@ struct Cell {
 /// A point on its straight line through a segment.
 struct MovingPoint {
   Vec3f from, to;
+  Vec3d from_residual = {}, to_residual = {};  ///< what these lack (motion/segment_end.h)
 };
 
 /// What a triangle does in a cell.

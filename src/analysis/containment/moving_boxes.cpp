@@ -29,11 +29,13 @@ std::size_t longest_axis(const Middle* begin, const Middle* end) {
   return longest;
 }
 
+// Coordinates that were rounded lie between their neighbours.
 void enclose(std::array<float, 3>& low, std::array<float, 3>& high, const std::array<float, 3>& least,
-             const std::array<float, 3>& most) {
+             const std::array<float, 3>& most, bool are_rounded = false) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {
-    low[k] = std::min(low[k], least[k]);
-    high[k] = std::max(high[k], most[k]);
+    low[k] = std::min(low[k], are_rounded ? std::nextafter(least[k], -kInfinity) : least[k]);
+    high[k] = std::max(high[k], are_rounded ? std::nextafter(most[k], kInfinity) : most[k]);
   }
 }
 
@@ -90,8 +92,8 @@ std::vector<MovingBox> moving_boxes(std::span<const BoxNode> nodes, const Segmen
       for (const std::uint32_t v : segment.topology->face(node.first + i)) {
         const Vec3f a = segment.from[v], b = segment.to[v];
         const std::array<float, 3> from{a.x, a.y, a.z}, to{b.x, b.y, b.z};
-        enclose(box.low_from, box.high_from, from, from);
-        enclose(box.low_to, box.high_to, to, to);
+        enclose(box.low_from, box.high_from, from, from, segment.from_residuals.count > 0);
+        enclose(box.low_to, box.high_to, to, to, segment.to_residuals.count > 0);
       }
     }
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/wide_integer.h"
+#include "motion/segment_end.h"
 
 namespace chronormal {
 namespace {
@@ -31,9 +32,9 @@ bool is_certain(const ReferenceArea& area) noexcept { return max_abs(area.n) > k
 
 ReferenceArea vector_area_at(const Segment& segment, std::span<const std::uint32_t> face, double t) {
   // The first corner is the origin: differences of float32 positions are exact in double, or nearly so.
-  const Vec3d origin = to_double(segment.from[face[0]]);
+  const SegmentEnd start = SegmentEnd::from(segment), end = SegmentEnd::to(segment);
   const auto vertex_at = [&](std::uint32_t vertex) {
-    const Vec3d from = to_double(segment.from[vertex]) - origin, to = to_double(segment.to[vertex]) - origin;
+    const Vec3d from = start.edge(face[0], vertex), to = end.way_from(start, face[0], vertex);
     return Interpolated{lerp(from, to, t), (1 - t) * max_abs(from) + t * max_abs(to)};
   };
   const Interpolated a = vertex_at(face[0]);
@@ -59,11 +60,13 @@ class ExactArea {
   ExactArea(const Segment& segment, std::span<const std::uint32_t> faces) : segment_(segment), faces_(faces) {
     for (const std::uint32_t f : faces) {
       for (const std::uint32_t vertex : segment.topology->face(f)) {
-        for (const Vec3f& p : {segment.from[vertex], segment.to[vertex]}) {
-          for (const float x : {p.x, p.y, p.z}) {
-            const FloatParts parts = FloatParts::of(x);
-            if (parts.mantissa != 0) base_ = std::min(base_, parts.shift);
-          }
+        for (const SegmentEnd& end : {SegmentEnd::from(segment), SegmentEnd::to(segment)}) {
+          end.for_parts(vertex, [this](const Vec3f& p) {
+            for (const float x : {p.x, p.y, p.z}) {
+              const FloatParts parts = FloatParts::of(x);
+              if (parts.mantissa != 0) base_ = std::min(base_, parts.shift);
+            }
+          });
         }
       }
     }
@@ -94,18 +97,23 @@ class ExactArea {
  private:
   // from 2^t.scale + (to - from) t 2^t.scale
   [[nodiscard]] Point point(std::uint32_t vertex, const UnitFraction& t) const {
-    const Vec3f from = segment_.from[vertex], to = segment_.to[vertex];
-    const std::array<float, 3> a{from.x, from.y, from.z}, b{to.x, to.y, to.z};
+    std::array<WideInteger<14>, 3> start, step;
+    const auto add = [this](const SegmentEnd& end, std::uint32_t of, auto& sum, std::int64_t sign) {
+      end.for_parts(of, [&](const Vec3f& p) {
+        sum[0].add_product(parts(p.x), {1, 0}, sign);
+        sum[1].add_product(parts(p.y), {1, 0}, sign);
+        sum[2].add_product(parts(p.z), {1, 0}, sign);
+      });
+    };
+    add(SegmentEnd::from(segment_), vertex, start, 1);
+    add(SegmentEnd::to(segment_), vertex, step, 1);
+    add(SegmentEnd::from(segment_), vertex, step, -1);
     Point result;
     for (std::size_t k = 0; k < 3; ++k) {
-      WideInteger<14> start, step;
-      start.add_product(parts(a[k]), {1, 0});
-      start.settle();
-      step.add_product(parts(b[k]), {1, 0});
-      step.add_product(parts(a[k]), {1, 0}, -1);
-      step.settle();
-      result[k].add_shifted(start, t.scale);
-      result[k].add_product(step, t);
+      start[k].settle();
+      step[k].settle();
+      result[k].add_shifted(start[k], t.scale);
+      result[k].add_product(step[k], t);
       result[k].settle();
     }
     return result;

@@ -22,6 +22,7 @@
 #include "analysis/signs/exact_roots.h"
 #include "analysis/signs/kernels/facing_lanes.h"
 #include "core/rounding.h"
+#include "motion/segment_end.h"
 #include "normals/control/exact_curve.h"
 #include "normals/control/polygon_normals.h"
 
@@ -65,7 +66,8 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
   const Vec3d from = eye_at(view, view.start), to = eye_at(view, view.end);
   for (std::size_t i = 0; i < faces.count; ++i) {
     const std::uint32_t corner = segment.topology->face(faces.first + i)[0];
-    const Vec3d at_start = from - to_double(segment.from[corner]), at_end = to - to_double(segment.to[corner]);
+    const Vec3d at_start = SegmentEnd::from(segment).way_to(from, corner),
+                at_end = SegmentEnd::to(segment).way_to(to, corner);
     ways.at[0][i] = at_start.x, ways.at[1][i] = at_start.y, ways.at[2][i] = at_start.z;
     ways.at[3][i] = at_end.x, ways.at[4][i] = at_end.y, ways.at[5][i] = at_end.z;
   }
@@ -118,10 +120,8 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
 // 48 u of the largest such product by core/rounding.h, and less for what was made of integers.
 double rounding_of_triangle(const Segment& segment, std::span<const std::uint32_t> corners) noexcept {
   const auto largest_edge = [&segment, corners](std::size_t c) {
-    const auto edge = [corners, c](const VectorView<const float>& points) {
-      return max_abs(to_double(points[corners[c]]) - to_double(points[corners[0]]));
-    };
-    return std::max(edge(segment.from), edge(segment.to));
+    const auto edge = [corners, c](const SegmentEnd& end) { return max_abs(end.edge(corners[0], corners[c])); };
+    return std::max(edge(SegmentEnd::from(segment)), edge(SegmentEnd::to(segment)));
   };
   return 64 * kUnitRoundoff * largest_edge(1) * largest_edge(2);
 }
@@ -168,17 +168,28 @@ unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
   return lowest;
 }
 
+// Where a corner is at an end of the segment: the sum of both.
+struct Place {
+  Vec3d position, residual;
+
+  [[nodiscard]] static Place of(const SegmentEnd& end, std::uint32_t vertex) noexcept {
+    return {to_double(end.position(vertex)), end.residual(vertex)};
+  }
+};
+
 // p - q in integers of one unit.
-WideVector<kPlaceDigits> difference(const Vec3d& p, const Vec3d& q, unsigned shift) noexcept {
+WideVector<kPlaceDigits> difference(const Place& p, const Place& q, unsigned shift) noexcept {
   WideVector<kPlaceDigits> result;
-  const auto set = [shift](double a, double b, WideInteger<kPlaceDigits>& to) {
-    to.add(DoubleParts::of(a), shift);
-    to.add(DoubleParts::of(b), shift, -1);
-    to.settle();
+  const auto add = [&](const Vec3d& v, std::int64_t sign) {
+    result[0].add(DoubleParts::of(v.x), shift, sign);
+    result[1].add(DoubleParts::of(v.y), shift, sign);
+    result[2].add(DoubleParts::of(v.z), shift, sign);
   };
-  set(p.x, q.x, result[0]);
-  set(p.y, q.y, result[1]);
-  set(p.z, q.z, result[2]);
+  add(p.position, 1);
+  add(p.residual, 1);
+  add(q.position, -1);
+  add(q.residual, -1);
+  for (auto& component : result) component.settle();
   return result;
 }
 
@@ -196,12 +207,12 @@ struct Way {
 };
 
 // The way from a corner to an eye that is at view.from and view.to at the ends of the segment, or to a direction.
-Way<kWayDigits> whole_way(const View& view, const Vec3d& from, const Vec3d& to) noexcept {
+Way<kWayDigits> whole_way(const View& view, const Place& from_corner, const Place& to_corner) noexcept {
   Way<kWayDigits> way;
+  const Place from = view.is_eye ? from_corner : Place{}, to = view.is_eye ? to_corner : Place{};
   const unsigned shift =
-      lowest_shift(std::array{view.from, view.to, view.is_eye ? from : Vec3d{}, view.is_eye ? to : Vec3d{}});
-  const auto start = difference(view.from, view.is_eye ? from : Vec3d{}, shift),
-             end = difference(view.to, view.is_eye ? to : Vec3d{}, shift);
+      lowest_shift(std::array{view.from, view.to, from.position, from.residual, to.position, to.residual});
+  const auto start = difference({view.from, {}}, from, shift), end = difference({view.to, {}}, to, shift);
   for (std::size_t k = 0; k < 3; ++k) {
     way.start[k].add(start[k], 1);
     way.change[k].add(end[k], 1);
@@ -213,7 +224,7 @@ Way<kWayDigits> whole_way(const View& view, const Vec3d& from, const Vec3d& to) 
 
 // The way to an eye on a part of its own way, times both wholes of the times: with p / q and r / s for these,
 // q s (view.from - from) + p s (view.to - view.from), and what is added to that until t = 1.
-Way<kPartDigits> part_of_way(const View& view, const Vec3d& from, const Vec3d& to) noexcept {
+Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& to) noexcept {
   constexpr std::size_t kProductDigits = 2 * TimeFraction::kDigits;
   const TimeFraction start = TimeFraction::of(view.start), end = TimeFraction::of(view.end);
   WideInteger<kProductDigits> whole, before, done;
@@ -222,9 +233,10 @@ Way<kPartDigits> part_of_way(const View& view, const Vec3d& from, const Vec3d& t
   done.add_product(end.part, start.whole);
   done.add_product(start.part, end.whole, -1);
   for (auto* one : {&whole, &before, &done}) one->settle();
-  const unsigned shift = lowest_shift(std::array{view.from, view.to, from, to});
-  const auto to_first = difference(view.from, from, shift), moved = difference(view.to, view.from, shift),
-             corner_moved = difference(to, from, shift);
+  const unsigned shift =
+      lowest_shift(std::array{view.from, view.to, from.position, from.residual, to.position, to.residual});
+  const auto to_first = difference({view.from, {}}, from, shift),
+             moved = difference({view.to, {}}, {view.from, {}}, shift), corner_moved = difference(to, from, shift);
   Way<kPartDigits> way;
   for (std::size_t k = 0; k < 3; ++k) {
     way.start[k].add_product(to_first[k], whole);
@@ -255,7 +267,8 @@ auto times_normal(const Segment& segment, std::span<const std::uint32_t> vertice
 template <std::size_t M, class Body>
 void in_integers(const Segment& segment, std::size_t face, const View& view, const Body& body) noexcept {
   const auto vertices = segment.topology->face(face);
-  const Vec3d from = to_double(segment.from[vertices[0]]), to = to_double(segment.to[vertices[0]]);
+  const Place from = Place::of(SegmentEnd::from(segment), vertices[0]),
+              to = Place::of(SegmentEnd::to(segment), vertices[0]);
   if constexpr (M == 4) {
     if (!is_whole_way(view)) return body(times_normal<3>(segment, vertices, part_of_way(view, from, to)));
   }

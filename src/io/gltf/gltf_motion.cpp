@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "chronormal/motion/motion.h"
+#include "core/blocks.h"
 #include "core/portable_math.h"
+#include "core/twofold.h"
 #include "io/bytes/binary.h"
 #include "io/gltf/gltf_weights.h"
 #include "io/gltf/model/gltf_model.h"
@@ -57,7 +59,8 @@ class Assembly {
 
   // Whether so many keyframes can be had, with what they are made from: targets, corners, and other_bytes of weights.
   [[nodiscard]] Status check_memory(std::size_t keyframes, std::size_t most_bytes, std::size_t other_bytes = 0) const {
-    constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kBytesPerCorner = 2 * sizeof(std::uint32_t);
+    constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kWithResiduals = 3 * (sizeof(float) + sizeof(double));
+    constexpr std::size_t kBytesPerCorner = 2 * sizeof(std::uint32_t);
     constexpr std::size_t kBytesPerKeyframe = 128;  // with its segment and its place on the heap
     std::size_t left = most_bytes;
     bool enough = true;
@@ -69,8 +72,8 @@ class Assembly {
     take(keyframes, kBytesPerKeyframe);
     for (const GltfPart& part : parts()) {
       const GltfPrimitive& primitive = document_.meshes()[part.mesh].primitives[part.primitive];
-      const std::size_t copies = keyframes + primitive.targets.size() + 1;  // fewer than 2^40 each
-      take(copies, kBytesPerVertex * part.vertex_count);
+      take(primitive.targets.size() + 1, kBytesPerVertex * part.vertex_count);  // fewer than 2^40 each
+      take(keyframes, kWithResiduals * part.vertex_count);
       take(primitive.element_count, kBytesPerCorner * (primitive.mode == 4 ? 1 : 3));
     }
     if (!enough)
@@ -118,35 +121,27 @@ class Assembly {
   // Adds a keyframe; weights(part) gives the weights of the targets of a part, as a span.
   template <class Weights>
   [[nodiscard]] Status add_keyframe(double time, std::string name, const Weights& weights) {
-    Motion::Keyframe keyframe;
-    keyframe.time = time;
-    keyframe.name = std::move(name);
-    keyframe.positions.reserve(3 * vertex_count_);
+    std::vector<double> high(3 * vertex_count_), low(3 * vertex_count_);
     for (std::size_t p = 0; p < parts().size(); ++p) {
-      const GltfGeometry& geometry = geometries_[p];
-      std::vector<double> sums(geometry.positions.begin(), geometry.positions.end());
+      const std::size_t first = 3 * parts()[p].first_vertex;
       const std::span<const double> part_weights = weights(p);
-      for (std::size_t k = 0; k < geometry.targets.size(); ++k) {
-        const std::vector<float>& deltas = geometry.targets[k].positions;
-        const double weight = part_weights[k];
-        if (weight == 0) continue;
-        for (std::size_t i = 0; i < deltas.size(); ++i) sums[i] += weight * static_cast<double>(deltas[i]);
-      }
-      for (std::size_t i = 0; world_ && i + 2 < sums.size(); i += 3) {
-        const Vec3d placed = transforms_[p]({sums[i], sums[i + 1], sums[i + 2]});
-        sums[i] = placed.x;
-        sums[i + 1] = placed.y;
-        sums[i + 2] = placed.z;
-      }
-      for (std::size_t i = 0; i < sums.size(); ++i) {
-        if (const char* const fault = binary::coordinate_fault(sums[i]))
+      parallel_blocks(3 * parts()[p].vertex_count, kBlockOfCoordinates, [&](IndexRange some) {
+        const LongSums sums = coordinates(p, some, part_weights);
+        const auto place = static_cast<std::ptrdiff_t>(first + some.first);
+        std::copy(sums.high().begin(), sums.high().end(), high.begin() + place);
+        std::copy(sums.low().begin(), sums.low().end(), low.begin() + place);
+      });
+      for (std::size_t i = 0; i < 3 * parts()[p].vertex_count; ++i) {
+        if (const char* const fault = binary::coordinate_fault(high[first + i]))
           return invalid_input(document_.name() + ", " + gltf::primitive_pointer(parts()[p].mesh, parts()[p].primitive),
                                std::string("at keyframe ") + std::to_string(result_.motion.keyframes.size()) +
                                    ", vertex " + std::to_string(i / 3) + ": " + fault);
-        keyframe.positions.push_back(static_cast<float>(sums[i]));
       }
     }
-    result_.motion.keyframes.push_back(std::move(keyframe));
+    Motion::Keyframe& keyframe = result_.motion.keyframes.emplace_back();
+    keyframe.time = time;
+    keyframe.name = std::move(name);
+    keyframe.set_positions(high, low);
     return Success{};
   }
 
@@ -162,6 +157,32 @@ class Assembly {
   [[nodiscard]] GltfMotion finish_without_motion() { return std::move(result_); }
 
  private:
+  static constexpr std::size_t kBlockOfCoordinates = 3 * 2048;
+
+  // The coordinates of one block of vertices of a part at these weights, in the mesh or in the world.
+  [[nodiscard]] LongSums coordinates(std::size_t part, IndexRange some, std::span<const double> weights) const {
+    const GltfGeometry& geometry = geometries_[part];
+    LongSums sums(some.count);
+    sums.add(1, std::span(geometry.positions).subspan(some.first, some.count));
+    for (std::size_t k = 0; k < geometry.targets.size(); ++k) {
+      const std::vector<float>& deltas = geometry.targets[k].positions;
+      if (weights[k] != 0 && !deltas.empty()) sums.add(weights[k], std::span(deltas).subspan(some.first, some.count));
+    }
+    sums.settle();
+    const auto& [columns, offset] = transforms_[part];
+    for (std::size_t i = 0; world_ && i < some.count; i += 3) {
+      const Twofold x = sums[i], y = sums[i + 1], z = sums[i + 2];
+      const auto placed = [&](double Vec3d::*axis) {
+        return Twofold{columns[0].*axis, 0} * x + Twofold{columns[1].*axis, 0} * y + Twofold{columns[2].*axis, 0} * z +
+               Twofold{offset.*axis, 0};
+      };
+      sums.set(i, placed(&Vec3d::x));
+      sums.set(i + 1, placed(&Vec3d::y));
+      sums.set(i + 2, placed(&Vec3d::z));
+    }
+    return sums;
+  }
+
   const GltfDocument& document_;
   bool world_;
   GltfMotion result_;
@@ -210,7 +231,7 @@ class AnimationReader {
   Result<GltfMotion> read() {
     if (Status status = read_curves(); !status) return status.error();
     if (Status status = find_times(); !status) return status.error();
-    if (Status status = assembly_.check_memory(2 * keys_.size(), options_.most_bytes, weight_bytes_); !status)
+    if (Status status = assembly_.check_memory(keyframes_of(keys_.size()), options_.most_bytes, weight_bytes_); !status)
       return status.error();
     if (Status status = assembly_.read(true); !status) return status.error();
     measure();
@@ -265,6 +286,12 @@ class AnimationReader {
       return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
                            "all weights have a single key, so that nothing moves");
     return Success{};
+  }
+
+  // The most keyframes that so many pieces of time have: one at each end, and two where weights jump.
+  [[nodiscard]] std::size_t keyframes_of(std::size_t pieces) const {
+    const bool jump = std::any_of(curves_.begin(), curves_.end(), [](const WeightCurve& c) { return c.jumps(); });
+    return jump ? 2 * pieces : pieces + 1;
   }
 
   // The largest way that a weight of 1 moves a vertex, of every target of every part; and the size of the whole.
@@ -327,7 +354,7 @@ class AnimationReader {
                              "the cubic splines bend too much: they would be cut into more than " +
                                  std::to_string(kMostPieces) + " straight pieces");
       const auto count = static_cast<std::size_t>(std::max(wanted, 1.0));
-      const std::size_t keyframes = 2 * (pieces_.size() + count);
+      const std::size_t keyframes = keyframes_of(pieces_.size() + count);
       if (Status status = assembly_.check_memory(keyframes, options_.most_bytes, weight_bytes_); !status) return status;
       for (std::size_t i = 0; i < count; ++i)
         pieces_.push_back(from + duration * (static_cast<double>(i) / static_cast<double>(count)));

@@ -18,6 +18,9 @@ class WeightCurve {
   WeightCurve(GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count)
       : target_count_(target_count), interpolation_(interpolation), keys_(std::move(keys)) {}
 
+  /// Whether weights just before a key may be others than at the key.
+  [[nodiscard]] bool jumps() const noexcept { return interpolation_ == GltfInterpolation::kStep; }
+
   [[nodiscard]] std::span<const double> times() const noexcept { return keys_.times; }
 
   /// Writes the weights at a time; where they jump, those just after it or just before it.

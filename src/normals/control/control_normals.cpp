@@ -7,6 +7,7 @@
 #include "chronormal/core/polynomial.h"
 #include "core/rounding.h"
 #include "core/vector_area.h"
+#include "motion/segment_end.h"
 #include "normals/control/exact_curve.h"
 #include "normals/control/kernels/face_tiles.h"
 #include "normals/control/local_time.h"
@@ -35,10 +36,8 @@ UnitNormal first_direction(const Vec3d& at_end, const Vec3d& middle, const Vec3d
 inline namespace internal {
 PolygonNormals polygon_control_normals(const Segment& segment, std::span<const std::uint32_t> face) noexcept {
   CrossSum n0, m, n1;
-  const Vec3d a0 = to_double(segment.from[face[0]]), a1 = to_double(segment.to[face[0]]);
-  const auto edge_to = [&](std::size_t c) {
-    return Edge{to_double(segment.from[face[c]]) - a0, to_double(segment.to[face[c]]) - a1};
-  };
+  const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
+  const auto edge_to = [&](std::size_t c) { return Edge{from.edge(face[0], face[c]), to.edge(face[0], face[c])}; };
   for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& f) {
     n0.add(e.from, f.from);
     n1.add(e.to, f.to);
@@ -60,7 +59,7 @@ void face_control_normals(const Segment& segment, IndexRange faces, std::span<Co
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
   // A kernel starts with a block of faces; for one alone it does not pay.
   constexpr std::size_t kFewest = 4;
-  if (segment.topology->all_triangles() && faces.count >= kFewest) {
+  if (fits_lanes(segment) && faces.count >= kFewest) {
     triangle_control_normals(segment, faces, result);
     return;
   }

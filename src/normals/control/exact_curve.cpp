@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "motion/segment_end.h"
+
 namespace chronormal::inline internal {
 namespace {
 
@@ -14,6 +16,18 @@ struct PointParts {
     PointParts parts{{FloatParts::of(p.x), FloatParts::of(p.y), FloatParts::of(p.z)}};
     for (FloatParts& part : parts.at) part.shift = part.mantissa == 0 ? 0 : part.shift - base;
     return parts;
+  }
+};
+
+// The place of a vertex as integers that add up to it.
+struct PlaceParts {
+  std::array<PointParts, SegmentEnd::kMostParts> parts;
+  std::size_t count = 0;
+
+  [[nodiscard]] static PlaceParts of(const SegmentEnd& end, std::uint32_t vertex, unsigned base) noexcept {
+    PlaceParts place;
+    end.for_parts(vertex, [&](const Vec3f& part) { place.parts[place.count++] = PointParts::of(part, base); });
+    return place;
   }
 };
 
@@ -33,6 +47,12 @@ void add_cross(const PointParts& p, const PointParts& q, std::array<WideInteger<
     sum[k].add_product(p.at[i], q.at[j]);
     sum[k].add_product(p.at[j], q.at[i], -1);
   }
+}
+
+template <std::size_t kDigits>
+void add_cross(const PlaceParts& p, const PlaceParts& q, std::array<WideInteger<kDigits>, 3>& sum) noexcept {
+  for (std::size_t i = 0; i < p.count; ++i)
+    for (std::size_t k = 0; k < q.count; ++k) add_cross(p.parts[i], q.parts[k], sum);
 }
 
 // With every factor t as well: 2 (53 + 200) bits more.
@@ -101,12 +121,12 @@ ScaledVector slope_at(const std::array<ExactCurve::CoefficientVector, 3>& c, con
 }  // namespace
 
 void ExactCurve::add_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept {
-  const auto at = [this](const VectorView<const float>& points, std::uint32_t vertex) {
-    return PointParts::of(points[vertex], base_);
-  };
-  PointParts from = at(segment.from, vertices.back()), to = at(segment.to, vertices.back());
+  const SegmentEnd at_start = SegmentEnd::from(segment), at_end = SegmentEnd::to(segment);
+  PlaceParts from = PlaceParts::of(at_start, vertices.back(), base_),
+             to = PlaceParts::of(at_end, vertices.back(), base_);
   for (const std::uint32_t vertex : vertices) {
-    const PointParts next_from = at(segment.from, vertex), next_to = at(segment.to, vertex);
+    const PlaceParts next_from = PlaceParts::of(at_start, vertex, base_),
+                     next_to = PlaceParts::of(at_end, vertex, base_);
     add_cross(from, next_from, n0_);
     add_cross(from, next_to, twice_m_);
     add_cross(to, next_from, twice_m_);
@@ -137,7 +157,8 @@ ExactCurve ExactCurve::of(const Segment& segment, const Body& for_polygons) noex
   unsigned lowest = kHighest;
   for_polygons([&](std::span<const std::uint32_t> vertices) {
     for (const std::uint32_t vertex : vertices)
-      lowest = lowest_shift(segment.to[vertex], lowest_shift(segment.from[vertex], lowest));
+      for (const SegmentEnd& end : {SegmentEnd::from(segment), SegmentEnd::to(segment)})
+        end.for_parts(vertex, [&lowest](const Vec3f& part) { lowest = lowest_shift(part, lowest); });
   });
   curve.base_ = lowest;
   for_polygons([&](std::span<const std::uint32_t> vertices) { curve.add_polygon(segment, vertices); });

@@ -12,6 +12,7 @@
 
 #include "core/blocks.h"
 #include "motion/coherence.h"
+#include "motion/segment_end.h"
 #include "normals/curves/curve_sources.h"
 #include "normals/curves/kernels/curve_blocks.h"
 #include "normals/curves/kernels/pack.h"
@@ -211,7 +212,8 @@ bool are_far_apart(const Segment& segment) { return lines_per_face(*segment.topo
 // Whether both ends of each vertex must be copied side by side first.
 bool needs_ends(const Segment& segment, const NormalGroups* groups) {
   const bool near = segment.from.count * 6 * sizeof(float) <= kNearBytes;
-  return !near && (groups != nullptr || segment.topology->all_triangles()) && are_far_apart(segment);
+  return !near && !has_residuals(segment) && (groups != nullptr || segment.topology->all_triangles()) &&
+         are_far_apart(segment);
 }
 
 // The same for both kinds of elements. Of groups that are scattered, points are asked for before they are needed.

@@ -17,6 +17,7 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
+#include "motion/segment_end.h"
 #include "normals/control/exact_curve.h"
 #include "normals/control/kernels/control_tile.h"
 #include "normals/control/kernels/face_tiles.h"
@@ -67,14 +68,14 @@ class FaceNormals {
 
   void write(IndexRange faces, std::span<ControlTile> tiles) const { face_control_tiles(segment_, faces, tiles); }
   void write(IndexRange faces, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const {
-    if (segment_.topology->all_triangles()) {
+    if (fits_lanes(segment_)) {
       face_control_tiles(segment_, faces, tiles, bounded);
     } else {
       face_control_tiles(segment_, faces, tiles);
       put_each(*this, faces, bounded);
     }
   }
-  [[nodiscard]] bool has_float() const { return segment_.topology->all_triangles(); }
+  [[nodiscard]] bool has_float() const { return fits_lanes(segment_); }
   void write_in_float(IndexRange faces, std::span<ControlTile> tiles) const {
     float_triangle_tiles(segment_, faces, tiles);
   }
@@ -98,9 +99,14 @@ class GroupNormals {
 
   void write(IndexRange elements, std::span<ControlTile> tiles) const { tiles_.write(elements, tiles); }
   void write(IndexRange elements, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const {
-    tiles_.write(elements, tiles, bounded);
+    if (has_residuals(segment_)) {
+      tiles_.write(elements, tiles);
+      put_each(*this, elements, bounded);
+    } else {
+      tiles_.write(elements, tiles, bounded);
+    }
   }
-  [[nodiscard]] bool has_float() const { return true; }
+  [[nodiscard]] bool has_float() const { return !has_residuals(segment_); }
   void write_in_float(IndexRange elements, std::span<ControlTile> tiles) const {
     tiles_.write_in_float(elements, tiles);
   }

@@ -36,11 +36,8 @@ std::vector<std::uint32_t> faces_by_vertices(const Topology& topology) {
   return order;
 }
 
-std::vector<Vec3d> unit_face_normals(const Topology& topology, const Motion::Keyframe& keyframe) {
-  Segment still;
-  still.topology = &topology;
-  still.from = still.to = VectorView<const float>::packed(keyframe.positions.data(), topology.vertex_count());
-  std::vector<Vec3d> normals(topology.face_count());
+std::vector<Vec3d> unit_face_normals(const Segment& still) {
+  std::vector<Vec3d> normals(still.topology->face_count());
   for (std::size_t f = 0; f < normals.size(); ++f) {
     ControlNormals control;
     face_control_normals(still, {f, 1}, {&control, 1});
@@ -140,7 +137,7 @@ Result<NormalGroups> NormalGroups::by_crease_angle(const Motion& motion, const P
   assert(!motion.keyframes.empty());
   assert(points.point_of_vertex.size() == topology.vertex_count());
   const double crease = degrees * kRadiansPerDegree + kCreaseRounding;
-  const std::vector<Vec3d> normals = unit_face_normals(topology, motion.keyframes.front());
+  const std::vector<Vec3d> normals = unit_face_normals(still_segment(topology, motion.keyframes.front()));
   const std::vector<std::uint32_t> face_of_corner = face_of_each_corner(topology);
 
   const auto smooth = [&](std::uint32_t f, std::uint32_t g) {

@@ -18,6 +18,7 @@
 #include "core/rounding.h"
 #include "core/vector_area.h"
 #include "motion/coherence.h"
+#include "motion/segment_end.h"
 #include "normals/control/exact_curve.h"
 #include "normals/control/local_time.h"
 #include "normals/curves/curve_elements.h"
@@ -48,13 +49,13 @@ struct NormalAtTime {
 NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTime& time) {
   const auto face = segment.topology->face(f);
   const double s = time.rest, t = time.t;
-  const Vec3d a0 = to_double(segment.from[face[0]]), a1 = to_double(segment.to[face[0]]);
+  const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
   struct Edge {
     Vec3d at;
     double size;
   };
   const auto edge_to = [&](std::size_t c) {
-    const Vec3d e0 = to_double(segment.from[face[c]]) - a0, e1 = to_double(segment.to[face[c]]) - a1;
+    const Vec3d e0 = from.edge(face[0], face[c]), e1 = to.edge(face[0], face[c]);
     return Edge{s * e0 + t * e1, s * sum_abs(e0) + t * sum_abs(e1)};
   };
   NormalAtTime result;
@@ -128,7 +129,7 @@ QuickNormal quick_normal(const Segment& segment, std::size_t f, const LocalTime&
 }
 
 FaceNormal face_normal(const Segment& segment, std::size_t f, const LocalTime& t) {
-  if (segment.topology->all_triangles()) {
+  if (fits_lanes(segment)) {
     const QuickNormal quick = quick_normal(segment, f, t);
     if (quick.is_trusted) return {quick.n.x, quick.n.y, quick.n.z, quick.error};
   }
@@ -150,7 +151,7 @@ UnitNormal fine_unit_normal(const Segment& segment, std::size_t f, const LocalTi
 }
 
 UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, const LocalTime& t) {
-  if (segment.topology->all_triangles()) {
+  if (fits_lanes(segment)) {
     const QuickNormal quick = quick_normal(segment, f, t);
     if (quick.is_trusted) return {to_double(quick.unit), Direction::kRegular};
   }
@@ -227,7 +228,7 @@ class Call {
   Call(const Segment& segment, const LocalTime& t, VectorView<float> result, std::size_t first)
       : segment_(segment), t_(t), result_(result), first_(first) {
     const Topology& topology = *segment.topology;
-    by_kernel_ = topology.all_triangles() && is_packed(segment.from) && is_packed(segment.to);
+    by_kernel_ = fits_lanes(segment) && is_packed(segment.from) && is_packed(segment.to);
     stream_ = (2 * segment.from.count + result.count) * 3 * sizeof(float) > kStreamFrom;
     triangles_.corners = topology.corners().data();
     triangles_.face_count = topology.face_count();
@@ -429,7 +430,7 @@ NormalRecompute::Parts::Parts(const Segment& of_segment, const NormalGroups* of_
     : segment(of_segment), groups(of_groups) {
   const Topology& topology = *segment.topology;
   const std::size_t faces = topology.face_count(), vertices = topology.vertex_count();
-  if (topology.all_triangles() && faces > 0) {
+  if (fits_lanes(segment) && faces > 0) {
     scratch.vertices_are_near =
         vertices * 6 * sizeof(float) <= kNearBytes || lines_per_face(topology) <= kMostLinesPerFace;
     if (!scratch.vertices_are_near || !is_packed(segment.from) || !is_packed(segment.to))

@@ -15,6 +15,7 @@
 #include "core/memory.h"
 #include "core/portable_math.h"
 #include "motion/coherence.h"
+#include "motion/segment_end.h"
 #include "normals/curves/curve_sources.h"
 #include "normals/curves/kernels/pack.h"
 #include "normals/curves/part_builder.h"
@@ -175,7 +176,7 @@ void find_doubtful(Source& source, std::size_t size, MeshShape& shape) {
 double thin_share(const Segment& segment) {
   constexpr std::size_t kSamples = 8;
   constexpr double kInstants[] = {0.125, 0.375, 0.625, 0.875};
-  if (!segment.topology->all_triangles()) return 0;
+  if (!fits_lanes(segment)) return 0;
   const std::size_t tiles = segment.topology->face_count() / kTile, samples = std::min(tiles, kSamples);
   const auto is_thin = [&segment](std::size_t face, double t) {
     const auto corners = segment.topology->face(face);

@@ -11,6 +11,7 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/weighting.h"
 #include "core/rounding.h"
+#include "motion/segment_end.h"
 #include "normals/groups/corner_sets.h"
 
 namespace chronormal::inline internal {
@@ -34,8 +35,7 @@ struct MovingEdge {
 
   [[nodiscard]] static MovingEdge at(const Segment& segment, std::uint32_t from, std::uint32_t to,
                                      const LocalTime& t) noexcept {
-    const Vec3d e0 = to_double(segment.from[to]) - to_double(segment.from[from]);
-    const Vec3d e1 = to_double(segment.to[to]) - to_double(segment.to[from]);
+    const Vec3d e0 = SegmentEnd::from(segment).edge(from, to), e1 = SegmentEnd::to(segment).edge(from, to);
     return {t.rest * e0 + t.t * e1, t.rest * max_abs(e0) + t.t * max_abs(e1)};
   }
 };

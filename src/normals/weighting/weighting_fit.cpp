@@ -42,9 +42,15 @@ std::array<Interval, 3> difference(const Vec3d& a, const Vec3d& b) {
   return {p(a.x) - p(b.x), p(a.y) - p(b.y), p(a.z) - p(b.z)};
 }
 
+std::array<Interval, 3> edge_at(const SegmentEnd& end, std::uint32_t a, std::uint32_t b) {
+  std::array<Interval, 3> edge = difference(to_double(end.position(b)), to_double(end.position(a)));
+  const std::array<Interval, 3> more = difference(end.residual(b), end.residual(a));
+  for (std::size_t i = 0; i < 3; ++i) edge[i] = edge[i] + more[i];
+  return edge;
+}
+
 IntervalEdge edge_between(const Segment& segment, std::uint32_t a, std::uint32_t b) {
-  return {difference(to_double(segment.from[b]), to_double(segment.from[a])),
-          difference(to_double(segment.to[b]), to_double(segment.to[a]))};
+  return {edge_at(SegmentEnd::from(segment), a, b), edge_at(SegmentEnd::to(segment), a, b)};
 }
 
 std::array<Interval, 3> cross_of(const std::array<Interval, 3>& a, const std::array<Interval, 3>& b) {
@@ -225,7 +231,8 @@ struct Element {
     if (weighting == Weighting::kUniform) return true;
     const CornerVertices v = corner_vertices(*segment->topology, corners[c], faces[c]);
     const auto apart = [&](std::uint32_t other) {
-      return segment->from[v.here] != segment->from[other] || segment->to[v.here] != segment->to[other];
+      return SegmentEnd::from(*segment).edge(v.here, other) != Vec3d{} ||
+             SegmentEnd::to(*segment).edge(v.here, other) != Vec3d{};
     };
     return apart(v.next) && apart(v.previous);
   }

@@ -168,12 +168,6 @@ std::size_t count_marked(const FaceMarks& marks, Mark mark) {
       std::count_if(marks.begin(), marks.end(), [mark](const auto& bits) { return (bits & mark) != 0; }));
 }
 
-Segment still_segment(const Motion& motion, std::size_t keyframe) {
-  const auto positions =
-      VectorView<const float>::packed(motion.keyframes[keyframe].positions.data(), motion.topology.vertex_count());
-  return {&motion.topology, positions, positions, 0, 1, 0};
-}
-
 // How long a normal may be that is nothing but the rounding of its positions.
 double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> positions) {
   double coordinate = 0, edge = 0;
@@ -350,7 +344,7 @@ Result<Inspection> inspect(MotionStream& stream,
     return moves(s) ? motion.segments[s] : Motion::SegmentKeys{still[s - segment_count], still[s - segment_count]};
   };
   const auto segment_of = [&](std::size_t s) {
-    return moves(s) ? motion.segment(s) : still_segment(motion, keys_of(s).from);
+    return moves(s) ? motion.segment(s) : still_segment(topology, motion.keyframes[keys_of(s).from]);
   };
   const auto judges_from = [&](std::size_t s) { return !moves(s) || judge[keys_of(s).from] == s; };
   const auto judges_to = [&](std::size_t s) { return moves(s) && judge[keys_of(s).to] == s; };

@@ -16,6 +16,8 @@
 #include "chronormal/normals/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
+#include "core/twofold.h"
+#include "motion/segment_end.h"
 #include "normals/curves/path_stream.h"
 
 namespace chronormal {
@@ -32,79 +34,24 @@ std::string counted(std::size_t count, const std::string& what) {
 
 float clamped_to_float(double value) { return static_cast<float>(std::clamp(value, -kLargestFloat, kLargestFloat)); }
 
-VectorView<const float> positions_of(const Motion& motion, std::size_t keyframe) {
-  return VectorView<const float>::packed(motion.keyframes[keyframe].positions.data(), motion.topology.vertex_count());
-}
-
-// One keyframe that does not move.
-Segment standing_still(const Motion& motion) {
-  return {&motion.topology, positions_of(motion, 0), positions_of(motion, 0)};
-}
-
 std::vector<float> positions_at(const Segment& segment, double t) {
   std::vector<float> positions(3 * segment.from.count);
   const auto result = VectorView<float>::packed(positions.data(), segment.from.count);
-  parallel_each(segment.from.count, kBlock, [&](std::size_t v) {
-    result.set(v, to_float(lerp(to_double(segment.from[v]), to_double(segment.to[v]), t)));
-  });
+  const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
+  parallel_each(segment.from.count, kBlock, [&](std::size_t v) { result.set(v, to_float(lerp(from[v], to[v], t))); });
   return positions;
 }
 
-// Positions in double, as the point half way between two in float32: one takes what the other had to round. So a pose
-// is a segment at t = 1/2, and loses nothing.
-struct DoublePose {
-  static constexpr double kMiddle = 0.5;
-  std::vector<float> from, to, rounded;
-
-  void push_back(double coordinate) {
-    const float twice = clamped_to_float(2 * coordinate);
-    from.push_back(twice);
-    to.push_back(static_cast<float>(2 * coordinate - double{twice}));
-    rounded.push_back(static_cast<float>(coordinate));
+// Positions that were computed, as a keyframe. Refuses those beyond float32.
+Result<Motion::Keyframe> pose_of(const LongSums& positions, const std::string& mover) {
+  for (std::size_t i = 0; i < positions.high().size(); ++i) {
+    if (!(std::fabs(positions.high()[i]) <= kLargestFloat))
+      return misuse(mover + " vertex " + std::to_string(i / 3) + " out of the range of float32");
   }
-  // It refers to this pose.
-  [[nodiscard]] Segment segment(const Topology& topology) const {
-    return {&topology, VectorView<const float>::packed(from.data(), from.size() / 3),
-            VectorView<const float>::packed(to.data(), to.size() / 3)};
-  }
-};
-
-// Refuses positions beyond float32.
-Result<DoublePose> double_pose(const std::vector<Vec3d>& positions, const std::string& mover) {
-  DoublePose pose;
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    for (const double coordinate : {positions[v].x, positions[v].y, positions[v].z}) {
-      if (!(std::fabs(coordinate) <= kLargestFloat))
-        return misuse(mover + " vertex " + std::to_string(v) + " out of the range of float32");
-      pose.push_back(coordinate);
-    }
-  }
+  Motion::Keyframe pose;
+  pose.set_positions(positions.high(), positions.low());
   return pose;
 }
-
-// A sum of products of doubles and floats in twice the digits of double, so that what cancels leaves no rounding: each
-// product is the sum of two that are exact, and what an addition loses is added up beside it.
-class LongSum {
- public:
-  void add(double factor, float value) noexcept {
-    // The upper half of the digits of the factor has 26 of them (Dekker 1971), and so have products 50.
-    const double far = 0x1p27 * factor, large = far + factor - far;
-    const double upper = std::isfinite(large) ? large : factor;
-    add(upper * static_cast<double>(value));
-    add((factor - upper) * static_cast<double>(value));
-  }
-  void add(double term) noexcept {
-    const double sum = high_ + term, of_term = sum - high_;
-    low_ += (high_ - (sum - of_term)) + (term - of_term);
-    high_ = sum;
-  }
-  [[nodiscard]] double high() const noexcept { return high_; }
-  [[nodiscard]] double low() const noexcept { return low_; }
-  [[nodiscard]] double value() const noexcept { return high_ + low_; }
-
- private:
-  double high_ = 0, low_ = 0;
-};
 
 std::vector<Vec3d> all_face_normals_at(const Segment& segment, const LocalTime& t) {
   std::vector<Vec3d> normals(segment.topology->face_count());
@@ -232,9 +179,16 @@ Result<Pose> NormalSampler::pose_on_curve(std::size_t segment, double t) {
     if (are_exact_units())
       path_curves_ = are_faces() ? PathCurves(*curve_, Threads::kAll) : PathCurves(*curve_, *groups_, Threads::kAll);
   }
-  Result<DoublePose> pose = double_pose(positions_at(*curve_, t), "this path moves");
+  const std::vector<Vec3d> places = positions_at(*curve_, t);
+  LongSums coordinates(3 * places.size());
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    coordinates.set(3 * v, {places[v].x, 0});
+    coordinates.set(3 * v + 1, {places[v].y, 0});
+    coordinates.set(3 * v + 2, {places[v].z, 0});
+  }
+  const Result<Motion::Keyframe> pose = pose_of(coordinates, "this path moves");
   if (!pose) return pose.error();
-  Pose result{std::move(pose.value().rounded), {}};
+  Pose result{pose.value().positions, {}};
   if (are_exact_units()) {
     result.normals.resize(3 * element_count());
     path_curves_.unit_normals(t, VectorView<float>::packed(result.normals.data(), element_count()), Threads::kAll);
@@ -250,10 +204,10 @@ Result<Pose> NormalSampler::pose_on_curve(std::size_t segment, double t) {
     result.normals = as_asked(of_faces);
     return result;
   }
-  const Segment segment_at_t = pose.value().segment(motion_->topology);
+  const Segment segment_at_t = still_segment(motion_->topology, pose.value());
   std::vector<Vec3d> of_elements(element_count());
   parallel_blocks(of_elements.size(), kBlock, [&](IndexRange elements) {
-    weighted_normals_at(segment_at_t, *groups_, options_.weighting, DoublePose::kMiddle, of_faces, elements,
+    weighted_normals_at(segment_at_t, *groups_, options_.weighting, 0.0, of_faces, elements,
                         std::span(of_elements).subspan(elements.first, elements.count));
   });
   result.normals = as_asked(of_elements);
@@ -265,37 +219,27 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   if (Status status = stream_->hold_all(); !status) return status.error();
   // base + sum of w (target - base), in an order in which nothing is lost where these are far apart: what is left of the
   // base is 1 - sum of w, which is nothing for a single target of weight 1.
-  LongSum rest;
-  rest.add(1);
-  for (const double weight : weights) rest.add(-weight);
-  const auto base = positions_of(*motion_, 0);
-  std::vector<Vec3d> positions(base.count);
-  parallel_blocks(base.count, kBlock, [&](IndexRange vertices) {
-    std::vector<std::array<LongSum, 3>> sums(vertices.count);
-    const auto add = [&](double weight, const VectorView<const float>& points) {
-      if (weight == 0) return;
-      for (std::size_t i = 0; i < vertices.count; ++i) {
-        const Vec3f p = points[vertices.first + i];
-        sums[i][0].add(weight, p.x);
-        sums[i][1].add(weight, p.y);
-        sums[i][2].add(weight, p.z);
-      }
-    };
-    add(rest.high(), base);
-    add(rest.low(), base);
-    for (std::size_t k = 0; k < weights.size(); ++k) add(weights[k], positions_of(*motion_, k + 1));
-    for (std::size_t i = 0; i < vertices.count; ++i)
-      positions[vertices.first + i] = {sums[i][0].value(), sums[i][1].value(), sums[i][2].value()};
-  });
+  Twofold rest{1, 0};
+  for (const double weight : weights) rest = rest + Twofold{-weight, 0};
+  LongSums positions(3 * motion_->topology.vertex_count());
+  const auto add = [&](double weight, const Motion::Keyframe& keyframe) {
+    if (weight == 0) return;
+    positions.add(weight, keyframe.positions);
+    if (!keyframe.residuals.empty()) positions.add(weight, keyframe.residuals);
+  };
+  add(rest.high, motion_->keyframes[0]);
+  add(rest.low, motion_->keyframes[0]);
+  for (std::size_t k = 0; k < weights.size(); ++k) add(weights[k], motion_->keyframes[k + 1]);
+  positions.settle();
 
-  Result<DoublePose> pose = double_pose(positions, "these weights move");
+  Result<Motion::Keyframe> pose = pose_of(positions, "these weights move");
   if (!pose) return pose.error();
-  const Segment segment = pose.value().segment(motion_->topology);
-  return Pose{std::move(pose.value().rounded), normals_anew(segment, DoublePose::kMiddle)};
+  const std::vector<float> normals = normals_anew(still_segment(motion_->topology, pose.value()), 0.0);
+  return Pose{std::move(pose.value().positions), normals};
 }
 
 Pose NormalSampler::at_rest() const {
-  return {motion_->keyframes[0].positions, normals_anew(standing_still(*motion_), 0)};
+  return {motion_->keyframes[0].positions, normals_anew(still_segment(motion_->topology, motion_->keyframes[0]), 0.0)};
 }
 
 }  // namespace chronormal

@@ -63,6 +63,7 @@ Status KeyframeChecksums::begin() {
 Status KeyframeChecksums::take(std::size_t keyframe, std::span<const float> positions) {
   NumberChecksum sum;
   sum.add(positions);
+  for (const double residual : stream_.motion().keyframes[keyframe].residuals) sum.add(residual);
   const std::lock_guard lock(mutex_);
   const auto [known, is_new] = of_keyframe_.emplace(keyframe, sum.value());
   if (is_new || known->second == sum.value()) return Success{};

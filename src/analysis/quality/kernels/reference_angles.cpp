@@ -16,6 +16,7 @@
 #include <limits>
 
 #include "chronormal/analysis/quality.h"
+#include "motion/segment_end.h"
 #include "simd/angles-inl.h"
 
 #if !defined(CHRONORMAL_ANALYSIS_REFERENCE_ANGLES_ONCE)
@@ -131,10 +132,10 @@ ReferenceTriangles::ReferenceTriangles(const Segment& segment, IndexRange faces)
   assert(segment.topology->all_triangles() && faces.end() <= segment.topology->face_count());
   for (std::size_t i = 0; i < faces.count; ++i) {
     const auto face = segment.topology->face(faces.first + i);
-    const Vec3d origin = to_double(segment.from[face[0]]);
-    const Vec3d parts[] = {to_double(segment.to[face[0]]) - origin, to_double(segment.from[face[1]]) - origin,
-                           to_double(segment.to[face[1]]) - origin, to_double(segment.from[face[2]]) - origin,
-                           to_double(segment.to[face[2]]) - origin};
+    const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
+    const Vec3d parts[] = {to.way_from(from, face[0], face[0]), from.edge(face[0], face[1]),
+                           to.way_from(from, face[0], face[1]), from.edge(face[0], face[2]),
+                           to.way_from(from, face[0], face[2])};
     double* const first = edges_.data() + i / kGroup * kGroup * kValues + i % kGroup;
     for (std::size_t k = 0; k < 5; ++k) {
       first[(3 * k) * kGroup] = parts[k].x;

@@ -34,7 +34,7 @@ void FaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles) {
 
 void EdgedFaceTiles(const Segment& segment, IndexRange faces, ControlTile* tiles, EdgedTile* exact) {
   const PointAccess access = AccessOf(segment);
-  const bool has_edges = segment.topology->all_triangles();
+  const bool has_edges = fits_lanes(segment);
   for (std::size_t f = faces.first; f < faces.end(); f += kTile, ++exact) {
     if (!has_edges) std::fill_n(exact->longest, kTile, std::numeric_limits<float>::infinity());
     FaceTile(segment, access, f, faces.end(), *exact, {.longest = exact->longest});

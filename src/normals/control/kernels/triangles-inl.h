@@ -17,6 +17,7 @@
 #include "chronormal/motion/motion.h"
 #include "core/rounding.h"
 #include "motion/coherence.h"
+#include "motion/segment_end.h"
 #include "normals/control/kernels/control_tile.h"
 #include "normals/control/kernels/exact_tile.h"
 #include "simd/intrinsics-inl.h"
@@ -307,7 +308,7 @@ HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::s
 // first < end
 HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                          ExactTile& tile, const TileExtras& extras = {}) {
-  if (!segment.topology->all_triangles()) {
+  if (!fits_lanes(segment)) {
     for (std::size_t i = 0; i < kTile; ++i) set_polygon(segment, std::min(first + i, end - 1), i, tile);
     return;
   }

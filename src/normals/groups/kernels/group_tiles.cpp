@@ -360,6 +360,10 @@ void GroupTiles::write(IndexRange elements, std::span<ControlTile> tiles) const 
   assert(elements.first % kTile == 0 && (elements.count % kTile == 0 || elements.end() == groups_->size()));
   assert(tiles.size() == (elements.count + kTile - 1) / kTile);
   const RingInput input{segment_, *groups_, rings_->view(), fetch_};
+  if (has_residuals(segment_)) {
+    for (std::size_t element = elements.first; element < elements.end(); ++element) set_alone(element, elements, tiles);
+    return;
+  }
   HWY_DYNAMIC_DISPATCH(GroupTilesOf)(input, elements, tiles.data(), nullptr);
   for (const std::size_t element : left_out(elements)) set_alone(element, elements, tiles);
 }
