@@ -7,6 +7,9 @@
 #   chronormal_cli   the program                                          (CHRONORMAL_PROGRAM)
 if(EMSCRIPTEN)
   include(cmake/wasm.cmake)
+elseif(CHRONORMAL_STATIC)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+  include(cmake/sources.cmake)
 else()
   find_package(hwy QUIET)
   find_package(Threads REQUIRED)
@@ -21,14 +24,14 @@ option(CHRONORMAL_HIGHWAY "Compile kernels with Google Highway, for every instru
 if(CHRONORMAL_HIGHWAY AND NOT has_highway)
   message(FATAL_ERROR "CHRONORMAL_HIGHWAY is ON, and Google Highway was not found (Debian: libhwy-dev)")
 endif()
-if(CHRONORMAL_IO AND NOT EMSCRIPTEN)
+if(CHRONORMAL_IO AND NOT TARGET ZLIB::ZLIB)
   find_package(ZLIB REQUIRED)
   find_package(pugixml REQUIRED)
   find_package(nlohmann_json REQUIRED)
   find_package(meshoptimizer REQUIRED)
   find_package(draco REQUIRED)
 endif()
-if(CHRONORMAL_PROGRAM AND NOT EMSCRIPTEN)
+if(CHRONORMAL_PROGRAM AND NOT TARGET fmt::fmt)
   find_package(CLI11 REQUIRED)
   find_package(fmt REQUIRED)
 endif()
@@ -48,6 +51,10 @@ else()
 endif()
 set_source_files_properties(src/io/gltf/glb/glb_builder.cpp src/workflow/json/json.cpp
                             PROPERTIES COMPILE_DEFINITIONS CHRONORMAL_VERSION="${PROJECT_VERSION}")
+if(CHRONORMAL_REPORT_PAGE)
+  set_source_files_properties(cli/commands/built_in_page.cpp PROPERTIES OBJECT_DEPENDS ${CHRONORMAL_REPORT_PAGE}
+                              COMPILE_DEFINITIONS CHRONORMAL_REPORT_PAGE="${CHRONORMAL_REPORT_PAGE}")
+endif()
 
 # chronormal_compile_together(TARGET SOURCES...): where CHRONORMAL_UNITY asks for it, up to eight files of a folder are one
 # to the compiler, which reads their headers and makes their templates once. Files of different folders are never
@@ -150,6 +157,9 @@ function(chronormal_add_product suffix flags)
   target_compile_definitions(chronormal_cli${suffix} PRIVATE CHRONORMAL_VERSION="${PROJECT_VERSION}")
   target_link_libraries(chronormal_cli${suffix} PRIVATE chronormal_io${suffix} ${flags} CLI11::CLI11 fmt::fmt
                                                         nlohmann_json::nlohmann_json)
+  if(CHRONORMAL_STATIC)
+    target_link_options(chronormal_cli${suffix} PRIVATE -static-pie)  # which the system may load anywhere
+  endif()
   if(CHRONORMAL_MPI)
     target_link_libraries(chronormal_cli${suffix} PRIVATE MPI::MPI_CXX)
   endif()

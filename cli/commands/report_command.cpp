@@ -9,6 +9,7 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/report.h"
+#include "cli/commands/built_in_page.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
 #include "cli/reports/report_report.h"
@@ -41,8 +42,10 @@ std::optional<std::string> usual_template() {
   return (program.parent_path().parent_path() / "share" / "chronormal" / "report.html").string();
 }
 
-// The template of the page. It is read before anything is computed, so that nothing is in vain.
+// Reads the template of the page, before anything is computed, so that nothing is in vain. A template that is named comes
+// first, then the one in the program, and then the one beside it.
 Result<std::string> read_template(const ReportArguments& options) {
+  if (!options.page_template && !built_in_page().empty()) return std::string(built_in_page());
   const std::optional<std::string> path = options.page_template ? options.page_template : usual_template();
   std::error_code failed;
   if (!options.page_template && (!path || !fs::exists(*path, failed)))
@@ -125,7 +128,7 @@ Command report_command() {
        {{"--no-plan", &options->no_plan, "glTF: leave out the forms that bake could give each mesh, which take time"},
         {"--template FILE",
          &options->page_template,
-         "the page that the report goes into (default: the one beside the program)",
+         "the page that the report goes into (default: the one that comes with the program)",
          {.check = check_given("it must name a file")}},
         {"--json", &options->json, "print one JSON object, for programs"}},
        options->common.table(true)},
