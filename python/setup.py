@@ -3,7 +3,7 @@
     pip install --no-build-isolation ./python     # in a venv with --system-site-packages, or where NumPy and pybind11 are
 
 CHRONORMAL_BUILD names a build folder of the project, configured with CHRONORMAL_PYTHON=ON, whose libraries are used; without it
-the library is compiled in the folder of setuptools.
+the library is compiled in the folder of setuptools. Licences of libraries that are inside are packed from THIRD_PARTY there.
 """
 
 import os
@@ -33,6 +33,8 @@ class BuildByCMake(build_ext):
         target = Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / "LICENSE", target.parent)
+        if Path(build, "THIRD_PARTY").is_dir():
+            shutil.copytree(Path(build, "THIRD_PARTY"), target.parent / "THIRD_PARTY", dirs_exist_ok=True)
         shutil.copy(next(Path(build, "python", "chronormal").glob("_chronormal*.so")), target)
 
 

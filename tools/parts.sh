@@ -24,6 +24,7 @@ everywhere  30  web,node,wasm     ^tests/hosts/same_bytes
 pages       15  plots,python      ^tools/(paper|weightings|benchmarks|support|python|uses|truth)/
 scale       28  vtk,plots         ^(vtk|cli/ranks|tools/scale)/
 peers       20  bench,peers       ^bench/
+dist        16  dist,python,node  ^tools/dist|^tests/dist/|^packaging/|^cmake/(sources|install|product)|^\.github/|^run$
 '
 
 part_names() { awk 'NF { print $1 }' <<<"$parts_table"; }

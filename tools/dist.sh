@@ -1,0 +1,142 @@
+# Sourced by ./run: makes what a release has, in dist/.
+
+# The steps in order. Each may be named alone: ./run dist program sums.
+dist_steps=(source program wheel deb npm page core sbom sums)
+
+# dist STEP...: all steps where none is named.
+dist() {
+  local step begin
+  for step; do
+    [[ " ${dist_steps[*]} " == *" $step "* ]] && continue
+    say "there is no step $step; the steps are" "${dist_steps[@]}"
+    return 2
+  done
+  dist=$root/dist version=$(sed -n 's/^project(chronormal VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
+  if ! SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct); then
+    say "a release is made of a commit: this is no clone of the repository"
+    return 1
+  fi
+  export SOURCE_DATE_EPOCH  # the time that stands in all archives, so that they have the same bytes when made again
+  [ -z "$(git -C "$root" status --porcelain)" ] || say "the archive has the files of the commit, and some here are others"
+  mkdir -p "$dist"
+  [ $# -gt 0 ] || { rm -f "$dist"/*; set -- "${dist_steps[@]}"; }
+  for step in "${dist_steps[@]}"; do
+    [[ " $* " == *" $step "* ]] || continue
+    begin=$SECONDS
+    "dist_$step"
+    say "$step: $((SECONDS - begin)) s"
+  done
+  (cd "$dist" && stat -c '%12s  %n' -- *) >&2
+}
+
+# dist_packages SECTION...
+dist_packages() {
+  local sections=("$@")
+  has_node || sections+=(node)
+  install_packages run dist "${sections[@]}"
+}
+
+# pack FOLDER FILE: the same bytes from the same files.
+pack() {
+  local as=(--sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH")
+  tar -C "$(dirname "$1")" "${as[@]}" -cf - "$(basename "$1")" | gzip -9n >"$2"
+}
+
+dist_source() {
+  local name=chronormal-$version
+  git -C "$root" archive --format=tar --prefix="$name/" HEAD | gzip -9n >"$dist/$name.tar.gz"
+}
+
+# build_dist TARGET: builds in build/dist, over libraries that are compiled from their sources.
+build_dist() {
+  fetch_sources "$root/build/wasm-sources"
+  build_report_page
+  [ -e "$root/build/dist/build.ninja" ] || (cd "$root" && cmake --preset dist) >&2
+  cmake --build "$root/build/dist" --target "$1" >&2
+}
+
+# The program for any Linux on this kind of machine, which needs nothing that others may lack, not even a C library.
+dist_program() {
+  dist_packages python
+  build_dist chronormal_cli
+  local name=chronormal-$version-linux-$(uname -m)
+  local folder=$root/build/dist/$name program=$root/build/dist/chronormal
+  rm -rf "$folder" && mkdir -p "$folder/share/man/man1" "$folder/share/completions"
+  strip -o "$folder/chronormal" "$program"
+  cp "$root/LICENSE" "$folder"
+  "$program" --manual-page >"$folder/share/man/man1/chronormal.1"
+  "$program" --completions bash >"$folder/share/completions/chronormal"
+  "$program" --completions zsh >"$folder/share/completions/_chronormal"
+  "$program" --completions fish >"$folder/share/completions/chronormal.fish"
+  /usr/bin/python3 "$root/tools/dist/components.py" licences program "$folder/THIRD_PARTY"
+  pack "$folder" "$dist/$name.tar.gz"
+}
+
+# The Python package, for Debian's Python and the C library of this machine or a newer one, which is what its tag says.
+dist_wheel() {
+  dist_packages python
+  build_dist _chronormal
+  local build=$root/build/dist glibc
+  glibc=$(getconf GNU_LIBC_VERSION | sed 's/glibc //; s/\./_/')
+  /usr/bin/python3 "$root/tools/dist/components.py" licences wheel "$build/THIRD_PARTY"
+  printf '[bdist_wheel]\nplat_name = manylinux_%s_%s\n' "$glibc" "$(uname -m)" >"$build/wheel.cfg"
+  strip --strip-unneeded "$build"/python/chronormal/_chronormal*.so
+  rm -rf "$root/python/build" "$build/wheel"
+  DIST_EXTRA_CONFIG=$build/wheel.cfg CHRONORMAL_BUILD=$build /usr/bin/python3 -m pip wheel -q \
+    --no-index --no-deps --no-build-isolation -w "$build/wheel" "$root/python"
+  cp "$build/wheel"/*.whl "$dist"
+}
+
+# A package for Debian, built from the archive of sources and nothing else, in build/source.
+dist_deb() {
+  dist_packages
+  build_report_page
+  local archive=$dist/chronormal-$version.tar.gz unpacked=$root/build/source
+  local source=$unpacked/chronormal-$version
+  local build=$source/build/program
+  [ -e "$archive" ] || dist_source
+  if ! cmp -s "$archive" "$unpacked/archive"; then
+    rm -rf "$unpacked" && mkdir -p "$unpacked"
+    tar -C "$unpacked" -xzf "$archive"
+    cp "$archive" "$unpacked/archive"
+  fi
+  mkdir -p "$source/build/share/chronormal"
+  cp "$root/build/share/chronormal/report.html" "$source/build/share/chronormal"
+  [ -e "$build/build.ninja" ] || (cd "$source" && cmake --preset program) >&2
+  cmake --build "$build" >&2
+  rm -rf "$build/deb"
+  cpack --config "$build/CPackConfig.cmake" -B "$build/deb" >&2
+  cp "$build/deb"/*.deb "$dist"
+}
+
+dist_npm() {
+  dist_packages wasm
+  build_npm >&2
+  cp "$root/build/npm"/*.tgz "$dist"
+}
+
+dist_page() {
+  dist_packages wasm
+  build_wasm wasm npm_package >&2
+  build_page wasm >&2
+  cp "$root/build/web/chronormal.html" "$dist/chronormal-$version.html"
+}
+
+# The library as two files, where its script is.
+dist_core() {
+  [ ! -e "$root/tools/make_core" ] || "$root/tools/make_core" "$dist"
+}
+
+# Whose work is in these files.
+dist_sbom() {
+  dist_packages
+  local list=$dist/chronormal-$version.spdx.json
+  /usr/bin/python3 "$root/tools/dist/components.py" sbom "$version" "$dist" >"$list.new"
+  mv "$list.new" "$list"
+}
+
+dist_sums() {
+  rm -f "$dist/SHA256SUMS"
+  (cd "$dist" && LC_ALL=C sha256sum -- * >"$root/build/SHA256SUMS")
+  mv "$root/build/SHA256SUMS" "$dist"
+}
