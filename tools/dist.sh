@@ -122,10 +122,8 @@ dist_page() {
   cp "$root/build/web/chronormal.html" "$dist/chronormal-$version.html"
 }
 
-# The library as two files, where its script is.
-dist_core() {
-  [ ! -e "$root/tools/make_core" ] || "$root/tools/make_core" "$dist"
-}
+# The library as two files.
+dist_core() { /usr/bin/python3 "$root/tools/two_files.py" "$dist"; }
 
 # Whose work is in these files.
 dist_sbom() {

@@ -18,16 +18,14 @@ class ChronormalConan(ConanFile):
     topics = ("normals", "mesh", "morph-targets", "blend-shapes", "gltf")
     package_type = "static-library"
     settings = "os", "arch", "compiler", "build_type"
-    options = {"fPIC": [True, False], "with_io": [True, False], "with_tbb": [True, False]}
-    default_options = {"fPIC": True, "with_io": True, "with_tbb": False}
+    options = {"fPIC": [True, False], "with_io": [True, False]}
+    default_options = {"fPIC": True, "with_io": True}
 
     def layout(self):
         cmake_layout(self, src_folder="src")
 
     def requirements(self):
         self.requires("highway/1.2.0")
-        if self.options.with_tbb:
-            self.requires("onetbb/2021.12.0")
         if self.options.with_io:
             self.requires("draco/1.5.6")
             self.requires("meshoptimizer/0.20")
@@ -46,7 +44,6 @@ class ChronormalConan(ConanFile):
     def generate(self):
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables["CHRONORMAL_IO"] = bool(self.options.with_io)
-        toolchain.cache_variables["CMAKE_DISABLE_FIND_PACKAGE_TBB"] = not self.options.with_tbb
         toolchain.cache_variables["CHRONORMAL_PROGRAM"] = False
         toolchain.cache_variables["CHRONORMAL_C"] = False
         toolchain.generate()
@@ -54,7 +51,6 @@ class ChronormalConan(ConanFile):
         dependencies = CMakeDeps(self)
         for package, file, target in (
             ("highway", "hwy", "hwy::hwy"),
-            ("onetbb", "TBB", "TBB::tbb"),
             ("draco", "draco", "draco::draco"),
             ("meshoptimizer", "meshoptimizer", "meshoptimizer::meshoptimizer"),
             ("nlohmann_json", "nlohmann_json", "nlohmann_json::nlohmann_json"),
@@ -84,7 +80,7 @@ class ChronormalConan(ConanFile):
         core.set_property("pkg_config_name", "chronormal")
         core.libs = ["chronormal"]
         core.system_libs = ["m", "pthread"]
-        core.requires = ["highway::highway"] + (["onetbb::onetbb"] if self.options.with_tbb else [])
+        core.requires = ["highway::highway"]
         if self.options.with_io:
             io = self.cpp_info.components["io"]
             io.set_property("cmake_target_name", "chronormal::chronormal_io")

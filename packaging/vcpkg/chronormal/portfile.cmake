@@ -12,8 +12,6 @@ vcpkg_check_features(
   OUT_FEATURE_OPTIONS feature_options
   FEATURES
     io CHRONORMAL_IO
-  INVERTED_FEATURES
-    tbb CMAKE_DISABLE_FIND_PACKAGE_TBB
 )
 vcpkg_cmake_configure(
   SOURCE_PATH "${SOURCE_PATH}"
@@ -21,8 +19,6 @@ vcpkg_cmake_configure(
     -DCHRONORMAL_PROGRAM=OFF
     -DCHRONORMAL_C=OFF
     ${feature_options}
-  MAYBE_UNUSED_VARIABLES
-    CMAKE_DISABLE_FIND_PACKAGE_TBB
 )
 vcpkg_cmake_install()
 vcpkg_cmake_config_fixup(CONFIG_PATH lib/cmake/chronormal)
