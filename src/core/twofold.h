@@ -43,8 +43,8 @@ struct Twofold {
   }
 };
 
-/// Returns a + a_low - (b + b_low), rounded once but for 2^-9 of a rounding, whatever cancels. a_low and b_low are at most
-/// 2^-23 of a and b.
+/// Returns a + a_low - (b + b_low), rounded once but for 2^-9 of a rounding, whatever cancels. a_low and b_low are at
+/// most 2^-23 of a and b.
 [[nodiscard]] inline double difference(double a, double a_low, double b, double b_low) noexcept {
   const double of_high = a - b, of_low = a_low - b_low, sum = of_high + of_low;
   // Most differences of floats are exact, and large beside those of what floats lack.

@@ -97,8 +97,9 @@ struct Motion {
 
 /// The one check between data from outside and everything that computes. Checks what the rest of the library takes for
 /// granted: at least one face and one segment; every keyframe with 3 x vertex_count finite coordinates, and as many
-/// velocities or none; residuals of rounding to float32, as many or none; a body for each vertex or none; segments between keyframes that exist; finite times that ascend
-/// along every segment; and segments as the kind of the motion has them. (A Topology checks its own indices.)
+/// velocities or none; residuals of rounding to float32, as many or none; a body for each vertex or none; segments
+/// between keyframes that exist; finite times that ascend along every segment; and segments as the kind of the motion
+/// has them. (A Topology checks its own indices.)
 /// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);
 

@@ -1,8 +1,8 @@
 /// n(t) of one element without any rounding: what decides where double cannot.
 ///
 /// The control normals of a face are sums of products of its coordinates, which are floats or sums of a few
-/// (motion/segment_end.h), and those of a group are sums of them, so all are integers times 2^-298 (core/wide_integer.h). A double t is an integer times a power of two
-/// as well, and by Horner's rule
+/// (motion/segment_end.h), and those of a group are sums of them, so all are integers times 2^-298
+/// (core/wide_integer.h). A double t is an integer times a power of two as well, and by Horner's rule
 ///
 ///     n(t) = n0 + t (2m - 2 n0 + t (n0 - 2m + n1))                             (eq. 5 in powers of t)
 ///

@@ -260,9 +260,9 @@ TEST(GltfEditFiles, buffer_outside_the_folder_is_not_taken_along_unless_allowed)
 TEST(GltfEditFiles, more_than_a_glb_can_hold_is_refused) {
   const TemporaryFolder folder;
   constexpr std::uintmax_t kSize = 4294967296;
-  folder.write("b.bin", "");
+  folder.write("b.bin", std::string(static_cast<std::size_t>(kSize / 99), '\0'));
   std::error_code error;
-  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // a hole: it takes no space
+  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // the rest is a hole, as large as is allowed
   if (error) GTEST_SKIP() << "the file system has no files of 4 GiB: " << error.message();
   GltfBuilder builder;
   builder.json["buffers"] = {{{"byteLength", kSize}, {"uri", "b.bin"}}};
