@@ -1,4 +1,5 @@
-# Sourced by ./run and ./test: builds the program as a wasm module with Debian's Emscripten, and the npm package around it.
+# Sourced by ./run and ./test: builds the program as a wasm module with Debian's Emscripten, and the npm package around it,
+# for which tools/web.sh has to be sourced, too.
 
 # fetch_sources FOLDER: unpacks the source packages that tools/packages.txt lists under [wasm-sources] there, from
 # Debian's archive; silent where they are there.
@@ -30,6 +31,7 @@ build_wasm() {
   shift
   local build=$root/build/$preset
   fetch_sources "$root/build/wasm-sources" || return 1
+  build_report_page || return 1  # which the package has for `chronormal report`
   mkdir -p "$build"
   (
     # Debian has built the libraries of the system already, for exceptions too.

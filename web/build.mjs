@@ -49,8 +49,8 @@ async function reportPage() {
 
 // The module and its worker, as text that the page makes a worker of.
 async function enginePage(folder) {
-  const wasm = gzipSync(readFileSync(join(folder, 'wasm/program.wasm')), { level: 9 });
-  const program = { name: 'program', setup: (made) => made.onResolve({ filter: /wasm\/program\.js$/ }, () => ({ path: join(resolve(folder), 'wasm/program.js') })) };
+  const wasm = gzipSync(readFileSync(join(folder, 'src/program.wasm')), { level: 9 });
+  const program = { name: 'program', setup: (made) => made.onResolve({ filter: /\/program\.js$/ }, () => ({ path: join(resolve(folder), 'src/program.js') })) };
   // run.js names the module beside it, which the page hands over instead.
   const define = { 'import.meta.url': '"file:///engine/src/run.js"' };
   const worker = await bundled(source('engine_worker.js'), { plugins: [program], external: ['fs', 'path', 'crypto'], define });

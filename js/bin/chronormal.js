@@ -9,5 +9,9 @@ if (parseInt(process.versions.node, 10) < LEAST) {
 } else {
   import('../src/cli.js')
     .then(({ main }) => main(process.argv.slice(2)))
+    .catch(({ message }) => {
+      console.error(`chronormal: ${message}`);
+      return 1;
+    })
     .then((code) => { process.exitCode = code; });
 }

@@ -1,35 +1,12 @@
 // chronormal in JavaScript: right normals for meshes that deform. Bytes go in, bytes and reports come out; nothing touches a
 // file system or the network. index.d.ts has the types.
-import { platform } from './platform.js';
+import { ChronormalError } from './error.js';
+import { flagsOf } from './options.js';
 import { compile } from './run.js';
 import { perform } from './task.js';
 
-/** What the program refused, or could not do: its exit code and its own words, which name the place. */
-export class ChronormalError extends Error {
-  constructor(code, message) {
-    super(message);
-    this.name = 'ChronormalError';
-    this.code = code;
-  }
-}
-
 // Exit codes of the program: done, and done but not within the tolerance.
 const DONE = 0, BEYOND = 4;
-
-// What of the options is meant for these functions, and not for the program.
-const OWN = new Set(['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit']);
-
-const flagOf = (name) => `--${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}`;
-
-function flagsOf(options) {
-  const flags = [];
-  for (const [name, value] of Object.entries(options)) {
-    if (OWN.has(name) || value === undefined || value === false) continue;
-    flags.push(flagOf(name));
-    if (value !== true) flags.push(Array.isArray(value) ? value.join(',') : String(value));
-  }
-  return flags;
-}
 
 const bytesOf = (data) => {
   if (data instanceof Uint8Array) return data;
@@ -43,8 +20,8 @@ const nameOf = (bytes) => (bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] ==
 
 // Does a task in a worker, which ends with it: then nothing is left, and it can be stopped in the middle. The worker gets the
 // files themselves, and no copies.
-async function inWorker(task, { signal, onProgress }) {
-  const module = await compile(); // once for all workers
+async function inWorker(platform, task, { signal, onProgress }) {
+  const module = await compile(platform); // once for all workers
   signal?.throwIfAborted();
   return new Promise((resolve, reject) => {
     const end = (settle, value) => {
@@ -75,9 +52,9 @@ async function inWorker(task, { signal, onProgress }) {
   });
 }
 
-async function execute(task, options) {
+async function execute(platform, task, options) {
   options.signal?.throwIfAborted();
-  const done = options.worker === false ? await perform(task, options.onProgress) : await inWorker(task, options);
+  const done = await (options.worker === false ? perform(platform, task, options.onProgress) : inWorker(platform, task, options));
   if (done.code !== DONE && done.code !== BEYOND) {
     throw new ChronormalError(done.code, done.stderr.replace(/^chronormal(?: \w+)?: /, ''));
   }
@@ -87,9 +64,9 @@ async function execute(task, options) {
 // Takes copies of what is read, so that the caller may change it while the call goes on. `more` makes further arguments of
 // the folder for what is written.
 function taskOf(command, input, options, more = () => []) {
+  const flags = flagsOf(command, options);
   const copyOf = (data) => new Uint8Array(bytesOf(data));
   const bytes = copyOf(input), name = options.name ?? nameOf(bytes);
-  if (typeof name !== 'string') throw new TypeError('name: it has to be a string');
   const resources = Object.entries(options.resources ?? {}).map(([uri, data]) => [uri, copyOf(data)]);
   const files = { ...Object.fromEntries(resources), [name]: bytes };
   const folders = new Set(Object.keys(files).flatMap((path) => path.split('/')));
@@ -97,7 +74,7 @@ function taskOf(command, input, options, more = () => []) {
   while (folders.has(outputs)) outputs += '_';
   return {
     // A single "-" would be standard input, and what stands in brackets a list.
-    args: [command, '--json', ...more(outputs), ...flagsOf(options), '--', /^(-|\[.*\])$/s.test(name) ? `./${name}` : name],
+    args: [command, '--json', ...more(outputs), ...flags, '--', /^(-|\[.*\])$/s.test(name) ? `./${name}` : name],
     files,
     outputs,
     memoryLimit: options.memoryLimit,
@@ -106,30 +83,29 @@ function taskOf(command, input, options, more = () => []) {
 
 const warningsOf = (stderr) => (stderr === '' ? [] : stderr.split('\n'));
 
+const resultOf = ({ stdout, stderr, code }) => ({ report: JSON.parse(stdout), warnings: warningsOf(stderr), within: code === DONE });
+
 // What a bake writes: the same file, or a GLB where the input is a sequence in another format.
 const bakedName = (name) => {
   const base = name.split('/').pop();
   return /\.(glb|gltf)$/i.test(base) ? base : `${base}.glb`;
 };
 
-/** Writes right normals into a glTF file, or makes one of a sequence, and says how far off they were and are. */
-export async function bake(input, options = {}) {
-  const base = bakedName(String(options.name ?? nameOf(bytesOf(input))));
-  const done = await execute(taskOf('bake', input, options, (outputs) => ['-o', `${outputs}/${base}`]), options);
-  const { [base]: bytes, ...files } = done.files;
-  return { bytes, files, report: JSON.parse(done.stdout), warnings: warningsOf(done.stderr), within: done.code === DONE };
+/**
+ * The functions of the package on a platform, which is platform.browser.js or platform.node.js. Each of index.js and
+ * index.node.js imports its own, so that neither ever loads what only the other has, and no module has a side effect.
+ */
+export function apiOf(platform) {
+  const report = (command) => async (input, options = {}) => resultOf(await execute(platform, taskOf(command, input, options), options));
+  return {
+    audit: report('audit'),
+    inspect: report('inspect'),
+    compare: report('compare'),
+    async bake(input, options = {}) {
+      const base = bakedName(String(options?.name ?? nameOf(bytesOf(input))));
+      const done = await execute(platform, taskOf('bake', input, options, (outputs) => ['-o', `${outputs}/${base}`]), options);
+      const { [base]: bytes, ...files } = done.files;
+      return { bytes, files, ...resultOf(done) };
+    },
+  };
 }
-
-async function report(command, input, options) {
-  const done = await execute(taskOf(command, input, options), options);
-  return { report: JSON.parse(done.stdout), warnings: warningsOf(done.stderr), within: done.code === DONE };
-}
-
-/** Says how far off the normals that hosts show are, and where. */
-export const audit = (input, options = {}) => report('audit', input, options);
-
-/** Says what is in a file, and what may cause wrong normals. */
-export const inspect = (input, options = {}) => report('inspect', input, options);
-
-/** Holds the ways to interpolate normals against each other, on a mesh or a sequence of this file. */
-export const compare = (input, options = {}) => report('compare', input, options);

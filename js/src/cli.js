@@ -2,12 +2,10 @@
 import { existsSync, readdirSync, readSync, writeSync } from 'node:fs';
 import { Buffer } from 'node:buffer';
 import process from 'node:process';
+import { fileURLToPath } from 'node:url';
 import { fromWindows } from './paths.js';
 import * as node from './platform.node.js';
-import { usePlatform } from './platform.js';
 import { run } from './run.js';
-
-usePlatform(node);
 
 const isWindows = process.platform === 'win32';
 const inside = (path) => (isWindows ? fromWindows(path, process.cwd()) : path);
@@ -26,6 +24,8 @@ function mount(FS, NODEFS) {
       // No folder: a file, or a link that leads nowhere.
     }
   }
+  // Where the program finds itself, and so what the package has for it: share/chronormal/report.html.
+  FS.symlink(inside(fileURLToPath(new URL('../bin/chronormal.js', import.meta.url))), '/proc/self/exe');
   FS.chdir(inside(process.cwd()));
 }
 
@@ -61,7 +61,7 @@ function standardInput(args) {
 export async function main(args) {
   const { stdout, stderr, env } = process;
   const columns = stdout.columns ?? stderr.columns;
-  const { code } = await run(args.map(inside), {
+  const { code } = await run(node, args.map(inside), {
     prepare: mount,
     stdout: writeAll(1),
     stderr: writeAll(2),

@@ -96,6 +96,9 @@ function same(a, b) {
  * options.onReport, and warnings to the document's logger.
  */
 export function chronormal({ onReport, ...options } = {}) {
+  for (const name of ['name', 'resources', 'plan']) {
+    if (Object.hasOwn(options, name)) throw new TypeError(`${name}: it is an option of bake(), and not of a transform`);
+  }
   const transform = async (document) => {
     const { io, bytes } = await bytesOf(document);
     const result = await bake(bytes, options);
@@ -106,14 +109,14 @@ export function chronormal({ onReport, ...options } = {}) {
   return Object.defineProperty(transform, 'name', { value: 'chronormal' });
 }
 
-// What of the program's options the command below has: the name, how it is written, and what it says.
+// What of the program's options the command below has: the name, how it is written, what it says, and the value of its text.
 const OPTIONS = [
   ['for', '--for <HOSTS>', 'the hosts that count, with commas between them, or all'],
-  ['tolerance', '--tolerance <DEGREES>', 'how far off normals may be'],
+  ['tolerance', '--tolerance <DEGREES>', 'how far off normals may be', Number],
   ['encode', '--encode <HOW>', 'smallest, harmless, exact or endpoint'],
   ['weighting', '--weighting <RULE>', 'how faces count in the normal of a vertex'],
-  ['maxTargets', '--max-targets <N>', 'the most targets that a mesh may have'],
-  ['maxBytes', '--max-bytes <N>', 'the most bytes that may be added'],
+  ['maxTargets', '--max-targets <N>', 'the most targets that a mesh may have', Number],
+  ['maxBytes', '--max-bytes <N>', 'the most bytes that may be added', Number],
   ['animationsOnly', '--animations-only', 'fit normals to the animations of the file alone'],
 ];
 
@@ -129,7 +132,8 @@ export function command({ program, io, Session }) {
     .argument('<output>', 'Path to write output');
   for (const [, written, said] of OPTIONS) made.option(written, said);
   made.action(({ args, options, logger }) => {
-    const given = Object.fromEntries(OPTIONS.map(([name]) => [name, options[name]]));
+    const valueOf = (text, read) => (text === undefined ? undefined : read ? read(text) : text);
+    const given = Object.fromEntries(OPTIONS.map(([name, , , read]) => [name, valueOf(options[name], read)]));
     return Session.create(io, logger, args.input, args.output).transform(chronormal(given));
   });
 }

@@ -1,7 +1,6 @@
 // What browsers import.
+import { apiOf } from './api.js';
 import * as browser from './platform.browser.js';
-import { usePlatform } from './platform.js';
 
-usePlatform(browser);
-
-export * from './api.js';
+export { ChronormalError } from './error.js';
+export const { audit, bake, compare, inspect } = /* @__PURE__ */ apiOf(browser);

@@ -1,7 +1,6 @@
 // What Node.js imports.
+import { apiOf } from './api.js';
 import * as node from './platform.node.js';
-import { usePlatform } from './platform.js';
 
-usePlatform(node);
-
-export * from './api.js';
+export { ChronormalError } from './error.js';
+export const { audit, bake, compare, inspect } = /* @__PURE__ */ apiOf(node);

@@ -1,17 +1,17 @@
 // What browsers have of their own.
 export const require = undefined;
 
-export async function compile(url) {
+export async function read(url) {
   const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
-  return WebAssembly.compile(await response.arrayBuffer());
+  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}; it has to be beside the script (README)`);
+  return new Uint8Array(await response.arrayBuffer());
 }
 
 /** Starts worker.js; onMessage gets what it says, onError what ends it. */
 export function startWorker(onMessage, onError) {
   const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
   worker.onmessage = ({ data }) => onMessage(data);
-  worker.onerror = (event) => onError(new Error(event.message ?? 'the worker could not be started'));
+  worker.onerror = ({ message }) => onError(new Error(message ?? 'worker.js could not be started; it has to be beside the script (README)'));
   return worker;
 }
 

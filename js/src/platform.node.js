@@ -5,9 +5,7 @@ import { Worker } from 'node:worker_threads';
 
 export const require = createRequire(import.meta.url);
 
-export async function compile(url) {
-  return WebAssembly.compile(await readFile(url));
-}
+export const read = (url) => readFile(url);
 
 /** Starts worker.node.js; onMessage gets what it says, onError what ends it. */
 export function startWorker(onMessage, onError) {

@@ -1,7 +1,12 @@
 // One run of the program: a fresh module with files in memory, or with those of this machine, so that nothing of one run
 // is left for the next, whatever it ended with.
-import createProgram from '../wasm/program.js';
-import { platform } from './platform.js';
+import createProgram from './program.js';
+
+// What the program needs of WebAssembly, vectors and exceptions, in the smallest module that has both: a runtime that
+// does not know them takes it for invalid.
+const NEEDED = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 13, 1, 11, 0, 6, 64, 65, 0, 253, 17, 26, 25, 11, 11];
+const TOO_OLD = 'WebAssembly with vectors (SIMD) and exceptions is not there: chronormal needs Chrome or Edge 95, Firefox 100, Safari 16.4, \
+Node.js 18, or later, on a processor that has vectors';
 
 let compiled; // the module, once for all runs
 
@@ -10,12 +15,24 @@ export function useCompiled(module) {
   compiled ??= Promise.resolve(module);
 }
 
+async function compileWith(platform) {
+  if (!WebAssembly.validate(new Uint8Array(NEEDED))) throw new Error(TOO_OLD);
+  const url = new URL('./program.wasm', import.meta.url), bytes = await platform.read(url);
+  if (!WebAssembly.validate(bytes.subarray(0, 8))) {
+    throw new Error(`${url} is no wasm module; program.wasm of the package has to be beside the script (README)`);
+  }
+  return WebAssembly.compile(bytes);
+}
+
 /**
  * Compiles the program, unless that was done before. What it takes is the most of a short run.
  * @returns {Promise<WebAssembly.Module>}
  */
-export function compile() {
-  compiled ??= platform.compile(new URL('../wasm/program.wasm', import.meta.url));
+export function compile(platform) {
+  if (!compiled) {
+    compiled = compileWith(platform);
+    compiled.catch(() => { compiled = undefined; }); // the next call tries again
+  }
   return compiled;
 }
 
@@ -41,6 +58,7 @@ class Sink {
 
 /**
  * Runs the program.
+ * @param {typeof import('./platform.browser.js')} platform where this runs
  * @param {string[]} args the command line, without the name of the program
  * @param {object} world what it meets:
  *   prepare(FS, NODEFS)   puts files into its file system, before it starts
@@ -52,8 +70,8 @@ class Sink {
  *   memoryLimit           the most bytes that it gets, 16 MiB at least
  * @returns {Promise<{code: number, result: any}>} the exit code, and what finish() returned
  */
-export async function run(args, { prepare, finish, stdout, stderr, terminals = {}, stdin, env = {}, memoryLimit }) {
-  const module = await compile();
+export async function run(platform, args, { prepare, finish, stdout, stderr, terminals = {}, stdin, env = {}, memoryLimit }) {
+  const module = await compile(platform);
   const out = new Sink(stdout, terminals.stdout), err = new Sink(stderr, terminals.stderr);
   let code = 1;
   // A module that cannot start would leave its promise pending: what is thrown on the way, by prepare() too, ends the run.

@@ -3,10 +3,10 @@ import { useCompiled } from './run.js';
 import { perform } from './task.js';
 
 /** Serves tasks on a platform. Messages are {task, wantsProgress}, and the compiled module where the caller has it. */
-export const serveTasks = ({ serve }) => serve(async ({ task, wantsProgress, module }, say) => {
+export const serveTasks = (platform) => platform.serve(async ({ task, wantsProgress, module }, say) => {
   try {
     if (module) useCompiled(module);
-    const done = await perform(task, wantsProgress ? (progress) => say({ progress }) : undefined);
+    const done = await perform(platform, task, wantsProgress ? (progress) => say({ progress }) : undefined);
     say({ done }, Object.values(done.files).map((bytes) => bytes.buffer));
   } catch (error) {
     say({ failed: String(error?.message ?? error) });

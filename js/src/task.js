@@ -26,12 +26,13 @@ function write(FS, name, bytes) {
 }
 
 /**
+ * @param {typeof import('./platform.browser.js')} platform where this runs
  * @param {{args: string[], files: Object<string, Uint8Array>, outputs: string, memoryLimit?: number}} task the
  *   command line; the files that it finds, by their names; the folder whose files are the result; the most bytes of memory
  * @param {(progress: {label: string, percent: number}) => void} [onProgress]
  * @returns {Promise<{code: number, stdout: string, stderr: string, files: Object<string, Uint8Array>}>}
  */
-export async function perform({ args, files, outputs, memoryLimit }, onProgress) {
+export async function perform(platform, { args, files, outputs, memoryLimit }, onProgress) {
   const stdout = [], decoder = new TextDecoder();
   let stderr = '';
   const hear = (bytes) => {
@@ -67,7 +68,7 @@ export async function perform({ args, files, outputs, memoryLimit }, onProgress)
   };
   let ended;
   try {
-    ended = await run(args, world);
+    ended = await run(platform, args, world);
   } catch (error) {
     if (!(error instanceof UnusableName)) throw error;
     return { code: USAGE, stdout: '', stderr: `${JSON.stringify(error.message)}: no file can have this name`, files: {} };

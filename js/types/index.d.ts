@@ -1,4 +1,7 @@
 /** Right normals for meshes that deform: audits and bakes glTF files. Nothing here touches a file system or the network. */
+import type { AuditReport, BakeReport, CompareReport, Elements, InspectReport, PathName, PlanReport, Weighting } from './reports.js';
+
+export * from './reports.js';
 
 export type Host = 'three' | 'babylon' | 'playcanvas' | 'godot' | 'filament' | 'bevy' | 'gltfpack' | 'quantize' | 'meshopt';
 
@@ -8,15 +11,15 @@ export interface Progress {
   percent: number;
 }
 
-/** How a call is made. Every other option is one of the program, in camel case: `maxTargets: 112` is `--max-targets 112`. */
+/** How a call is made. */
 export interface CallOptions {
   /**
    * The name of the input, with its extension, which tells its format: walk.npz. It may have folders in it. A name that no
    * file can have is refused with code 2. Default: input.glb or input.gltf.
    */
   name?: string;
-  /** The files that a .gltf names, by their URIs. */
-  resources?: Record<string, Uint8Array | ArrayBuffer>;
+  /** The files that a .gltf names, by their URIs, and those that options name. */
+  resources?: Record<string, Bytes>;
   /** Ends the call in the middle; its promise is rejected with the reason. */
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
@@ -26,34 +29,85 @@ export interface CallOptions {
   memoryLimit?: number;
 }
 
-export interface JudgeOptions extends CallOptions {
-  tolerance?: number;
-  weighting?: 'area' | 'uniform' | 'angle' | (string & {});
+/**
+ * What is read, and how. These options and those below are options of the program, in camel case, and `chronormal help COMMAND`
+ * explains them: `maxTargets: 112` is `--max-targets 112`. Another name, or a value of another type, is refused.
+ */
+export interface ReadOptions extends CallOptions {
+  allowExternal?: boolean;
+  maxExpansion?: number;
+  fps?: number;
+  from?: number;
+  to?: number;
+  every?: number;
+}
+
+/** Which motion of a file is meant. */
+interface MotionOptions extends ReadOptions {
+  /** The mesh of which the input is a morph target: a name among `resources`. */
+  base?: string;
   animation?: string | number;
-  /** How vertices move between the keyframes of a sequence, which is not glTF but .npz, for example: straight by default. */
-  path?: 'linear' | 'catmull-rom' | 'hermite';
-  [option: string]: unknown;
 }
 
-export interface BakeOptions extends JudgeOptions {
-  /** The hosts in which the result must be right, and nowhere worse than before. Default: all. */
-  for?: Host[] | 'all';
-  encode?: 'harmless' | 'exact' | 'endpoint' | (string & {});
-  maxTargets?: number;
-  maxBytes?: number;
-  animationsOnly?: boolean;
-  smooth?: boolean;
-}
-
-export interface AuditOptions extends JudgeOptions {
-  host?: Host[] | 'all';
+export interface AuditOptions extends MotionOptions {
+  rule?: 'gltf' | 'lerp' | 'nlerp' | 'slerp' | 'step' | 'flat';
+  weighting?: Weighting;
+  host?: Host | 'all' | Array<Host | 'all'>;
   samples?: number;
+  /** How vertices move between the keyframes of a sequence, which is not glTF but .npz, for example: straight by default. */
+  path?: PathName;
+  tolerance?: number;
+  noWeld?: boolean;
 }
 
-/** The JSON of the command, as `--json` prints it (docs/cli.md). */
-export type Report = Record<string, unknown> & { schema: number };
+export interface BakeOptions extends ReadOptions {
+  /** The hosts in which the result must be right, and nowhere worse than before. Default: all. */
+  for?: Host | 'all' | Array<Host | 'all'>;
+  encode?: 'smallest' | 'harmless' | 'exact' | 'endpoint' | 'keys';
+  weighting?: Weighting;
+  crease?: number;
+  recomputeBase?: boolean;
+  smooth?: boolean;
+  maxBytes?: number;
+  maxTargets?: number;
+  animationsOnly?: boolean;
+  /** 'random', or a name among `resources`. */
+  poses?: string;
+  /** Says what each form would come to, and makes no file. */
+  plan?: boolean;
+  path?: PathName;
+  denseZeros?: boolean;
+  tolerance?: number;
+  noAudit?: boolean;
+}
 
-export interface Judged {
+export type Scheme = 'recompute' | 'polynomial' | 'rational' | 'linear' | 'quadratic' | 'cubic' | `lagrange:${number}` | 'linear:scaled' | 'slerp'
+  | 'decasteljau' | `decasteljau:${number}` | 'quaternion:matrix' | 'quaternion:edge' | 'quaternion:polar' | 'quaternion:random'
+  | `quaternion:random:${number}` | 'quaternion:optimal' | 'circle' | 'circle:timed';
+
+export interface CompareOptions extends MotionOptions {
+  world?: boolean;
+  schemes?: Scheme | Scheme[];
+  samples?: number;
+  elements?: Elements;
+  crease?: number;
+  noWeld?: boolean;
+  access?: 'random' | 'sequential';
+  path?: PathName;
+  certify?: boolean;
+  tolerance?: number;
+  blend?: number;
+  active?: number;
+  seed?: number;
+  truth?: number;
+  noTimes?: boolean;
+}
+
+export interface InspectOptions extends MotionOptions {
+  world?: boolean;
+}
+
+export interface Judged<Report> {
   report: Report;
   /** What the program says beside its result, a line each. */
   warnings: string[];
@@ -61,7 +115,7 @@ export interface Judged {
   within: boolean;
 }
 
-export interface Baked extends Judged {
+export interface Baked extends Judged<BakeReport> {
   bytes: Uint8Array;
   /** The files beside a .gltf, by their names. */
   files: Record<string, Uint8Array>;
@@ -69,19 +123,16 @@ export interface Baked extends Judged {
 
 /** What was refused or could not be done. `code` is the exit code of the program: 1 failed, 2 usage, 3 the input is invalid. */
 export class ChronormalError extends Error {
+  constructor(code: number, message: string);
+  name: 'ChronormalError';
   code: number;
-}
-
-export interface CompareOptions extends JudgeOptions {
-  schemes?: string[];
-  samples?: number;
-  certify?: boolean;
 }
 
 /** Is copied before a call returns its promise, as resources are: the caller may use the memory again at once. */
 export type Bytes = Uint8Array | ArrayBuffer | ArrayBufferView;
 
-export function bake(input: Bytes, options?: BakeOptions): Promise<Baked>;
-export function audit(input: Bytes, options?: AuditOptions): Promise<Judged>;
-export function inspect(input: Bytes, options?: CallOptions & Record<string, unknown>): Promise<Judged>;
-export function compare(input: Bytes, options?: CompareOptions): Promise<Judged>;
+export function bake(input: Bytes, options?: BakeOptions & { plan?: false }): Promise<Baked>;
+export function bake(input: Bytes, options: BakeOptions & { plan: true }): Promise<Judged<PlanReport>>;
+export function audit(input: Bytes, options?: AuditOptions): Promise<Judged<AuditReport>>;
+export function inspect(input: Bytes, options?: InspectOptions): Promise<Judged<InspectReport>>;
+export function compare(input: Bytes, options?: CompareOptions): Promise<Judged<CompareReport>>;

@@ -38,22 +38,38 @@ export function launch() {
   });
 }
 
-const TYPES = { js: 'text/javascript', html: 'text/html', wasm: 'application/wasm' };
+const TYPES = { '/': 'text/html', js: 'text/javascript', html: 'text/html', wasm: 'application/wasm' };
+
+// A server of this machine; body(path) is what it has there, or nothing.
+async function listen(body) {
+  const server = createServer(({ url }, response) => {
+    const found = body(url.slice(1));
+    response.writeHead(found ? 200 : 404, { 'content-type': TYPES[url.split('.').at(-1)] ?? 'application/octet-stream' });
+    response.end(found);
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
+}
+
+/** Serves a folder, whose index.html is its page. As some servers do, it may have a page for all paths where nothing is. */
+export function serveFolder(folder, fallback) {
+  return listen((path) => {
+    const file = join(folder, path === '' ? 'index.html' : path);
+    return existsSync(file) ? readFileSync(file) : fallback;
+  });
+}
 
 // A page of a server of this machine, which serves the files of folders by their names, and what else is given.
 export async function openFolder(contents) {
-  const server = createServer(({ url }, response) => {
-    const [, first, ...rest] = url.split('/'), found = contents[first];
-    const body = typeof found === 'string' && rest.length > 0 ? readFileSync(join(found, ...rest)) : found;
-    response.writeHead(body ? 200 : 404, { 'content-type': TYPES[url.split('.').at(-1)] ?? 'application/octet-stream' });
-    response.end(body);
+  const { address, close: stop } = await listen((path) => {
+    const [first, ...rest] = path.split('/'), found = contents[first];
+    return typeof found === 'string' && rest.length > 0 ? readFileSync(join(found, ...rest)) : found;
   });
-  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   const browser = await launch(), page = await browser.newPage();
-  await page.goto(`http://127.0.0.1:${server.address().port}/page.html`);
+  await page.goto(`${address}page.html`);
   const close = async () => {
     await browser.close();
-    server.close();
+    stop();
   };
   return { page, close };
 }

@@ -5,7 +5,7 @@
 // CHRONORMAL_NPM is the folder of the package. What the program makes is what is expected, byte for byte.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
@@ -14,7 +14,7 @@ import semver from 'semver';
 import { install } from './installed.mjs';
 import { randomNumbers } from './random.mjs';
 
-const { folder, installed, remove, load, native, wasm, node } = install();
+const { folder, installed, tarball, remove, load, native, wasm, node } = install();
 after(remove);
 
 const { bake, audit, inspect, compare, ChronormalError } = await load('index.node.js');
@@ -265,45 +265,58 @@ test('paths of Windows are those of the program', async () => {
   ]) assert.equal(fromWindows(word, cwd), expected, word);
 });
 
-test('the types are right', () => {
-  writeFileSync(join(folder, 'user.mts'), `
-import { audit, bake, ChronormalError, type Baked } from 'chronormal';
-import { chronormal, command } from 'chronormal/gltf-transform';
-import { attach as attachBabylon, detach as detachBabylon } from 'chronormal/babylon';
-import { attach, detach, drive } from 'chronormal/three';
-import type { AbstractMesh, Scene } from '@babylonjs/core';
-import type { Document } from '@gltf-transform/core';
-import type { Mesh, Object3D } from 'three';
+test('require() loads the package, or says how it is loaded', () => {
+  for (const part of ['', '/three', '/babylon', '/gltf-transform']) {
+    const script = `try { console.log(typeof require('chronormal${part}')); } catch (error) { console.log(error.message); }`;
+    const has = process.features.require_module;
+    if (has) assert.equal(node(['--no-warnings', '-e', script]).stdout, 'object\n');
+    const { stdout } = node([...(has ? ['--no-experimental-require-module'] : []), '-e', script]);
+    assert.equal(stdout, `chronormal is a package of ES modules, which require() loads from Node.js 20.19 and 22.12 on; this is ${process.versions.node}. \
+Use import { bake } from 'chronormal' in a module, or const { bake } = await import('chronormal') anywhere\n`);
+    const meanwhile = node([...(has ? ['--no-experimental-require-module'] : []), '-e', `import('chronormal${part}').then((api) => console.log(typeof api))`]);
+    assert.equal(meanwhile.stdout, 'object\n', meanwhile.stderr);
+  }
+});
 
-export async function use(input: Uint8Array, document: Document): Promise<number> {
-  const { bytes, report, within }: Baked = await bake(input, {
-    for: ['three', 'godot'], tolerance: 0.5, maxTargets: 112, onProgress: ({ label, percent }) => console.log(label, percent),
-  });
-  await document.transform(chronormal({ for: 'all', onReport: ({ schema }) => console.log(schema) }));
-  try { await audit(bytes, { host: ['three'], samples: 8 }); } catch (error) { if (error instanceof ChronormalError) return error.code; }
-  await audit(bytes, { name: 'walk.npz', path: 'catmull-rom' });
-  // @ts-expect-error: there is no such path
-  await audit(bytes, { name: 'walk.npz', path: 'round' });
-  // @ts-expect-error: there is no such host
-  await bake(input, { for: ['four'] });
-  return within ? report.schema : bytes.length;
-}
+test('where WebAssembly has no vectors, a sentence says so', (t) => {
+  const script = "import('chronormal').then(({ inspect }) => inspect(new Uint8Array(9))).catch(({ message }) => console.log(message));";
+  const without = ['--no-enable-sse4-1']; // of processors for x86: V8 has no vectors then
+  const { stdout, status } = node([...without, '-e', script]);
+  if (status !== 0 || /glTF/.test(stdout)) return t.skip('this processor has vectors whatever V8 is told');
+  assert.match(stdout, /^WebAssembly with vectors \(SIMD\) .*Safari 16\.4, Node\.js 18/s);
+  const { stderr } = node([...without, join(installed, 'bin/chronormal.js'), '--version']);
+  assert.match(stderr, /^chronormal: WebAssembly with vectors \(SIMD\) [^\n]*\n$/);
+});
 
-export function live(root: Object3D, scene: Scene): number {
-  const meshes: Mesh[] = attach(root), others: AbstractMesh[] = attachBabylon(scene);
-  drive(root);
-  detach(root);
-  detachBabylon(scene);
-  // @ts-expect-error: a scene of Babylon.js is none of three.js
-  attach(scene);
-  return meshes.length + others.length;
-}
-export default { onProgramReady: command };
-`);
-  const tsc = fileURLToPath(new URL('node_modules/typescript/bin/tsc', import.meta.url));
-  const options = ['--noEmit', '--strict', '--target', 'es2022', '--module', 'nodenext', '--skipLibCheck', 'user.mts'];
-  const run = spawnSync(process.execPath, [tsc, ...options], { cwd: folder, encoding: 'utf8' });
-  assert.equal(run.status, 0, run.stdout);
+test('npx chronormal report writes the page of the program', () => {
+  const template = join(installed, 'share/chronormal/report.html');
+  assert.equal(native(['report', 'bumps.glb', '--template', template, '-o', 'native.html']).status, 0);
+  const cwd = join(folder, 'user');
+  mkdirSync(cwd);
+  writeFileSync(join(cwd, 'package.json'), '{}');
+  for (const words of [['npm', 'install', '--offline', '--no-audit', '--no-fund', tarball], ['npx', '--no', 'chronormal', 'report', '../bumps.glb', '-o', 'page.html']]) {
+    const { status, stdout, stderr } = spawnSync(words[0], words.slice(1), { cwd, encoding: 'utf8' });
+    assert.equal(status, 0, stdout + stderr);
+  }
+  assert.deepEqual(readFileSync(join(cwd, 'page.html')), readFileSync(join(folder, 'native.html')));
+});
+
+test('messages name the kind of a file, and have no long fractions', async () => {
+  const picture = readFileSync(join(installed, 'filament.png'));
+  for (const call of [audit, bake, inspect, compare]) {
+    await assert.rejects(call(picture), { name: 'ChronormalError', code: 3, message: 'input.gltf, byte 0: this is a PNG image, not glTF' });
+  }
+  await assert.rejects(inspect(new TextEncoder().encode('<!DOCTYPE html><p>404')), /an HTML page, not glTF/);
+  const { warnings } = await bake(face, { tolerance: 0.1 + 0.2 });
+  assert.match(warnings.join(), /within 0\.3 degrees/);
+  assert.doesNotMatch(warnings.join(), /\d\.\d{8}/);
+});
+
+test('the package says where it is at home', () => {
+  const { homepage, repository, bugs, sideEffects } = JSON.parse(readFileSync(join(installed, 'package.json')));
+  const home = readFileSync(new URL('../../CMakeLists.txt', import.meta.url), 'utf8').match(/HOMEPAGE_URL (\S+)\)/)[1];
+  assert.deepEqual({ homepage, url: repository.url, bugs: bugs.url }, { homepage: `${home}#readme`, url: `git+${home}.git`, bugs: `${home}/issues` });
+  assert.ok(sideEffects.every((path) => /worker/.test(path)));
 });
 
 test('a browser bakes in a worker, and its page goes on meanwhile', async () => {

@@ -85,7 +85,7 @@ def main():
         rows.append((words, seconds_text(native[0]), seconds_text(wasm[0]), f"{wasm[0] / native[0]:.1f}",
                      f"{native[1] / 1e6:.0f}", f"{wasm[1] / 1e6:.0f}"))
         print(*rows[-1], sep=" | ", flush=True)
-    module = (package / "wasm/program.wasm").read_bytes()
+    module = (package / "src/program.wasm").read_bytes()
     node = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout.strip()
     lines = [
         f"The module is {len(module) / 1e6:.2f} MB, {len(gzip.compress(module, 9)) / 1e6:.2f} MB when gzipped; the package, with its",

@@ -1,0 +1,83 @@
+// The options of each function: which there are, what JavaScript value each takes, and the words of the command line that it
+// becomes. Whether a word or a number is one that the program knows, the program says. types/index.d.ts has the same for
+// compilers.
+import { ChronormalError } from './error.js';
+
+const USAGE = 2; // the exit code of the program for a wrong call
+
+// The kinds of values: whether a value is of the kind, and what it has to be.
+const isText = (value) => typeof value === 'string';
+const NUMBER = [(value) => typeof value === 'number' && Number.isFinite(value), 'a finite number'];
+const FLAG = [(value) => typeof value === 'boolean', 'true or false'];
+const TEXT = [isText, 'a string'];
+const isWord = (value) => isText(value) && value !== '';
+const LIST = [(value) => isWord(value) || (Array.isArray(value) && value.length > 0 && value.every(isWord)), 'a word, or an array of words'];
+const NAME = [(value) => isText(value) || NUMBER[0](value), 'a string or a number'];
+
+// How a call is made: meant for the functions, and not for the program.
+const isObject = (value) => typeof value === 'object' && value !== null;
+const isBytes = (value) => value instanceof ArrayBuffer || ArrayBuffer.isView(value);
+const CALL = {
+  name: TEXT,
+  resources: [(value) => isObject(value) && Object.values(value).every(isBytes), 'an object of bytes (a Uint8Array, for example) by their names'],
+  signal: [(value) => isObject(value) && typeof value.throwIfAborted === 'function', 'an AbortSignal'],
+  onProgress: [(value) => typeof value === 'function', 'a function'],
+  worker: FLAG,
+  memoryLimit: NUMBER,
+};
+
+// What is read, and how.
+const READ = { allowExternal: FLAG, maxExpansion: NUMBER, fps: NUMBER, from: NUMBER, to: NUMBER, every: NUMBER };
+const MESHES = { base: TEXT, animation: NAME };
+
+const OPTIONS = {
+  audit: { ...READ, ...MESHES, rule: TEXT, weighting: TEXT, host: LIST, samples: NUMBER, path: TEXT, tolerance: NUMBER, noWeld: FLAG },
+  bake: {
+    ...READ, for: LIST, encode: TEXT, weighting: TEXT, crease: NUMBER, recomputeBase: FLAG, smooth: FLAG, maxBytes: NUMBER,
+    maxTargets: NUMBER, animationsOnly: FLAG, poses: TEXT, plan: FLAG, path: TEXT, denseZeros: FLAG, tolerance: NUMBER, noAudit: FLAG,
+  },
+  compare: {
+    ...READ, ...MESHES, world: FLAG, schemes: LIST, samples: NUMBER, elements: TEXT, crease: NUMBER, noWeld: FLAG, access: TEXT,
+    path: TEXT, certify: FLAG, tolerance: NUMBER, blend: NUMBER, active: NUMBER, seed: NUMBER, truth: NUMBER, noTimes: FLAG,
+  },
+  inspect: { ...READ, ...MESHES, world: FLAG },
+};
+
+const flagOf = (name) => `--${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}`;
+
+// How many letters have to be changed, put in or left out to make one name of another.
+function distance(a, b) {
+  let row = Array.from({ length: b.length + 1 }, (_, j) => j);
+  for (let i = 1; i <= a.length; ++i) {
+    const next = [i];
+    for (let j = 1; j <= b.length; ++j) next[j] = Math.min(next[j - 1] + 1, row[j] + 1, row[j - 1] + (a[i - 1] === b[j - 1] ? 0 : 1));
+    row = next;
+  }
+  return row.at(-1);
+}
+
+function refuseName(name, command, known) {
+  const far = (other) => distance(name.toLowerCase(), other.toLowerCase()), [nearest] = Object.keys(known).sort((a, b) => far(a) - far(b));
+  const hint = far(nearest) <= Math.max(1, name.length / 3) ? `did you mean ${nearest}?` : `there are ${Object.keys(known).sort().join(', ')}`;
+  throw new ChronormalError(USAGE, `there is no option ${JSON.stringify(name)} of ${command}(); ${hint}`);
+}
+
+/**
+ * The words of the command line for the options of a call.
+ * @throws {ChronormalError} code 2, where an option has another name
+ * @throws {TypeError} where a value is of another kind
+ */
+export function flagsOf(command, options) {
+  if (!isObject(options)) throw new TypeError('options: it has to be an object');
+  const known = { ...CALL, ...OPTIONS[command] }, flags = [];
+  for (const [name, value] of Object.entries(options)) {
+    if (!Object.hasOwn(known, name)) refuseName(name, command, known);
+    if (value === undefined) continue;
+    const [isRight, what] = known[name];
+    if (!isRight(value)) throw new TypeError(`${name}: it has to be ${what}`);
+    if (Object.hasOwn(CALL, name) || value === false) continue;
+    flags.push(flagOf(name));
+    if (value !== true) flags.push(Array.isArray(value) ? value.join(',') : String(value));
+  }
+  return flags;
+}

@@ -1,0 +1,486 @@
+/**
+ * The reports of the functions: what `--json` of the commands prints (docs/cli.md). Keys may be added; none changes its meaning.
+ * Angles are degrees. Vertices, faces, targets, nodes and so on are counted from 0, and null is where one does not exist.
+ */
+
+export type Weighting = 'area' | 'angle' | 'uniform' | 'area-angle' | 'max';
+export type PathName = 'linear' | 'catmull-rom' | 'hermite';
+export type Elements = 'faces' | 'vertices' | 'corners';
+
+/** What every report begins with. */
+interface Head<Command extends string, Schema extends number> {
+  /** The version of the program. */
+  chronormal: string;
+  command: Command;
+  schema: Schema;
+}
+
+/** The path of vertices that are not on straight lines. */
+interface CurvedPath {
+  path?: PathName;
+  bend?: number;
+  is_too_sparse?: boolean;
+}
+
+// Of an audit.
+
+export interface AuditPlace {
+  mesh?: number;
+  primitive?: number | null;
+  vertex: number;
+  segment?: number;
+  /** Where it is a target or an expression whose weight moves. */
+  weight?: number;
+  /** Where it is an animation or a sequence. */
+  time?: number;
+}
+
+/** How far the shown normals are from the right ones, over all pairs of a vertex and a moment. */
+export interface MotionError {
+  worst_degrees: number;
+  mean_degrees: number;
+  rms_degrees: number;
+  percentile_99_degrees: number;
+  percentile_99_9_degrees: number;
+  judged: number;
+  no_normal: number;
+  faint: number;
+  faint_worst_degrees: number;
+  unlit: number;
+}
+
+export interface HistogramBin {
+  from_degrees: number;
+  to_degrees: number;
+  pairs: number;
+}
+
+export interface AuditSubject extends MotionError {
+  kind: 'target' | 'track' | 'sequence' | 'expression';
+  name: string;
+  mesh: number | null;
+  target: number | null;
+  animation: number | null;
+  node: number | null;
+  expression: number | null;
+  weighting: Weighting;
+  segments: number;
+  samples: number;
+  vertices: number;
+  worst_at_keys_degrees: number;
+  skinning_worst_degrees: number | null;
+  skinning_mean_degrees: number | null;
+  worst_at: AuditPlace | null;
+  faint_at: AuditPlace | null;
+  unlit_at: AuditPlace | null;
+  histogram: HistogramBin[];
+}
+
+export interface HostAudit extends MotionError {
+  name: string;
+  title: string;
+  normals: 'sum' | 'unit' | 'clamped';
+  tracks: 'specified' | 'splines_resampled' | 'all_resampled' | 'splines_without_duration' | 'splines_misread';
+  skins: 'blended' | 'inverse_transpose' | 'by_joint';
+  most_targets: number | null;
+  source: string;
+  passed: boolean | null;
+  worst_subject: number | null;
+  worst_at: AuditPlace | null;
+  displaced_share: number;
+  targets_beyond: number;
+}
+
+export interface AuthoredOffset {
+  mesh: number | null;
+  vertices: number;
+  weighting: Weighting;
+  weighting_detected: boolean;
+  worst_degrees: number;
+  mean_degrees: number;
+  worst_at: AuditPlace | null;
+  area_mean_degrees: number;
+  closest_weighting: Weighting;
+  closest_mean_degrees: number;
+  closest_worst_degrees: number;
+}
+
+export interface AuditFinding {
+  kind: 'unlit' | 'missing_normals' | 'wrong_at_keys' | 'wrong_between' | 'wrong_together' | 'stale_tangents' | 'flat_primitive' | 'skin'
+    | 'unread_skin' | 'baked' | 'emptied' | 'baked_keyframes' | 'beyond_host';
+  fault: boolean;
+  mesh: number | null;
+  target: number | null;
+  animation: number | null;
+  node: number | null;
+  expression: number | null;
+  count: number;
+  host: string | null;
+  reason: string | null;
+  worst_degrees: number | null;
+  worst_at: AuditPlace | null;
+}
+
+export interface AuditReport extends Head<'audit', 1>, MotionError, CurvedPath {
+  input: { name: string };
+  rule: string;
+  weighting: Weighting | null;
+  stored_normals: boolean;
+  tolerance_degrees: number | null;
+  passed: boolean | null;
+  worst_subject: number | null;
+  worst_at: AuditPlace | null;
+  histogram: HistogramBin[];
+  still: number;
+  subjects: AuditSubject[];
+  hosts: HostAudit[];
+  authored_offsets: AuthoredOffset[];
+  findings: AuditFinding[];
+}
+
+// Of a bake.
+
+export interface BakeAudit {
+  worst_degrees_before: number;
+  worst_degrees_after: number;
+  mean_degrees_before: number;
+  mean_degrees_after: number;
+  unlit_before: number;
+  unlit_after: number;
+  worse: boolean;
+}
+
+export interface ShownErrors {
+  mean_degrees: number;
+  most_degrees: number;
+  worst_degrees: number;
+}
+
+export interface HostPoses {
+  judged: number;
+  before: ShownErrors;
+  after: ShownErrors;
+}
+
+export interface HostChange {
+  host: string;
+  file?: HostPoses;
+  random?: HostPoses;
+  cross_fades?: HostPoses;
+}
+
+export interface BakeChoice {
+  form: string;
+  targets: number;
+  bytes: number;
+  played: ShownErrors;
+  hosts: HostChange[];
+  within: boolean;
+  chosen: boolean;
+  animations_only: boolean;
+  rounded_degrees: number;
+}
+
+export interface BakedMesh {
+  mesh: number;
+  name: string;
+  encoding: string;
+  weighting: Weighting | null;
+  already_baked: boolean;
+  different_normals: number;
+  /** The weights of extra targets: terms [target, factor], and [target, target, factor] of products. */
+  extra_targets: Array<{ target: number; linear: number[][]; quadratic: number[][] }>;
+  bytes: number;
+  undriven_targets: number;
+  flat_primitives: number;
+  vertices_without_base: number;
+  vertices_without_stored_normal: number;
+  rescaled_normals: number;
+  new_tangents: number;
+  stilled_targets: number;
+  fitted_normals: number;
+  kept_normals: number;
+  left_out_targets: number;
+  hosts: HostChange[];
+  choices: BakeChoice[];
+  target_fit_degrees: number;
+  track_fit_degrees: number;
+  audit: BakeAudit | null;
+}
+
+interface BakeHead extends Head<'bake', 2> {
+  input: { name: string };
+  warnings: string[];
+}
+
+/** What bake() says of a glTF file. */
+export interface GltfBakeReport extends BakeHead {
+  output: string;
+  changed: boolean;
+  meshes: BakedMesh[];
+  added_targets: number;
+  added_bytes: number;
+  left_out_bytes: number;
+  converted_tracks: number;
+  pointers: string[];
+  drivers: string | null;
+  audit?: BakeAudit;
+}
+
+/** What bake() says of a sequence, of which it makes a glTF file. */
+export interface SequenceBakeReport extends BakeHead, CurvedPath {
+  output: string;
+  encoding: string;
+  keyframes: number;
+  vertices: number;
+  targets: number;
+  extra_targets: number;
+  bytes: number;
+  bound_degrees: number;
+  without_normals: number;
+  keys?: { count: number; in_between: number; keyframes_left_out: number; even: number; beyond: number };
+  audit?: BakeAudit;
+}
+
+/** Which of the two it is, a key of one alone says: 'meshes' in report. */
+export type BakeReport = GltfBakeReport | SequenceBakeReport;
+
+/** What bake() with `plan` says: what each form would come to. */
+export interface PlanReport extends BakeHead {
+  plan: true;
+  meshes: Array<{ mesh: number; name: string; choices: BakeChoice[] }>;
+}
+
+// Of a comparison.
+
+export interface ElementPlace {
+  segment: number;
+  element: number;
+  t: number;
+}
+
+/** How far the normals of a scheme are from the exact ones. */
+interface SchemeError {
+  scheme: string;
+  mean_degrees: number;
+  rms_degrees: number;
+  max_degrees: number;
+  max_at: ElementPlace;
+  degenerate: number;
+  missing: number;
+}
+
+export interface SchemeReport extends SchemeError {
+  sum_degrees: number;
+  relative_to_linear: number | null;
+  fallbacks: number;
+  flagged: number;
+  certified?: {
+    lower_degrees: number;
+    upper_degrees: number;
+    upper_at: { segment: number; element: number; from: number; to: number };
+    unbounded: number;
+  };
+  prepare_ns?: number;
+  evaluate_ns?: number;
+  bytes: number;
+  access: 'random' | 'sequential';
+  operations: { add: number; multiply: number; divide: number; sqrt: number; trigonometric: number };
+}
+
+interface ComparedInput {
+  name: string;
+  vertices: number;
+  faces: number;
+  different_normals?: number;
+}
+
+/** What compare() says of the ways to interpolate normals. */
+export interface SchemesReport extends Head<'compare', 1> {
+  input: ComparedInput & CurvedPath & { segments: number };
+  elements: Elements;
+  samples: number;
+  schemes: SchemeReport[];
+  tolerance_degrees?: number;
+  cheapest?: string | null;
+}
+
+export interface DeltasError {
+  deltas: string;
+  mean_degrees: number;
+  rms_degrees: number;
+  max_degrees: number;
+  max_at: {
+    row: number;
+    primitive?: number;
+    face?: number;
+    vertex?: number;
+    corner?: number;
+    weights: Array<{ target: number; name: string; weight: number }>;
+  } | null;
+  normals: number;
+  degenerate: number;
+  missing: number;
+}
+
+export interface BlendedMesh {
+  mesh?: number;
+  name?: string;
+  vertices: number;
+  faces: number;
+  targets: number;
+  elements: Elements;
+  normals: number;
+  errors: Array<{ active: number; rows: number; deltas: DeltasError[] }>;
+}
+
+/** What compare() with `blend` says of deltas that hosts add up. */
+export interface BlendReport extends Head<'compare', 1> {
+  input: string;
+  weights: 'random' | 'animation';
+  animation?: string;
+  meshes: BlendedMesh[];
+  flat_meshes: number;
+  still_meshes: number;
+}
+
+/** What compare() with `truth` says of keyframes that were left out. */
+export interface TruthReport extends Head<'compare', 1> {
+  input: ComparedInput;
+  elements: Elements;
+  kept_keyframes: number;
+  left_out_keyframes: number;
+  bend: number;
+  is_too_sparse: boolean;
+  rows: Array<SchemeError & { path: PathName }>;
+}
+
+export type CompareReport = SchemesReport | BlendReport | TruthReport;
+
+// Of an inspection.
+
+interface FoundFaces {
+  count: number;
+  first_face: number | null;
+}
+
+interface FoundVertices {
+  count: number;
+  first_vertex: number | null;
+}
+
+/** Faces that suffer from something, and pairs of them with a keyframe or a segment. */
+export interface FacePlaces<Place> {
+  faces: number;
+  pairs: number;
+  first: (Place & { face: number }) | null;
+}
+
+export interface Surface {
+  triangles: number;
+  most_corners: number;
+  pieces: number;
+  edges: number;
+  open_edges: FoundFaces;
+  non_manifold_edges: FoundFaces;
+  turned_edges: FoundFaces;
+  seam_edges: FoundFaces;
+  doubled_faces: FoundFaces;
+  back_to_back: FoundFaces;
+  repeating_faces: FoundFaces;
+  unreferenced_vertices: FoundVertices;
+  doubled_vertices: FoundVertices;
+  doubled_at_start: FoundVertices;
+}
+
+export interface InspectedSegment {
+  from: number;
+  to: number;
+  name: string;
+  moved_vertices: number;
+  largest_motion: number;
+  largest_turn_degrees: number;
+  turns_far: number;
+  collapses: number;
+  vanishes: number;
+  turns_over: number;
+  without_normals: number;
+  flagged: number;
+  bytes: number;
+}
+
+export interface InspectedPrimitive {
+  mode: number;
+  vertices: number;
+  normals: boolean;
+  tangents: boolean;
+  draco: boolean;
+  targets: Array<{ positions: boolean; normals: boolean; tangents: boolean }>;
+  /** These are there where it has triangles. */
+  triangles?: number;
+  doubled_vertices?: number;
+  split_normals?: number;
+  normals_off_length?: number;
+}
+
+export interface InspectedTrack {
+  node: number;
+  node_name: string;
+  interpolation: string;
+  keys: number;
+  first_time: number;
+  last_time: number;
+  lowest_weight: number;
+  highest_weight: number;
+}
+
+export interface InspectedGltf {
+  extensions: string[];
+  nodes: number;
+  skinned_nodes: number;
+  meshes: Array<{
+    name: string;
+    nodes: number;
+    targets: number;
+    target_names: string[];
+    weights: number[];
+    primitives: InspectedPrimitive[];
+  }>;
+  animations: Array<{ name: string; channels: number; weight_tracks: InspectedTrack[] }>;
+  animation: number | null;
+  curve_error: number;
+  split_normals: number;
+  parts: Array<{
+    node: number | null;
+    mesh: number;
+    primitive: number;
+    first_vertex: number;
+    vertices: number;
+    first_face: number;
+    faces: number;
+  }>;
+}
+
+/** What has faces has all of this; a glTF file without any has `input`, `gltf` and `trouble`. */
+export interface InspectReport extends Head<'inspect', 1> {
+  input: { name: string; vertices: number; faces: number; keyframes: number; segments: number };
+  kind?: 'mesh' | 'targets' | 'sequence';
+  time?: { first: number; last: number } | null;
+  box?: { low: number[]; high: number[]; diagonal: number };
+  largest_motion?: { distance: number; segment: number; vertex: number };
+  largest_turn?: { degrees: number; segment: number; face: number };
+  surface?: Surface;
+  keyframe_faces?: { no_area: FacePlaces<{ keyframe: number }>; slivers: FacePlaces<{ keyframe: number }> };
+  segment_faces?: {
+    without_normals: FacePlaces<{ segment: number }>;
+    collapses: FacePlaces<{ segment: number; t: number }>;
+    vanishes: FacePlaces<{ segment: number; t: number }>;
+    turns_over: FacePlaces<{ segment: number; t: number }>;
+    turns_far: FacePlaces<{ segment: number }>;
+    flagged: number;
+  };
+  bytes?: { keyframes: number; normals: number };
+  segments?: InspectedSegment[];
+  gltf?: InspectedGltf;
+  trouble: Array<{ kind: string; count: number; what: string; where: string | null; meaning: string }>;
+}
