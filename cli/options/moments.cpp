@@ -147,7 +147,7 @@ std::string range_of(const Motion& motion) {
     first = std::fmin(first, keyframe.time);
     last = std::fmax(last, keyframe.time);
   }
-  return formatted("{} to {}", first, last);
+  return formatted("{:g} to {:g}", first, last);
 }
 
 Result<std::vector<double>> weights_of(const AskedMoments::Pose& pose, const TargetNames& names) {

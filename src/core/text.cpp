@@ -124,13 +124,23 @@ std::string counted(std::size_t count, const char* singular, const char* plural)
   return grouped(count) + ' ' + (count == 1 ? singular : plural);
 }
 
-std::string shortest_text(double value) {
-  char digits[32];
-  return {digits, to_chars(digits, digits + sizeof digits, value).ptr};
-}
-
 std::string with_decimals(double value, int decimals) { return digits_of(value, std::chars_format::fixed, decimals); }
 
 std::string with_digits(double value, int digits) { return digits_of(value, std::chars_format::general, digits); }
+
+std::string rounded_text(double value, std::initializer_list<double> others) {
+  constexpr int kFewest = 6, kAll = 17;  // all: these tell any two doubles apart
+  constexpr std::size_t kShort = 8;
+  std::array<char, 32> shortest{};
+  const auto end = to_chars(shortest.data(), shortest.data() + shortest.size(), value).ptr;
+  const std::string text(shortest.data(), end);
+  if (!std::isfinite(value) || text.size() <= kShort) return text;
+  for (int digits = kFewest; digits < kAll; ++digits) {
+    std::string rounded = with_digits(value, digits);
+    const auto is_same = [&](double other) { return other != value && with_digits(other, digits) == rounded; };
+    if (std::none_of(others.begin(), others.end(), is_same)) return rounded;
+  }
+  return text;
+}
 
 }  // namespace chronormal::inline internal

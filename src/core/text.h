@@ -3,6 +3,7 @@
 #define CHRONORMAL_CORE_TEXT_H_
 
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -22,8 +23,9 @@ namespace chronormal::inline internal {
 /// "1 face", "1,234 faces".
 [[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
 
-/// The shortest text that reads back as the same number.
-[[nodiscard]] std::string shortest_text(double value);
+/// A number as people write it, for messages: 0.3 for 0.30000000000000004. It has six significant digits, or as many
+/// more as tell it from others in the same message; a number of up to eight characters stands as it is.
+[[nodiscard]] std::string rounded_text(double value, std::initializer_list<double> others = {});
 
 /// A number with so many decimals, or with so many significant digits and no zeros at the end; "-" where it is infinite
 /// or no number.

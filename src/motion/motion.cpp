@@ -108,8 +108,8 @@ Result<Instant> find_instant(const Motion& motion, double time) {
     if (start_of(s) <= time && time <= end_of(s)) found = s;
   }
   if (!found)
-    return misuse("there is no motion at time " + shortest_text(time) + ": it goes from " + shortest_text(first) +
-                  " to " + shortest_text(last));
+    return misuse("there is no motion at time " + rounded_text(time, {first, last}) + ": it goes from " +
+                  rounded_text(first, {time, last}) + " to " + rounded_text(last, {time, first}));
   return Instant{*found, LocalTime::between(start_of(*found), time, end_of(*found))};
 }
 

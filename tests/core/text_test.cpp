@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <random>
+#include <string>
 
 namespace chronormal::text_test {
 namespace {
@@ -27,6 +30,29 @@ TEST(Text, numbers_have_the_digits_that_are_asked_for) {
   EXPECT_EQ(with_digits(0.000012345, 3), "1.23e-05");
   EXPECT_EQ(with_decimals(std::numeric_limits<double>::infinity(), 2), "-");
   EXPECT_EQ(with_digits(std::numeric_limits<double>::quiet_NaN(), 2), "-");
+}
+
+TEST(Text, numbers_in_messages_have_no_long_fractions_but_differ_where_they_are_not_the_same) {
+  EXPECT_EQ(rounded_text(0.1 + 0.2), "0.3");
+  EXPECT_EQ(rounded_text(1.0 / 3), "0.333333");
+  EXPECT_EQ(rounded_text(-24), "-24");
+  EXPECT_EQ(rounded_text(1234567), "1234567");
+  EXPECT_EQ(rounded_text(0.1 + 0.2, {0.3}), "0.30000000000000004");
+  EXPECT_EQ(rounded_text(0.3, {0.1 + 0.2}), "0.3");
+  EXPECT_EQ(rounded_text(std::numeric_limits<double>::infinity()), "inf");
+  std::mt19937 random(50);
+  SCOPED_TRACE("seed 50");
+  for (int round = 0; round < 10000; ++round) {
+    // Whole numbers of up to five digits over a power of ten, as people write them, and what computing leaves of them.
+    const std::string written = std::to_string(random() % 100000) + "e-" + std::to_string(random() % 5);
+    const double meant = std::stod(written);
+    double found = meant;
+    for (std::size_t steps = random() % 4; steps > 0; --steps) found = std::nextafter(found, 1e9);
+    EXPECT_EQ(std::stod(rounded_text(found)), meant) << written;
+    EXPECT_LE(rounded_text(found).size(), 8U) << written;
+    const double other = std::nextafter(found, -1e9);
+    EXPECT_NE(rounded_text(found, {other}), rounded_text(other, {found})) << written;
+  }
 }
 
 TEST(Text, long_names_are_cut_between_characters) {

@@ -29,9 +29,9 @@ constexpr double kDisplaced = 1e-5;                 // a share of the size that 
 
 std::string tolerance_words(const Audited& input) {
   const std::vector<HostAudit>& hosts = input.audit.hosts;
-  if (hosts.empty()) return formatted("{} {} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
+  if (hosts.empty()) return formatted("{} {:g} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
   const auto within = std::count_if(hosts.begin(), hosts.end(), [&](const HostAudit& h) { return input.passed(h); });
-  return formatted("within {} degrees in {} of {}", *input.tolerance, within, counted(hosts.size(), "host", "hosts"));
+  return formatted("within {:g} degrees in {} of {}", *input.tolerance, within, counted(hosts.size(), "host", "hosts"));
 }
 
 // Which normals are right, where these are others than usual.

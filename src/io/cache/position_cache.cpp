@@ -4,20 +4,11 @@
 #include <utility>
 
 #include "chronormal/motion/motion.h"
+#include "core/text.h"
 #include "io/bytes/binary.h"
-#include "io/bytes/scan.h"
 #include "motion/outline.h"
 
 namespace chronormal::inline internal {
-namespace {
-
-std::string number(double value) {
-  std::string text;
-  scan::append_number(text, value);
-  return text;
-}
-
-}  // namespace
 
 Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
                                  const std::string& cache_name, MotionKind kind) {
@@ -33,8 +24,8 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
     const bool is_jump = kind == MotionKind::kAnimation && before == time;
     if (!(before < time) && !is_jump)
       return invalid_input(cache_name + ", sample " + std::to_string(k),
-                           "its time, " + number(time) + " s, is not after that of sample " + std::to_string(k - 1) +
-                               ", " + number(before) + " s");
+                           "its time, " + rounded_text(time, {before}) + " s, is not after that of sample " +
+                               std::to_string(k - 1) + ", " + rounded_text(before, {time}) + " s");
   }
 
   Motion motion;

@@ -9,6 +9,7 @@
 #include "io/bytes/binary.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/file.h"
+#include "io/bytes/known_kinds.h"
 #include "io/gltf/decode/gltf_bytes.h"
 #include "io/gltf/decode/gltf_draco.h"
 #include "io/gltf/glb/glb.h"
@@ -159,6 +160,7 @@ Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::strin
   const Expansion expansion(options.max_expansion, bytes.size());
   gltf::Origin origin{name, folder, std::nullopt, options.allow_external, expansion, options.resolve};
   GlbChunks chunks{bytes, 0, std::nullopt, {}};
+  if (Status is_other = check_kind(bytes, binary::place(name, 0), "gltf"); !is_other) return is_other.error();
   if (is_glb_extension(lower_extension(name)) && !recognises(bytes.substr(0, 512)))
     return invalid_input(binary::place(name, 0),
                          "this is not glTF: it begins neither as GLB (glTF) nor as a JSON object ({)");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "chronormal/io/gltf_document.h"
+#include "io/bytes/known_kinds.h"
 #include "io/bytes/scan.h"
 #include "io/cache/maya_cache.h"
 #include "io/cache/md2.h"
@@ -126,6 +127,11 @@ const Format* find_format(std::string_view file_name, std::string_view bytes) no
   return nullptr;
 }
 
+std::string unknown_format(std::string_view bytes, std::string_view what) {
+  const std::string_view kind = known_kind(bytes);
+  return kind.empty() ? "neither the name nor the content tells " + std::string(what) : "this is " + std::string(kind);
+}
+
 std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last) {
   std::vector<Extension> found;
   for (const Format& format : kFormats) {
@@ -144,9 +150,10 @@ Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name
                             WantedOfMesh wanted) {
   const Format* const format = find_format(file_name, bytes);
   if (format == nullptr || format->holds != Holds::kMesh)
-    return invalid_input(place, std::string(format == nullptr ? "neither the name nor the content tells the format"
-                                                              : "this is no mesh, by its name or its content") +
+    return invalid_input(place, (format == nullptr ? unknown_format(bytes, "the format")
+                                                   : "this is no mesh, by its name or its content") +
                                     "; a mesh is " + extensions_of({Holds::kMesh}, " or "));
+  if (const Status is_other = check_kind(bytes, place, format->name); !is_other) return is_other.error();
   if (wanted.velocities && format->read_moving_mesh != nullptr) return format->read_moving_mesh(bytes, place);
   return (wanted.shading && format->read_shaded_mesh != nullptr ? format->read_shaded_mesh : format->read_mesh)(bytes,
                                                                                                                 place);

@@ -73,6 +73,10 @@ struct Format {
 /// if neither tells.
 [[nodiscard]] const Format* find_format(std::string_view file_name, std::string_view bytes) noexcept;
 
+/// "neither the name nor the content tells the format", where what is "the format"; or "this is a PNG image", where the
+/// bytes are of a known kind: how messages begin about a file that has no format.
+[[nodiscard]] std::string unknown_format(std::string_view bytes, std::string_view what);
+
 /// ".obj, .ply": the extensions of all formats that hold one of these, for messages; the last after `last`.
 [[nodiscard]] std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last = ", ");
 

@@ -16,6 +16,7 @@
 
 #include "chronormal/io/builtin_morphs.h"
 #include "io/bytes/file.h"
+#include "io/bytes/known_kinds.h"
 #include "io/bytes/positioned_file.h"
 #include "io/cache/cache_layout.h"
 #include "io/cache/maya_cache.h"
@@ -88,7 +89,10 @@ Result<PositionCache> read_cache(const CacheInput& input, const CacheOptions& ca
   if (input.format->read_cache == nullptr) return read_maya_cache(input.path, cache_options, options.resolve);
   const Result<FileBytes> file = FileBytes::open(input.path, options.resolve);
   if (!file) return file.error();
-  return input.format->read_cache(file.value().bytes(), file_name_of(input.path), cache_options);
+  const std::string_view bytes = file.value().bytes();
+  const std::string name = file_name_of(input.path);
+  if (const Status is_other = check_kind(bytes, name, input.format->name); !is_other) return is_other.error();
+  return input.format->read_cache(bytes, name, cache_options);
 }
 
 std::vector<double> times_of(const Motion& motion) {
@@ -252,6 +256,7 @@ Status read_whole_motion(const Format& format, std::string_view bytes, const std
                          const InputOptions& options, ReadMotion& read) {
   const std::string name = file_name_of(path);
   read.bytes_read = bytes.size();
+  if (Status is_other = check_kind(bytes, name, format.name); !is_other) return is_other;
   std::optional<PositionedFile> file;
   if (options.stream && !options.resolve && format.read_outline != nullptr) file = PositionedFile::open(path);
   std::optional<CacheLayout> layout;
@@ -283,7 +288,7 @@ Result<Opened> open_whole(const std::string& path, const InputOptions& options) 
     const Status read = read_whole_motion(*format, bytes, path, options, opened.read);
     if (!read) return read.error();
   } else if (options.allow_mesh && format == nullptr) {
-    return invalid_input(file_name_of(path), "neither the name nor the content tells a format that is read: " +
+    return invalid_input(file_name_of(path), unknown_format(bytes, "a format that is read") + ": " +
                                                  extensions_of({Holds::kGltf, Holds::kMotion, Holds::kMesh}) +
                                                  " alone, " + extensions_of({Holds::kCache}) + " over a mesh, " +
                                                  extensions_of({Holds::kTarget}) + " over --base");
@@ -292,10 +297,9 @@ Result<Opened> open_whole(const std::string& path, const InputOptions& options) 
     if (!mesh) return mesh.error();
     opened.read = std::move(mesh).value();
   } else {
-    return invalid_input(file_name_of(path),
-                         "neither the name nor the content tells a format that holds a whole motion (" +
-                             extensions_of({Holds::kGltf, Holds::kMotion}) + "); a sequence of " +
-                             extensions_of({Holds::kMesh}, " or ") + " files needs two or more");
+    return invalid_input(file_name_of(path), unknown_format(bytes, "a format that holds a whole motion") + " (" +
+                                                 extensions_of({Holds::kGltf, Holds::kMotion}) + "); a sequence of " +
+                                                 extensions_of({Holds::kMesh}, " or ") + " files needs two or more");
   }
   if (options.progress) options.progress(1, 1);
   return opened;

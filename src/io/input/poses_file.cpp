@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "io/bytes/file.h"
+#include "io/bytes/known_kinds.h"
 #include "io/json/json.h"
 
 namespace chronormal {
@@ -37,6 +38,7 @@ Result<std::vector<RigPose>> parse_poses(std::string_view text, const std::strin
 Result<std::vector<RigPose>> read_poses_file(const std::string& path) {
   const Result<FileBytes> file = FileBytes::open(path);
   if (!file) return file.error();
+  if (Status is_other = check_kind(file.value().bytes(), path, "json"); !is_other) return is_other.error();
   return parse_poses(file.value().bytes(), path);
 }
 

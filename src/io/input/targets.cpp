@@ -12,6 +12,7 @@
 #include "chronormal/motion/motion.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/file.h"
+#include "io/bytes/known_kinds.h"
 #include "io/input/formats.h"
 #include "io/mesh/make_human_target.h"
 
@@ -81,6 +82,7 @@ Result<std::vector<float>> read_deltas(const InputOptions& options, const std::s
   const Motion& motion = read.motion;
   const Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();
+  if (Status is_other = check_kind(file.value().bytes(), place_of(path), "target"); !is_other) return is_other.error();
   read.bytes_read += file.value().bytes().size();
   if (const Status status = ask_for_keyframe(options, path, read); !status) return status.error();
   std::vector<float> positions = motion.keyframes.front().positions;

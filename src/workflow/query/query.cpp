@@ -39,7 +39,8 @@ double t_towards(const Segment& segment, double time, double end) {
 Error no_motion(const char* option, double time, double first, double last) {
   return Error{ErrorCode::kUsage, option,
                "there is no motion " + std::string(option == std::string("--from") ? "after " : "before ") +
-                   shortest_text(time) + ": it goes from " + shortest_text(first) + " to " + shortest_text(last)};
+                   rounded_text(time, {first, last}) + ": it goes from " + rounded_text(first, {time, last}) + " to " +
+                   rounded_text(last, {time, first})};
 }
 
 }  // namespace

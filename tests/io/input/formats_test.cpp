@@ -230,7 +230,7 @@ TEST(ReadMesh, chooses_by_extension_in_upper_and_lower_case) {
   EXPECT_EQ(find_format("obj"), nullptr);
   const Result<MeshFrame> misnamed = read_mesh(test::small_binary_ply(false), "walk.obj", "walk.obj");
   ASSERT_FALSE(misnamed.ok());
-  EXPECT_EQ(misnamed.error().place, "walk.obj, line 10") << misnamed.error().text();
+  EXPECT_EQ(misnamed.error().text(), "walk.obj: this is a PLY file, not OBJ");
 }
 
 TEST(ReadMesh, chooses_by_content_where_the_name_does_not_tell) {

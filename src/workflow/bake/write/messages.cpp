@@ -1,14 +1,13 @@
 #include "workflow/bake/write/messages.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
-#include "core/charconv.h"
+#include "core/text.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 
 namespace chronormal::inline internal {
@@ -21,12 +20,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMorphedAttributes = 8;
 // More extra targets than these make a file large.
 constexpr std::size_t kManyExtras = 64;
-
-std::string number_text(double number) {
-  std::array<char, 32> text{};
-  const auto end = to_chars(text.data(), text.data() + text.size(), number);
-  return {text.data(), end.ptr};
-}
 
 // To hundredths of a degree upwards, so that nothing is said to be within what it is beyond.
 double rounded_up(double degrees) { return std::ceil(100 * degrees) / 100; }
@@ -100,7 +93,7 @@ void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, s
 
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,
                     std::vector<MeshWarning>& warnings) {
-  const std::string tolerance = number_text(options.tolerance.value_or(kHarmlessTolerance));
+  const std::string tolerance = rounded_text(options.tolerance.value_or(kHarmlessTolerance));
   if (baked.left_tangents > 0) {
     warnings.push_back(
         {label_of(mesh, baked),
@@ -117,13 +110,13 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
       if (host.normals == NormalRule::kClamped)
         names.append(names.empty() ? "" : ", ").append(host.title).append(" (" + std::to_string(host.bits) + " bits)");
     warnings.push_back({label_of(mesh, baked), "its normals are within " + tolerance + " degrees, but up to " +
-                                                   number_text(rounded_up(chosen->rounded)) +
+                                                   rounded_text(rounded_up(chosen->rounded)) +
                                                    " degrees off where compression rounds them: " + names});
     return;
   }
   if (baked.already_baked) {
     warnings.push_back({label_of(mesh, baked), "it was baked before, and its normals are up to " +
-                                                   number_text(rounded_up(chosen->played.worst)) +
+                                                   rounded_text(rounded_up(chosen->played.worst)) +
                                                    " degrees off along its animations, beyond the tolerance of " +
                                                    tolerance + ": bake the original file with this tolerance"});
     return;
