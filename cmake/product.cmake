@@ -95,7 +95,11 @@ function(chronormal_compile_together target)
 endfunction()
 
 # A shared object, such as an engine's plugin, can be linked from the static libraries, and exports nothing of them.
-set(linkable POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
+set(position_independent ON)
+if(EMSCRIPTEN)
+  set(position_independent OFF)  # a module is linked whole, and is smaller so
+endif()
+set(linkable POSITION_INDEPENDENT_CODE ${position_independent} CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
 
 # chronormal_add_product(SUFFIX FLAGS): the three targets with this suffix to their names, compiled with what the
 # interface library FLAGS says.
@@ -125,6 +129,7 @@ function(chronormal_add_product suffix flags)
 
   if(EMSCRIPTEN)
     target_link_libraries(chronormal${suffix} PRIVATE fmt::fmt)  # and fast_float: numbers from text and to text
+    target_compile_options(chronormal${suffix} PRIVATE -msimd128)
   endif()
 
   if(NOT CHRONORMAL_IO)
@@ -150,7 +155,10 @@ function(chronormal_add_product suffix flags)
   chronormal_compile_together(chronormal_cli${suffix} ${cli_sources})
   target_precompile_headers(chronormal_cli${suffix} PRIVATE <algorithm> <functional> <map> <memory> <optional> <string> <string_view>
                                                             <vector> <fmt/format.h> <nlohmann/json.hpp>)
-  if(PROJECT_IS_TOP_LEVEL AND NOT EMSCRIPTEN)  # no loop that takes time is in the program: these are in the libraries
+  # No loop that takes time is in the program: these are in the libraries.
+  if(EMSCRIPTEN)
+    target_compile_options(chronormal_cli${suffix} PRIVATE ${for_size})
+  elseif(PROJECT_IS_TOP_LEVEL)
     target_compile_options(chronormal_cli${suffix} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   target_include_directories(chronormal_cli${suffix} PRIVATE . src)
