@@ -53,17 +53,17 @@ function makeApp(name, files = {}) {
   const root = join(folder, name), modules = join(root, 'node_modules');
   cpSync(installed, join(modules, 'chronormal'), { recursive: true });
   symlinkSync(ofHosts('@rollup'), join(modules, '@rollup'));
-  for (const [path, text] of Object.entries({ 'app.js': APP, 'index.html': HTML, 'bumps.glb': face, ...files })) writeFileSync(join(root, path), text);
+  for (const [path, text] of Object.entries({ 'package.json': '{ "type": "module" }', 'app.js': APP, 'index.html': HTML, 'bumps.glb': face, ...files })) writeFileSync(join(root, path), text);
   return root;
 }
 
 // What the page at an address says that the audits came to; whatever it asks for comes from there.
 async function saidAt(address) {
   const page = await browser.newPage(), faults = [];
-  page.on('pageerror', (error) => faults.push(String(error)));
   page.on('console', (message) => ['error', 'warn'].includes(message.type()) && faults.push(message.text()));
+  const broken = new Promise((_, reject) => page.on('pageerror', reject));
   await page.goto(address);
-  await page.waitForSelector('[data-ready]', { timeout: 120_000 });
+  await Promise.race([broken, page.waitForSelector('[data-ready]', { timeout: 120_000 })]);
   const said = JSON.parse(await page.evaluate(() => document.body.textContent));
   assert.deepEqual(faults, []);
   await page.close();
@@ -141,7 +141,7 @@ test('esbuild builds it by the command of the README', async () => {
 });
 
 test('rollup builds it by the settings of the README', async () => {
-  const { rollup } = await import('rollup'), root = makeApp('rollup', { 'package.json': '{"type": "module"}' });
+  const { rollup } = await import('rollup'), root = makeApp('rollup');
   const { output, ...input } = await settings(root, 'rollup.config.js');
   const cwd = process.cwd();
   process.chdir(root);
