@@ -65,9 +65,10 @@ std::uint64_t written_bytes(int descriptor, std::uint64_t size, std::uint64_t en
 #endif
 }
 
-// Refuses a file that is nearly all holes: it would make us hold far more than there is of it.
+// Refuses a large file that is nearly all holes: it would make us hold far more than there is of it.
 Status check_holes(int descriptor, std::uint64_t size, const std::string& place) {
-  if (size <= Expansion::kAlways) return Success{};
+  constexpr std::uint64_t kLarge = std::uint64_t{1} << 30;
+  if (size <= kLarge) return Success{};
   const std::uint64_t enough = size / Expansion::kUsual, written = written_bytes(descriptor, size, enough);
   if (written >= enough) return Success{};
   return invalid_input(place, "of its " + std::to_string(size) + " bytes only " + std::to_string(written) +

@@ -18,7 +18,7 @@ set(two_files ${CMAKE_CURRENT_LIST_DIR})
 
 run(said ${SOURCE}/tools/two_files.py ${FOLDER})
 file(READ ${SOURCE}/README.md readme)
-if(NOT readme MATCHES "```cpp\n(#include \"chronormal_core.h\"[^`]*)```[^`]*```text\n([^`]*)```")
+if(NOT readme MATCHES "```cpp\n([^`]*#include \"chronormal_core.h\"[^`]*)```[^`]*```text\n([^`]*)```")
   message(FATAL_ERROR "the README shows no example with the two files, or not what it prints")
 endif()
 file(WRITE ${FOLDER}/example.cpp "${CMAKE_MATCH_1}")
