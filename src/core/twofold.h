@@ -34,12 +34,12 @@ struct Twofold {
 
   friend Twofold operator-(const Twofold& a) noexcept { return {-a.high, -a.low}; }
   friend Twofold operator+(const Twofold& a, const Twofold& b) noexcept {
-    const Twofold high = sum(a.high, b.high);
-    return sum(high.high, high.low + (a.low + b.low));
+    const Twofold of_highs = sum(a.high, b.high);
+    return sum(of_highs.high, of_highs.low + (a.low + b.low));
   }
   friend Twofold operator*(const Twofold& a, const Twofold& b) noexcept {
-    const Twofold high = product(a.high, b.high);
-    return sum(high.high, high.low + (a.high * b.low + a.low * b.high));
+    const Twofold of_highs = product(a.high, b.high);
+    return sum(of_highs.high, of_highs.low + (a.high * b.low + a.low * b.high));
   }
 };
 

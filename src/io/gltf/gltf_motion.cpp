@@ -169,12 +169,12 @@ class Assembly {
       if (weights[k] != 0 && !deltas.empty()) sums.add(weights[k], std::span(deltas).subspan(some.first, some.count));
     }
     sums.settle();
-    const auto& [columns, offset] = transforms_[part];
+    const AffineTransform& transform = transforms_[part];
     for (std::size_t i = 0; world_ && i < some.count; i += 3) {
       const Twofold x = sums[i], y = sums[i + 1], z = sums[i + 2];
       const auto placed = [&](double Vec3d::*axis) {
-        return Twofold{columns[0].*axis, 0} * x + Twofold{columns[1].*axis, 0} * y + Twofold{columns[2].*axis, 0} * z +
-               Twofold{offset.*axis, 0};
+        return Twofold{transform.columns[0].*axis, 0} * x + Twofold{transform.columns[1].*axis, 0} * y +
+               Twofold{transform.columns[2].*axis, 0} * z + Twofold{transform.offset.*axis, 0};
       };
       sums.set(i, placed(&Vec3d::x));
       sums.set(i + 1, placed(&Vec3d::y));
