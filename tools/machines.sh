@@ -83,7 +83,7 @@ part_machines() {
   compile_two_files Clang clang++-14 "" ""
   compile_two_files "GCC for 64-bit ARM" aarch64-linux-gnu-g++ "" "qemu-aarch64-static -L /usr/aarch64-linux-gnu"
   # As in tools/wasm.sh: Debian's Emscripten looks for modules of Node.js where Debian has them.
-  NODE_PATH=/usr/share/nodejs EM_NODE_JS=$(command -v node) compile_two_files Emscripten em++ -sALLOW_MEMORY_GROWTH=1 "node --no-experimental-fetch"
+  NODE_PATH=/usr/share/nodejs EM_NODE_JS=$(command -v node) compile_two_files Emscripten em++ "" "node --no-experimental-fetch"
   build_for_arm64
   rm -rf build/arm64/results
   qemu-aarch64-static -L /usr/aarch64-linux-gnu build/arm64/tests --gtest_brief=1 --gtest_output=xml:build/arm64/results/tests.xml
