@@ -24,7 +24,7 @@ function mount(FS, NODEFS) {
       // No folder: a file, or a link that leads nowhere.
     }
   }
-  // Where the program finds itself, and so what the package has for it: share/chronormal/report.html.
+  // The program looks for share/chronormal/report.html beside itself, and takes this link for itself.
   FS.symlink(inside(fileURLToPath(new URL('../bin/chronormal.js', import.meta.url))), '/proc/self/exe');
   FS.chdir(inside(process.cwd()));
 }

@@ -109,7 +109,8 @@ export function chronormal({ onReport, ...options } = {}) {
   return Object.defineProperty(transform, 'name', { value: 'chronormal' });
 }
 
-// What of the program's options the command below has: the name, how it is written, what it says, and the value of its text.
+// The command below has these of the program's options. Each entry gives the name, how it is written, what its help says, and
+// what turns its text into a value.
 const OPTIONS = [
   ['for', '--for <HOSTS>', 'the hosts that count, with commas between them, or all'],
   ['tolerance', '--tolerance <DEGREES>', 'how far off normals may be', Number],

@@ -45,7 +45,7 @@ const OPTIONS = {
 
 const flagOf = (name) => `--${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}`;
 
-// How many letters have to be changed, put in or left out to make one name of another.
+// Counts the letters that have to be changed, added or removed to turn one name into the other.
 function distance(a, b) {
   let row = Array.from({ length: b.length + 1 }, (_, j) => j);
   for (let i = 1; i <= a.length; ++i) {

@@ -2,8 +2,8 @@
 // is left for the next, whatever it ended with.
 import createProgram from './program.js';
 
-// What the program needs of WebAssembly, vectors and exceptions, in the smallest module that has both: a runtime that
-// does not know them takes it for invalid.
+// The smallest WebAssembly module that uses vectors and exceptions, which the program needs: a runtime that does not know
+// them calls it invalid.
 const NEEDED = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 13, 1, 11, 0, 6, 64, 65, 0, 253, 17, 26, 25, 11, 11];
 const TOO_OLD = 'WebAssembly with vectors (SIMD) and exceptions is not there: chronormal needs Chrome or Edge 95, Firefox 100, Safari 16.4, \
 Node.js 18, or later, on a processor that has vectors';

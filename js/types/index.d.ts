@@ -30,7 +30,7 @@ export interface CallOptions {
 }
 
 /**
- * What is read, and how. These options and those below are options of the program, in camel case, and `chronormal help COMMAND`
+ * Options that say which data are read, and how. These options and those below are options of the program, in camel case, and `chronormal help COMMAND`
  * explains them: `maxTargets: 112` is `--max-targets 112`. Another name, or a value of another type, is refused.
  */
 export interface ReadOptions extends CallOptions {

@@ -67,7 +67,7 @@ class LongSums {
     add_products(upper, values);
     if (upper != factor) add_products(factor - upper, values);
   }
-  /// The same of values with 53 digits, whose products are rounded; for those that are small against the sums.
+  /// Adds products of values with 53 digits, which are rounded: for products that are small against the sums.
   void add(double factor, std::span<const double> values) noexcept { add_products(factor, values); }
 
   /// The sums are high + low, of which low is at most half a unit in the last place of high once it is settled.

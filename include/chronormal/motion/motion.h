@@ -38,7 +38,8 @@ struct Segment {
   double start_time = 0;         ///< seconds, at t = 0; of a target, its weight
   double end_time = 1;           ///< the same at t = 1
   std::size_t index = 0;         ///< which segment of its motion it is
-  /// What `from` and `to` lack since they were rounded to float32 (Motion::Keyframe); empty: nothing.
+  /// Added to `from` and `to`, these give positions before they were rounded to float32 (Motion::Keyframe). Empty where
+  /// nothing was rounded.
   VectorView<const double> from_residuals = {}, to_residuals = {};
 };
 

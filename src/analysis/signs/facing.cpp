@@ -168,7 +168,7 @@ unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
   return lowest;
 }
 
-// Where a corner is at an end of the segment: the sum of both.
+// The place of a corner at an end of the segment is the sum of both.
 struct Place {
   Vec3d position, residual;
 

@@ -40,8 +40,8 @@ bool read_all(int descriptor, OnWait on_wait, std::size_t most, std::string& byt
   return true;
 }
 
-// How many bytes of a file were ever written, the rest being holes: counted up to `enough`, and all of them where the
-// system does not say.
+// Counts the bytes of a file that were ever written, and stops at `enough`; the rest are holes. Where the system does
+// not tell holes, every byte counts.
 std::uint64_t written_bytes(int descriptor, std::uint64_t size, std::uint64_t enough) {
 #if defined(SEEK_DATA) && defined(SEEK_HOLE)
   std::uint64_t written = 0;

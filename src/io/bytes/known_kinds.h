@@ -1,4 +1,5 @@
-/// What a file is that was meant to be another, by its first bytes. Private to io.
+/// Names the kind of a file by its first bytes, for messages about a file of another kind than was expected. Private to
+/// io.
 #ifndef CHRONORMAL_IO_BYTES_KNOWN_KINDS_H_
 #define CHRONORMAL_IO_BYTES_KNOWN_KINDS_H_
 
