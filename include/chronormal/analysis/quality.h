@@ -39,10 +39,6 @@ struct ReferenceArea {
 };
 [[nodiscard]] ReferenceArea reference_area(const Segment& segment, std::uint32_t face, double t) noexcept;
 
-/// Returns the same normal from what reference_area() has of these faces at t, which vertices of a large polygon share.
-[[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces,
-                                     std::span<const ReferenceArea> areas, double t) noexcept;
-
 /// Where an angular error was found.
 struct ErrorPlace {
   std::size_t segment = 0;

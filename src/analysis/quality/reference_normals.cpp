@@ -6,7 +6,9 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <vector>
 
+#include "analysis/quality/shared_reference.h"
 #include "core/wide_integer.h"
 #include "motion/segment_end.h"
 
@@ -57,8 +59,15 @@ using Point = std::array<WideInteger<kPointDigits>, 3>;
 // 2^(base - 149), and those at t in units 2^-t.scale as large.
 class ExactArea {
  public:
-  ExactArea(const Segment& segment, std::span<const std::uint32_t> faces) : segment_(segment), faces_(faces) {
+  ExactArea(const SharedFaces& shared, std::span<const std::uint32_t> faces) : segment_(shared.segment()) {
+    const Segment& segment = segment_;
     for (const std::uint32_t f : faces) {
+      if (LargeFaceValues<ExactCurve>::are_kept_of(*segment.topology, f)) {
+        large_.push_back(shared.exact(f));
+        base_ = std::min(base_, large_.back().base());
+        continue;
+      }
+      faces_.push_back(f);
       for (const std::uint32_t vertex : segment.topology->face(f)) {
         for (const SegmentEnd& end : {SegmentEnd::from(segment), SegmentEnd::to(segment)}) {
           end.for_parts(vertex, [this](const Vec3f& p) {
@@ -88,6 +97,13 @@ class ExactArea {
           sum[k].settle();
         }
         before = here;
+      }
+    }
+    for (const ExactCurve& curve : large_) {
+      const ExactCurve::Value value = curve.integers_at(t);
+      for (std::size_t k = 0; k < 3; ++k) {
+        sum[k].add_shifted(value[k], 2 * (curve.base() - base_));
+        sum[k].settle();
       }
     }
     const int unit = 2 * static_cast<int>(base_) - 298 - 2 * static_cast<int>(t.scale);
@@ -124,12 +140,13 @@ class ExactArea {
   }
 
   const Segment& segment_;
-  std::span<const std::uint32_t> faces_;
-  unsigned base_ = 253;  // the highest shift of a float
+  std::vector<std::uint32_t> faces_;  // those of few corners, which are added up from their places at t
+  std::vector<ExactCurve> large_;     // the others
+  unsigned base_ = 253;               // the highest shift of a float
 };
 
-Vec3d exact_normal_at(const Segment& segment, std::span<const std::uint32_t> faces, double t) {
-  const ExactArea area(segment, faces);
+Vec3d exact_normal_at(const SharedFaces& shared, std::span<const std::uint32_t> faces, double t) {
+  const ExactArea area(shared, faces);
   const Vec3d n = area.at(t);
   if (n == Vec3d{} || t <= 0 || t >= 1) return n;
   for (const double end : {0.0, 1.0}) {
@@ -146,7 +163,7 @@ void reference_normals(const Segment& segment, IndexRange faces, double t, std::
   for (std::size_t i = 0; i < faces.count; ++i) {
     const auto face = static_cast<std::uint32_t>(faces.first + i);
     const ReferenceArea area = reference_area(segment, face, t);
-    result[i] = is_certain(area) ? area.n : exact_normal_at(segment, {&face, 1}, t);
+    result[i] = is_certain(area) ? area.n : exact_normal_at(SharedFaces(segment), {&face, 1}, t);
   }
 }
 
@@ -161,10 +178,12 @@ Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> fa
     sum.n = sum.n + area.n;
     sum.products += area.products;
   }
-  return is_certain(sum) ? sum.n : exact_normal_at(segment, faces, t);
+  return is_certain(sum) ? sum.n : exact_normal_at(SharedFaces(segment), faces, t);
 }
 
-Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces,
+inline namespace internal {
+
+Vec3d reference_normal(const SharedFaces& shared, std::span<const std::uint32_t> faces,
                        std::span<const ReferenceArea> areas, double t) noexcept {
   assert(areas.size() == faces.size());
   ReferenceArea sum;
@@ -172,7 +191,9 @@ Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> fa
     sum.n = sum.n + area.n;
     sum.products += area.products;
   }
-  return is_certain(sum) ? sum.n : exact_normal_at(segment, faces, t);
+  return is_certain(sum) ? sum.n : exact_normal_at(shared, faces, t);
 }
+
+}  // namespace internal
 
 }  // namespace chronormal

@@ -55,9 +55,7 @@ void add_cross(const PlaceParts& p, const PlaceParts& q, std::array<WideInteger<
     for (std::size_t k = 0; k < q.count; ++k) add_cross(p.parts[i], q.parts[k], sum);
 }
 
-// With every factor t as well: 2 (53 + 200) bits more.
-constexpr std::size_t kValueDigits = 50;
-using ValueVector = std::array<WideInteger<kValueDigits>, 3>;
+using ValueVector = ExactCurve::Value;
 
 template <std::size_t kDigits>
 Vec3d to_doubles(const std::array<WideInteger<kDigits>, 3>& v, int exponent) noexcept {
@@ -170,6 +168,23 @@ ExactCurve ExactCurve::of_polygon(const Segment& segment, std::span<const std::u
   return of(segment, [vertices](const auto& body) { body(vertices); });
 }
 
+void ExactCurve::add(const ExactCurve& other) noexcept {
+  if (other.base_ < base_) {
+    ExactCurve finer = other;
+    finer.add(*this);
+    *this = finer;
+    return;
+  }
+  const unsigned shift = 2 * (other.base_ - base_);
+  for (const auto& [to, from] :
+       {std::pair{&n0_, &other.n0_}, std::pair{&twice_m_, &other.twice_m_}, std::pair{&n1_, &other.n1_}}) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      (*to)[k].add_shifted((*from)[k], shift);
+      (*to)[k].settle();
+    }
+  }
+}
+
 ExactCurve ExactCurve::of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept {
   return of(segment, [&](const auto& body) {
     for (const std::uint32_t f : faces) body(segment.topology->face(f));
@@ -248,20 +263,24 @@ UnitNormal ExactCurve::unit_normal_at(const LocalTime& t) const noexcept {
   return {chronormal::unit(curvature), curvature != Vec3d{} ? Direction::kLimit : Direction::kNone};
 }
 
-Vec3d ExactCurve::normal_at_double(double t) const noexcept {
-  const UnitFraction fraction = UnitFraction::of(t);
+ExactCurve::Value ExactCurve::integers_at(const UnitFraction& t) const noexcept {
   const CoefficientVector c1 = linear(), c2 = bend();
-  ValueVector value;
+  Value value;
   for (std::size_t k = 0; k < 3; ++k) {
-    WideInteger<kValueDigits> inner;
-    inner.add_product(c2[k], fraction);
-    inner.add_shifted(c1[k], fraction.scale);
+    WideInteger<ExactCurve::kValueDigits> inner;
+    inner.add_product(c2[k], t);
+    inner.add_shifted(c1[k], t.scale);
     inner.settle();
-    value[k].add_product(inner, fraction);
-    value[k].add_shifted(n0_[k], 2 * fraction.scale);
+    value[k].add_product(inner, t);
+    value[k].add_shifted(n0_[k], 2 * t.scale);
     value[k].settle();
   }
-  return to_doubles(value, unit() - 2 * static_cast<int>(fraction.scale));
+  return value;
+}
+
+Vec3d ExactCurve::normal_at_double(double t) const noexcept {
+  const UnitFraction fraction = UnitFraction::of(t);
+  return to_doubles(integers_at(fraction), unit() - 2 * static_cast<int>(fraction.scale));
 }
 
 // Twice n0 + (s + t) / 2 linear + s t bend, as the sum of two products of Horner's rule: one begins with s, one with t.
@@ -271,7 +290,7 @@ Vec3d ExactCurve::blossom_at(double s, double t) const noexcept {
   ValueVector value;
   for (std::size_t k = 0; k < 3; ++k) {
     for (const auto& [outer, inner] : {std::pair{a, b}, std::pair{b, a}}) {
-      WideInteger<kValueDigits> factor;
+      WideInteger<ExactCurve::kValueDigits> factor;
       factor.add_product(c2[k], inner);
       factor.add_shifted(c1[k], inner.scale);
       factor.settle();

@@ -64,6 +64,9 @@ class ExactCurve {
   [[nodiscard]] static ExactCurve of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
   [[nodiscard]] static ExactCurve of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept;
 
+  /// Adds another curve, with the bits of what of_faces() makes of both at once.
+  void add(const ExactCurve& other) noexcept;
+
   /// Reads what append_to() has written.
   [[nodiscard]] static ExactCurve of_kept(const std::int32_t* kept) noexcept;
   /// Appends what this curve is made of, as few numbers as hold it: some 40 for coordinates of one size.
@@ -78,6 +81,12 @@ class ExactCurve {
   [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
   /// n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
   [[nodiscard]] UnitNormal unit_normal_at(const LocalTime& t) const noexcept;
+  /// n(t) without any rounding: an integer of the unit 2^(2 base() - 298 - 2 t.scale), settled.
+  static constexpr std::size_t kValueDigits = 50;  // both factors t together have 2 (53 + 200) bits
+  using Value = std::array<WideInteger<kValueDigits>, 3>;
+  [[nodiscard]] Value integers_at(const UnitFraction& t) const noexcept;
+  /// All coordinates are multiples of 2^(base - 149).
+  [[nodiscard]] unsigned base() const noexcept { return base_; }
   /// The coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, settled: integers of one unit, a power of two.
   [[nodiscard]] std::array<CoefficientVector, 3> in_powers() const noexcept;
 
@@ -101,7 +110,7 @@ class ExactCurve {
   [[nodiscard]] CoefficientVector bend() const noexcept;    // n0 - 2m + n1
 
   CoefficientVector n0_, twice_m_, n1_;
-  unsigned base_ = 0;  // all coordinates are multiples of 2^(base - 149)
+  unsigned base_ = 0;
 };
 
 }  // namespace chronormal::inline internal

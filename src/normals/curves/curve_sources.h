@@ -110,8 +110,10 @@ class GroupNormals {
   void write_in_float(IndexRange elements, std::span<ControlTile> tiles) const {
     tiles_.write_in_float(elements, tiles);
   }
-  [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return control_normals_of_group(segment_, groups_, i); }
-  [[nodiscard]] ExactCurve exact(std::size_t i) const { return ExactCurve::of_faces(segment_, groups_.faces(i)); }
+  [[nodiscard]] BoundedNormals in_double(std::size_t i) const {
+    return control_normals_of_group(tiles_.faces(), groups_, i);
+  }
+  [[nodiscard]] ExactCurve exact(std::size_t i) const { return tiles_.faces().exact_sum(groups_.faces(i)); }
 
  private:
   const Segment& segment_;

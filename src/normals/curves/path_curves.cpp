@@ -18,6 +18,7 @@
 #include "core/twofold.h"
 #include "core/vector_area.h"
 #include "normals/control/local_time.h"
+#include "normals/control/shared_faces.h"
 #include "normals/curves/certificate.h"
 #include "normals/curves/kernels/evaluate_path.h"
 #include "normals/curves/outputs.h"
@@ -131,18 +132,25 @@ class FaceSource {
   const PolynomialSegment<3>& segment_;
 };
 
-// The control normals of the sum of some faces, where those of double cancel: in twice its digits, and zero for what is
-// nothing but their rounding. Products are added up with whole factors, and divided last.
-Controls fine_normals(const PolynomialSegment<3>& segment, std::span<const std::uint32_t> faces) noexcept {
-  constexpr double kRounding = 0x1p-102;  // of a product and its additions, at most four for each triangle
-  std::size_t triangles = 0;
-  struct Edge {
-    Twofold at[4][3];
-    double size[4];
-  };
+// The control normals of a sum of faces in twice the digits of double. Products are added up with whole factors.
+struct FineSums {
   Twofold sums[kPathControls][3];
   double sizes[kPathControls] = {};
-  for (const std::uint32_t f : faces) {
+  std::size_t triangles = 0;
+
+  void add(const FineSums& other) noexcept {
+    for (std::size_t k = 0; k < kPathControls; ++k) {
+      for (std::size_t c = 0; c < 3; ++c) sums[k][c] = sums[k][c] + other.sums[k][c];
+      sizes[k] += other.sizes[k];
+    }
+    triangles += other.triangles;
+  }
+
+  void add(const PolynomialSegment<3>& segment, std::uint32_t f) noexcept {
+    struct Edge {
+      Twofold at[4][3];
+      double size[4];
+    };
     const auto face = segment.topology->face(f);
     triangles += face.size() - 2;
     const auto edge_to = [&](std::size_t c) {
@@ -170,6 +178,25 @@ Controls fine_normals(const PolynomialSegment<3>& segment, std::span<const std::
       }
     });
   }
+};
+
+// The control normals of the sum of some faces, where those of double cancel; zero for what is nothing but rounding.
+Controls fine_normals(const PolynomialSegment<3>& segment, std::span<const std::uint32_t> faces,
+                      const LargeFaceValues<FineSums>& large) noexcept {
+  constexpr double kRounding = 0x1p-102;  // of a product and its additions, at most four for each triangle
+  FineSums all;
+  for (const std::uint32_t f : faces) {
+    if (!large.are_kept_of(*segment.topology, f)) {
+      all.add(segment, f);
+      continue;
+    }
+    all.add(large.of(*segment.topology, f, [&] {
+      FineSums of_face;
+      of_face.add(segment, f);
+      return of_face;
+    }));
+  }
+  const auto& [sums, sizes, triangles] = all;
   Controls result;
   for (std::size_t k = 0; k < kPathControls; ++k) {
     const Vec3d sum{sums[k][0].value(), sums[k][1].value(), sums[k][2].value()};
@@ -198,7 +225,7 @@ class GroupSource {
       polynomial_face_normals(segment_, {faces_[i], 1}, std::span(&of_faces_[i], 1));
     sum_path_normals<3>(
         groups_, elements, [this](std::uint32_t f) -> const Controls& { return of_faces_[place_of_face_[f]]; }, result,
-        [&](std::size_t i) { result[i] = fine_normals(segment_, groups_.faces(elements.first + i)); });
+        [&](std::size_t i) { result[i] = fine_normals(segment_, groups_.faces(elements.first + i), large_); });
     for (const std::uint32_t f : faces_) place_of_face_[f] = kNoPlace;
   }
 
@@ -209,6 +236,7 @@ class GroupSource {
   const NormalGroups& groups_;
   std::vector<std::uint32_t> place_of_face_, faces_;
   std::vector<Controls> of_faces_;
+  LargeFaceValues<FineSums> large_;
 };
 
 // Calls body(source, piece) for pieces that cover all elements, on each thread with a source of its own.

@@ -28,10 +28,20 @@ void group_control_normals(const NormalGroups& groups, std::span<const ControlNo
 
 void group_control_normals(const Segment& segment, const NormalGroups& groups, std::span<const ControlNormals> of_faces,
                            IndexRange elements, std::span<ControlNormals> result) noexcept {
+  group_control_normals(SharedFaces(segment), groups, of_faces, elements, result);
+}
+
+inline namespace internal {
+
+void group_control_normals(const SharedFaces& faces, const NormalGroups& groups,
+                           std::span<const ControlNormals> of_faces, IndexRange elements,
+                           std::span<ControlNormals> result) noexcept {
   assert(result.size() == elements.count && elements.end() <= groups.size());
   for (std::size_t i = 0; i < elements.count; ++i)
-    result[i] = settled_group_normals(segment, groups, of_faces, elements.first + i).normals;
+    result[i] = settled_group_normals(faces, groups, of_faces, elements.first + i).normals;
 }
+
+}  // namespace internal
 
 std::vector<ControlNormals> all_face_control_normals(const Segment& segment) {
   std::vector<ControlNormals> normals(segment.topology->face_count());
@@ -43,9 +53,10 @@ std::vector<ControlNormals> all_face_control_normals(const Segment& segment) {
 
 std::vector<ControlNormals> all_group_control_normals(const Segment& segment, const NormalGroups& groups) {
   const std::vector<ControlNormals> of_faces = all_face_control_normals(segment);
+  const SharedFaces faces(segment);
   std::vector<ControlNormals> normals(groups.size());
   parallel_blocks(normals.size(), kBlock, [&](IndexRange elements) {
-    group_control_normals(segment, groups, of_faces, elements,
+    group_control_normals(faces, groups, of_faces, elements,
                           std::span(normals).subspan(elements.first, elements.count));
   });
   return normals;

@@ -12,8 +12,8 @@
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
 #include "core/rounding.h"
-#include "normals/control/exact_curve.h"
 #include "normals/control/polygon_normals.h"
+#include "normals/control/shared_faces.h"
 
 namespace chronormal::inline internal {
 
@@ -36,13 +36,13 @@ class ControlNormalsSum {
 };
 
 /// Adds up the control normals of the faces of an element, with a bound on the errors of both the faces and the sum.
-/// Pure: no allocation, no throw.
-[[nodiscard]] inline BoundedNormals control_normals_of_group(const Segment& segment, const NormalGroups& groups,
+/// Threads: pure.
+[[nodiscard]] inline BoundedNormals control_normals_of_group(const SharedFaces& faces, const NormalGroups& groups,
                                                              std::size_t element) noexcept {
   ControlNormalsSum sum;
   std::array<double, 3> of_faces{};
   for (const std::uint32_t f : groups.faces(element)) {
-    const PolygonNormals face = polygon_control_normals(segment, segment.topology->face(f));
+    const PolygonNormals face = faces.control_normals(f);
     sum.add(face.normals);
     for (std::size_t k = 0; k < 3; ++k) of_faces[k] += face.errors[k];
   }
@@ -55,7 +55,7 @@ class ControlNormalsSum {
 /// that is: where faces cancel so far that the rounding of double could be more than 2^-26, they are made of integers.
 /// Pure.
 /// of_faces must have face_control_normals() of all faces
-[[nodiscard]] inline BoundedNormals settled_group_normals(const Segment& segment, const NormalGroups& groups,
+[[nodiscard]] inline BoundedNormals settled_group_normals(const SharedFaces& faces, const NormalGroups& groups,
                                                           std::span<const ControlNormals> of_faces,
                                                           std::size_t element) noexcept {
   // Each face is within 2^-26 of its length, and what adding them up rounds is far less.
@@ -69,11 +69,17 @@ class ControlNormalsSum {
   }
   BoundedNormals result{sum.without_rounding(), {kOfFace * sizes[0], kOfFace * sizes[1], kOfFace * sizes[2]}};
   if (result.largest_share() <= kMostCancelled * kOfFace) return result;
-  result.errors = control_normals_of_group(segment, groups, element).errors;
+  result.errors = control_normals_of_group(faces, groups, element).errors;
   if (result.largest_share() <= kLargestRounding) return result;
-  result.settle(ExactCurve::of_faces(segment, groups.faces(element)).rounded());
+  result.settle(faces.exact_sum(groups.faces(element)).rounded());
   return result;
 }
+
+/// Writes those of a range of elements: group_control_normals() of normal_groups.h, for callers that ask for one range
+/// after the other.
+void group_control_normals(const SharedFaces& faces, const NormalGroups& groups,
+                           std::span<const ControlNormals> of_faces, IndexRange elements,
+                           std::span<ControlNormals> result) noexcept;
 
 }  // namespace chronormal::inline internal
 

@@ -21,6 +21,7 @@
 #include "motion/segment_end.h"
 #include "normals/control/exact_curve.h"
 #include "normals/control/local_time.h"
+#include "normals/control/shared_faces.h"
 #include "normals/curves/curve_elements.h"
 #include "normals/groups/face_window.h"
 #include "normals/recompute/kernels/recompute_tiles.h"
@@ -138,16 +139,16 @@ FaceNormal face_normal(const Segment& segment, std::size_t f, const LocalTime& t
 
 // The direction of a sum of faces: in double where the rounding turns it by no more than 2^-23 = 1.2e-7 rad, and else
 // without any.
-UnitNormal unit_normal_of(const NormalAtTime& normal, const Segment& segment, std::span<const std::uint32_t> faces,
-                          const LocalTime& t) {
+template <class MakeExact>
+UnitNormal unit_normal_of(const NormalAtTime& normal, const LocalTime& t, const MakeExact& make_exact) {
   constexpr double kLargestAngle = 0x1p-23;
   if (normal.error < kLargestAngle * max_abs(normal.n)) return {unit(normal.n), Direction::kRegular};
-  return ExactCurve::of_faces(segment, faces).unit_normal_at(t);
+  return make_exact().unit_normal_at(t);
 }
 
 UnitNormal fine_unit_normal(const Segment& segment, std::size_t f, const LocalTime& t) {
-  const auto face = static_cast<std::uint32_t>(f);
-  return unit_normal_of(normal_at_time(segment, f, t), segment, {&face, 1}, t);
+  return unit_normal_of(normal_at_time(segment, f, t), t,
+                        [&] { return ExactCurve::of_polygon(segment, segment.topology->face(f)); });
 }
 
 UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, const LocalTime& t) {
@@ -158,35 +159,46 @@ UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, const Loca
   return fine_unit_normal(segment, f, t);
 }
 
-UnitNormal unit_normal_of_group(const Segment& segment, const NormalGroups& groups, std::size_t element,
+// What elements share in one evaluation.
+struct FacesAtTime {
+  explicit FacesAtTime(const Segment& segment) : faces(segment) {}
+
+  SharedFaces faces;
+  LargeFaceValues<NormalAtTime> normals;
+  LargeFaceValues<FaceNormal> rounded;
+};
+
+UnitNormal unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& groups, std::size_t element,
                                 const LocalTime& t) {
+  const Segment& segment = shared.faces.segment();
   NormalAtTime sum;
   double magnitude = 0;
   for (const std::uint32_t f : groups.faces(element)) {
-    const NormalAtTime normal = normal_at_time(segment, f, t);
+    const NormalAtTime normal = shared.normals.of(*segment.topology, f, [&] { return normal_at_time(segment, f, t); });
     sum.n = sum.n + normal.n;
     sum.error += normal.error;
     magnitude += sum_abs(normal.n);
   }
   // Each addition rounds by at most u of what is added up.
   sum.error += kUnitRoundoff * static_cast<double>(groups.faces(element).size()) * magnitude;
-  return unit_normal_of(sum, segment, groups.faces(element), t);
+  return unit_normal_of(sum, t, [&] { return shared.faces.exact_sum(groups.faces(element)); });
 }
 
 // The same where the kernel would trust the sum of what it makes of the faces; to the last bit.
-UnitNormal quick_unit_normal_of_group(const Segment& segment, const NormalGroups& groups, std::size_t element,
+UnitNormal quick_unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& groups, std::size_t element,
                                       const LocalTime& t) {
+  const Segment& segment = shared.faces.segment();
   Vec3d sum;
   double sum_of_errors = 0;
   for (const std::uint32_t f : groups.faces(element)) {
-    const FaceNormal normal = face_normal(segment, f, t);
+    const FaceNormal normal = shared.rounded.of(*segment.topology, f, [&] { return face_normal(segment, f, t); });
     sum = sum + to_double(Vec3f{normal.x, normal.y, normal.z});
     sum_of_errors += static_cast<double>(normal.error);
   }
   const Vec3f n = to_float(sum);
   const float error = static_cast<float>(sum_of_errors), square = dot(n, n);
   if (error * error <= 212 * square && in_range(square, square)) return {to_double(normalized(n)), Direction::kRegular};
-  return unit_normal_of_group(segment, groups, element, t);
+  return unit_normal_of_group(shared, groups, element, t);
 }
 
 // The faces of neighbouring elements; those of NormalGroups lie one after the other.
@@ -226,7 +238,7 @@ class Call {
  public:
   // Of faces, without scratch. Element `first` goes to result[0].
   Call(const Segment& segment, const LocalTime& t, VectorView<float> result, std::size_t first)
-      : segment_(segment), t_(t), result_(result), first_(first) {
+      : segment_(segment), shared_(segment), t_(t), result_(result), first_(first) {
     const Topology& topology = *segment.topology;
     by_kernel_ = fits_lanes(segment) && is_packed(segment.from) && is_packed(segment.to);
     stream_ = (2 * segment.from.count + result.count) * 3 * sizeof(float) > kStreamFrom;
@@ -352,7 +364,7 @@ class Call {
     std::size_t zeros = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t e = elements.first + doubtful[i];
-      zeros += put(e, unit_normal_of_group(segment_, *groups_, e, t_));
+      zeros += put(e, unit_normal_of_group(shared_, *groups_, e, t_));
     }
     return zeros;
   }
@@ -361,11 +373,12 @@ class Call {
   std::size_t scattered_groups(IndexRange elements) const {
     std::size_t zeros = 0;
     for (std::size_t e = elements.first; e < elements.end(); ++e)
-      zeros += put(e, quick_unit_normal_of_group(segment_, *groups_, e, t_));
+      zeros += put(e, quick_unit_normal_of_group(shared_, *groups_, e, t_));
     return zeros;
   }
 
   const Segment& segment_;
+  FacesAtTime shared_;
   const NormalGroups* groups_ = nullptr;
   LocalTime t_;
   VectorView<float> result_;

@@ -204,7 +204,8 @@ double thin_share(const Segment& segment) {
 // Elements of groups one by one, without the paths around all of them, which only curves need.
 class SampledGroups {
  public:
-  SampledGroups(const Segment& segment, const NormalGroups& groups) : segment_(segment), groups_(groups) {}
+  SampledGroups(const Segment& segment, const NormalGroups& groups)
+      : segment_(segment), faces_(segment), groups_(groups) {}
 
   void write(IndexRange elements, std::span<ControlTile> tiles) const {
     for (std::size_t i = 0; i < tiles.size() * kTile; ++i) {
@@ -214,17 +215,21 @@ class SampledGroups {
       put(tile, i % kTile, normals);
       tile.magnitude[i % kTile] = 0;
       for (const std::uint32_t f : groups_.faces(element)) {
-        ControlTile of_face;
-        face_control_tiles(segment_, {f, 1}, std::span(&of_face, 1));
-        tile.magnitude[i % kTile] += of_face.magnitude[0];
+        tile.magnitude[i % kTile] += magnitudes_.of(*segment_.topology, f, [&] {
+          ControlTile of_face;
+          face_control_tiles(segment_, {f, 1}, std::span(&of_face, 1));
+          return of_face.magnitude[0];
+        });
       }
       tile.degree[i % kTile] = degree(normals);
     }
   }
-  [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return control_normals_of_group(segment_, groups_, i); }
+  [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return control_normals_of_group(faces_, groups_, i); }
 
  private:
   const Segment& segment_;
+  SharedFaces faces_;
+  LargeFaceValues<float> magnitudes_;
   const NormalGroups& groups_;
 };
 

@@ -10,6 +10,7 @@
 #include "normals/control/exact_curve.h"
 #include "normals/control/local_time.h"
 #include "normals/weighting/corner_terms.h"
+#include "normals/weighting/shared_weighting.h"
 
 namespace chronormal {
 namespace {
@@ -65,8 +66,17 @@ void face_normals_at(const Segment& segment, const LocalTime& time, IndexRange f
     result[i] = face_normal_at(segment, segment.topology->face(faces.first + i), t);
 }
 
-void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, const LocalTime& time,
+void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept {
+  weighted_normals_at(SharedFaces(segment), groups, weighting, t, of_faces, elements, result);
+}
+
+inline namespace internal {
+
+void weighted_normals_at(const SharedFaces& shared, const NormalGroups& groups, Weighting weighting,
+                         const LocalTime& time, std::span<const Vec3d> of_faces, IndexRange elements,
+                         std::span<Vec3d> result) noexcept {
+  const Segment& segment = shared.segment();
   assert(result.size() == elements.count && elements.end() <= groups.size());
   assert(of_faces.size() == segment.topology->face_count());
   const LocalTime t = local_time(time);
@@ -84,22 +94,30 @@ void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Wei
       size += max_abs(term);
     }
     const bool is_exact = weighting == Weighting::kArea && !(kFaceError * size < kLargestAngle * max_abs(sum));
-    result[i] =
-        is_exact ? ExactCurve::of_faces(segment, faces).normal_at(t) : without_rounding(sum, kCrossError * size);
+    result[i] = is_exact ? shared.exact_sum(faces).normal_at(t) : without_rounding(sum, kCrossError * size);
   }
 }
 
 std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting,
-                                           const LocalTime& t) {
-  std::vector<Vec3d> of_faces(segment.topology->face_count()), result(groups.size());
-  parallel_blocks(of_faces.size(), kElementsAtOnce, [&](IndexRange faces) {
-    face_normals_at(segment, t, faces, std::span(of_faces).subspan(faces.first, faces.count));
-  });
+                                           const LocalTime& t, std::span<const Vec3d> of_faces) {
+  const SharedFaces shared(segment);
+  std::vector<Vec3d> result(groups.size());
   parallel_blocks(result.size(), kElementsAtOnce, [&](IndexRange elements) {
-    weighted_normals_at(segment, groups, weighting, t, of_faces, elements,
+    weighted_normals_at(shared, groups, weighting, t, of_faces, elements,
                         std::span(result).subspan(elements.first, elements.count));
   });
   return result;
+}
+
+}  // namespace internal
+
+std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting,
+                                           const LocalTime& t) {
+  std::vector<Vec3d> of_faces(segment.topology->face_count());
+  parallel_blocks(of_faces.size(), kElementsAtOnce, [&](IndexRange faces) {
+    face_normals_at(segment, t, faces, std::span(of_faces).subspan(faces.first, faces.count));
+  });
+  return all_weighted_normals_at(segment, groups, weighting, t, of_faces);
 }
 
 }  // namespace chronormal

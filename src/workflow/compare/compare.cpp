@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "analysis/quality/kernels/reference_angles.h"
+#include "analysis/quality/shared_reference.h"
 #include "chronormal/analysis/certify.h"
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/interruption.h"
@@ -20,6 +21,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "core/rounding.h"
 #include "io/bytes/checksum.h"
+#include "normals/control/shared_faces.h"
 #include "normals/curves/path_stream.h"
 #include "normals/groups/group_sum.h"
 #include "workflow/compare/compared.h"
@@ -114,10 +116,12 @@ class Elements {
     if (!groups_) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
     of_large_.erase(of_large_.begin(), of_large_.lower_bound(first));
+    shared_.erase(shared_.begin(), shared_.lower_bound(first));
     for (std::size_t s = first; s <= last; ++s) {
       if (of_faces_.contains(s)) continue;
       const auto start = Clock::now();
       const Segment segment = motion.segment(s);
+      shared_.try_emplace(s, segment);
       of_faces_.emplace(s, all_face_control_normals(segment));
       shared_ns_ = nanoseconds_since(start) * static_cast<double>(thread_count()) / static_cast<double>(count_);
       std::vector<ReferenceArea>& large = of_large_[s];
@@ -135,7 +139,7 @@ class Elements {
 
   void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const noexcept {
     if (groups_)
-      group_control_normals(segment, *groups_, of_faces_.find(segment.index)->second, range, result);
+      group_control_normals(shared(segment), *groups_, of_faces_.find(segment.index)->second, range, result);
     else
       face_control_normals(segment, range, result);
   }
@@ -145,7 +149,7 @@ class Elements {
     if (!groups_) return errors;
     const std::vector<ControlNormals>& of_faces = of_faces_.find(segment.index)->second;
     for (std::size_t i = 0; i < range.count; ++i)
-      errors.push_back(settled_group_normals(segment, *groups_, of_faces, range.first + i).errors);
+      errors.push_back(settled_group_normals(shared(segment), *groups_, of_faces, range.first + i).errors);
     return errors;
   }
   // For exact_normals(); nothing where these are not normals of triangles on straight lines.
@@ -167,11 +171,12 @@ class Elements {
       for (const std::uint32_t f : faces)
         areas.push_back(segment.topology->face(f).size() > many_corners_ ? area_of_large(segment.index, f, sample)
                                                                          : area_of(segment, f, t));
-      result[i] = curved_ ? sum_without_rounding(areas) : reference_normal(segment, faces, areas, t);
+      result[i] = curved_ ? sum_without_rounding(areas) : reference_normal(shared(segment), faces, areas, t);
     }
   }
 
  private:
+  [[nodiscard]] const SharedFaces& shared(const Segment& segment) const { return shared_.find(segment.index)->second; }
   [[nodiscard]] ReferenceArea area_of(const Segment& segment, std::uint32_t face, double t) const noexcept {
     if (!curved_) return reference_area(segment, face, t);
     ReferenceArea area;
@@ -195,6 +200,7 @@ class Elements {
   std::size_t many_corners_ = 0;
   std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // by segment, for groups
   std::vector<std::uint32_t> large_;                             // these faces, for groups
+  std::map<std::size_t, SharedFaces> shared_;                    // by segment, for groups
   std::map<std::size_t, std::vector<ReferenceArea>> of_large_;   // theirs at each sample, by segment
   std::optional<CurvedSegments> curved_;                         // where vertices move on curves
   double shared_ns_ = 0;

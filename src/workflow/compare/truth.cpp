@@ -3,17 +3,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "analysis/quality/shared_reference.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/path_curves.h"
 #include "chronormal/normals/paths.h"
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/compare.h"
+#include "normals/control/shared_faces.h"
 
 namespace chronormal {
 namespace {
@@ -76,8 +80,16 @@ class TruthElements {
   // The exact normals of a mesh that stands still.
   void exact_normals(const Segment& still, IndexRange range, std::span<Vec3d> result) const {
     if (!groups_) return reference_normals(still, range, 0, result);
-    for (std::size_t i = 0; i < range.count; ++i)
-      result[i] = reference_normal(still, groups_->faces(range.first + i), 0);
+    const SharedFaces shared(still);
+    const LargeFaceValues<ReferenceArea> large;
+    std::vector<ReferenceArea> areas;
+    for (std::size_t i = 0; i < range.count; ++i) {
+      const auto faces = groups_->faces(range.first + i);
+      areas.clear();
+      for (const std::uint32_t f : faces)
+        areas.push_back(large.of(*still.topology, f, [&] { return reference_area(still, f, 0); }));
+      result[i] = reference_normal(shared, faces, areas, 0);
+    }
   }
 
   template <class Body>

@@ -19,6 +19,7 @@
 #include "core/twofold.h"
 #include "motion/segment_end.h"
 #include "normals/curves/path_stream.h"
+#include "normals/weighting/shared_weighting.h"
 
 namespace chronormal {
 namespace {
@@ -205,12 +206,7 @@ Result<Pose> NormalSampler::pose_on_curve(std::size_t segment, double t) {
     return result;
   }
   const Segment segment_at_t = still_segment(motion_->topology, pose.value());
-  std::vector<Vec3d> of_elements(element_count());
-  parallel_blocks(of_elements.size(), kBlock, [&](IndexRange elements) {
-    weighted_normals_at(segment_at_t, *groups_, options_.weighting, 0.0, of_faces, elements,
-                        std::span(of_elements).subspan(elements.first, elements.count));
-  });
-  result.normals = as_asked(of_elements);
+  result.normals = as_asked(all_weighted_normals_at(segment_at_t, *groups_, options_.weighting, 0.0, of_faces));
   return result;
 }
 

@@ -70,7 +70,7 @@ Elements faces_of(const Segment& segment) {
 
 Elements elements_of(const Segment& segment, const NormalGroups& groups) {
   const auto alone = [&](std::size_t i) {
-    return settled(control_normals_of_group(segment, groups, i),
+    return settled(control_normals_of_group(SharedFaces(segment), groups, i),
                    [&] { return ExactCurve::of_faces(segment, groups.faces(i)); });
   };
   const auto of_tile = [&](std::size_t i) {

@@ -342,7 +342,7 @@ HWY_EXPORT(FloatGroupTilesOf);
 
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               ExactTile& exact, ControlTile& tile) noexcept {
-  const auto [n0, m, n1] = control_normals_of_group(segment, groups, element).normals;
+  const auto [n0, m, n1] = control_normals_of_group(SharedFaces(segment), groups, element).normals;
   std::size_t k = 0;
   for (const Vec3d& v : {n0, m, n1}) {
     for (const double component : {v.x, v.y, v.z}) {
@@ -353,7 +353,11 @@ void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups
 }
 
 GroupTiles::GroupTiles(const Segment& segment, const NormalGroups& groups, bool fetch)
-    : segment_(segment), groups_(&groups), rings_(&rings_around(*segment.topology, groups)), fetch_(fetch) {}
+    : segment_(segment),
+      faces_(segment),
+      groups_(&groups),
+      rings_(&rings_around(*segment.topology, groups)),
+      fetch_(fetch) {}
 
 void GroupTiles::write(IndexRange elements, std::span<ControlTile> tiles) const noexcept {
   assert(elements.count > 0 && elements.end() <= groups_->size());
@@ -400,7 +404,7 @@ std::span<const std::uint32_t> GroupTiles::left_out(IndexRange elements) const n
 }
 
 void GroupTiles::set_alone(std::size_t element, IndexRange elements, std::span<ControlTile> tiles) const noexcept {
-  const ControlNormals normals = control_normals_of_group(segment_, *groups_, element).normals;
+  const ControlNormals normals = control_normals_of_group(faces_, *groups_, element).normals;
   // Lanes behind the last element repeat it.
   const std::size_t first = element - elements.first;
   const std::size_t end = element + 1 == elements.end() ? kTile * tiles.size() : first + 1;

@@ -11,6 +11,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "normals/control/kernels/control_tile.h"
 #include "normals/control/kernels/exact_tile.h"
+#include "normals/control/shared_faces.h"
 #include "normals/groups/rings.h"
 
 namespace chronormal::inline internal {
@@ -42,11 +43,15 @@ class GroupTiles {
   /// The same preconditions as write()
   void write_in_float(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
+  /// The faces that its elements share, for a closer look at these.
+  [[nodiscard]] const SharedFaces& faces() const noexcept { return faces_; }
+
  private:
   [[nodiscard]] std::span<const std::uint32_t> left_out(IndexRange elements) const noexcept;
   void set_alone(std::size_t element, IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
   Segment segment_;
+  SharedFaces faces_;
   const NormalGroups* groups_;
   const Rings* rings_;
   bool fetch_;

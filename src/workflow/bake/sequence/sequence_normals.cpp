@@ -13,7 +13,7 @@
 #include "chronormal/normals/weighting.h"
 #include "core/bits.h"
 #include "core/blocks.h"
-#include "normals/control/exact_curve.h"
+#include "normals/control/shared_faces.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -138,15 +138,16 @@ AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups,
   struct Points {
     std::once_flag made;
     std::vector<float> a, b;
+    std::optional<SharedFaces> faces;
   };
   return [&topology, &groups, make_a, make_b, points = std::make_shared<Points>()](std::size_t element) {
     std::call_once(points->made, [&] {
       points->a = make_a();
       points->b = make_b();
+      const auto view = [](const std::vector<float>& p) { return VectorView<const float>::packed(std::span(p)); };
+      points->faces.emplace(Segment{&topology, view(points->a), view(points->b)});
     });
-    const auto view = [](const std::vector<float>& p) { return VectorView<const float>::packed(std::span(p)); };
-    const Segment segment{&topology, view(points->a), view(points->b)};
-    return 4.0 * ExactCurve::of_faces(segment, groups.faces(element)).normal_at(0.5);
+    return 4.0 * points->faces->exact_sum(groups.faces(element)).normal_at(0.5);
   };
 }
 

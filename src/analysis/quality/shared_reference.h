@@ -1,0 +1,19 @@
+/// The exact normals of quality.h for elements that share faces of many corners. Private.
+#ifndef CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_
+#define CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_
+
+#include <cstdint>
+#include <span>
+
+#include "chronormal/analysis/quality.h"
+#include "normals/control/shared_faces.h"
+
+namespace chronormal::inline internal {
+
+/// Returns reference_normal() of these faces from what reference_area() has of them at t.
+[[nodiscard]] Vec3d reference_normal(const SharedFaces& shared, std::span<const std::uint32_t> faces,
+                                     std::span<const ReferenceArea> areas, double t) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_

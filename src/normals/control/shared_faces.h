@@ -1,0 +1,90 @@
+/// The faces of a segment for elements that share them. A polygon of n corners is around n vertices: if each of these
+/// added up its corners anew, time would grow with the square of n. So the results for faces of many corners are kept.
+///
+///     a polygon of 32,000 corners   computed once, and looked up by its 32,000 vertices
+///     a triangle, a quadrilateral   computed by each of their corners, which costs less than looking them up
+///
+/// The bits are those of computing each face where it is asked for. Private.
+#ifndef CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_
+#define CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <new>
+#include <span>
+
+#include "chronormal/motion/motion.h"
+#include "normals/control/exact_curve.h"
+#include "normals/control/polygon_normals.h"
+
+namespace chronormal::inline internal {
+
+/// Values of faces, kept for faces of many corners. Several threads may ask at once. A value that finds no memory is
+/// not kept.
+template <class Value>
+class LargeFaceValues {
+ public:
+  [[nodiscard]] static bool are_kept_of(const Topology& topology, std::uint32_t face) noexcept {
+    return topology.face(face).size() > kFewCorners;
+  }
+  /// Returns make(), or the result that it had for the same face before. make must be pure.
+  template <class Make>
+  [[nodiscard]] Value of(const Topology& topology, std::uint32_t face, const Make& make) const noexcept {
+    if (!are_kept_of(topology, face)) return make();
+    {
+      const std::lock_guard lock(mutex_);
+      if (const auto found = values_.find(face); found != values_.end()) return found->second;
+    }
+    const Value value = make();
+    try {
+      const std::lock_guard lock(mutex_);
+      values_.emplace(face, value);
+    } catch (const std::bad_alloc&) {  // the next one makes it anew
+    }
+    return value;
+  }
+
+ private:
+  static constexpr std::size_t kFewCorners = 64;  // for which looking up does not pay
+
+  mutable std::mutex mutex_;
+  mutable std::map<std::uint32_t, Value> values_;
+};
+
+/// The control normals of faces, and exact sums of them. The positions of the segment must not change. Threads: pure.
+class SharedFaces {
+ public:
+  explicit SharedFaces(const Segment& segment) noexcept : segment_(segment) {}
+
+  [[nodiscard]] const Segment& segment() const noexcept { return segment_; }
+
+  [[nodiscard]] PolygonNormals control_normals(std::uint32_t face) const noexcept {
+    const Topology& topology = *segment_.topology;
+    return normals_.of(topology, face, [&] { return polygon_control_normals(segment_, topology.face(face)); });
+  }
+
+  /// Returns the exact curve of one face, or of the sum of several.
+  [[nodiscard]] ExactCurve exact(std::uint32_t face) const noexcept {
+    const Topology& topology = *segment_.topology;
+    return curves_.of(topology, face, [&] { return ExactCurve::of_polygon(segment_, topology.face(face)); });
+  }
+  [[nodiscard]] ExactCurve exact_sum(std::span<const std::uint32_t> faces) const noexcept {
+    const auto is_large = [this](std::uint32_t f) { return curves_.are_kept_of(*segment_.topology, f); };
+    if (std::none_of(faces.begin(), faces.end(), is_large)) return ExactCurve::of_faces(segment_, faces);
+    ExactCurve sum = exact(faces[0]);
+    for (const std::uint32_t f : faces.subspan(1)) sum.add(exact(f));
+    return sum;
+  }
+
+ private:
+  Segment segment_;
+  LargeFaceValues<PolygonNormals> normals_;
+  LargeFaceValues<ExactCurve> curves_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_

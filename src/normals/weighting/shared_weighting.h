@@ -1,0 +1,25 @@
+/// Weighted normals of elements that share faces of many corners, for callers that have the normals of faces. Private.
+#ifndef CHRONORMAL_NORMALS_WEIGHTING_SHARED_WEIGHTING_H_
+#define CHRONORMAL_NORMALS_WEIGHTING_SHARED_WEIGHTING_H_
+
+#include <span>
+#include <vector>
+
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/weighting.h"
+#include "normals/control/shared_faces.h"
+
+namespace chronormal::inline internal {
+
+/// weighted_normals_at() of weighting.h, for callers that ask for one range after the other.
+void weighted_normals_at(const SharedFaces& shared, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
+                         std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
+
+/// The same for all elements, on all cores.
+[[nodiscard]] std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups,
+                                                         Weighting weighting, const LocalTime& t,
+                                                         std::span<const Vec3d> of_faces);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_NORMALS_WEIGHTING_SHARED_WEIGHTING_H_

@@ -1,0 +1,120 @@
+// Time is linear in the corners of a polygon, by every way from a motion to normals, and by what judges these: each of
+// its corners shows a normal that the whole polygon is a part of.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/path_curves.h"
+#include "chronormal/normals/recompute.h"
+#include "chronormal/normals/segment_normals.h"
+#include "chronormal/normals/weighting.h"
+#include "chronormal/workflow/bake.h"
+#include "chronormal/workflow/compare.h"
+#include "chronormal/workflow/sample.h"
+#include "tests/support/cpu_time.h"
+#include "tests/support/large_polygons.h"
+
+namespace chronormal::growth_test {
+namespace {
+
+using fixtures::Random;
+using test::LargePolygons;
+
+struct Way {
+  std::string name;
+  std::function<void(const Motion&)> run;
+};
+
+NormalGroups vertices_of(const Motion& motion) {
+  return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
+}
+
+template <class Object>
+void evaluate(Object&& object, double t) {
+  std::vector<float> normals(3 * object.size());
+  object.unit_normals(t, VectorView<float>::packed(normals.data(), object.size()), Threads::kAll);
+}
+
+Way compare_on(PathKind path) {
+  return {"compare on paths " + std::string(path_name(path)), [path](const Motion& motion) {
+            CompareOptions options;
+            options.schemes = {"linear"};
+            options.elements.kind = ElementKind::kVertices;
+            options.elements.weld = false;
+            options.samples = 3;
+            options.path = path;
+            EXPECT_EQ(compare(motion, options).value().elements, motion.topology.vertex_count());
+          }};
+}
+
+std::vector<Way> ways() {
+  std::vector<Way> all;
+  for (const double tolerance : {kExactTolerance, kCompactTolerance}) {
+    all.push_back({"curves to " + std::to_string(tolerance), [tolerance](const Motion& motion) {
+                     evaluate(NormalCurves::of_groups(motion.segment(0), vertices_of(motion), {tolerance}), 0.3);
+                   }});
+  }
+  all.push_back({"recompute", [](const Motion& motion) {
+                   const NormalGroups groups = vertices_of(motion);
+                   evaluate(NormalRecompute(motion.segment(0), groups), 0.3);
+                 }});
+  all.push_back({"the strategy", [](const Motion& motion) {
+                   const NormalGroups groups = vertices_of(motion);
+                   evaluate(SegmentNormals(motion.segment(0), groups, StrategyOptions{.evaluations = 20}), 0.3);
+                 }});
+  all.push_back({"sums of control normals", [](const Motion& motion) {
+                   (void)all_group_control_normals(motion.segment(0), vertices_of(motion));
+                 }});
+  all.push_back({"sums by area", [](const Motion& motion) {
+                   (void)all_weighted_normals_at(motion.segment(0), vertices_of(motion), Weighting::kArea, 0.3);
+                 }});
+  all.push_back({"curved paths", [](const Motion& motion) {
+                   evaluate(PathCurves(path_segment(motion, 0, PathKind::kCatmullRom), vertices_of(motion)), 0.3);
+                 }});
+  all.push_back({"weights", [](const Motion& motion) {
+                   Motion targets = motion;
+                   targets.connect_as_targets();
+                   NormalSampler sampler = NormalSampler::make(targets, {}).value();
+                   (void)sampler.at_weights(std::vector<double>{0.3, 0.4}).value();
+                 }});
+  all.push_back(compare_on(PathKind::kLinear));
+  all.push_back(compare_on(PathKind::kCatmullRom));
+  all.push_back({"baking a sequence", [](const Motion& motion) {
+                   std::string glb;
+                   EXPECT_TRUE(bake_sequence(motion, {}, glb));
+                 }});
+  return all;
+}
+
+TEST(Growth, is_linear_in_the_corners_of_a_polygon) {
+  constexpr std::uint32_t kFew = 1000, kMany = 8000;
+  constexpr double kOnce = 0.05;  // seconds, for integers that few corners do not need
+  for (const LargePolygons kind : {LargePolygons::kAlone, LargePolygons::kPillow, LargePolygons::kPrism}) {
+    Random random(49007);
+    const Motion few = test::large_polygons(kind, kFew, random, 3), many = test::large_polygons(kind, kMany, random, 3);
+    for (const Way& way : ways()) {
+      const auto seconds = [&way](const Motion& motion) {
+        double least = 1e9;
+        for (int i = 0; i < 2; ++i) {
+          const test::CpuClock clock;
+          way.run(motion);
+          least = std::min(least, clock.seconds());
+        }
+        return least;
+      };
+      const double of_few = seconds(few), of_many = seconds(many);
+      EXPECT_LT(of_many, 4.0 * kMany / kFew * of_few + kOnce) << way.name << " of kind " << static_cast<int>(kind);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chronormal::growth_test
