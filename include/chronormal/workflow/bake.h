@@ -215,6 +215,7 @@ struct SequenceBake {
 /// in all of them, bends with 4 t (1 - t) where hosts have room, and a LINEAR track (section 16). Vertices of hard
 /// edges (crease angle) are doubled. Keys is harmless without bends, at keys of its own choice, for area weights.
 /// glb gets the bytes of the file; where there is an error, it stays as it was.
+/// The file holds float32 positions, and its normals are exact for these: residuals of a computed motion are left out.
 /// Polygons become fans of triangles, and keep the normals of polygons; where a fan does not fit in keyframe 0, a
 /// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage of keys for other weights than area
 /// or a tolerance below kLeastKeyTolerance, and of curved paths for another encoding than endpoint or other weights;

@@ -82,7 +82,8 @@ struct Inspection {
 /// from the calling thread.
 ///
 /// A face is a sliver at a keyframe where it has an area, but so small a one that it may be nothing but the rounding of
-/// the positions to float32: where moving them by half a unit in the last place could turn its normal any way.
+/// the positions to float32: where moving them by half a unit in the last place could turn its normal any way. So that,
+/// and the boxes, are of float32 positions; everything else counts the residuals of a computed motion.
 ///
 /// Threads    uses all (core/parallel.h); the result is the same on any number of them.
 /// Memory     some 100 bytes a face, for the edges between faces; nothing grows with faces x segments.

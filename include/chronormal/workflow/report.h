@@ -78,7 +78,8 @@ struct Report {
   std::string container;             ///< the bytes
 };
 
-/// Makes the report of an input that was opened with KeepShading::kAll. Memory: about three times the container, beside
+/// Makes the report of an input that was opened with KeepShading::kAll. The container has keyframes in float32, from
+/// which a page computes; the numbers of the audit and of the schemes count residuals too. Memory: about three times the container, beside
 /// what an audit takes. Errors: of audit(); kInvalidInput where nothing moves that could be judged.
 [[nodiscard]] Result<Report> report(Input& input, const ReportOptions& options);
 

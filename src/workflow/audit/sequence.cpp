@@ -12,6 +12,7 @@
 #include "core/float32.h"
 #include "core/portable_math.h"
 #include "io/bytes/checksum.h"
+#include "motion/segment_end.h"
 #include "normals/curves/path_stream.h"
 #include "workflow/audit/measure.h"
 #include "workflow/audit/measure_blocks.h"
@@ -61,9 +62,9 @@ class SequenceSource {
       for (std::size_t i = 0; i < vertices.size(); ++i) positions[i] = all[vertices[i]];
       return true;
     }
-    parallel_each(vertices.size(), kRange, [&](std::size_t i) {
-      positions[i] = lerp(to_double(s.from[vertices[i]]), to_double(s.to[vertices[i]]), t);
-    });
+    const SegmentEnd from = SegmentEnd::from(s), to = SegmentEnd::to(s);
+    parallel_each(vertices.size(), kRange,
+                  [&](std::size_t i) { positions[i] = lerp(from[vertices[i]], to[vertices[i]], t); });
     return true;
   }
   void forget() { known_ = false; }
@@ -225,8 +226,9 @@ Result<std::vector<bool>> moving_vertices(MotionStream& stream, std::span<const 
     if (still == 0) break;
     if (const Status status = stream.hold_segment(s); !status) return status.error();
     const Segment segment = motion.segment(s);
+    const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
     for (std::size_t v = 0; v < moves.size(); ++v) {
-      if (moves[v] || segment.from[v] == segment.to[v]) continue;
+      if (moves[v] || to.way_from(from, v, v) == Vec3d{}) continue;
       moves[v] = true;
       --still;
     }
@@ -246,9 +248,11 @@ std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion)
   return subjects;
 }
 
-std::vector<Vec3d> normals_at_first_keyframe(const JudgedPart& part, VectorView<const float> base) {
+std::vector<Vec3d> normals_at_first_keyframe(const JudgedPart& part, const Motion& motion) {
+  const Segment still = still_segment(motion.topology, motion.keyframes[0]);
+  const SegmentEnd base = SegmentEnd::from(still);
   std::vector<Vec3d> positions;
-  for (const std::uint32_t v : part.vertices()) positions.push_back(to_double(base[v]));
+  for (const std::uint32_t v : part.vertices()) positions.push_back(base[v]);
   PartNormals normals;
   part.normals(positions, normals);
   return std::move(normals.elements);
@@ -353,6 +357,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     if (options.progress) options.progress(++done, share.of(motion.segments.size()).count);
   };
   const bool is_targets = motion.kind == MotionKind::kTargets;
+  const bool has_residuals = std::any_of(motion.keyframes.begin(), motion.keyframes.end(),
+                                         [](const Motion::Keyframe& keyframe) { return !keyframe.residuals.empty(); });
   for (const std::vector<std::size_t>& segments : segments_of_subjects(motion)) {
     AuditSubject subject;
     subject.kind = is_targets ? AuditSubject::Kind::kTarget : AuditSubject::Kind::kSequence;
@@ -381,9 +387,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
       continue;
     }
     if (const Status status = stream.hold(0, 0); !status) return status.error();
-    const auto base = VectorView<const float>::packed(motion.keyframes[0].positions.data(), topology.vertex_count());
     SequenceSource source(stream, normals, result.stored, part, result.rule, options.path,
-                          normals_at_first_keyframe(part, base), segments);
+                          normals_at_first_keyframe(part, motion), segments);
     const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr,
                           result.subjects.size(),
                           static_cast<bool>(watch),
@@ -406,7 +411,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
              {},
              {}});
     };
-    const bool in_blocks = is_straight && !kept.any() && !result.stored &&
+    const bool in_blocks = is_straight && !kept.any() && !result.stored && !has_residuals &&
                            can_measure_blocks(part, result.rule, weighting, subject.samples);
     const auto at = [&](std::size_t segment, double t, const JudgedOutput& output) {
       return source.at(segment, t, output);

@@ -24,10 +24,6 @@ namespace {
 
 constexpr std::size_t kTruthBlock = 1024;
 
-VectorView<const float> positions_of(const Motion::Keyframe& keyframe) {
-  return VectorView<const float>::packed(std::span(keyframe.positions));
-}
-
 // The keyframes that are kept.
 class KeptKeys {
  public:
@@ -37,7 +33,14 @@ class KeptKeys {
   [[nodiscard]] const Motion::Keyframe& operator[](std::size_t i) const { return motion_.keyframes[i * every_]; }
   [[nodiscard]] Segment segment(std::size_t i) const {
     const KeptKeys& keys = *this;
-    return {&motion_.topology, positions_of(keys[i]), positions_of(keys[i + 1]), keys[i].time, keys[i + 1].time, i};
+    Segment segment = still_segment(motion_.topology, keys[i]);
+    const Segment end = still_segment(motion_.topology, keys[i + 1]);
+    segment.to = end.to;
+    segment.to_residuals = end.to_residuals;
+    segment.start_time = keys[i].time;
+    segment.end_time = keys[i + 1].time;
+    segment.index = i;
+    return segment;
   }
   // The keyframes between the kept ones i and i + 1.
   [[nodiscard]] std::span<const Motion::Keyframe> between(std::size_t i) const {
@@ -131,8 +134,7 @@ std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& el
   const auto shown = VectorView<float>::packed(packed);
   for (const Motion::Keyframe& keyframe : piece.between) {
     const double t = piece.local_time(keyframe);
-    const Segment still{piece.segment.topology, positions_of(keyframe), positions_of(keyframe),
-                        keyframe.time,          keyframe.time,          piece.segment.index};
+    const Segment still = still_segment(*piece.segment.topology, keyframe);
     elements.exact_normals(still, range, exact);
     const ErrorPlace first{piece.segment.index, range.first, t};
     for (std::size_t s = 0; s < schemes.size(); ++s) {

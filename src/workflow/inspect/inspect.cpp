@@ -22,6 +22,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "core/blocks.h"
 #include "core/portable_math.h"
+#include "motion/segment_end.h"
 #include "normals/curves/curve_count.h"
 #include "normals/groups/weld.h"
 
@@ -203,9 +204,10 @@ Box box_of(VectorView<const float> positions, IndexRange vertices) {
 }
 
 void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& tally) {
+  const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
   double most_of_square = 0;  // a square that is not larger is that of no larger length
   for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
-    const Vec3d step = to_double(segment.to[v]) - to_double(segment.from[v]);
+    const Vec3d step = to.way_from(from, v, v);
     if (max_abs(step) == 0) continue;
     ++tally.moved;
     if (dot(step, step) < most_of_square) continue;

@@ -23,6 +23,9 @@
 #include "chronormal/normals/recompute.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/schemes/scheme.h"
+#include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/inspect.h"
+#include "chronormal/workflow/truth.h"
 #include "core/twofold.h"
 #include "tests/support/fixtures.h"
 
@@ -241,6 +244,57 @@ TEST_F(Residuals, leave_points_inside_or_outside_as_they_are_at_the_origin) {
       EXPECT_NEAR(crossings[i].t, of_far[i].t, 0x1p-43);
     }
   });
+}
+
+TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin) {
+  std::cout << "seed " << kSeed << '\n';
+  for (int i = 0; i < kMeshes; ++i) {
+    Random random(kSeed + static_cast<std::uint64_t>(i));
+    // Surfaces of ordinary faces: those that collapse are judged by the size of the coordinates.
+    Twins twins;
+    for (const int k : {0, 1, 2}) {
+      const Motion shaken = fixtures::shaken(fixtures::icosphere(1), 0.3, 100 * static_cast<std::uint64_t>(i) + 7);
+      if (k == 0) twins.near.topology = shaken.topology;
+      Motion::Keyframe& near = twins.near.keyframes.emplace_back();
+      near.time = k;
+      std::vector<double> high;
+      for (const float x : shaken.keyframes[static_cast<std::size_t>(k % 2)].positions) {
+        const double moved = double{x} / 4 + (k == 2 ? random.uniform(0, 0.1) : 0);
+        near.positions.push_back(static_cast<float>(kUnit * std::round(moved * (kSize / kUnit))));
+        const std::size_t c = high.size() % 3;
+        high.push_back(double{near.positions.back()} + (c == 0 ? kAway.x : c == 1 ? kAway.y : kAway.z));
+      }
+      Motion::Keyframe& far = twins.far.keyframes.emplace_back();
+      far.time = k;
+      far.set_positions(high, std::vector<double>(high.size()));
+    }
+    twins.far.topology = twins.near.topology;
+    twins.near.connect_as_sequence();
+    twins.far.connect_as_sequence();
+    for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle}) {  // in blocks, and not
+      AuditOptions options;
+      options.weighting = weighting;
+      options.weld = false;
+      const Audit near = audit(twins.near, {}, options).value(), far = audit(twins.far, {}, options).value();
+      ASSERT_EQ(near.subjects.size(), 1U);
+      ASSERT_EQ(far.subjects.size(), 1U);
+      EXPECT_GT(near.subjects[0].error.worst, 1);
+      EXPECT_NEAR(near.subjects[0].error.worst, far.subjects[0].error.worst, 1e-4);
+      EXPECT_NEAR(near.subjects[0].error.mean(), far.subjects[0].error.mean(), 1e-4);
+    }
+    for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
+      TruthOptions options;
+      options.schemes = {"polynomial"};
+      options.elements.kind = kind;
+      options.elements.weld = false;
+      const TruthComparison near = compare_with_truth(twins.near, options).value(),
+                            far = compare_with_truth(twins.far, options).value();
+      EXPECT_NEAR(near.rows[0].quality.max, far.rows[0].quality.max, 1e-6);
+      EXPECT_NEAR(near.rows[0].quality.mean(), far.rows[0].quality.mean(), 1e-6);
+    }
+    const Inspection near = inspect(twins.near), far = inspect(twins.far);
+    EXPECT_NEAR(near.motion.value, far.motion.value, 1e-9 * near.motion.value);
+  }
 }
 
 TEST_F(Residuals, are_checked_and_say_nothing_where_nothing_was_rounded) {
