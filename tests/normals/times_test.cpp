@@ -4,26 +4,34 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "chronormal/core/parallel.h"
+#include "chronormal/motion/blend_set.h"
+#include "chronormal/normals/blend_normals.h"
 #include "chronormal/normals/curve_preparation.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/path_curves.h"
+#include "chronormal/normals/paths.h"
+#include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
 #include "chronormal/normals/segment_normals.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
 #include "tests/support/integer_normal.h"
+#include "tests/support/large_polygons.h"
 
 namespace chronormal::times_test {
 namespace {
@@ -45,7 +53,7 @@ struct NamedWay {
 
 // Ways that must agree to the last bit, and to this angle with the truth.
 struct Kin {
-  double tolerance;  // radians
+  double tolerance;  // radians; infinite where whole numbers are no judge
   std::vector<NamedWay> ways;
 };
 
@@ -71,8 +79,72 @@ Way all_together(NormalCurves made, Threads threads) {
   };
 }
 
+// Each time begins a playback of its own, whose first step has not drifted.
+Way played(NormalCurves made) {
+  const auto curves = std::make_shared<NormalCurves>(std::move(made));
+  return [curves](const std::vector<double>& times) {
+    std::vector<Normals> results(times.size(), Normals(3 * curves->size()));
+    std::vector<NormalPlayback> playbacks;
+    for (const double t : times) playbacks.emplace_back(*curves, t, (1 - t) / 4);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const auto view = VectorView<float>::packed(results[i].data(), curves->size());
+      for (const int steps : {1, 2}) {  // of the second, which has drifted, only that it disturbs no other
+        Normals drifted(3 * curves->size());
+        playbacks[i].next(steps == 1 ? view : VectorView<float>::packed(drifted.data(), curves->size()));
+      }
+    }
+    return results;
+  };
+}
+
+// The base and one target, whose weight is t.
+Way blended(BlendNormals made, Threads threads, bool together) {
+  const auto normals = std::make_shared<BlendNormals>(std::move(made));
+  return [=](const std::vector<double>& times) {
+    std::vector<Normals> results(times.size(), Normals(3 * normals->size()));
+    std::vector<VectorView<float>> views;
+    for (Normals& of_time : results) views.push_back(VectorView<float>::packed(of_time.data(), normals->size()));
+    if (together) {
+      normals->unit_normals(times, views, threads);
+      return results;
+    }
+    for (std::size_t i = 0; i < times.size(); ++i) normals->unit_normals({&times[i], 1}, views[i], threads);
+    return results;
+  };
+}
+
+// Ways that take curved paths, or blend differences of positions in float32.
+void add_other_ways(const Motion& motion, const NormalGroups* groups, std::vector<Kin>& all) {
+  constexpr double kNotJudged = std::numeric_limits<double>::infinity();
+  Kin& curved = all.emplace_back(Kin{kNotJudged, {}});
+  const auto path = std::make_shared<PolynomialSegment<3>>(path_segment(motion, 0, PathKind::kCatmullRom));
+  for (const Threads threads : {Threads::kOne, Threads::kAll}) {
+    curved.ways.push_back({"curved paths", [=] {
+                             return one_by_one(
+                                 groups == nullptr ? PathCurves(*path, threads) : PathCurves(*path, *groups, threads),
+                                 threads);
+                           }});
+  }
+  Motion targets = motion;
+  targets.connect_as_targets();
+  const auto set = std::make_shared<BlendSet>(blend_set_of(targets).value());
+  for (const BlendPath forced : {BlendPath::kTerms, BlendPath::kTouched, BlendPath::kWhole}) {
+    const BlendNormalsOptions options{.forced = forced};
+    Kin& blend = all.emplace_back(Kin{kNotJudged, {}});
+    for (const Threads threads : {Threads::kOne, Threads::kAll}) {
+      for (const bool together : {false, true}) {
+        blend.ways.push_back({"blend shapes by " + std::string(name_of(forced)), [=] {
+                                return blended(groups == nullptr ? BlendNormals::of_faces(*set, options)
+                                                                 : BlendNormals::of_groups(*set, *groups, options),
+                                               threads, together);
+                              }});
+      }
+    }
+  }
+}
+
 // Faces where groups is nullptr.
-std::vector<Kin> all_ways(const Segment& segment, const NormalGroups* groups) {
+std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const NormalGroups* groups) {
   std::vector<Kin> all;
   for (const double tolerance : {kExactTolerance, kCompactTolerance, 5e-3}) {
     const CurveOptions options{tolerance};
@@ -99,6 +171,8 @@ std::vector<Kin> all_ways(const Segment& segment, const NormalGroups* groups) {
                                                               : SegmentNormals(segment, *groups, strategy),
                                             Threads::kOne);
                         }});
+    Kin& playback = all.emplace_back(Kin{tolerance, {}});
+    playback.ways.push_back({"playback", [=] { return played(made(Threads::kOne)); }});
   }
   Kin& anew = all.emplace_back(Kin{kExactTolerance, {}});
   for (const Threads threads : {Threads::kOne, Threads::kAll}) {
@@ -107,6 +181,7 @@ std::vector<Kin> all_ways(const Segment& segment, const NormalGroups* groups) {
            return one_by_one(groups == nullptr ? NormalRecompute(segment) : NormalRecompute(segment, *groups), threads);
          }});
   }
+  add_other_ways(motion, groups, all);
   return all;
 }
 
@@ -167,7 +242,7 @@ std::string fault_of(const Motion& motion, const NormalGroups* groups, Random& r
   const Segment segment = motion.segment(0);
   const IntegerNormals oracle(segment);
   const std::vector<double> times{0, 1, random.uniform(0, 1), 0.5};
-  for (const Kin& kin : all_ways(segment, groups)) {
+  for (const Kin& kin : all_ways(motion, segment, groups)) {
     std::vector<Normals> expected;
     for (const std::int64_t target : supported_targets()) {
       const ScopedTarget scoped(target);
@@ -177,6 +252,7 @@ std::string fault_of(const Motion& motion, const NormalGroups* groups, Random& r
         if (!fault.empty()) return fault + " on " + target_name(target);
       }
     }
+    if (std::isinf(kin.tolerance)) continue;
     const std::string fault = fault_in_directions(kin.tolerance, times, expected, oracle, groups);
     if (!fault.empty()) return kin.ways[0].name + " to " + std::to_string(kin.tolerance) + ": " + fault;
   }
@@ -187,6 +263,10 @@ TEST(Times, do_not_change_each_others_bytes) {
   constexpr std::uint64_t kSeed = 49001;
   constexpr std::size_t kOfFamily = 3, kOfStars = 40;
   std::vector<test::HardMotions> families = test::hard_motions();
+  families.push_back({"large polygons that share their vertices", [](Random& r) {
+                        const auto kind = static_cast<test::LargePolygons>(r.below(3));
+                        return test::large_polygons(kind, static_cast<std::uint32_t>(60 + r.below(60)), r);
+                      }});
   std::size_t wrong = 0, meshes = 0;
   for (std::size_t k = 0; k < families.size(); ++k) {
     Random random(kSeed + k);
