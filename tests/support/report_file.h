@@ -137,8 +137,17 @@ class ReportFile {
     return result;
   }
 
+  // The weights of all targets at a sample.
+  [[nodiscard]] std::vector<double> weights_at(const Json& track, std::size_t sample, std::size_t targets) const {
+    const std::vector<std::uint32_t> moved = numbers<std::uint32_t>(track["targets"]);
+    const std::vector<float> values = numbers<float>(track["values"]);
+    std::vector<double> weights(targets);
+    for (std::size_t i = 0; i < moved.size(); ++i) weights.at(moved[i]) = values.at(sample * moved.size() + i);
+    return weights;
+  }
+
   [[nodiscard]] double gltf_degrees(const Json& of, const Json& motion, std::size_t sample, std::size_t vertex) const {
-    const std::vector<float> weights = numbers<float>(motion["weights"][0]["values"]);
+    const std::vector<double> weights = weights_at(motion["weights"][0], sample, of["targets"].size());
     const Json &targets = of["targets"], &shown = of["shown"][0];
     std::vector<Point> base = points(numbers<float>(of["positions"])), now = base;
     Point seen = at(numbers<float>(shown["normals"]), vertex);
@@ -149,7 +158,7 @@ class ReportFile {
         use(vectors["indices"].is_null() ? i : std::size_t{indices[i]}, at(values, i));
     };
     for (std::size_t k = 0; k < targets.size(); ++k) {
-      const double w = weights[sample * targets.size() + k];
+      const double w = weights[k];
       each(targets[k], "positions", [&](std::size_t v, const Point& delta) { now[v] = sum(now[v], delta, w); });
       each(shown["targets"][k], "deltas", [&](std::size_t v, const Point& delta) {
         if (v == vertex) seen = sum(seen, delta, w);

@@ -90,11 +90,12 @@ function judgedVertices({ vertices, triangles, element, elements }, moved, shown
 /** Weights with a number for each target at a moment of a motion: `at` counts samples, and is linear between two of them. */
 export function weightsAt(motion, host, at, result) {
   const track = motion.weights.find(({ hosts }) => hosts.includes(host)) ?? motion.weights[0];
-  const count = result.length, from = Math.min(Math.floor(at), motion.at.length - 1), to = Math.min(from + 1, motion.at.length - 1);
+  const count = track.targets.length, from = Math.min(Math.floor(at), motion.at.length - 1), to = Math.min(from + 1, motion.at.length - 1);
   const t = at - from;
+  result.fill(0);
   for (let k = 0; k < count; ++k) {
     const first = track.values[from * count + k];
-    result[k] = t === 0 ? first : first + t * (track.values[to * count + k] - first);
+    result[track.targets[k]] = t === 0 ? first : first + t * (track.values[to * count + k] - first);
   }
   return result;
 }

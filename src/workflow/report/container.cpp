@@ -75,7 +75,8 @@ Json motion_json(const ModelMotion& motion, Arrays& arrays) {
     json["t"] = arrays.add(motion.t);
   }
   for (const ModelWeights& weights : motion.weights)
-    json["weights"].push_back({{"hosts", weights.hosts}, {"values", arrays.add(weights.values)}});
+    json["weights"].push_back(
+        {{"hosts", weights.hosts}, {"targets", arrays.add(weights.targets)}, {"values", arrays.add(weights.values)}});
   json["worst"] = arrays.add(motion.worst);
   json["mean"] = arrays.add(motion.mean);
   json["least"] = arrays.add_or_null(motion.least);

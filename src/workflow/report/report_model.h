@@ -45,9 +45,10 @@ struct ModelShown {
   std::vector<ModelVectors> targets;  ///< deltas
 };
 
-/// Weights of all targets at all samples, (S, K), as some hosts play them.
+/// Weights at all samples as some hosts play them, of the targets that have another weight than 0 at one of them: (S, n).
 struct ModelWeights {
   std::vector<std::string> hosts;
+  std::vector<std::uint32_t> targets;  ///< (n), ascending
   std::vector<float> values;
 };
 

@@ -7,6 +7,29 @@
 
 namespace chronormal::inline internal {
 
+void WatchedMotions::Weights::add(std::span<const double> of_sample) {
+  for (std::size_t k = 0; k < of_sample.size(); ++k) {
+    const auto value = static_cast<float>(of_sample[k]);
+    if (value != 0) weights_.push_back({samples_, static_cast<std::uint32_t>(k), value});
+  }
+  ++samples_;
+}
+
+ModelWeights WatchedMotions::Weights::take() {
+  ModelWeights result;
+  std::vector<std::uint32_t>& targets = result.targets;
+  for (const Weight& weight : weights_) targets.push_back(weight.target);
+  std::sort(targets.begin(), targets.end());
+  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+  result.values.resize(samples_ * targets.size());
+  for (const auto& [sample, target, value] : weights_) {
+    const auto column = std::lower_bound(targets.begin(), targets.end(), target) - targets.begin();
+    result.values[sample * targets.size() + static_cast<std::size_t>(column)] = value;
+  }
+  *this = {};
+  return result;
+}
+
 WatchedMotions::WatchedMotions(std::span<const Host> audited, std::span<const Host> kept,
                                std::span<const std::uint32_t> vertex_of_corner)
     : vertex_of_corner_(vertex_of_corner) {
@@ -31,12 +54,11 @@ void WatchedMotions::add(const AuditSample& sample) {
     motion.segments.push_back(static_cast<std::uint32_t>(sample.segment));
     motion.t.push_back(sample.t);
   } else {
-    std::vector<float>& values = motion.weights[0].values;
-    values.insert(values.end(), sample.weights.begin(), sample.weights.end());
+    specified_.add(sample.weights);
     for (std::size_t h = 0; h < played_.size(); ++h) {
       const std::vector<double>& played = sample.played[h];
       played_[h].is_specified &= std::equal(played.begin(), played.end(), sample.weights.begin());
-      if (played_[h].is_kept) played_[h].values.insert(played_[h].values.end(), played.begin(), played.end());
+      if (played_[h].is_kept) played_[h].weights.add(played);
     }
   }
   const std::span<const JudgedOutput> outputs = sample.part.outputs();
@@ -52,7 +74,7 @@ void WatchedMotions::begin(const AuditSample& sample) {
   ModelMotion& motion = now_->motions.emplace_back();
   motion.subject = sample.subject;
   motion.subject_index = sample.subject_index;
-  if (!sample.weights.empty()) motion.weights.push_back({{"specification"}, {}});
+  if (!sample.weights.empty()) motion.weights.push_back({{"specification"}, {}, {}});
   const std::span<const std::uint32_t> elements = sample.part.elements();
   motion.least.assign(elements.empty() ? 0 : std::size_t{elements.back()} + 1, 0.0);
   for (std::size_t e = 0; e < elements.size(); ++e) motion.least[elements[e]] = kVanished * sample.largest[e];
@@ -62,16 +84,21 @@ void WatchedMotions::begin(const AuditSample& sample) {
 void WatchedMotions::end() {
   if (now_ == nullptr || now_->motions.back().weights.empty()) return;
   std::vector<ModelWeights>& weights = now_->motions.back().weights;
+  const auto play_alike = [](const ModelWeights& a, const ModelWeights& b) {
+    return a.targets == b.targets && a.values == b.values;
+  };
+  ModelWeights specified = specified_.take();
+  weights[0].targets = std::move(specified.targets);
+  weights[0].values = std::move(specified.values);
   for (Played& played : played_) {
-    const auto same = played.is_specified
-                          ? weights.begin()
-                          : std::find_if(weights.begin() + 1, weights.end(),
-                                         [&](const ModelWeights& w) { return w.values == played.values; });
+    ModelWeights own = played.weights.take();
+    const auto same = played.is_specified ? weights.begin()
+                                          : std::find_if(weights.begin() + 1, weights.end(),
+                                                         [&](const ModelWeights& w) { return play_alike(w, own); });
     if (same != weights.end())
       same->hosts.emplace_back(played.host->name);
     else if (played.is_kept)
-      weights.push_back({{std::string(played.host->name)}, std::move(played.values)});
-    played.values.clear();
+      weights.push_back({{std::string(played.host->name)}, std::move(own.targets), std::move(own.values)});
     played.is_specified = true;
   }
 }

@@ -34,11 +34,29 @@ class WatchedMotions {
   [[nodiscard]] std::map<std::optional<std::size_t>, WatchedPart> take();
 
  private:
+  // The weights of a motion, sample after sample, without those that are 0: a file of many targets has a motion for each,
+  // in which the others rest.
+  class Weights {
+   public:
+    void add(std::span<const double> of_sample);
+    // Empties it.
+    [[nodiscard]] ModelWeights take();
+
+   private:
+    struct Weight {
+      std::size_t sample;
+      std::uint32_t target;
+      float value;
+    };
+    std::vector<Weight> weights_;
+    std::size_t samples_ = 0;
+  };
+
   // The weights that one host plays in the motion that the audit tells of.
   struct Played {
     const Host* host = nullptr;
     bool is_kept = false, is_specified = true;
-    std::vector<float> values;
+    Weights weights;
   };
 
   void begin(const AuditSample& sample);
@@ -47,6 +65,7 @@ class WatchedMotions {
   std::span<const std::uint32_t> vertex_of_corner_;
   std::map<std::optional<std::size_t>, WatchedPart> parts_;
   WatchedPart* now_ = nullptr;
+  Weights specified_;
   std::vector<Played> played_;
 };
 

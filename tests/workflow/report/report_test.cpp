@@ -13,9 +13,11 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chronormal/io/output.h"
+#include "tests/support/allocation_counter.h"
 #include "tests/support/bake_fixture.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/report_file.h"
@@ -257,6 +259,36 @@ TEST(Report, what_hosts_show_is_what_they_keep) {
   ASSERT_EQ(weights.size(), 2U);
   EXPECT_EQ(weights[1]["hosts"], nlohmann::json({"gltfpack"}));
   EXPECT_NE(file.numbers<float>(weights[1]["values"]), file.numbers<float>(weights[0]["values"]));
+}
+
+// Each target is a motion in which the others rest.
+TEST(Report, bytes_are_linear_in_targets) {
+  const auto peak = [](std::size_t targets) {
+    test::GltfBuilder builder;
+    const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0}),
+                      lift = builder.add_positions({0, 0, 0, 0, 0, 0.5F, 0, 0, 0.25F}),
+                      normals = builder.add_positions({0, 0, 1, 0, 0, 1, 0, 0, 1}),
+                      corners = builder.add_indices<std::uint8_t>({0, 1, 2});
+    nlohmann::json primitive =
+        test::GltfBuilder::primitive(base, corners, std::vector<nlohmann::json>(targets, {{"POSITION", lift}}));
+    primitive["attributes"]["NORMAL"] = normals;
+    builder.add_node(builder.add_mesh(std::move(primitive)));
+    const std::string glb = builder.glb();
+    const test::AllocationCounter counter;
+    const Result<Report> found = report_of_glb(glb, without_plan());
+    EXPECT_TRUE(found) << found.error().text();
+    const ReportFile file = expect_numbers(found.value());
+    const nlohmann::json& motion = file.part(0)["motions"][targets - 1];
+    EXPECT_EQ(file.numbers<std::uint32_t>(motion["weights"][0]["targets"]),
+              std::vector<std::uint32_t>{static_cast<std::uint32_t>(targets - 1)});
+    return std::pair{found.value().container.size(), counter.peak_bytes()};
+  };
+  const auto [few_bytes, few_peak] = peak(100);
+  const auto [many_bytes, many_peak] = peak(800);
+  EXPECT_LT(many_bytes, 10 * few_bytes);
+  if (test::AllocationCounter::works()) {
+    EXPECT_LT(many_peak, 12 * few_peak);
+  }
 }
 
 TEST(Report, no_two_worst_places_are_neighbours) {
