@@ -79,10 +79,10 @@ enum class PathKind {
 [[nodiscard]] Status check_path(const Motion& motion, PathKind kind);
 
 /// The cubic from keys[i] to keys[i + 1], through their float32 positions: a curve is drawn through keyframes of files,
-/// which have no residuals; motions that are blended are straight, and have no curves. The velocity at a key is that of the parabola through it and its two
-/// neighbours (Catmull and Rom, for uneven times), and at the first and the last key that of the cubic through the
-/// nearest four: of as many as there are, so that between two keys the motion is straight. A key that has
-/// end_velocities has these.
+/// which have no residuals; motions that are blended are straight, and have no curves. The velocity at a key is that of
+/// the parabola through it and its two neighbours (Catmull and Rom, for uneven times), and at the first and the last
+/// key that of the cubic through the nearest four: of as many as there are, so that between two keys the motion is
+/// straight. A key that has end_velocities has these.
 /// keys must ascend in time, each with as many positions as the topology has vertices; i + 1 < keys.size()
 [[nodiscard]] PolynomialSegment<3> catmull_rom_segment(const Topology& topology,
                                                        std::span<const Motion::Keyframe* const> keys, std::size_t i);

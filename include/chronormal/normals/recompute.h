@@ -14,7 +14,8 @@
 ///            as x y z, 32 bytes for each.
 /// Order      sums are added in the order of groups.faces(): shuffling the faces of the mesh gives the same bits.
 /// Threads    unit_normals() uses the scratch of the object: one call at a time. On one thread it does not throw, and
-///            does not allocate but for groups around faces of more than 64 corners. The same bits on every instruction set, compiler and number of threads.
+///            does not allocate but for groups around faces of more than 64 corners. The same bits on every
+///            instruction set, compiler and number of threads.
 /// Speed      triangles whose positions are packed, and results aligned to 64 bytes, as planes or packed, are fastest;
 ///            polygons go one by one.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_H_

@@ -232,11 +232,12 @@ struct Audit {
 /// keep that take more than kMostErrorBytes.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
-/// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject then.
-/// Without stored normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what it would
-/// get in between. Residuals of positions count, but on curved paths (normals/paths.h) and for which weighting stored
-/// normals follow, which differences of a tenth of a degree tell. Errors: kUsage for the rule gltf, for hosts, and for fewer than 2 samples; those of check_path();
-/// kInvalidInput for normals that do not fit. Precondition: the motion is valid
+/// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
+/// then. Without stored normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what
+/// it would get in between. Residuals of positions count, but on curved paths (normals/paths.h) and for which weighting
+/// stored normals follow, which differences of a tenth of a degree tell. Errors: kUsage for the rule gltf, for hosts,
+/// and for fewer than 2 samples; those of check_path(); kInvalidInput for normals that do not fit. Precondition: the
+/// motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
 /// The same for a stream, of which two keyframes are held at a time, or four on curved paths. It is read twice; it is
 /// read once more up to where all vertices have moved, and once more up to where none coincide any more. Errors: also

@@ -79,8 +79,9 @@ struct Report {
 };
 
 /// Makes the report of an input that was opened with KeepShading::kAll. The container has keyframes in float32, from
-/// which a page computes; the numbers of the audit and of the schemes count residuals too. Memory: about three times the container, beside
-/// what an audit takes. Errors: of audit(); kInvalidInput where nothing moves that could be judged.
+/// which a page computes; the numbers of the audit and of the schemes count residuals too. Memory: about three times
+/// the container, beside what an audit takes. Errors: of audit(); kInvalidInput where nothing moves that could be
+/// judged.
 [[nodiscard]] Result<Report> report(Input& input, const ReportOptions& options);
 
 /// A template holds this mark exactly once, and the report takes its place.

@@ -45,7 +45,8 @@ struct ModelShown {
   std::vector<ModelVectors> targets;  ///< deltas
 };
 
-/// Weights at all samples as some hosts play them, of the targets that have another weight than 0 at one of them: (S, n).
+/// Weights at all samples as some hosts play them, of the targets that have another weight than 0 at one of them: (S,
+/// n).
 struct ModelWeights {
   std::vector<std::string> hosts;
   std::vector<std::uint32_t> targets;  ///< (n), ascending

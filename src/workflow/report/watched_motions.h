@@ -34,8 +34,8 @@ class WatchedMotions {
   [[nodiscard]] std::map<std::optional<std::size_t>, WatchedPart> take();
 
  private:
-  // The weights of a motion, sample after sample, without those that are 0: a file of many targets has a motion for each,
-  // in which the others rest.
+  // The weights of a motion, sample after sample, without those that are 0: a file of many targets has a motion for
+  // each, in which the others rest.
   class Weights {
    public:
     void add(std::span<const double> of_sample);
