@@ -19,6 +19,8 @@
 ///     vertex            0  1  2  3  4        1 and 3 coincide in all keyframes, 2 and 4 in the first one only
 ///     point_of_vertex   0  1  2  1  3
 ///
+/// Two sides  Where all faces at a point lie back to back, the corners of the two sides share no normal, since one is the
+///            opposite of the other. (A vertex that has corners of both, and one normal, keeps a sum of zero.)
 /// Sums       The length of a face normal is twice the area of the face, so the area-weighted normal of an element is
 ///            the plain sum of the n(t) of its faces: a sum of quadratics, hence a quadratic, exact at every t. The
 ///            control normals are added once; after that vertices and corners are elements like any other, for
@@ -63,8 +65,9 @@ struct Points {
 
 /// Makes one point of the vertices of one body (motion/motion.h) whose coordinates are equal in all keyframes. Equal
 /// means equal float32, to the last bit, but -0 equals 0: there is no tolerance, since vertices that are merely close
-/// may belong to two sides of a slit. Faces are not looked at. O(V log V), and the number of keyframes times as much
-/// where vertices coincide. The motion must be valid.
+/// may belong to two sides of a slit. Where two sheets lie back to back, each face of the one with the points of a face
+/// of the other the other way round, the vertices of each sheet are points of their own. O(V log V + F), and the number
+/// of keyframes times as much where vertices coincide. The motion must be valid.
 [[nodiscard]] Points weld_coincident(const Motion& motion);
 /// The same for a stream, whose keyframes are read until no two vertices coincide. Errors: those of the stream.
 [[nodiscard]] Result<Points> weld_coincident(MotionStream& stream);
@@ -87,6 +90,10 @@ class NormalGroups {
   /// Makes an element of each point, with all of its corners. Outputs are vertices; elements are numbered as points.
   /// The points must be of this topology. O(corners log corners), as are all builders unless they say otherwise.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points);
+  /// The same, with some corners left out of the elements of their points: those of each point become an element of
+  /// their own, which no vertex shows. left_out has one value for each corner.
+  [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points,
+                                                const std::vector<bool>& left_out);
 
   /// Outputs are corners. Two corners of a point share a normal if their faces have an edge in common that begins or
   /// ends at this point, and the angle between the two face normals in keyframe 0 is at most the crease angle (and
@@ -146,8 +153,10 @@ class NormalGroups {
   // Lists the corners of each element. element_of_corner has values below element_count.
   NormalGroups(const Topology& topology, std::vector<std::uint32_t> element_of_corner, std::size_t element_count);
 
-  // Numbers sets of corners, named by any of their members, in the order of their first corners.
-  [[nodiscard]] static NormalGroups of_corner_sets(const Topology& topology, std::vector<std::uint32_t> set_of_corner);
+  // Numbers sets of corners, named by any of their members, in the order of their first corners; those of the two sides
+  // of a sheet come apart.
+  [[nodiscard]] static NormalGroups of_corner_sets(const Topology& topology, const Points& points,
+                                                   std::vector<std::uint32_t> set_of_corner);
 
   [[nodiscard]] std::span<const std::uint32_t> part(const std::vector<std::uint32_t>& values,
                                                     std::size_t e) const noexcept {

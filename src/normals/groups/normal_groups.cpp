@@ -12,6 +12,7 @@
 #include "core/portable_math.h"
 #include "normals/groups/corner_sets.h"
 #include "normals/groups/rings.h"
+#include "normals/groups/sides.h"
 
 namespace chronormal {
 namespace {
@@ -108,7 +109,9 @@ NormalGroups::NormalGroups(const Topology& topology, std::vector<std::uint32_t> 
   }
 }
 
-NormalGroups NormalGroups::of_corner_sets(const Topology& topology, std::vector<std::uint32_t> set_of_corner) {
+NormalGroups NormalGroups::of_corner_sets(const Topology& topology, const Points& points,
+                                          std::vector<std::uint32_t> set_of_corner) {
+  take_sides_apart(topology, points, set_of_corner);
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> element_of_set(set_of_corner.size(), kNone);
   std::uint32_t count = 0;
@@ -120,11 +123,25 @@ NormalGroups NormalGroups::of_corner_sets(const Topology& topology, std::vector<
 }
 
 NormalGroups NormalGroups::of_vertices(const Topology& topology, const Points& points) {
+  return of_vertices(topology, points, {});
+}
+
+NormalGroups NormalGroups::of_vertices(const Topology& topology, const Points& points,
+                                       const std::vector<bool>& left_out) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
-  std::vector<std::uint32_t> element_of_corner;
+  constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  std::vector<std::uint32_t> element_of_corner, without(left_out.empty() ? 0 : points.count, kNone);
   element_of_corner.reserve(topology.corner_count());
-  for (const std::uint32_t vertex : topology.corners()) element_of_corner.push_back(points.point_of_vertex[vertex]);
-  NormalGroups groups(topology, std::move(element_of_corner), points.count);
+  std::size_t count = points.count;
+  for (const std::uint32_t vertex : topology.corners()) {
+    std::uint32_t element = points.point_of_vertex[vertex];
+    if (!left_out.empty() && left_out[element_of_corner.size()]) {
+      if (without[element] == kNone) without[element] = static_cast<std::uint32_t>(count++);
+      element = without[element];
+    }
+    element_of_corner.push_back(element);
+  }
+  NormalGroups groups(topology, std::move(element_of_corner), count);
   groups.element_of_vertex_ = points.point_of_vertex;
   groups.outputs_are_vertices_ = true;
   return groups;
@@ -177,7 +194,7 @@ Result<NormalGroups> NormalGroups::by_crease_angle(const Motion& motion, const P
       }
     }
   }
-  return of_corner_sets(topology, std::move(sets).roots());
+  return of_corner_sets(topology, points, std::move(sets).roots());
 }
 
 Result<NormalGroups> NormalGroups::by_smoothing_group(const Topology& topology, const Points& points,
@@ -200,7 +217,7 @@ Result<NormalGroups> NormalGroups::by_smoothing_group(const Topology& topology, 
       if (group(corners[i]) != 0 && group(corners[i]) == group(corners[i - 1])) sets.join(corners[i - 1], corners[i]);
     }
   }
-  return of_corner_sets(topology, std::move(sets).roots());
+  return of_corner_sets(topology, points, std::move(sets).roots());
 }
 
 Result<NormalGroups> NormalGroups::by_split_normals(const Topology& topology, const Points& points,
@@ -226,7 +243,7 @@ Result<NormalGroups> NormalGroups::by_split_normals(const Topology& topology, co
     for (const std::uint32_t c : around.of(p)) normals.push_back({unit(to_double(normal_of_corner[c])), c});
     join_close_directions(normals, chord, sets);
   }
-  return of_corner_sets(topology, std::move(sets).roots());
+  return of_corner_sets(topology, points, std::move(sets).roots());
 }
 
 std::size_t NormalGroups::isolated_count() const noexcept {

@@ -8,6 +8,7 @@
 
 #include "core/bits.h"
 #include "core/blocks.h"
+#include "normals/groups/sides.h"
 
 namespace chronormal {
 namespace {
@@ -134,6 +135,8 @@ Result<WeldedPoints> weld_from_start(MotionStream& stream) {
   }
   if (result.at_start.point_of_vertex.empty()) result.at_start = points_of(order.size(), {});
   result.always = points_of(order.size(), found);
+  keep_sides_apart(motion.topology, result.at_start);
+  keep_sides_apart(motion.topology, result.always);
   return result;
 }
 
