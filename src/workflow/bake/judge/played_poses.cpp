@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-#include "workflow/bake/judge/random_numbers.h"
+#include "core/random_numbers.h"
 #include "workflow/bake/mesh_skins.h"
 
 namespace chronormal::inline internal {

@@ -22,7 +22,7 @@
 #include "workflow/bake/exact/deltas.h"
 #include "workflow/bake/judge/host_judge.h"
 #include "workflow/bake/low_rank/missing_normals.h"
-#include "workflow/bake/undriven/rig_poses.h"
+#include "workflow/shading/rig_poses.h"
 
 namespace chronormal::inline internal {
 

@@ -1,6 +1,6 @@
-/// Random numbers that are the same with every library. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_RANDOM_NUMBERS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_JUDGE_RANDOM_NUMBERS_H_
+/// Random numbers that are the same with every library..
+#ifndef CHRONORMAL_CORE_RANDOM_NUMBERS_H_
+#define CHRONORMAL_CORE_RANDOM_NUMBERS_H_
 
 #include <algorithm>
 #include <cstddef>
@@ -18,4 +18,4 @@ namespace chronormal::inline internal {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_JUDGE_RANDOM_NUMBERS_H_
+#endif  // CHRONORMAL_CORE_RANDOM_NUMBERS_H_

@@ -1,5 +1,5 @@
 // The poses that a rig is made for: which targets go together, and how many are active.
-#include "workflow/bake/undriven/rig_poses.h"
+#include "workflow/shading/rig_poses.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 /// share a word or both belong to the mouth or to the eyes (3 times: "jawOpen" and "mouthSmile_L").
 ///
 /// Threads    pure; the same poses on every system.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_RIG_POSES_H_
-#define CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_RIG_POSES_H_
+#ifndef CHRONORMAL_WORKFLOW_SHADING_RIG_POSES_H_
+#define CHRONORMAL_WORKFLOW_SHADING_RIG_POSES_H_
 
 #include <cstddef>
 #include <span>
@@ -55,4 +55,4 @@ class RigPoses {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_RIG_POSES_H_
+#endif  // CHRONORMAL_WORKFLOW_SHADING_RIG_POSES_H_

@@ -1,6 +1,6 @@
 // A name is taken apart into words where its letters change from small to capital, and at all that is no letter; the
 // words for a side are what tells the left from the right of the same thing.
-#include "workflow/bake/undriven/rig_poses.h"
+#include "workflow/shading/rig_poses.h"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/nearest.h"
+#include "core/random_numbers.h"
 #include "core/text.h"
-#include "workflow/bake/judge/random_numbers.h"
 
 namespace chronormal::inline internal {
 namespace {
