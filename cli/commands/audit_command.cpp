@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "chronormal/io/output.h"
+#include "chronormal/io/poses_file.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/hosts.h"
@@ -22,6 +23,7 @@
 #include "cli/terminal/print.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
+#include "core/charconv.h"
 
 namespace chronormal::cli {
 namespace {
@@ -32,6 +34,8 @@ struct AuditArguments {
   std::string rule;  // empty: what is usual for the input
   JudgeArguments judge;
   PathArgument path;
+  std::optional<std::string> poses;  // "random", or the file of the poses
+  std::optional<std::string> weights;
   std::optional<double> tolerance;
   std::optional<std::string> errors;  // where to write every single one
   ShardArgument shard;
@@ -80,13 +84,18 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
       {{"--rule NAME", &options.rule,
         "what a host makes of stored normals between keyframes: gltf (default for\n"
         "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
-      options.judge.table("judge what these hosts show of a glTF file"),
+      options.judge.table("judge what these viewers show of a glTF file"),
       options.path.table("the right normals are those of this path"),
-      {{"--tolerance DEG", &options.tolerance, "exit with code 4 if the worst error is larger, in any host of --host"},
+      {{"--tolerance DEG", &options.tolerance, "exit with code 4 if the worst error is larger, in any viewer of --for"},
+       {"--poses FILE|random", &options.poses,
+        "judge poses of a glTF file, too: those of FILE, as JSON ([{\"jawOpen\": 0.7}, ...]), or\n"
+        "random ones that a program may set"},
+       {"--weights LO:HI", &options.weights,
+        "judge each target of a glTF file alone from weight LO to HI (default 0:1)"},
        {"--errors FILE", &options.errors,
         "write the error of every vertex at every sample: .npz for programs, or .ply\n"
         "with the worst of each vertex as its quality, for MeshLab and Blender"},
-       {"--no-weld", &options.no_weld, "sequences: keep vertices apart that are at one point in all keyframes"},
+       {"--no-weld", &options.no_weld, "keep vertices apart that are at one point throughout"},
        options.shard.option("judge the Ith of N equal shares of the segments of a sequence alone: OUT is a part\n"
                             "for chronormal merge"),
        options.resume.option(),
@@ -130,6 +139,10 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   Input& input = opened.value();
   const GltfDocument* const document = input.document();
   if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
+  if (document == nullptr && options.poses)
+    return misuse("--poses", "it gives the targets of a glTF file weights; this input is none");
+  if (document == nullptr && options.weights)
+    return misuse("--weights", "it is for the targets of a glTF file; this input is none");
   if (document != nullptr && how.shard)
     return misuse(has_ranks() ? "mpirun" : "--shard", "it divides the segments of a sequence, and a glTF file is none");
   if (const Status known = check_path("audit", input, how.path); !known) return known.error();
@@ -146,6 +159,20 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
                  can_be_baked ? words_of(options.input, how.path) : ""};
 }
 
+Result<std::array<double, 2>> read_weights(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  std::array<double, 2> range{};
+  const auto is_number = [](std::string_view digits, double& value) {
+    const auto [end, code] = from_chars(digits.data(), digits.data() + digits.size(), value);
+    return code == std::errc{} && end == digits.data() + digits.size() && std::isfinite(value);
+  };
+  const std::string_view words = text;
+  if (colon == std::string::npos || !is_number(words.substr(0, colon), range[0]) ||
+      !is_number(words.substr(colon + 1), range[1]) || !(range[0] < range[1]) || !std::isfinite(range[1] - range[0]))
+    return misuse("--weights", formatted("'{}': it must be two weights, the smaller one first, such as -1:1", text));
+  return range;
+}
+
 Result<AuditOptions> understand(const AuditArguments& options, Progress& progress) {
   AuditOptions how;
   if (!options.rule.empty()) {
@@ -153,12 +180,23 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
     if (!rule) return misuse("--rule", rule.error().message);
     how.rule = rule.value();
   }
-  if (const Status named = options.judge.read(how.weighting, how.hosts); !named) return named.error();
+  if (const Status named = options.judge.read("audit", how.weighting, how.hosts); !named) return named.error();
   if (!how.hosts.empty() && how.rule && *how.rule != AuditRule::kGltf)
-    return misuse("--host", "hosts go with the rule gltf, which they stand for");
+    return misuse("--for", "viewers go with the rule gltf, which they stand for");
   const Result<PathKind> path = options.path.read();
   if (!path) return path.error();
   how.path = path.value();
+  if (options.weights) {
+    const Result<std::array<double, 2>> weights = read_weights(*options.weights);
+    if (!weights) return weights.error();
+    how.weights = weights.value();
+  }
+  how.is_posed = options.poses.has_value();
+  if (options.poses && *options.poses != "random") {
+    Result<std::vector<RigPose>> poses = read_poses_file(*options.poses);
+    if (!poses) return poses.error();
+    how.poses = std::move(poses).value();
+  }
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (const Status status = check_input(options.input); !status) return status.error();
@@ -168,7 +206,9 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   }
   std::vector<NamedFile> outputs = {{"OUT", options.common.output}};
   if (options.errors) outputs.push_back({"--errors", *options.errors});
-  if (const Status distinct = check_distinct(outputs, input_files(options.input)); !distinct) return distinct.error();
+  std::vector<NamedFile> inputs = input_files(options.input);
+  if (options.poses && *options.poses != "random") inputs.push_back({"--poses", *options.poses});
+  if (const Status distinct = check_distinct(outputs, inputs); !distinct) return distinct.error();
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
   how.shard = shard.value();
@@ -345,7 +385,7 @@ Command audit_command() {
       "  chronormal audit face.glb\n"
       "  chronormal audit face.glb --tolerance 1 --quiet > /dev/null\n"
       "  chronormal audit models/ intro.glb --tolerance 1\n"
-      "  chronormal audit face.glb --host three,godot,gltfpack\n"
+      "  chronormal audit face.glb --for three,godot,gltfpack\n"
       "  chronormal audit walk/ --rule slerp --json\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
       [options] { return run(*options); },

@@ -42,7 +42,7 @@ struct BakeArguments {
   std::optional<std::string> drivers;  // where to write them beside the result
   PathArgument path;
   std::optional<std::string> poses;  // the file of the poses that a rig is made for
-  bool json = false, no_audit = false;
+  bool json = false, no_audit = false, no_weld = false;
 };
 
 std::string host_names() {
@@ -96,6 +96,7 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   }
   if (const Status status = check_input(options.input); !status) return status.error();
   how.is_posed = options.poses.has_value();
+  how.weld = !options.no_weld;
   if (options.poses && *options.poses != "random") {
     Result<std::vector<RigPose>> poses = read_poses_file(*options.poses);
     if (!poses) return poses.error();
@@ -132,21 +133,24 @@ void warn_if_worse(const BakeReport& report, bool of_animations) {
   if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit, of_animations)});
 }
 
-// Audits the input, by audit_before, and the file that was written. A track that got keys is looked at more often than
+// Audits the input, by audit_before, and the file that was written, both by the normals of the author of a glTF file. A track that got keys is looked at more often than
 // it was, and may show what was there before: the input is looked at as often before the result is called worse. The
 // result is empty where neither has anything that an audit can judge. Errors: kFailed where the written file cannot be
 // read.
 template <class AuditBefore>
 Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const BakeArguments& options,
-                                                 const AuditBefore& audit_before) {
+                                                 const GltfDocument* author, const AuditBefore& audit_before) {
   std::optional<BeforeAndAfter> result;
   if (options.no_audit || is_stream(options.common.output)) return result;
   AuditOptions audited;
+  audited.weld = how.weld;
   audited.weighting = how.weighting;
   const GltfOptions gltf{.allow_external = options.input.allow_external, .max_expansion = options.input.max_expansion};
   const Result<GltfDocument> after = GltfDocument::open(options.common.output, gltf);
   if (!after) return after.error();
-  Result<Audit> first = audit_before(audited), second = audit(after.value(), audited);
+  AuditOptions audited_after = audited;
+  audited_after.author = how.recompute_base ? nullptr : author;
+  Result<Audit> first = audit_before(audited), second = audit(after.value(), audited_after);
   constexpr std::size_t kSamplesToCompare = 81;
   if (first && second && is_worse(second.value().error, first.value().error)) {
     audited.samples = kSamplesToCompare;
@@ -213,7 +217,8 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   if (const Status written = edit.write(output, options.common.force); !written) return written.error();
   warn(warnings);
   if (baked.value().changed && input.file_size() <= kMostAudited) {
-    auto audited = audit_both(how, options, [&](const AuditOptions& asked) { return audit(document, asked); });
+    auto audited =
+        audit_both(how, options, &document, [&](const AuditOptions& asked) { return audit(document, asked); });
     if (!audited) return audited.error();
     told.audit = std::move(audited).value();
   }
@@ -282,7 +287,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   // An audit judges the triangles of a file, whatever polygons they come from.
   if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
     std::optional<Input> whole;
-    auto audited = audit_both(how, options, [&](AuditOptions asked) -> Result<Audit> {
+    auto audited = audit_both(how, options, nullptr, [&](AuditOptions asked) -> Result<Audit> {
       asked.rule = AuditRule::kNlerp;
       asked.path = how.path;
       if (!stored.has_more) return audit(stream, stored, asked);
@@ -426,6 +431,7 @@ Command bake_command() {
          "how far extra targets that are left out may turn one (default 0.5; of exact 0.001)"},
         {"--drivers FILE", &options->drivers,
          "write what drives extra targets, which stands in the result, to a JSON file too"},
+        {"--no-weld", &options->no_weld, "keep vertices apart that are at one point throughout"},
         {"--no-audit", &options->no_audit, "do not compare the errors before and after"},
         {"--json", &options->json, "one JSON object"}},
        with_output(options->common.table(true), options->output)},

@@ -13,6 +13,7 @@ namespace {
 struct ConvertArguments {
   InputOptions input;
   CommonOptions common;
+  bool no_weld = false;
 };
 
 std::string convert_footer() {
@@ -43,8 +44,8 @@ Result<int> run(const ConvertArguments& options) {
   if (!input) return input.error();
   const Result<MotionStream*> motion = input.value().stream();
   if (!motion) return motion.error();
-  const Status written =
-      write_motion(*motion.value(), options.common.output, options.common.force, input.value().expansion());
+  const Status written = write_motion(*motion.value(), options.common.output, options.common.force,
+                                      input.value().expansion(), !options.no_weld);
   if (!written) return written.error();
   return kExitDone;
 }
@@ -55,7 +56,10 @@ Command convert_command() {
   auto options = std::make_shared<ConvertArguments>();
   return {"convert",
           "Write a motion, or a built-in morph, in another format",
-          {input_table(options->input), options->common.table(true)},
+          {input_table(options->input),
+           {{"--no-weld", &options->no_weld,
+             "targets: keep vertices apart in the normals that are at one point throughout"}},
+           options->common.table(true)},
           convert_footer(),
           [options] { return run(*options); }};
 }

@@ -61,7 +61,7 @@ Result<std::string> read_template(const ReportArguments& options) {
 
 Result<ReportOptions> understand(const ReportArguments& options, Progress& progress) {
   ReportOptions how;
-  if (const Status named = options.judge.read(how.weighting, how.hosts); !named) return named.error();
+  if (const Status named = options.judge.read("report", how.weighting, how.hosts); !named) return named.error();
   if (const Status status = check_input(options.input); !status) return status.error();
   if (!is_container(options) && lower_extension(options.common.output) != ".html")
     return misuse(options.common.output, "the name must end in .html for a page, or in .bin for its data");
@@ -138,7 +138,7 @@ Command report_command() {
       "said. OUT.bin is its data alone (docs/report-data.md).\n"
       "\nExamples:\n"
       "  chronormal report face.glb -o face.html\n"
-      "  chronormal report face.glb -o face.html --host three,godot --no-plan\n"
+      "  chronormal report face.glb -o face.html --for three,godot --no-plan\n"
       "  chronormal report walk/ -o walk.html\n"
       "  chronormal report --base face.obj smile.obj frown.obj -o face.html\n"
       "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid",

@@ -48,9 +48,11 @@ std::vector<Option> JudgeArguments::table(const std::string& of_hosts) {
   return {{"--weighting NAME", &weighting,
            "how faces count in the right normals: area, angle, uniform, area-angle, max\n"
            "(default: as in the base normals of the file, else area)"},
-          {"--host NAME,...", &hosts,
-           of_hosts + ": three, babylon, playcanvas, godot,\n"
-                      "filament, bevy; after compression: gltfpack, quantize, meshopt; or all"},
+          {"--for VIEWER,...", &hosts,
+           of_hosts + ": three, babylon,\n"
+                      "playcanvas, godot, filament, bevy; after compression: gltfpack, quantize,\n"
+                      "meshopt; or all"},
+          {"--host NAME,...", &hosts_by_old_name, "the old name of --for, for this version alone"},
           {"--samples N",
            &samples,
            "how many moments of each segment are judged, its ends included (default 21; 5 in\n"
@@ -58,15 +60,21 @@ std::vector<Option> JudgeArguments::table(const std::string& of_hosts) {
            {.check = check_whole(2, kMostAuditSamples)}}};
 }
 
-Status JudgeArguments::read(std::optional<Weighting>& to_weighting, std::vector<Host>& to_hosts) const {
+Status JudgeArguments::read(const char* command, std::optional<Weighting>& to_weighting,
+                            std::vector<Host>& to_hosts) const {
   if (!weighting.empty()) {
     const Result<Weighting> found = make_weighting(weighting);
     if (!found) return misuse("--weighting", found.error().message);
     to_weighting = found.value();
   }
-  if (!hosts.empty()) {
-    Result<std::vector<Host>> found = find_hosts(hosts);
-    if (!found) return misuse("--host", found.error().message);
+  if (!hosts_by_old_name.empty() && !hosts.empty())
+    return misuse("--host", "it is the old name of --for: give one of them");
+  if (!hosts_by_old_name.empty())
+    say(command, "--host is called --for now; the old name goes with the next version", Tone::kWarning);
+  const std::string& named = hosts.empty() ? hosts_by_old_name : hosts;
+  if (!named.empty()) {
+    Result<std::vector<Host>> found = find_hosts(named);
+    if (!found) return misuse(hosts.empty() ? "--host" : "--for", found.error().message);
     to_hosts = std::move(found).value();
   }
   return Success{};
@@ -156,7 +164,7 @@ std::string path_words(PathKind path, std::size_t keyframes, double bend) {
 
 Status check_hosts(const std::vector<Host>& hosts, const Input& input) {
   if (input.document() != nullptr || hosts.empty()) return Success{};
-  return misuse("--host", "hosts are known for what they make of glTF files; this input is none");
+  return misuse("--for", "viewers are known for what they make of glTF files; this input is none");
 }
 
 std::string short_name(std::string path) {

@@ -55,16 +55,19 @@ struct ElementArguments {
   [[nodiscard]] Result<ElementOptions> options() const;
 };
 
-/// The options of commands that judge stored normals: --weighting, --host, --samples.
+/// The options of commands that judge stored normals: --weighting, --for, --samples.
 struct JudgeArguments {
   std::string weighting;               ///< empty: what the stored base normals follow
   std::string hosts;                   ///< empty: the specification alone
+  std::string hosts_by_old_name;       ///< the same by --host, which warns
   std::optional<std::size_t> samples;  ///< of each segment
 
   /// of_hosts is what the command does with the hosts that are named, for the help.
   [[nodiscard]] std::vector<Option> table(const std::string& of_hosts);
   /// Writes what was asked for; what was not asked for stays. Errors: kUsage for names that do not exist.
-  [[nodiscard]] Status read(std::optional<Weighting>& to_weighting, std::vector<Host>& to_hosts) const;
+  /// Warns in the name of the command where an option has its old name.
+  [[nodiscard]] Status read(const char* command, std::optional<Weighting>& to_weighting,
+                            std::vector<Host>& to_hosts) const;
 };
 
 /// The option that takes a share of the work: --shard I/N.

@@ -212,7 +212,16 @@ std::string lines_after(const BakeReport& report) {
   std::string text;
   if (report.drivers_file)
     text += formatted("what drives the extra targets is in {} too\n", printable(*report.drivers_file));
-  if (report.audit) text += formatted("by audit: {}\n", change_words(*report.audit));
+  if (!report.audit) return text;
+  text += formatted("by audit: {}\n", change_words(*report.audit));
+  double skinning = 0;
+  for (const AuditFinding& finding : report.audit->after.findings)
+    if (finding.kind == AuditFinding::Kind::kSkinned) skinning = std::max(skinning, finding.degrees);
+  if (skinning > kAuditFault)
+    text += formatted(
+        "behind a skin a right normal is not that of the skinned surface: skinning turns it by up to {:.2f} degrees,\n"
+        "which no deltas can mend\n",
+        skinning);
   return text;
 }
 
@@ -315,6 +324,9 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   text += formatted("{}, {}: {} and {}, {}\n", counted(bake.keyframes, "keyframe", "keyframes"),
                     counted(bake.vertices, "vertex", "vertices"), counted(bake.targets, "target", "targets"),
                     counted(bake.extra_targets, "extra one", "extra ones"), counted(bake.bytes, "byte", "bytes"));
+  if (bake.weighting != Weighting::kArea)
+    text += formatted("weighted by {}, as the stored normals are\n", weighting_name(bake.weighting));
+  if (bake.has_offsets) text += "what the stored normals of keyframe 0 add to that is kept throughout\n";
   if (bake.keys) {
     text += formatted("{}, {} of them between keyframes; {} left out; {} would do if all segments were cut alike\n",
                       counted(bake.keys->count, "key", "keys"), grouped(bake.keys->in_between),

@@ -95,19 +95,19 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
 }
 
 TEST_F(AuditCli, hosts_have_a_row_each_below_the_specification) {
-  const std::string text = text_of("hinge.glb --host three,godot");
+  const std::string text = text_of("hinge.glb --for three,godot");
   expect_words(text, {"\nhost ", "\n(specification) ", "\nthree.js ", "\nGodot 4 "});
   EXPECT_LT(text.find("(specification)"), text.find("three.js"));
   EXPECT_LT(text.find("three.js"), text.find("Godot 4"));
   EXPECT_LT(text.find("Godot 4"), text.find("\nmotion "));
   EXPECT_EQ(text.find("Filament"), std::string::npos);
   EXPECT_EQ(text_of("hinge.glb").find("(specification)"), std::string::npos);
-  const std::string all = text_of("hinge.glb --host all");
+  const std::string all = text_of("hinge.glb --for all");
   for (const Host& host : kHosts) expect_words(all, {"\n" + std::string(host.title) + " "});
 }
 
 TEST_F(AuditCli, hosts_are_in_the_json_with_their_errors_and_sources) {
-  const Json json = json_of("hinge.glb --host filament,gltfpack");
+  const Json json = json_of("hinge.glb --for filament,gltfpack");
   ASSERT_EQ(json["hosts"].size(), 2U);
   const Json& filament = json["hosts"][0];
   EXPECT_EQ(filament["name"], "filament");
@@ -137,25 +137,25 @@ TEST_F(AuditCli, tolerance_is_a_gate_for_every_host_that_is_named) {
   folder_.write("long.glb", mesh.file().glb());
   const std::string one_weight = "long.glb --samples 2 --tolerance 1";
   EXPECT_EQ(run(one_weight).exit_code, 0);
-  EXPECT_EQ(run(one_weight + " --host three,godot").exit_code, 0);
-  const ProcessResult half_way = run("long.glb --samples 3 --tolerance 20 --host three,godot");
+  EXPECT_EQ(run(one_weight + " --for three,godot").exit_code, 0);
+  const ProcessResult half_way = run("long.glb --samples 3 --tolerance 20 --for three,godot");
   EXPECT_EQ(half_way.exit_code, 4);
   expect_words(half_way.out, {"within 20 degrees in 1 of 2 hosts\n", "beyond the tolerance"});
   expect_words(half_way.err, {"chronormal audit: three.js: the worst error is ",
                               " degrees, beyond the tolerance of 20: vertex 3 of "});
   EXPECT_EQ(half_way.err.find("Godot"), std::string::npos);
-  const Json json = Json::parse(run("long.glb --samples 3 --tolerance 20 --host three,godot --json").out);
+  const Json json = Json::parse(run("long.glb --samples 3 --tolerance 20 --for three,godot --json").out);
   EXPECT_EQ(json["passed"], false);
   EXPECT_EQ(json["hosts"][0]["passed"], false);
   EXPECT_EQ(json["hosts"][1]["passed"], true);
-  EXPECT_EQ(Json::parse(run("long.glb --samples 3 --tolerance 20 --host godot --json").out)["passed"], true);
+  EXPECT_EQ(Json::parse(run("long.glb --samples 3 --tolerance 20 --for godot --json").out)["passed"], true);
 }
 
 TEST_F(AuditCli, hosts_that_there_are_none_of_are_a_misuse) {
-  expect_error("hinge.glb --host gdot", 2, "did you mean godot?");
-  expect_error("hinge.glb --host unreal", 2, "there are three, babylon, ");
-  expect_error("hinge.glb --host all --rule slerp", 2, "--host");
-  expect_error("a.obj b.obj --host all", 2, "--host");
+  expect_error("hinge.glb --for gdot", 2, "did you mean godot?");
+  expect_error("hinge.glb --for unreal", 2, "there are three, babylon, ");
+  expect_error("hinge.glb --for all --rule slerp", 2, "--for");
+  expect_error("a.obj b.obj --for all", 2, "--for");
 }
 
 TEST_F(AuditCli, gate_is_shut_for_what_cannot_be_lit) {

@@ -38,7 +38,7 @@ TEST_F(BakeKeysCommand, report_counts_keys_and_what_they_save) {
   EXPECT_NE(text.find("\nkeys: at most "), std::string::npos) << text;
   // The mark is that of harmless, so that everything that reads it knows what it is.
   const Json audited = Json::parse(
-      run_shell(std::string(kProgram) + " audit bend.glb --json --host three --tolerance 2.01", folder_.path()).out);
+      run_shell(std::string(kProgram) + " audit bend.glb --json --for three --tolerance 2.01", folder_.path()).out);
   EXPECT_LE(audited["hosts"][0]["worst_degrees"], 2.01) << audited;
 }
 

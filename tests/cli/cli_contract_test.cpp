@@ -125,7 +125,7 @@ TEST_F(Cli, help_begins_with_what_only_this_command_has) {
   const std::string help = run("help audit").out;
   EXPECT_LT(help.find("--tolerance DEG"), help.find("Options for what is read:\n"));
   EXPECT_LT(help.find("Options for what is read:\n"), help.find("--fps N"));
-  EXPECT_NE(help.find("--host NAME,... "), std::string::npos) << "no blank inside of a value's name";
+  EXPECT_NE(help.find("--for VIEWER,... "), std::string::npos) << "no blank inside of a value's name";
   EXPECT_NE(help.find("-o, --output OUT"), std::string::npos);
   for (const char* const morph : {"cloth  ", "eversion  ", "bumps  "})
     EXPECT_NE(run("help convert").out.find(morph), std::string::npos) << morph;
@@ -215,6 +215,7 @@ const std::map<std::string, std::string> kUses = {
     {"--hard-edges", "a.obj b.obj --elements corners --hard-edges groups"},
     {"--help", "--help"},
     {"--host", "face.glb --host three"},
+    {"audit --weights", "face.glb --weights -1:1"},
     {"--json", "a.obj b.obj --json"},
     {"--length", "a.obj b.obj --length area"},
     {"--max-bytes", "face.glb --max-bytes 100000"},
@@ -245,6 +246,7 @@ const std::map<std::string, std::string> kUses = {
     {"--recompute-base", "face.glb --recompute-base"},
     {"report --allow-external", "shaded.glb --allow-external"},
     {"report --animation", "shaded.glb --animation 0"},
+    {"report --for", "shaded.glb --for three"},
     {"report --host", "shaded.glb --host three"},
     {"report --no-plan", "shaded.glb --no-plan"},
     {"--resume", "a.obj b.obj --resume"},

@@ -136,7 +136,7 @@ TEST_F(HostileCli, names_in_a_gltf_file_are_printed_without_what_a_terminal_obey
                                       "audit face.glb",
                                       "audit face.glb --json",
                                       "audit face.glb --animation 0 --tolerance 0",
-                                      "audit face.glb --host all",
+                                      "audit face.glb --for all",
                                       "query cones face.glb",
                                       "query collapse face.glb --json",
                                       "report face.glb -o out.bin --force",
@@ -403,7 +403,7 @@ TEST_F(HostileCli, a_small_stack_is_enough) {
   folder_.write("b.obj", kSecond);
   folder_.write("moving.glb", test::sparse_document().glb());
   for (const std::string arguments :
-       {"audit a.obj b.obj", "audit moving.glb --host all", "bake moving.glb -o out.glb", "bake a.obj b.obj -o s.glb",
+       {"audit a.obj b.obj", "audit moving.glb --for all", "bake moving.glb -o out.glb", "bake a.obj b.obj -o s.glb",
         "report moving.glb -o out.bin", "compare a.obj b.obj", "query cones a.obj b.obj", "inspect moving.glb"}) {
     const ProcessResult result = run(arguments, "ulimit -s 256; ");
     EXPECT_EQ(result.exit_code, 0) << arguments << ": " << result.err;

@@ -56,7 +56,7 @@ TEST_F(ReportCli, table_says_what_was_written_and_where_the_worst_places_are) {
   EXPECT_EQ(file.json["input"], "hinge.glb");
   EXPECT_NEAR(file.degrees_at(file.json["worst"][0]), 90, 1e-3);
   const Json audit =
-      Json::parse(run_shell(std::string(kProgram) + " audit hinge.glb --host all --json", folder_.path()).out);
+      Json::parse(run_shell(std::string(kProgram) + " audit hinge.glb --for all --json", folder_.path()).out);
   for (const char* field : {"worst_degrees", "worst_at", "subjects", "hosts", "findings"})
     EXPECT_EQ(file.json["audit"][field], audit[field]) << field;
   const Json plan = Json::parse(run_shell(std::string(kProgram) + " bake hinge.glb --plan --json", folder_.path()).out);
@@ -76,7 +76,7 @@ TEST_F(ReportCli, json_is_for_programs) {
 }
 
 TEST_F(ReportCli, page_is_the_template_with_the_report_in_it) {
-  const ProcessResult result = run("hinge.glb -o hinge.HTML --template page.html --host gltfpack");
+  const ProcessResult result = run("hinge.glb -o hinge.HTML --template page.html --for gltfpack");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const std::string page = bytes("hinge.HTML");
   EXPECT_TRUE(page.starts_with("<p>a page</p><script type=\"application/octet-stream\" id=\"chronormal-data\">H4sI"));
@@ -109,9 +109,9 @@ TEST_F(ReportCli, misuse_is_said_before_anything_is_read) {
   expect_error(run("missing.glb -o page.txt"), 2, "page.txt: the name must end in .html");
   expect_error(run("missing.glb -o -"), 2, "the name must end in .html");
   expect_error(run("missing.glb -o a.bin --template page.html"), 2, "--template");
-  expect_error(run("missing.glb -o a.bin --host unreal"), 2, "--host");
+  expect_error(run("missing.glb -o a.bin --for unreal"), 2, "--for");
   expect_error(run("missing.glb -o a.bin --weighting weight"), 2, "--weighting");
-  expect_error(run("--sample twist -o a.bin --host three"), 2, "--host");
+  expect_error(run("--sample twist -o a.bin --for three"), 2, "--for");
   expect_error(run("missing.glb"), 2, "--output");
 }
 

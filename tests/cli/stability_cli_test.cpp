@@ -93,7 +93,7 @@ TEST_F(Stability, no_key_of_json_vanishes) {
   folder_.write("face.glb", moving.glb());
   Names found;
   for (const std::string arguments :
-       {"audit a.obj b.obj", "audit face.glb --host all --tolerance 1", "audit face.glb face.glb missing.glb",
+       {"audit a.obj b.obj", "audit face.glb --for all --tolerance 1", "audit face.glb face.glb missing.glb",
         "bake a.obj b.obj -o ab.glb", "bake face.glb -o right.glb", "bake face.glb -o exact.glb --encode exact",
         "compare a.obj b.obj", "compare --each --base a.obj b.obj", "compare --base a.obj b.obj --blend 2",
         "compare face.glb --blend 2", "inspect a.obj b.obj", "inspect face.glb", "inspect a.obj",

@@ -4,12 +4,11 @@
 // Blender shows normals that it makes itself, so that a bake changes no picture there. It must not change the shape either;
 // and whoever exports the file again bakes it again.
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { fileURLToPath } from 'node:url';
+import { runBlender } from './blender.mjs';
 import { fixtures } from './fixtures.mjs';
 import { chronormal } from './program.mjs';
 import { newIO } from './reader.mjs';
@@ -17,7 +16,6 @@ import { newComplaints } from './validator.mjs';
 
 const DATA = process.env.CHRONORMAL_DATA;
 const NO_DATA = DATA ? false : 'set CHRONORMAL_DATA to the folder of the real data to run this test';
-const SCRIPT = fileURLToPath(new URL('blender.py', import.meta.url));
 const SUZANNE = join(DATA ?? '', 'rigs/blender_suzanne_two_keys.glb');
 
 let folder;
@@ -27,13 +25,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 // Opens a file in Blender, and exports it to `again`.
 function throughBlender(input, again) {
   const report = `${again}.json`;
-  const options = ['--background', '--factory-startup', '--python-exit-code', '1', '--python', SCRIPT];
-  const { status, stdout, stderr, error } = spawnSync('blender', [...options, '--', input, report, again], {
-    encoding: 'utf8',
-    maxBuffer: 1 << 28,
-  });
-  if (error) throw error;
-  assert.equal(status, 0, stderr + stdout);
+  runBlender('blender.py', input, report, again);
   return JSON.parse(readFileSync(report, 'utf8'));
 }
 

@@ -17,7 +17,7 @@ const ofHosts = (path) => fileURLToPath(new URL(`node_modules/${path}`, import.m
 
 assert.equal(native(['convert', '--sample', 'bumps', '-o', 'bumps.glb']).status, 0);
 const face = readFileSync(join(folder, 'bumps.glb'));
-const expected = JSON.parse(native(['audit', 'bumps.glb', '--host', 'three', '--json']).stdout);
+const expected = JSON.parse(native(['audit', 'bumps.glb', '--for', 'three', '--json']).stdout);
 
 const APP = `
 import { audit, bake, ChronormalError } from 'chronormal';

@@ -14,6 +14,7 @@ import { fileURLToPath } from 'node:url';
 import { fromBase64, readContainer, unzipped } from '../../web/src/data.js';
 import { makePlayer } from '../../web/src/player.js';
 import { ExactNormals, exactPositions } from './exact.mjs';
+import { writeAuthored } from './authored.mjs';
 import { writeStill } from './fixtures.mjs';
 import { chronormal } from './program.mjs';
 import { read } from './reader.mjs';
@@ -23,6 +24,7 @@ import { clickWorst, openPages, worstNow } from './web_page.mjs';
 const FULL = process.env.CHRONORMAL_FULL === '1', DATA = process.env.CHRONORMAL_DATA;
 const NEAR = 1e-3; // degrees, which the page may be off
 const SHOWN = 5e-4; // degrees: places that are off by less are not listed
+const SEED = 49;
 
 let folder, template;
 const path = (name) => join(folder, name);
@@ -32,6 +34,7 @@ before(async () => {
   template = path('template.html');
   execFileSync(process.execPath, [fileURLToPath(new URL('../../web/build.mjs', import.meta.url)), 'report', template]);
   await writeStill(path('still.glb'), { parts: 2 });
+  await writeAuthored(path('authored.glb'), SEED);
   chronormal('convert', '--sample', 'bumps', '-o', path('bumps.glb'));
 });
 after(() => rmSync(folder, { recursive: true, force: true }));
@@ -60,7 +63,7 @@ function walk(player, visit) {
   });
 }
 
-const inputs = { still: () => [path('still.glb')], bumps: () => [path('bumps.glb')], angles: () => [path('bumps.glb'), '--weighting', 'angle'], twist: () => ['--sample', 'twist'] };
+const inputs = { still: () => [path('still.glb')], bumps: () => [path('bumps.glb')], angles: () => [path('bumps.glb'), '--weighting', 'angle'], authored: () => [path('authored.glb')], twist: () => ['--sample', 'twist'] };
 for (const [name, input] of Object.entries(inputs)) {
   test(`the page computes the worst error of every sample as the audit does: ${name}`, () => {
     const report = dataOf(name, ...input()), player = makePlayer(report, () => {});
@@ -88,19 +91,21 @@ test('every scheme of the page has the numbers of compare', () => {
   assert.ok(found >= 6, `${found} schemes`);
 });
 
-test('every host of the page has the number of the audit', () => {
-  chronormal('report', path('bumps.glb'), '--no-plan', '--host', 'all', '--force', '-q', '-o', path('hosts.bin'));
-  const player = makePlayer(readContainer(readFileSync(path('hosts.bin'))), () => {});
-  const { hosts } = JSON.parse(chronormal('audit', path('bumps.glb'), '--host', 'all', '--json', '-q'));
-  for (const { name, worst_degrees: worst } of hosts) {
-    player.host = name;
-    let most = 0;
-    walk(player, (motion, i, degrees) => (most = Math.max(most, degrees)));
-    assert.equal(player.host, name);
-    assert.ok(Math.abs(most - worst) < NEAR, `${name}: ${most}, not ${worst}`);
-  }
-  assert.equal(hosts.length, 9);
-});
+for (const file of ['bumps.glb', 'authored.glb']) {
+  test(`every host of the page has the number of the audit: ${file}`, () => {
+    chronormal('report', path(file), '--no-plan', '--for', 'all', '--force', '-q', '-o', path('hosts.bin'));
+    const player = makePlayer(readContainer(readFileSync(path('hosts.bin'))), () => {});
+    const { hosts } = JSON.parse(chronormal('audit', path(file), '--for', 'all', '--json', '-q'));
+    for (const { name, worst_degrees: worst } of hosts) {
+      player.host = name;
+      let most = 0;
+      walk(player, (motion, i, degrees) => (most = Math.max(most, degrees)));
+      assert.equal(player.host, name);
+      assert.ok(Math.abs(most - worst) < NEAR, `${name}: ${most}, not ${worst}`);
+    }
+    assert.equal(hosts.length, 9);
+  });
+}
 
 test('weights that are set by hand drive the extra targets of a baked file', () => {
   const player = makePlayer(dataOf('bumps', path('bumps.glb')), () => {});
@@ -116,7 +121,6 @@ test('weights that are set by hand drive the extra targets of a baked file', () 
   assert.ok(baked.surface.degrees[baked.worst] < 0.01, `${baked.surface.degrees[baked.worst]} degrees`);
 });
 
-const SEED = 49;
 const DAMAGED = /^the data of this page (are damaged|end too early|are no report|have version)/;
 
 // Where the arrays of a container are: {begin, size, count} in bytes, of each array of numbers with a point.

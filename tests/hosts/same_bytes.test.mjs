@@ -62,7 +62,7 @@ for (const model of FULL ? models : models.filter((path) => quick.includes(basen
   const name = basename(model);
   claim(`in what they bake and say of ${name}`, () => {
     assertSame(['bake', model, '--json', '-o', 'out/baked.glb']);
-    assertSame(['audit', model, '--json', '--host', 'all']);
+    assertSame(['audit', model, '--json', '--for', 'all']);
     assertSame(['inspect', model, '--json']);
   });
   if (FULL) claim(`in the other encodings of ${name}`, () => {

@@ -139,7 +139,7 @@ test('reports have the types of theirs, and every key that may be in one', () =>
   for (const [name, z] of [['a', 0], ['b', 1], ['c', 3]]) {
     writeFileSync(join(folder, `${name}.obj`), `v 0 0 0\nv 1 0 0\nv 0 1 ${z}\nv 1 1 ${z}\nf 1 2 3\nf 2 4 3\n`);
   }
-  const runs = ['audit a.obj b.obj', 'audit bumps.glb --host all --tolerance 1', 'audit a.obj b.obj c.obj --path catmull-rom',
+  const runs = ['audit a.obj b.obj', 'audit bumps.glb --for all --tolerance 1', 'audit a.obj b.obj c.obj --path catmull-rom',
     'bake a.obj b.obj -o ab.glb', 'bake bumps.glb -o right.glb', 'bake bumps.glb -o exact.glb --encode exact', 'bake a.obj b.obj c.obj --encode keys -o keys.glb',
     'bake right.glb --no-audit -o again.glb', 'compare a.obj b.obj', 'compare twist.npz --certify --no-times', 'compare a.obj b.obj --tolerance 1 --elements corners',
     'compare bumps.glb --blend 2', 'compare a.obj b.obj c.obj --truth 2', 'inspect a.obj b.obj', 'inspect bumps.glb', 'inspect right.glb', 'inspect a.obj'];

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -103,32 +104,114 @@ class ReportFile {
   [[nodiscard]] Point normal(const Json& of, const std::vector<Point>& positions, std::uint32_t element) const {
     const std::vector<std::uint32_t> triangles = numbers<std::uint32_t>(of["triangles"]),
                                      elements = numbers<std::uint32_t>(of["element"]),
-                                     faces = numbers<std::uint32_t>(of["faces"]);
+                                     faces = numbers<std::uint32_t>(of["faces"]),
+                                     backs = numbers<std::uint32_t>(of.value("backs", Json()));
     const std::string weighting = of["weighting"];
     Point result = {};
     for (std::size_t t = 0; 3 * t < triangles.size();) {
       // The polygon of a fan.
+      const std::size_t first = 3 * t;
       std::vector<std::uint32_t> polygon(triangles.begin() + static_cast<std::ptrdiff_t>(3 * t),
                                          triangles.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
       for (++t; !faces.empty() && 3 * t < triangles.size() && faces[t] == faces[t - 1]; ++t)
         polygon.push_back(triangles[3 * t + 2]);
-      if (std::none_of(polygon.begin(), polygon.end(), [&](std::uint32_t v) { return elements[v] == element; }))
-        continue;
-      const auto place = [&](std::size_t i) { return positions[polygon[i % polygon.size()]]; };
-      Point area = {};
-      for (std::size_t i = 2; i < polygon.size(); ++i)
-        area = sum(area, cross(minus(place(i - 1), place(0)), minus(place(i), place(0))));
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        if (elements[polygon[i]] != element) continue;
-        const Point e = minus(place(i + 1), place(i)), f = minus(place(i + polygon.size() - 1), place(i));
-        if (weighting == "area") result = sum(result, area);
-        if (weighting == "uniform") result = sum(result, unit(area));
-        if (weighting == "angle") result = sum(result, unit(area), angle(e, f));
-        if (weighting == "area-angle") result = sum(result, area, angle(e, f));
-        if (weighting == "max") result = sum(result, cross(e, f), 1 / (dot(e, e) * dot(f, f)));
-      }
+      for (std::size_t i = 0; i < polygon.size(); ++i)
+        if (elements[polygon[i]] == element && std::find(backs.begin(), backs.end(), first + i) == backs.end())
+          result = sum(result, term(weighting, positions, polygon, i));
     }
     return result;
+  }
+
+  // What a corner of a polygon adds to a sum.
+  static Point term(const std::string& weighting, const std::vector<Point>& positions,
+                    const std::vector<std::uint32_t>& polygon, std::size_t corner) {
+    const auto place = [&](std::size_t i) { return positions[polygon[i % polygon.size()]]; };
+    Point area = {};
+    for (std::size_t i = 2; i < polygon.size(); ++i)
+      area = sum(area, cross(minus(place(i - 1), place(0)), minus(place(i), place(0))));
+    const Point e = minus(place(corner + 1), place(corner)),
+                f = minus(place(corner + polygon.size() - 1), place(corner));
+    if (weighting == "area") return area;
+    if (weighting == "uniform") return unit(area);
+    if (weighting == "angle") return scaled(unit(area), angle(e, f));
+    if (weighting == "area-angle") return scaled(area, angle(e, f));
+    if (weighting == "max") return scaled(cross(e, f), 1 / (dot(e, e) * dot(f, f)));
+    throw std::logic_error("a weighting of no name");
+  }
+
+  // What the author of a glTF mesh would see of an element, at some positions and weights.
+  [[nodiscard]] Point truth(const Json& of, const std::vector<Point>& positions, const std::vector<double>& weights,
+                            std::uint32_t element) const {
+    const Point triangles = normal(of, positions, element);
+    if (!of.contains("truth")) return triangles;
+    const Json &polygons = of["truth"]["polygons"], &offsets = of["truth"]["offsets"];
+    Point result = polygons.is_null() ? triangles : polygon_sum(of, positions, element);
+    if (!offsets.is_null()) result = with_offset(offsets, positions, weights, element, result);
+    return length(result) > 0 ? result : triangles;
+  }
+
+  [[nodiscard]] Point polygon_sum(const Json& of, const std::vector<Point>& positions, std::uint32_t element) const {
+    const Json& sums = of["truth"];
+    const std::vector<std::uint32_t> first = numbers<std::uint32_t>(sums["polygons"]["first"]),
+                                     corners = numbers<std::uint32_t>(sums["polygons"]["corners"]),
+                                     terms = numbers<std::uint32_t>(sums["terms"]),
+                                     elements = numbers<std::uint32_t>(of["element"]);
+    std::set<std::size_t> counted;  // corners
+    for (std::size_t i = 0; i < terms.size(); i += 2)
+      if (terms[i + 1] == element) counted.insert(terms[i]);
+    for (std::size_t c = 0; sums["terms"].is_null() && c < corners.size(); ++c)
+      if (elements[corners[c]] == element) counted.insert(c);
+    Point result = {};
+    for (const std::size_t c : counted) {
+      const auto end = std::upper_bound(first.begin(), first.end(), c);
+      const std::vector<std::uint32_t> polygon(corners.begin() + *(end - 1), corners.begin() + *end);
+      result = sum(result, term(of["weighting"], positions, polygon, c - *(end - 1)));
+    }
+    return result;
+  }
+
+  // A sum with what the author added to it, as an angle from it and one around it.
+  [[nodiscard]] Point with_offset(const Json& offsets, const std::vector<Point>& positions,
+                                  const std::vector<double>& weights, std::uint32_t element, const Point& n) const {
+    const std::vector<std::uint32_t> elements = numbers<std::uint32_t>(offsets["elements"]),
+                                     first = numbers<std::uint32_t>(offsets["first"]),
+                                     edges = numbers<std::uint32_t>(offsets["edges"]),
+                                     references = numbers<std::uint32_t>(offsets["references"]);
+    const auto found = std::find(elements.begin(), elements.end(), element);
+    if (found == elements.end() || length(n) == 0) return n;
+    const auto number = static_cast<std::size_t>(found - elements.begin());
+    const Point z = scaled(unit(n), static_cast<double>(numbers<float>(offsets["sides"])[number]));
+    double angles = 0, count = 0;
+    Point zero = {};  // the direction of azimuth 0
+    for (std::size_t i = first[number]; i < first[number + 1]; ++i) {
+      const Point edge = minus(positions[edges[2 * i + 1]], positions[edges[2 * i]]);
+      if (length(edge) == 0) continue;
+      angles += angle(edge, z);
+      ++count;
+      if (i == first[number] + references[number]) zero = unit(sum(edge, z, -dot(edge, z)));
+    }
+    if (references[number] == kNone) {
+      const auto without = static_cast<std::size_t>(
+          std::count(references.begin(), references.begin() + static_cast<std::ptrdiff_t>(number), kNone));
+      const std::vector<double> turns = numbers<double>(offsets["turned"]);
+      const double* const base = turns.data() + 6 * without;
+      zero = turned({base[0], base[1], base[2]}, z, {base[3], base[4], base[5]});
+    }
+    const std::vector<float> base = numbers<float>(offsets["base"]);
+    double x = base[2 * number], y = base[2 * number + 1];
+    for (std::size_t k = 0; k < offsets["targets"].size(); ++k) {
+      const std::vector<std::uint32_t> indices = numbers<std::uint32_t>(offsets["targets"][k]["indices"]);
+      const std::vector<float> changes = numbers<float>(offsets["targets"][k]["changes"]);
+      for (std::size_t i = 0; i < indices.size(); ++i) {
+        if (indices[i] != number) continue;
+        x += weights[k] * static_cast<double>(changes[2 * i]);
+        y += weights[k] * static_cast<double>(changes[2 * i + 1]);
+      }
+    }
+    const double alpha = std::min(std::hypot(x, y) * (angles > 0 ? angles / count : 1), std::numbers::pi / 2);
+    if (length(zero) == 0) return scaled(z, length(n));
+    const Point direction = turned(z, std::atan2(y, x), zero);
+    return scaled(turned(unit(cross(z, direction)), alpha, z), length(n));
   }
 
   static std::vector<Point> points(const std::vector<float>& values) {
@@ -157,6 +240,7 @@ class ReportFile {
       for (std::size_t i = 0; 3 * i < values.size(); ++i)
         use(vectors["indices"].is_null() ? i : std::size_t{indices[i]}, at(values, i));
     };
+    const std::vector<double> none(targets.size());
     for (std::size_t k = 0; k < targets.size(); ++k) {
       const double w = weights[k];
       each(targets[k], "positions", [&](std::size_t v, const Point& delta) { now[v] = sum(now[v], delta, w); });
@@ -166,7 +250,7 @@ class ReportFile {
     }
     const std::uint32_t element = numbers<std::uint32_t>(of["element"])[vertex];
     if (element == kNone) throw std::logic_error("the vertex has no right normal");
-    Point from = unit(normal(of, base, element)), right = unit(normal(of, now, element));
+    Point from = unit(truth(of, base, none, element)), right = unit(truth(of, now, weights, element));
     const Point stored = unit(at(numbers<float>(of["normals"]), vertex));
     if (dot(from, stored) < 0) {
       from = scaled(from, -1);

@@ -1,5 +1,6 @@
 // Right normals from positions: the cross products of faces, added up over those who share a normal (docs/theory.md, sections 1,
-// 8 and 9). Everything is double, and nothing is allocated in a step.
+// 8 and 9), and what the author of a file shows beyond that (docs/report-data.md). Everything is double, and nothing is allocated
+// in a step.
 
 /** No element: a vertex of a flat primitive, or one without a face. */
 export const NONE = 0xffffffff;
@@ -49,8 +50,9 @@ function addAreas({ triangles }, slots, p, normals, sizes) {
   }
 }
 
-// The same by another weighting, and of polygons. slots has the element of each corner.
-function addWeighted({ offsets, corners }, slots, weighting, p, normals, sizes) {
+// The same by another weighting, and of polygons. slots has the element of each corner, or starts where those of each corner begin
+// in slots.
+function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, normals, sizes) {
   const weightOf = WEIGHTS[weighting];
   for (let f = 0; f + 1 < offsets.length; ++f) {
     const first = offsets[f], end = offsets[f + 1], o = 3 * corners[first];
@@ -78,39 +80,127 @@ function addWeighted({ offsets, corners }, slots, weighting, p, normals, sizes) 
       } else {
         weight = weightOf(area, ex * fx + ey * fy + ez * fz, Math.sqrt(cx * cx + cy * cy + cz * cz));
       }
-      const e = slots[i], at = 3 * e;
       tx *= weight;
       ty *= weight;
       tz *= weight;
-      normals[at] += tx;
-      normals[at + 1] += ty;
-      normals[at + 2] += tz;
-      sizes[e] += Math.max(Math.abs(tx), Math.abs(ty), Math.abs(tz));
+      const size = Math.max(Math.abs(tx), Math.abs(ty), Math.abs(tz));
+      for (let s = starts ? starts[i] : i, last = starts ? starts[i + 1] : i + 1; s < last; ++s) {
+        const e = slots[s], at = 3 * e;
+        normals[at] += tx;
+        normals[at + 1] += ty;
+        normals[at + 2] += tz;
+        sizes[e] += size;
+      }
     }
   }
 }
 
+// Which elements add up each corner: those that pairs of a corner and an element name, or else those of its vertex.
+function elementsOfCorners({ element, elements, triangles, backs }, corners, terms) {
+  if (!terms) {
+    const slots = Uint32Array.from(corners, (v) => (element[v] === NONE ? elements : element[v]));
+    if (corners === triangles && backs) for (const corner of backs) slots[corner] = elements;
+    return { slots };
+  }
+  const starts = new Uint32Array(corners.length + 1);
+  for (let i = 0; i < terms.length; i += 2) ++starts[terms[i] + 1];
+  for (let i = 0; i < corners.length; ++i) starts[i + 1] += starts[i];
+  return { starts, slots: Uint32Array.from({ length: terms.length / 2 }, (_, i) => terms[2 * i + 1]) };
+}
+
 /**
- * How the right normals of a part are computed.
+ * How sums of face normals are computed.
  * @param part of a report
+ * @param sums its `truth`, where what that adds up is wanted, and not the triangles
  * @returns {(positions: Float64Array, normals: Float64Array, sizes: Float64Array) => void} writes n of each element, of any
  *   length, and the size of what it was added up from; both arrays have one more element, for corners without any
  */
-export function normalsOf(part) {
-  const { triangles, faces, element, elements, weighting } = part;
-  const polygons = faces ? cornersOfFaces(triangles, faces) : undefined;
-  const corners = polygons?.corners ?? triangles;
-  const slots = Uint32Array.from(corners, (v) => (element[v] === NONE ? elements : element[v]));
+export function normalsOf(part, { polygons: given, terms } = {}) {
+  const { triangles, faces, elements, weighting } = part;
+  const polygons = given ? { offsets: given.first, corners: given.corners } : faces ? cornersOfFaces(triangles, faces) : undefined;
+  const corners = polygons?.corners ?? triangles, counted = elementsOfCorners(part, corners, terms);
   const simple = weighting === 'area' && !polygons;
   const { offsets } = polygons ?? { offsets: simple ? undefined : Uint32Array.from({ length: triangles.length / 3 + 1 }, (_, t) => 3 * t) };
   return (positions, normals, sizes) => {
     normals.fill(0);
     sizes.fill(0);
-    if (simple) addAreas(part, slots, positions, normals, sizes);
-    else addWeighted({ offsets, corners }, slots, weighting, positions, normals, sizes);
+    if (simple) addAreas(part, counted.slots, positions, normals, sizes);
+    else addWeighted({ offsets, corners }, counted, weighting, positions, normals, sizes);
     for (let e = 0, at = 0; e < elements; ++e, at += 3) {
       const most = Math.max(Math.abs(normals[at]), Math.abs(normals[at + 1]), Math.abs(normals[at + 2]));
       if (!(most > ROUNDING * sizes[e])) normals[at] = normals[at + 1] = normals[at + 2] = 0;
+    }
+  };
+}
+
+// Turns the sums of some elements as their author did, whose additions the surface carries along.
+function offsetsOf({ elements, sides, first, edges, references, turned, base, targets }) {
+  const now = new Float64Array(base.length);
+  return (p, weights, normals) => {
+    copy(base, now);
+    for (let k = 0; k < targets.length; ++k) {
+      const { indices, changes } = targets[k], w = weights[k];
+      for (let i = 0; w !== 0 && i < indices.length; ++i) {
+        now[2 * indices[i]] += w * changes[2 * i];
+        now[2 * indices[i] + 1] += w * changes[2 * i + 1];
+      }
+    }
+    for (let f = 0, t = -6; f < elements.length; ++f) {
+      const at = 3 * elements[f], isTurned = references[f] === NONE;
+      if (isTurned) t += 6;
+      const size = Math.sqrt(normals[at] ** 2 + normals[at + 1] ** 2 + normals[at + 2] ** 2), scale = sides[f] / size;
+      if (size === 0) continue;
+      const zx = scale * normals[at], zy = scale * normals[at + 1], zz = scale * normals[at + 2];
+      // The mean angle of the edges to z, and the direction in which the reference leaves.
+      let angles = 0, count = 0, xx = 0, xy = 0, xz = 0;
+      for (let i = first[f]; i < first[f + 1]; ++i) {
+        const a = 3 * edges[2 * i], b = 3 * edges[2 * i + 1], ex = p[b] - p[a], ey = p[b + 1] - p[a + 1], ez = p[b + 2] - p[a + 2];
+        const along = ex * zx + ey * zy + ez * zz, cx = ey * zz - ez * zy, cy = ez * zx - ex * zz, cz = ex * zy - ey * zx;
+        if (ex === 0 && ey === 0 && ez === 0) continue;
+        angles += Math.atan2(Math.sqrt(cx * cx + cy * cy + cz * cz), along);
+        ++count;
+        if (i - first[f] === references[f]) {
+          xx = ex - along * zx;
+          xy = ey - along * zy;
+          xz = ez - along * zz;
+        }
+      }
+      if (isTurned) {
+        // The smallest rotation from z of the base; where the two are opposite, half a turn about something across.
+        const bx = turned[t], by = turned[t + 1], bz = turned[t + 2], ux = turned[t + 3], uy = turned[t + 4], uz = turned[t + 5];
+        const sx = by * zz - bz * zy, sy = bz * zx - bx * zz, sz = bx * zy - by * zx, cosine = bx * zx + by * zy + bz * zz;
+        const along = cosine > -1 + 1e-12 ? (sx * ux + sy * uy + sz * uz) / (1 + cosine) : 0;
+        xx = cosine * ux + sy * uz - sz * uy + along * sx;
+        xy = cosine * uy + sz * ux - sx * uz + along * sy;
+        xz = cosine * uz + sx * uy - sy * ux + along * sz;
+      }
+      const length = Math.sqrt(xx * xx + xy * xy + xz * xz), ox = now[2 * f], oy = now[2 * f + 1], offset = Math.sqrt(ox * ox + oy * oy);
+      const alpha = length > 0 ? Math.min(offset * (angles > 0 ? angles / count : 1), Math.PI / 2) : 0;
+      const cosine = size * Math.cos(alpha), sine = offset > 0 && length > 0 ? (size * Math.sin(alpha)) / (offset * length) : 0;
+      normals[at] = cosine * zx + sine * (ox * xx + oy * (zy * xz - zz * xy));
+      normals[at + 1] = cosine * zy + sine * (ox * xy + oy * (zz * xx - zx * xz));
+      normals[at + 2] = cosine * zz + sine * (ox * xz + oy * (zx * xy - zy * xx));
+    }
+  };
+}
+
+/**
+ * How the truth of a part that has `truth` is computed: what its author would see.
+ * @param part of a report, of a glTF file
+ * @returns {(positions: Float64Array, weights: ArrayLike<number>, normals: Float64Array, right: Float64Array) => void} writes the
+ *   truth of each element from what normalsOf(part) computed; where there is none, that itself
+ */
+export function truthOf(part) {
+  const { truth, elements } = part;
+  const addUp = truth.polygons ? normalsOf(part, truth) : undefined, sizes = new Float64Array(elements + 1);
+  const addOffsets = truth.offsets ? offsetsOf(truth.offsets) : undefined;
+  return (positions, weights, normals, right) => {
+    if (addUp) addUp(positions, right, sizes);
+    else copy(normals, right);
+    addOffsets?.(positions, weights, right);
+    for (let at = 0; at < right.length; at += 3) {
+      if (right[at] !== 0 || right[at + 1] !== 0 || right[at + 2] !== 0) continue;
+      for (let c = at; c < at + 3; ++c) right[c] = normals[c];
     }
   };
 }

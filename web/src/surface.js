@@ -1,6 +1,6 @@
 // A mesh with morph targets at given weights: where its vertices are, what a host shows, what it should show, and the angle
 // between the two (docs/hosts.md). All arrays are made once; a step fills them.
-import { NONE, copy, degreesBetween, normalsOf } from './geometry.js';
+import { NONE, copy, degreesBetween, normalsOf, truthOf } from './geometry.js';
 
 // The largest float32: what is beyond cannot be lit.
 const MOST = 3.4028234663852886e38;
@@ -55,7 +55,7 @@ function half(value) {
   return Math.sign(value) * Math.floor(Math.abs(value) / step + 0.5) * step;
 }
 
-// The smallest rotation from n(0) to the stored normal, per vertex: its axis, as long as the sine, and its cosine. Where the two
+// The smallest rotation from the right normal of the base to the stored normal, per vertex: its axis, as long as the sine, and its cosine. Where the two
 // look to opposite sides, both are those of the other side, which the sign of the cosine says.
 function turnsOf({ element, normals }, base) {
   const turns = new Float64Array(4 * element.length);
@@ -73,14 +73,22 @@ function turnsOf({ element, normals }, base) {
   return turns;
 }
 
-// Whether a vertex is judged: it shares its normal with a face that some target moves, or some target turns it.
-function judgedVertices({ vertices, triangles, element, elements }, moved, shown) {
+// Whether a vertex is judged: its right normal looks at something that some target moves, or some target turns that or the vertex.
+function judgedVertices({ vertices, triangles, element, elements, truth }, moved, shown) {
   const has = ({ offsets }, v) => offsets[v] < offsets[v + 1];
   const elementMoves = new Uint8Array(elements), judged = new Uint8Array(vertices);
   for (let t = 0; t < triangles.length; t += 3) {
     if (!has(moved, triangles[t]) && !has(moved, triangles[t + 1]) && !has(moved, triangles[t + 2])) continue;
     for (let i = t; i < t + 3; ++i) if (element[triangles[i]] !== NONE) elementMoves[element[triangles[i]]] = 1;
   }
+  if (truth?.polygons) {
+    const { first, corners } = truth.polygons, moves = new Uint8Array(corners.length);
+    for (let f = 0; f + 1 < first.length; ++f) if (corners.subarray(first[f], first[f + 1]).some((v) => has(moved, v))) moves.fill(1, first[f], first[f + 1]);
+    const move = (c, e) => moves[c] === 1 && e !== NONE && (elementMoves[e] = 1);
+    if (truth.terms) for (let i = 0; i < truth.terms.length; i += 2) move(truth.terms[i], truth.terms[i + 1]);
+    else corners.forEach((v, c) => move(c, element[v]));
+  }
+  for (const { indices } of truth?.offsets?.targets ?? []) for (const f of indices) elementMoves[truth.offsets.elements[f]] = 1;
   for (let v = 0; v < vertices; ++v) {
     judged[v] = element[v] !== NONE && (elementMoves[element[v]] === 1 || shown.some(({ targets }) => has(targets, v))) ? 1 : 0;
   }
@@ -110,12 +118,14 @@ export function makeSurface(part) {
   const moved = byVertex(part.targets, 'positions', V);
   const shownBy = part.shown.map((entry) => ({ ...entry, targets: byVertex(entry.targets, 'deltas', V) }));
   const judged = judgedVertices(part, moved, shownBy);
-  const computeNormals = normalsOf(part);
+  const computeNormals = normalsOf(part), computeTruth = part.truth ? truthOf(part) : undefined;
   const p = new Float64Array(3 * V), sums = new Float64Array(3 * V), kept = new Float64Array(part.targets.length);
-  const n = new Float64Array(3 * E + 3), sizes = new Float64Array(E + 1);
+  // Sums over triangles say whether an element has a normal, and the truth says which.
+  const n = new Float64Array(3 * E + 3), r = computeTruth ? new Float64Array(3 * E + 3) : n, sizes = new Float64Array(E + 1);
   p.set(part.positions);
   computeNormals(p, n, sizes);
-  const turns = turnsOf(part, n);
+  computeTruth?.(p, kept, n, r);
+  const turns = turnsOf(part, r);
   const surface = {
     positions: Float32Array.from(part.positions),
     shown: new Float32Array(3 * V),
@@ -147,8 +157,9 @@ export function makeSurface(part) {
         degrees[v] = -1;
         continue;
       }
-      const x = n[3 * e], y = n[3 * e + 1], z = n[3 * e + 2], size = Math.sqrt(x * x + y * y + z * z);
-      const by = size > 0 ? 1 / size : 0, ux = x * by, uy = y * by, uz = z * by;
+      const size = Math.sqrt(n[3 * e] ** 2 + n[3 * e + 1] ** 2 + n[3 * e + 2] ** 2);
+      const x = r[3 * e], y = r[3 * e + 1], z = r[3 * e + 2], by = 1 / (Math.sqrt(x * x + y * y + z * z) || 1);
+      const ux = x * by, uy = y * by, uz = z * by;
       const ax = turns[4 * v], ay = turns[4 * v + 1], az = turns[4 * v + 2], signed = turns[4 * v + 3];
       const cosine = Math.abs(signed), side = signed < 0 ? -1 : 1, along = (ax * ux + ay * uy + az * uz) / (1 + cosine);
       const rx = side * (cosine * ux + ay * uz - az * uy + along * ax);
@@ -171,6 +182,7 @@ export function makeSurface(part) {
     addUp(part.positions, moved, weights, p);
     copy(p, surface.positions);
     computeNormals(p, n, sizes);
+    computeTruth?.(p, weights, n, r);
     for (let k = 0; k < kept.length; ++k) kept[k] = Math.abs(shownWeights[k]) <= entry.least_weight ? 0 : shownWeights[k];
     addUp(entry.halves ? null : entry.normals, entry.targets, kept, sums);
     judge(entry, least);

@@ -186,11 +186,13 @@ export function makeViewer(root, report) {
 }
 
 function aboutOf(report) {
-  const { audit } = report, lines = [];
+  const lines = [];
   const vertices = report.parts.reduce((sum, part) => sum + part.vertices, 0), triangles = report.parts.reduce((sum, part) => sum + part.triangles.length / 3, 0);
   lines.push(`${vertices.toLocaleString('en')} vertices and ${triangles.toLocaleString('en')} triangles are drawn here.`);
-  const weighting = audit?.weighting === 'area' ? 'the area of faces' : audit?.weighting;
-  if (weighting) lines.push(`Right normals are the exact ones, weighted by ${weighting}; what the author turned at rest is kept.`);
+  const names = { area: 'the area of faces', angle: 'the angle of corners', 'area-angle': 'area times angle' };
+  const weightings = [...new Set(report.parts.map(({ weighting }) => names[weighting] ?? weighting))].join(', or ');
+  const kept = report.parts.some(({ truth }) => truth) ? 'Polygons and bent normals of the author are kept' : 'What the author turned at rest is kept';
+  if (weightings) lines.push(`Right normals are the exact ones, weighted by ${weightings}. ${kept}.`);
   lines.push(`Numbers are those of ${report.program}; nothing was loaded, and nothing is sent.`);
   return panel('About', false, lines.map((line) => h('p', { className: 'note' }, line)));
 }

@@ -103,6 +103,19 @@ std::string group_words(const Audited& input, const Group& group) {
                              degrees(alone))
                  : formatted("{}: each target alone is right, together they are off by up to {} degrees", who, worst);
     }
+    case Kind::kWrongPose:
+      return found.node ? formatted("{}: the pose in which the file opens is off by up to {} degrees",
+                                    of_mesh(input, found), worst)
+                        : formatted("{}: the poses are off by up to {} degrees", of_mesh(input, found), worst);
+    case Kind::kStaleKeys:
+      return formatted(
+          "{}: the stored normals do not turn as the surface does ({}), so that the rule of the base counts there", who,
+          counted(group.count, "vertex", "vertices"));
+    case Kind::kUnknownRule:
+      return formatted(
+          "{}: its normals follow no rule that is known, so that areas weigh its faces; other rules differ by {} "
+          "degrees in the median",
+          of_mesh(input, found), degrees(found.degrees));
     case Kind::kStaleTangents:
       return formatted("{}: {} up to {} degrees from perpendicular to the right normal", who,
                        counted(group.count, "tangent is", "tangents are"), worst);

@@ -165,8 +165,9 @@ std::string histogram(const MotionError& error) {
 std::string offset_line(const Audited& input, const AuthoredOffset& offset) {
   const std::string mesh = offset.mesh ? mesh_label(*input.document(), *offset.mesh) : "keyframe 0";
   const std::string_view weighting = weighting_name(offset.weighting);
-  std::string text = formatted("  {}: mean {}, worst {} degrees from {}-weighted normals", mesh, degrees(offset.mean()),
-                               degrees(offset.worst), weighting);
+  std::string text =
+      formatted("  {}: mean {}, worst {} degrees from {}-weighted normals{}", mesh, degrees(offset.mean()),
+                degrees(offset.worst), weighting, offset.of_polygons ? " of polygons" : "");
   if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
   if (offset.is_detected && offset.weighting != Weighting::kArea)
     text += formatted(", which they follow; by area the mean would be {}", degrees(offset.area_mean));

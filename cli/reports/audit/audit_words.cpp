@@ -63,11 +63,17 @@ std::string subject_words(const Audited& input, const AuditSubject& subject) {
   if (subject.kind == AuditSubject::Kind::kExpression)
     return expression_words(input, *subject.mesh, *subject.expression) + " of " +
            mesh_label(*input.document(), *subject.mesh);
+  if (subject.kind == AuditSubject::Kind::kOpening)
+    return mesh_label(*input.document(), *subject.mesh) + " as the file opens" +
+           (subject.node ? " (" + node_words(input, *subject.node) + ")" : "");
+  if (subject.kind == AuditSubject::Kind::kPoses)
+    return counted(subject.segments, "pose", "poses") + " of " + mesh_label(*input.document(), *subject.mesh);
   const std::string target = target_words(input, subject.mesh, *subject.target);
   return subject.mesh ? target + " of " + mesh_label(*input.document(), *subject.mesh) : target;
 }
 
 std::string moment_words(const AuditSubject& subject, double at) {
+  if (subject.kind == AuditSubject::Kind::kPoses) return formatted("pose {:.0f}", at);
   return subject.is_weighed() ? formatted("weight {:.4g}", at) : formatted("{:.6g} s", at);
 }
 
@@ -75,6 +81,9 @@ std::string place_words(const Audited& input, const AuditSubject& subject, const
   std::string motion = subject_words(input, subject);
   if (subject.target && subject.mesh) motion = target_words(input, subject.mesh, *subject.target);
   if (subject.expression) motion = expression_words(input, *subject.mesh, *subject.expression);
+  if (subject.kind == AuditSubject::Kind::kOpening) return vertex_words(input, place) + ", as the file opens";
+  if (subject.kind == AuditSubject::Kind::kPoses)
+    return vertex_words(input, place) + ", " + moment_words(subject, place.at);
   return formatted("{}, {} at {}", vertex_words(input, place), motion, moment_words(subject, place.at));
 }
 

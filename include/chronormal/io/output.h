@@ -57,6 +57,7 @@ void remove_temporaries() noexcept;
 ///
 /// Precondition: every keyframe has 3 x vertex_count coordinates, or the format is one of the first three.
 /// expansion is that of the file that the motion came from, if any: a file for each keyframe repeats all faces.
+/// Targets in a .glb get base normals, to which vertices at one point throughout add alike unless `weld` is false.
 /// A stream is written as its keyframes are read; errors of the stream are returned, too.
 /// Errors: those of expansion.check(); kUsage with path as the place for another extension, a pattern of another form,
 /// and a motion that the format does not hold: targets in a point cache, faces of different numbers of corners in .npz.
@@ -64,8 +65,8 @@ void remove_temporaries() noexcept;
 [[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force);
 [[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force,
                                   const Expansion& expansion);
-[[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force,
-                                  const Expansion& expansion);
+[[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion,
+                                  bool weld = true);
 
 }  // namespace chronormal
 

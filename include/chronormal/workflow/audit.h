@@ -15,7 +15,7 @@
 ///
 /// Samples    t = i / (samples - 1) of each segment: a target from weight 0 to 1, or the time between two keys of an
 ///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as the file says. Expressions
-///            of an avatar are poses, as a bake counts them: one sample each, at full strength.
+///            of an avatar, the poses in which a file opens, and those that are asked for stand still: one sample each.
 /// Judged     pairs of a vertex and a sample, for vertices that move: a face around them does, or their stored normal.
 /// Unlit      a shown normal that is zero, infinite or NaN cannot be lit: such a pair is off by 180 degrees, the most
 ///            that there is, and is counted.
@@ -43,6 +43,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/input.h"
+#include "chronormal/io/poses_file.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/paths.h"
@@ -72,6 +73,8 @@ enum class AuditRule {
 /// Errors below this are no fault of a file: normals are stored in 8 bits, too.
 inline constexpr double kAuditFault = 1;  // degrees
 
+inline constexpr std::size_t kRandomPoses = 200;  ///< of a mesh, where poses are asked for and none are given
+
 inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< of a segment
 
 struct AuditOptions {
@@ -81,10 +84,19 @@ struct AuditOptions {
   /// Of the right normals: that of the program which the file comes from. Nothing: of each mesh, and of a sequence, the
   /// one that its stored base normals follow clearly, or else area.
   std::optional<Weighting> weighting = {};
+  /// glTF: the document that this one was baked from, whose normals are its author's; it must have the same meshes.
+  /// Nothing: those of this one are.
+  const GltfDocument* author = nullptr;
+  /// glTF: the weights between which each target is judged alone; the first is below the second, and both are finite.
+  std::array<double, 2> weights = {0, 1};
+  /// glTF: poses that are judged, too, of the meshes of which they name a target, or which have their number of targets.
+  /// Without any, but with is_posed, kRandomPoses of each mesh that a program may set (docs/cli.md).
+  bool is_posed = false;
+  std::vector<RigPose> poses = {};
   std::vector<Host> hosts = {};       ///< glTF, by the rule gltf: these are judged too
   PathKind path = PathKind::kLinear;  ///< sequences: how vertices move between keyframes, as normals/paths.h has it
   bool skins = true;                  ///< glTF: judges meshes in nodes with a skin as they are seen through it
-  bool weld = true;                   ///< sequences: vertices at one point in all keyframes are one
+  bool weld = true;                   ///< vertices at one point throughout are one
   bool keep_errors = false;           ///< every single one, in Audit::errors
   /// For sequences: judges this share of the segments only, and keeps the errors of each of them in
   /// Audit::measured. Every shard finds out for itself what follows from the whole motion (which vertices move, how
@@ -104,14 +116,15 @@ struct AuditOptions {
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// One motion: a target from weight 0 to 1, the weight track of a node, a sequence, or an expression of an avatar.
+/// One motion: a target from weight 0 to 1, the weight track of a node, a sequence, an expression of an avatar, the
+/// weights with which a file opens, or poses that were asked for, which are samples of one subject.
 struct AuditSubject {
-  enum class Kind { kTarget, kTrack, kSequence, kExpression };
+  enum class Kind { kTarget, kTrack, kSequence, kExpression, kOpening, kPoses };
 
   Kind kind = Kind::kTarget;
   std::string name;                                   ///< of the target, animation or expression; may be empty
   std::optional<std::size_t> mesh, target;            ///< of a glTF file; target: of --base too
-  std::optional<std::size_t> animation, track, node;  ///< of a track
+  std::optional<std::size_t> animation, track, node;  ///< of a track; node: the first that opens so, too
   std::optional<std::size_t> expression;              ///< among those of the mesh
   Weighting weighting = Weighting::kArea;             ///< of its right normals
   std::vector<std::size_t> driven;                    ///< the targets that a track gives other weights than 0
@@ -122,8 +135,15 @@ struct AuditSubject {
   std::optional<SkinningError> skinning = {};  ///< where it was judged through a skin
 
   /// Whether it is found by a weight, and not by a time.
-  [[nodiscard]] bool is_weighed() const noexcept { return kind == Kind::kTarget || kind == Kind::kExpression; }
+  [[nodiscard]] bool is_weighed() const noexcept {
+    return kind == Kind::kTarget || kind == Kind::kExpression || kind == Kind::kOpening;
+  }
 };
+
+/// "target", "track", "sequence", "expression", "opening" or "poses".
+[[nodiscard]] const char* audit_subject_name(AuditSubject::Kind kind) noexcept;
+/// What a sample of a subject is found by: "weight", "time" or, of poses, its number: "pose".
+[[nodiscard]] const char* audit_moment_name(AuditSubject::Kind kind) noexcept;
 
 /// How far stored base normals are from the geometry.
 struct AuthoredOffset {
@@ -133,7 +153,8 @@ struct AuthoredOffset {
   std::size_t vertices = 0;                ///< that have both
   double sum = 0, worst = 0;
   AuditPlace worst_at;
-  double area_mean = 0;  ///< the same by area
+  double area_mean = 0;      ///< the same by area
+  bool of_polygons = false;  ///< the right normals are weighed by polygons, of which the file has the triangles
   /// The weighting that comes closest to the stored normals in the mean, and how close.
   Weighting closest = Weighting::kArea;
   double closest_mean = 0, closest_worst = 0;
@@ -148,7 +169,10 @@ struct AuditFinding {
     kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1, or at keyframes
     kWrongBetween,    ///< right there, and off on the way
     kWrongTogether,   ///< off where an animation or expression has several targets, by more than each of them alone
+    kWrongPose,       ///< the pose in which a file opens, or one that was asked for, is off
     kStaleTangents,   ///< tangents that are not perpendicular to the right normal at weight 1, as they were in the base
+    kStaleKeys,       ///< a note: stored normals of a target tell nothing of the author's, of `count` vertices
+    kUnknownRule,     ///< a note: base normals follow no rule; degrees is how far rules are from each other
     kFlat,            ///< a note: primitives without normals, which hosts shade flat and right
     kSkinned,         ///< a note: nodes with a skin, through which normals are judged; degrees is what skinning turns
     kUnreadSkin,      ///< a note: nodes with a skin that cannot be read, so that normals are judged without it
@@ -166,7 +190,7 @@ struct AuditFinding {
   std::optional<Host> host;            ///< that it is about; nothing: all
 
   /// Normals may be missing where the motion does not turn them.
-  [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kFlat && degrees > kAuditFault; }
+  [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kStaleKeys && degrees > kAuditFault; }
 };
 
 /// What one host shows of a file. What it should show is n(w) at the weights that it plays.
@@ -224,12 +248,14 @@ struct Audit {
 /// The errors of the subjects of one mesh, added up; none where it has no subject.
 [[nodiscard]] MotionError error_of_mesh(const Audit& audit, std::size_t mesh);
 
-/// Audits the targets of all meshes, each alone, the expressions of an avatar, and all weight tracks. Extra targets of a
-/// bake are no subjects: with each target alone, and in expressions, they get the weights that follow (docs/extras.md),
-/// and a track gives them what the file says. A file in which nothing moves has no subjects.
+/// Audits the targets of all meshes, each alone, the expressions of an avatar, the poses in which the file opens (where
+/// a mesh or a node gives targets weights), and all weight tracks. Extra targets of a bake are no subjects: with each
+/// target alone, in expressions and in poses that are asked for, they get the weights that follow (docs/extras.md); a
+/// track, and the pose in which the file opens, give them what the file says. A file in which nothing moves has no
+/// subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
-/// animation that is not there, curved paths, hosts with another rule than gltf, fewer than 2 samples, and errors to
-/// keep that take more than kMostErrorBytes.
+/// animation that is not there, curved paths, hosts with another rule than gltf, fewer than 2 samples, weights that are
+/// not ascending, and errors to keep that take more than kMostErrorBytes; kInvalidInput for poses that fit no mesh.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject

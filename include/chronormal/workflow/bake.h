@@ -49,13 +49,15 @@ struct BakeOptions {
   /// The deltas must be right in these hosts, and the report says what each of them shows.
   std::vector<Host> hosts = {kHosts.begin(), kHosts.end()};
   /// Others than area are fitted, with a stated error. Nothing: for each mesh the one that its stored base normals
-  /// follow clearly (as audit has it), or else area; area where normals are made anew: of sequences, recompute_base.
+  /// follow clearly (as audit has it), or else area; area where normals are made anew, by recompute_base.
   std::optional<Weighting> weighting = {};
   bool smooth = false;        ///< primitives without NORMAL get normals, instead of staying flat
   double crease_angle = 180;  ///< degrees: hard edges of those, and of sequences
-  /// Of sequences: normals of keyframe 0, one for each corner, which say which edges are hard in place of the crease
-  /// angle; or empty.
+  /// Of sequences: normals of keyframe 0, one for each corner, or empty. They say which edges are hard in place of the
+  /// crease angle and, unless one is asked for, which weighting the right normals have. What they add to those is kept
+  /// throughout. (keys and curved paths take hard edges alone.)
   VectorView<const float> normal_of_corner = {};
+  bool weld = true;  ///< vertices at one point throughout are one, but for hard edges and the two sides of a sheet
   bool recompute_base = false;  ///< replace the base normals by those of the geometry; hard edges stay
   bool dense_zeros = false;     ///< write zeros as bytes: for readers that need every accessor to have some
   std::optional<std::size_t> most_bytes = {};    ///< refuse to add more than this
@@ -193,9 +195,11 @@ struct GltfBake {
 
 struct SequenceBake {
   std::size_t keyframes = 0, vertices = 0, targets = 0, extra_targets = 0;
-  std::size_t bytes = 0;              ///< of the file
-  double largest_error = 0;           ///< degrees, of endpoint and harmless; of a weighting that is fitted
-  std::size_t without_normals = 0;    ///< elements that have no area in the whole motion
+  std::size_t bytes = 0;                   ///< of the file
+  double largest_error = 0;                ///< degrees, of endpoint and harmless; of a weighting that is fitted
+  std::size_t without_normals = 0;         ///< elements that have no area in the whole motion
+  Weighting weighting = Weighting::kArea;  ///< of the right normals: that of the stored ones, or area
+  bool has_offsets = false;  ///< stored normals of keyframe 0 differ from those by rotations, which are kept throughout
   PathKind path = PathKind::kLinear;  ///< on which the vertices move
   double bend = 0;                    ///< of a curved path: bend_of(), to hold against kTooSparse
   std::vector<std::string> warnings;

@@ -113,7 +113,7 @@ Status write_motion(const Motion& motion, const std::string& path, bool force, c
   return write_motion(stream, path, force, expansion);
 }
 
-Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion) {
+Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion, bool weld) {
   const Motion& motion = stream.motion();
   const Format* const format = find_format(path);
   if (format != nullptr && format->write_mesh != nullptr)
@@ -123,7 +123,7 @@ Status write_motion(MotionStream& stream, const std::string& path, bool force, c
       return Error{ErrorCode::kUsage, path, "convert writes targets as .glb; bake writes glTF, with the normals"};
     if (Status status = check_output(path, force); !status) return status;
     if (Status status = stream.hold_all(); !status) return status;
-    const Result<std::string> glb = write_glb_targets(motion);
+    const Result<std::string> glb = write_glb_targets(motion, weld);
     if (!glb) return Error{glb.error().code, path, glb.error().message};
     return write_output(path, glb.value(), force);
   }

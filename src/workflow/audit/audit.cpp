@@ -72,6 +72,16 @@ Result<Audit> merge(std::vector<Audit> shards) {
   return all;
 }
 
+const char* audit_subject_name(AuditSubject::Kind kind) noexcept {
+  constexpr std::array<const char*, 6> kNames = {"target", "track", "sequence", "expression", "opening", "poses"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+const char* audit_moment_name(AuditSubject::Kind kind) noexcept {
+  if (kind == AuditSubject::Kind::kPoses) return "pose";
+  return kind == AuditSubject::Kind::kTrack || kind == AuditSubject::Kind::kSequence ? "time" : "weight";
+}
+
 std::string_view audit_rule_name(AuditRule rule) noexcept { return kRules[static_cast<std::size_t>(rule)]; }
 
 Result<AuditRule> make_audit_rule(std::string_view name) {

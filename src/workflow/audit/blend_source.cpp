@@ -24,10 +24,11 @@ AuditPlace place_of(const GltfShading& shading, std::size_t vertex) {
   return {part.mesh, part.primitive, vertex - part.first_vertex, 0, 0};
 }
 
-BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule,
+BlendSource::BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
                          std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
                          MeshSkin* skin)
     : shading_(shading),
+      truth_(truth),
       part_(part),
       rule_(rule),
       involved_(std::move(involved)),
@@ -41,6 +42,13 @@ BlendSource::BlendSource(const GltfShading& shading, const JudgedPart& part, Aud
   place_base(positions);
   PartNormals normals;
   part.normals(positions, normals);
+  if (!truth.is_plain()) {
+    number_of_vertex_.resize(shading.element_of_vertex.size());
+    for (std::uint32_t i = 0; i < part.vertices().size(); ++i) number_of_vertex_[part.vertices()[i]] = i;
+    const std::vector<Vec3d> of_base = truths(positions, std::vector<double>(involved_.size()));
+    for (std::size_t e = 0; e < of_base.size(); ++e)
+      if (of_base[e] != Vec3d{}) normals.elements[e] = of_base[e];
+  }
   turns_.resize(part.outputs().size());
   parallel_each(turns_.size(), kBlock, [&](std::size_t i) {
     const JudgedOutput& output = part.outputs()[i];
@@ -57,6 +65,7 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   const bool turns = skin_ != nullptr && skin_->pose(moment_(segment, t), t == 1);
   const bool same = known_ && !turns && now == now_ && (rule_ == AuditRule::kGltf || start_ == end_);
   known_ = true;
+  positions_ = positions;
   segment_ = segment;
   t_ = t;
   if (same) return false;
@@ -109,7 +118,22 @@ bool BlendSource::is_between_ends(double t) const {
   return true;
 }
 
+std::vector<Vec3d> BlendSource::truths(std::span<const Vec3d> positions, std::span<const double> weights) const {
+  std::vector<Vec3d> result;
+  if (truth_.is_plain()) return result;
+  std::vector<double> all(shading_.set.targets.size());
+  for (std::size_t i = 0; i < involved_.size(); ++i) all[involved_[i]] = weights[i];
+  const AuthorTruth::Pose pose = truth_.pose(all);
+  result.resize(part_.elements().size());
+  parallel_each(result.size(), kBlock, [&](std::size_t e) {
+    const auto position = [&](std::uint32_t v) { return positions[number_of_vertex_[v]]; };
+    result[e] = truth_.at(part_.elements()[e], position, pose).normal;
+  });
+  return result;
+}
+
 void BlendSource::show() {
+  right_ = truths(positions_, now_);
   if (rule_ == AuditRule::kGltf) {
     if (sums_.find(now_).empty()) sums_.add_up(now_and_next());
     shown_now_ = sums_.find(now_);
@@ -160,7 +184,9 @@ Vec3f BlendSource::shown(const JudgedOutput& output) const {
 
 Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal, SkinRule rule) const {
   const std::size_t i = number(output);
-  return seen(i, turns_[i](unit(normal)), rule);
+  // Where the truth has no direction the geometry is all that there is.
+  const bool by_truth = !right_.empty() && normal != Vec3d{} && right_[output.element] != Vec3d{};
+  return seen(i, turns_[i](unit(by_truth ? right_[output.element] : normal)), rule);
 }
 
 std::size_t BlendSource::number(const JudgedOutput& output) const {
@@ -215,8 +241,19 @@ std::vector<std::vector<double>> BlendSource::now_and_next() const {
   return result;
 }
 
-std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, std::span<const std::size_t> involved,
-                                         AuditRule rule) {
+JudgedPart judged_part(const GltfShading& shading, const AuthorTruth& truth, std::vector<JudgedOutput> outputs,
+                       AuditRule rule) {
+  std::vector<std::uint32_t> vertices;
+  if (!truth.is_plain()) {
+    for (const JudgedOutput& output : outputs)
+      truth.sums().for_vertices(output.element, [&](std::uint32_t v) { vertices.push_back(v); });
+  }
+  return {shading.set.topology, shading.groups,           truth.rule().weighting,
+          std::move(outputs),   rule == AuditRule::kFlat, vertices};
+}
+
+std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,
+                                         std::span<const std::size_t> involved, AuditRule rule) {
   const Topology& topology = shading.set.topology;
   std::vector<bool> moves(topology.vertex_count()), element_moves(shading.groups.size());
   for (const std::size_t k : involved)
@@ -227,6 +264,10 @@ std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, std::span<c
     if (!moves[corners[c]]) continue;
     const std::size_t first = c - c % 3;
     for (std::size_t i = first; i < first + 3; ++i) element_moves[element_of_vertex[corners[i]]] = true;
+  }
+  if (!truth.is_plain()) {
+    for (const std::size_t k : involved)
+      for (const std::uint32_t e : truth.elements_of(k)) element_moves[e] = true;
   }
   const auto is_judged = [&](std::uint32_t v) {
     const std::uint32_t e = shading.element_of_vertex[v];

@@ -15,6 +15,7 @@
 #include "workflow/audit/stored_sums.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/mesh_skin.h"
+#include "workflow/truth/author_truth.h"
 
 namespace chronormal::inline internal {
 
@@ -35,12 +36,13 @@ class BlendSource {
  public:
   static constexpr bool kNeedsEnds = false;
 
-  /// shading and part must outlive this, and so must the skin through which the mesh is seen, if there is one; where its
+  /// shading, truth and part must outlive this, and so must the skin through which the mesh is seen, if there is one; where its
   /// joints move, moment says when. Outputs are those of the part. involved are targets, ascending: weights are those
   /// of them alone, and the others have none at any time. A segment is placed at `samples` moments, one after
   /// the other.
-  BlendSource(const GltfShading& shading, const JudgedPart& part, AuditRule rule, std::vector<std::size_t> involved,
-              Weights weights, Moment moment, std::size_t samples, MeshSkin* skin = nullptr);
+  BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
+              std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
+              MeshSkin* skin = nullptr);
 
   /// Does nothing: all data are in memory.
   [[nodiscard]] static Status enter(std::size_t /*segment*/) { return Success{}; }
@@ -53,7 +55,8 @@ class BlendSource {
   [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
-  /// Adds up the normals that are shown at the moment that was placed, and finds what the skin does to them.
+  /// Adds up the normals that are shown at the moment that was placed, and finds the right ones and what the skin does
+  /// to them. The positions that place() wrote must still be there.
   void show();
   /// A normal of the i-th output, of any length, as it is seen: carried along by the skin, or else as it is.
   [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const noexcept;
@@ -78,11 +81,14 @@ class BlendSource {
   void place_ends(std::size_t segment);
   [[nodiscard]] bool is_between_ends(double t) const;
   void place_base(std::span<Vec3d> positions) const;
+  // The truth of all elements of the part; empty where it is the normal by area.
+  [[nodiscard]] std::vector<Vec3d> truths(std::span<const Vec3d> positions, std::span<const double> weights) const;
   const std::vector<Delta>& moved(std::size_t k);
   [[nodiscard]] std::size_t number(const JudgedOutput& output) const;
   [[nodiscard]] std::vector<std::vector<double>> now_and_next() const;
 
   const GltfShading& shading_;
+  const AuthorTruth& truth_;
   const JudgedPart& part_;
   AuditRule rule_;
   std::vector<std::size_t> involved_;
@@ -93,6 +99,9 @@ class BlendSource {
   std::size_t placed_ = 0;
   std::vector<std::optional<std::vector<Delta>>> moved_;  // of each involved target, once it was asked for
   std::vector<ShownTurn> turns_;                          // of outputs
+  std::vector<std::uint32_t> number_of_vertex_;           // in the part; empty where the truth is by area
+  std::span<const Vec3d> positions_;                      // that were placed
+  std::vector<Vec3d> right_;                              // of elements, as truths() has them
   std::optional<SegmentEnds> ends_;
   bool known_ = false;
   std::size_t samples_, segment_ = 0;
@@ -104,8 +113,12 @@ class BlendSource {
 
 /// The vertices whose normal some targets move: by a face around them, or by a stored delta. Of the rule flat, their
 /// corners.
-[[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading,
+[[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,
                                                        std::span<const std::size_t> involved, AuditRule rule);
+
+/// The part of a mesh that judges some outputs by the truth.
+[[nodiscard]] JudgedPart judged_part(const GltfShading& shading, const AuthorTruth& truth,
+                                     std::vector<JudgedOutput> outputs, AuditRule rule);
 
 }  // namespace chronormal::inline internal
 

@@ -1,6 +1,7 @@
 // Audits of glTF files. Of each mesh: how far the author's normals are from the geometry, what there is to note, every
 // target from weight 0 to 1, every track of weights, and every expression of an avatar.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -22,6 +23,8 @@
 #include "workflow/shading/authored_weighting.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/mesh_skin.h"
+#include "workflow/shading/rig_poses.h"
+#include "workflow/truth/author_truth.h"
 
 namespace chronormal {
 namespace {
@@ -31,7 +34,7 @@ struct MeshAudit {
   const GltfDocument& document;
   const AuditOptions& options;
   const GltfShading& shading;
-  Weighting weighting;  // of the right normals
+  const AuthorTruth& truth;
   AuditRule rule;
   std::function<void()> progress;
   ErrorTable* errors;  // nullptr: none are kept
@@ -73,26 +76,59 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
   return tracks;
 }
 
-// Notes how far base normals are from the geometry, where there are any. Returns the weighting of the right normals.
-Weighting note_offset(const GltfShading& shading, std::optional<Weighting> asked, Audit& result) {
+// How far base normals are from the sums that the truth adds up.
+void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, AuthoredOffset& offset) {
+  const auto position = [&](std::uint32_t v) { return to_double(vector_at(shading.set.base, v)); };
+  std::vector<Vec3d> sums(shading.groups.size());
+  parallel_each(sums.size(), kRange,
+                [&](std::size_t e) { sums[e] = truth.sums().at(static_cast<std::uint32_t>(e), position).normal; });
+  offset.vertices = 0;
+  offset.sum = offset.worst = 0;
+  for (std::size_t v = 0; v < shading.element_of_vertex.size(); ++v) {
+    const std::uint32_t e = shading.element_of_vertex[v];
+    const Vec3d stored = to_double(vector_at(shading.normals, v));
+    if (e == GltfShading::kNoElement || sums[e] == Vec3d{} || stored == Vec3d{}) continue;
+    const double angle = angle_between(sums[e], stored) * kDegreesPerRadian, off = std::fmin(angle, 180 - angle);
+    ++offset.vertices;
+    offset.sum += off;
+    if (off > offset.worst) {
+      offset.worst = off;
+      offset.worst_at.vertex = v;
+    }
+  }
+}
+
+// Notes how far base normals are from the geometry, where there are any.
+void note_offset(const GltfShading& shading, const AuthorTruth& truth, std::optional<Weighting> asked, Audit& result) {
   const AuthoredWeighting authored = find_authored_weighting(shading);
   const bool any_shaded = std::any_of(shading.element_of_vertex.begin(), shading.element_of_vertex.end(),
                                       [](std::uint32_t e) { return e != GltfShading::kNoElement; });
-  AuthoredOffset offset = authored_offset(authored, asked);
-  const Weighting weighting = offset.weighting;
-  if (!any_shaded) return weighting;
+  AuthoredOffset offset = authored_offset(authored, truth.rule().weighting);
+  offset.is_detected = !asked;
+  if (!any_shaded) return;
   offset.mesh = shading.mesh;
+  offset.of_polygons = truth.rule().any_polygons;
+  if (!truth.rule().is_plain()) measure_by_truth(shading, truth, offset);
   offset.worst_at = place_of(shading, offset.worst_at.vertex);
   result.offsets.push_back(offset);
-  return weighting;
+}
+
+// What a mesh was before it was baked; nothing where that is not known.
+Result<std::optional<GltfShading>> shading_of_author(const AuditOptions& options, const GltfShading& baked) {
+  if (options.author == nullptr || baked.mesh >= options.author->meshes().size()) return std::optional<GltfShading>();
+  Result<GltfShading> read = read_gltf_shading(*options.author, baked.mesh, {.weld = options.weld});
+  if (!read) return read.error();
+  const bool is_same = read.value().set.base == baked.set.base && !read.value().mark &&
+                       read.value().set.targets.size() <= baked.set.targets.size();
+  return is_same ? std::optional(std::move(read).value()) : std::nullopt;
 }
 
 // Targets that take part in a motion, ascending.
 using Involved = std::vector<std::size_t>;
 
 JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
-  return {mesh.shading.set.topology, mesh.shading.groups, mesh.weighting,
-          moving_outputs(mesh.shading, involved, mesh.rule), mesh.rule == AuditRule::kFlat};
+  return judged_part(mesh.shading, mesh.truth, moving_outputs(mesh.shading, mesh.truth, involved, mesh.rule),
+                     mesh.rule);
 }
 
 // The weights of the targets that are involved in a subject: those of the specification, and those that each host
@@ -133,7 +169,8 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
     for (std::size_t s = 0; s < subject.segments; ++s) mesh.progress();
     return std::nullopt;
   }
-  BlendSource source(mesh.shading, part, mesh.rule, involved, weights.specified, moment, subject.samples, skin);
+  BlendSource source(mesh.shading, mesh.truth, part, mesh.rule, involved, weights.specified, moment, subject.samples,
+                     skin);
   HostErrors hosts(mesh.shading, part, mesh.options.hosts, weights.played, involved, skin != nullptr);
   SkinningErrors skinning;
   const auto judge_hosts = [&](const MeasuredSample& sample) {
@@ -181,17 +218,21 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const std::vector<std::string>& names = mesh.document.meshes()[shading.mesh].target_names;
   if (!names.empty()) subject.name = names[k];
   subject.mesh = shading.mesh;
-  subject.weighting = mesh.weighting;
+  subject.weighting = mesh.truth.rule().weighting;
   subject.target = k;
   subject.segments = 1;
   subject.samples = samples_per_segment(mesh.options, 1);
   SubjectWeights weights;
+  const auto weight_at = [&](double t) {
+    const auto [least, most] = mesh.options.weights;
+    return t == 1 ? most : least + t * (most - least);
+  };
   const auto with_extras = [&](std::size_t, double t, std::span<double> of_targets) {
-    of_targets[k] = t;
+    of_targets[k] = weight_at(t);
     fill_extra_weights(shading, of_targets);
   };
   // There may be thousands of targets, so that nothing is done for each of them here without need.
-  weights.specified = [](std::size_t, double t, std::span<double> alone) { alone[0] = t; };
+  weights.specified = [&](std::size_t, double t, std::span<double> alone) { alone[0] = weight_at(t); };
   if (shading.mark) weights.specified = of_involved(involved, shading.set.targets.size(), with_extras);
   for (const Host& host : mesh.options.hosts) {
     weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> played) {
@@ -199,7 +240,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
       drop_weights(host, played, involved);
     });
   }
-  const auto moment = [](std::size_t, double t) { return t; };
+  const auto moment = [&](std::size_t, double t) { return weight_at(t); };
   const JudgedPart part = part_of(mesh, involved);
   std::optional<Measured> measured =
       measure_part(mesh, part, involved, weights, moment, mesh.standing, std::move(subject), result.subjects.size());
@@ -207,8 +248,8 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
     ++result.still;
     return;
   }
-  for (const AuditFinding& fault :
-       faults_of_target(mesh.document, shading, mesh.rule, measured->subject, part, involved, weights.specified))
+  for (const AuditFinding& fault : faults_of_target(mesh.document, shading, mesh.truth, mesh.rule, measured->subject,
+                                                    part, involved, weights.specified))
     result.findings.push_back(fault);
   add_subject(std::move(*measured), result);
 }
@@ -239,7 +280,7 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
   subject.kind = AuditSubject::Kind::kTrack;
   subject.name = mesh.document.animations()[animation].name;
   subject.mesh = mesh.shading.mesh;
-  subject.weighting = mesh.weighting;
+  subject.weighting = mesh.truth.rule().weighting;
   subject.animation = animation;
   subject.track = index;
   subject.node = track.node;
@@ -300,26 +341,27 @@ Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_target
   return Success{};
 }
 
-// Audits an expression of an avatar at its full strength, with the weights of extra targets that follow.
-void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_target, Audit& result) {
-  const GltfExpression& expression = mesh.document.meshes()[mesh.shading.mesh].expressions[index];
-  std::vector<double> full = expression.weights;
-  fill_extra_weights(mesh.shading, full);
+// Audits poses that stand still, and returns what was measured. Each is a segment, which goes from the pose, where it is
+// judged, to the base: how short a normal is follows from both.
+std::optional<Measured> measure_poses(const MeshAudit& mesh, const PoseList& poses, MeshSkin* skin,
+                                      AuditSubject subject, std::size_t index) {
+  const std::size_t targets = mesh.shading.set.targets.size();
+  std::vector<bool> is_involved(targets);
+  for (const std::vector<double>& pose : poses)
+    for (std::size_t k = 0; k < targets; ++k)
+      if (pose[k] != 0) is_involved[k] = true;
   Involved involved;
-  for (std::size_t k = 0; k < full.size(); ++k)
-    if (full[k] != 0) involved.push_back(k);
-  AuditSubject subject;
-  subject.kind = AuditSubject::Kind::kExpression;
-  subject.name = expression.name;
+  for (std::size_t k = 0; k < targets; ++k)
+    if (is_involved[k]) involved.push_back(k);
   subject.mesh = mesh.shading.mesh;
-  subject.weighting = mesh.weighting;
-  subject.expression = index;
-  subject.segments = subject.samples = 1;
-  // The segment goes from full strength, where it is judged, to the base: how short a normal is follows from both.
-  const auto moment = [](std::size_t, double t) { return 1 - t; };
+  subject.weighting = mesh.truth.rule().weighting;
+  subject.segments = poses.size();
+  subject.samples = 1;
+  const bool is_numbered = subject.kind == AuditSubject::Kind::kPoses;
+  const auto moment = [&](std::size_t segment, double t) { return is_numbered ? static_cast<double>(segment) : 1 - t; };
   SubjectWeights weights;
-  weights.specified = [&](std::size_t, double t, std::span<double> now) {
-    for (std::size_t i = 0; i < involved.size(); ++i) now[i] = (1 - t) * full[involved[i]];
+  weights.specified = [&](std::size_t segment, double t, std::span<double> now) {
+    for (std::size_t i = 0; i < involved.size(); ++i) now[i] = (1 - t) * poses[segment][involved[i]];
   };
   for (const Host& host : mesh.options.hosts) {
     weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> played) {
@@ -327,8 +369,20 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
       drop_weights(host, played, involved);
     });
   }
-  std::optional<Measured> measured = measure_part(mesh, part_of(mesh, involved), involved, weights, moment,
-                                                  mesh.standing, std::move(subject), result.subjects.size());
+  return measure_part(mesh, part_of(mesh, involved), involved, weights, moment, skin, std::move(subject), index);
+}
+
+// Audits an expression of an avatar at its full strength, with the weights of extra targets that follow.
+void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_target, Audit& result) {
+  const GltfExpression& expression = mesh.document.meshes()[mesh.shading.mesh].expressions[index];
+  std::vector<double> full = expression.weights;
+  fill_extra_weights(mesh.shading, full);
+  AuditSubject subject;
+  subject.kind = AuditSubject::Kind::kExpression;
+  subject.name = expression.name;
+  subject.expression = index;
+  std::optional<Measured> measured =
+      measure_poses(mesh, {std::move(full)}, mesh.standing, std::move(subject), result.subjects.size());
   if (!measured) {
     ++result.still;
     return;
@@ -337,11 +391,81 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
   add_subject(std::move(*measured), result);
 }
 
+// The weights with which a file opens, each once, and the first node that shows them; only those that are not all 0.
+std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> opening_poses(const GltfDocument& document,
+                                                                                      std::size_t mesh) {
+  std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> poses;
+  const auto add = [&](const std::vector<double>& weights, std::optional<std::size_t> node) {
+    if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0; })) return;
+    if (std::none_of(poses.begin(), poses.end(), [&](const auto& pose) { return pose.first == weights; }))
+      poses.emplace_back(weights, node);
+  };
+  const std::vector<double>& of_mesh = document.meshes()[mesh].weights;
+  bool is_shown = false;
+  for (std::size_t n = 0; n < document.nodes().size(); ++n) {
+    const GltfNode& node = document.nodes()[n];
+    if (node.mesh != mesh) continue;
+    is_shown = true;
+    add(node.weights.empty() ? of_mesh : node.weights, n);
+  }
+  if (!is_shown) add(of_mesh, std::nullopt);
+  return poses;
+}
+
+void add_poses(std::optional<Measured> measured, Audit& result) {
+  if (!measured) {
+    ++result.still;
+    return;
+  }
+  if (std::optional<AuditFinding> fault = fault_of_pose(measured->subject)) result.findings.push_back(*fault);
+  add_subject(std::move(*measured), result);
+}
+
+// Audits the poses in which a mesh is when the file opens.
+void audit_openings(const MeshAudit& mesh, Audit& result) {
+  for (const auto& [weights, node] : opening_poses(mesh.document, mesh.shading.mesh)) {
+    AuditSubject subject;
+    subject.kind = AuditSubject::Kind::kOpening;
+    subject.node = node;
+    std::optional<MeshSkin> skin;
+    if (node && mesh.options.skins && mesh.document.nodes()[*node].has_skin)
+      skin = read_skin(mesh.document, mesh.shading, *node, std::nullopt, mesh.unread);
+    add_poses(measure_poses(mesh, {weights}, skin ? &*skin : nullptr, std::move(subject), result.subjects.size()),
+              result);
+  }
+}
+
+// The poses that are asked for, of the mesh.
+PoseList asked_poses(const GltfDocument& document, const AuditOptions& options, std::size_t mesh) {
+  constexpr unsigned kSeed = 51;
+  const GltfMesh& of_mesh = document.meshes()[mesh];
+  if (!options.is_posed || !options.poses.empty()) return poses_of_mesh(options.poses, of_mesh);
+  std::vector<bool> is_extra(of_mesh.target_count);
+  if (of_mesh.mark)
+    for (const GltfExtraTarget& extra : of_mesh.mark->extras)
+      if (extra.target < is_extra.size()) is_extra[extra.target] = true;
+  std::vector<std::size_t> targets;
+  for (std::size_t k = 0; k < is_extra.size(); ++k)
+    if (!is_extra[k]) targets.push_back(k);
+  return RigPoses(of_mesh.target_names, std::move(targets), of_mesh.target_count, {}).sample(kRandomPoses, kSeed);
+}
+
+void audit_asked_poses(const MeshAudit& mesh, Audit& result) {
+  PoseList poses = asked_poses(mesh.document, mesh.options, mesh.shading.mesh);
+  if (poses.empty()) return;
+  for (std::vector<double>& pose : poses) fill_extra_weights(mesh.shading, pose);
+  AuditSubject subject;
+  subject.kind = AuditSubject::Kind::kPoses;
+  add_poses(measure_poses(mesh, poses, mesh.standing, std::move(subject), result.subjects.size()), result);
+}
+
 // The segments of all subjects.
-std::size_t count_segments(const GltfDocument& document, std::optional<std::size_t> only) {
+std::size_t count_segments(const GltfDocument& document, const AuditOptions& options, std::optional<std::size_t> only) {
   std::size_t total = 0;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
-    total += only ? 0 : document.meshes()[m].target_count + document.meshes()[m].expressions.size();
+    if (!only)
+      total += document.meshes()[m].target_count + document.meshes()[m].expressions.size() +
+               opening_poses(document, m).size() + asked_poses(document, options, m).size();
     for (const auto& [a, t] : tracks_of(document, m, only))
       total += std::max<std::size_t>(1, document.animations()[a].tracks[t].key_count - 1);
   }
@@ -352,8 +476,10 @@ std::size_t count_segments(const GltfDocument& document, std::optional<std::size
 std::size_t count_rows(const GltfDocument& document, std::size_t mesh, const Tracks& tracks, bool only_tracks,
                        const AuditOptions& options) {
   const GltfMesh& of_mesh = document.meshes()[mesh];
-  std::size_t rows =
-      only_tracks ? 0 : of_mesh.target_count * samples_per_segment(options, 1) + of_mesh.expressions.size();
+  std::size_t rows = 0;
+  if (!only_tracks)
+    rows = of_mesh.target_count * samples_per_segment(options, 1) + of_mesh.expressions.size() +
+           opening_poses(document, mesh).size() + asked_poses(document, options, mesh).size();
   for (const auto& [a, t] : tracks) {
     const std::size_t keys = document.animations()[a].tracks[t].key_count,
                       segments = std::max<std::size_t>(keys, 2) - 1;
@@ -390,6 +516,9 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
   if (const Status status = check_samples(options); !status) return status.error();
   if (options.path != PathKind::kLinear)
     return Error{ErrorCode::kUsage, "", "the weights of a glTF file say how its vertices move; paths are of sequences"};
+  if (!(options.weights[0] < options.weights[1] && std::isfinite(options.weights[1] - options.weights[0])))
+    return Error{ErrorCode::kUsage, "", "targets are judged from a weight to a larger one"};
+  if (const Status status = check_poses(options.poses, document); !status) return status.error();
   std::optional<std::size_t> only;
   if (!options.animation.empty()) {
     const Result<std::size_t> animation = document.find_animation(options.animation);
@@ -402,7 +531,7 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
   if (!options.hosts.empty() && result.rule != AuditRule::kGltf)
     return Error{ErrorCode::kUsage, "", "hosts go with the rule gltf, which they stand for"};
   for (const Host& host : options.hosts) result.hosts.emplace_back().host = host;
-  const std::size_t total = count_segments(document, only);
+  const std::size_t total = count_segments(document, options, only);
   std::size_t done = 0;
   const auto progress = [&] {
     ++done;
@@ -412,12 +541,21 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
     const Tracks tracks = tracks_of(document, m, only);
     if (!has_targets(document.meshes()[m]) || (only && tracks.empty())) continue;
-    Result<GltfShading> read = read_gltf_shading(document, m);
+    Result<GltfShading> read = read_gltf_shading(document, m, {.weld = options.weld});
     if (!read) return read.error();
     GltfShading& shading = read.value();
-    const Weighting weighting = note_offset(shading, options.weighting, result);
-    if (weighting == Weighting::kArea) shading.groups.forget_corners();
+    Result<std::optional<GltfShading>> original = shading_of_author(options, shading);
+    if (!original) return original.error();
+    GltfShading& of_author = original.value() ? *original.value() : shading;
+    const AuthorTruth truth = author_truth(of_author, options.weighting);
+    if (original.value()) {
+      shading.groups = of_author.groups;
+      shading.element_of_vertex = of_author.element_of_vertex;
+    }
+    note_offset(shading, truth, options.weighting, result);
+    if (truth.rule().weighting == Weighting::kArea) shading.groups.forget_corners();
     for (const AuditFinding& note : notes_of(document, shading)) result.findings.push_back(note);
+    for (const AuditFinding& note : notes_of_truth(shading, truth)) result.findings.push_back(note);
     for (const AuditFinding& note : limits_of(shading, options.hosts)) result.findings.push_back(note);
     for (HostAudit& host : result.hosts) {
       const std::size_t most = host.host.most_targets, targets = shading.set.targets.size();
@@ -437,7 +575,7 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     const MeshAudit mesh{document,
                          options,
                          shading,
-                         weighting,
+                         truth,
                          result.rule,
                          progress,
                          options.keep_errors ? &table : nullptr,
@@ -453,6 +591,10 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
       worst_target = std::max(worst_target, result.subjects[s].error.worst);
     for (std::size_t k = 0; k < document.meshes()[m].expressions.size() && are_targets_judged; ++k)
       audit_expression(mesh, k, worst_target, result);
+    if (!only) {
+      audit_openings(mesh, result);
+      audit_asked_poses(mesh, result);
+    }
     if (Status status = audit_tracks(mesh, tracks, are_targets_judged, worst_target, result); !status)
       return status.error();
     if (options.skins) {

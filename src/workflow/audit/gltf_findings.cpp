@@ -26,15 +26,17 @@ bool moves_vertices(const GltfShading& shading, std::size_t k, const GltfPart& p
 }
 
 // How far tangents are from perpendicular to the right normal at weight 1, beyond what they are in the base.
-std::optional<AuditFinding> stale_tangents(const GltfShading& shading, AuditRule rule, std::size_t k,
-                                           const JudgedPart& part, std::span<const std::size_t> involved,
+std::optional<AuditFinding> stale_tangents(const GltfShading& shading, const AuthorTruth& truth, AuditRule rule,
+                                           std::size_t k, const JudgedPart& part, std::span<const std::size_t> involved,
                                            const Weights& weights) {
   if (shading.tangents.empty() || shading.set.targets[k].vertices.empty()) return std::nullopt;
   BlendSource source(
-      shading, part, rule, {involved.begin(), involved.end()}, weights, [](std::size_t, double t) { return t; }, 0);
+      shading, truth, part, rule, {involved.begin(), involved.end()}, weights, [](std::size_t, double t) { return t; },
+      0);
   std::vector<Vec3d> positions(part.vertices().size());
   PartNormals normals;
   source.place(0, 1, positions);
+  source.show();
   part.normals(positions, normals);
   AuditFinding finding = finding_of(Kind::kStaleTangents, shading.mesh);
   finding.target = k;
@@ -122,9 +124,10 @@ std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const 
   return notes;
 }
 
-std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading, AuditRule rule,
-                                           const AuditSubject& subject, const JudgedPart& part,
-                                           std::span<const std::size_t> involved, const Weights& weights) {
+std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading,
+                                           const AuthorTruth& truth, AuditRule rule, const AuditSubject& subject,
+                                           const JudgedPart& part, std::span<const std::size_t> involved,
+                                           const Weights& weights) {
   const std::size_t k = *subject.target;
   const auto& primitives = document.meshes()[shading.mesh].primitives;
   const auto lacks_normals = [&](const GltfPart& p) {
@@ -143,7 +146,7 @@ std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const G
   } else if (std::optional<AuditFinding> wrong = find_wrong_normals(subject)) {
     faults.push_back(*wrong);
   }
-  if (std::optional<AuditFinding> stale = stale_tangents(shading, rule, k, part, involved, weights))
+  if (std::optional<AuditFinding> stale = stale_tangents(shading, truth, rule, k, part, involved, weights))
     faults.push_back(*stale);
   return faults;
 }
@@ -157,6 +160,27 @@ std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are
   if (are_targets_judged) fault->kind = Kind::kWrongTogether;
   fault->degrees = subject.error.worst;
   fault->worst_at = subject.error.worst_at;
+  return fault;
+}
+
+std::vector<AuditFinding> notes_of_truth(const GltfShading& shading, const AuthorTruth& truth) {
+  std::vector<AuditFinding> notes;
+  for (const StaleKey& key : truth.stale()) {
+    AuditFinding& note = notes.emplace_back(finding_of(Kind::kStaleKeys, shading.mesh));
+    note.target = key.target;
+    note.count = key.vertices;
+  }
+  if (truth.rule().telling > 0 && !truth.rule().is_followed) {
+    AuditFinding& note = notes.emplace_back(finding_of(Kind::kUnknownRule, shading.mesh));
+    note.count = truth.rule().telling;
+    note.degrees = truth.rule().spread;
+  }
+  return notes;
+}
+
+std::optional<AuditFinding> fault_of_pose(const AuditSubject& subject) {
+  std::optional<AuditFinding> fault = find_wrong_normals(subject);
+  if (fault && fault->kind != Kind::kUnlit) fault->kind = Kind::kWrongPose;
   return fault;
 }
 

@@ -28,14 +28,20 @@ namespace chronormal::inline internal {
 
 /// The faults of a target that was measured, at the weights that measured it, which are those of the involved targets.
 [[nodiscard]] std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading,
-                                                         AuditRule rule, const AuditSubject& subject,
-                                                         const JudgedPart& part, std::span<const std::size_t> involved,
-                                                         const Weights& weights);
+                                                         const AuthorTruth& truth, AuditRule rule,
+                                                         const AuditSubject& subject, const JudgedPart& part,
+                                                         std::span<const std::size_t> involved, const Weights& weights);
 
 /// The fault of a track that was measured. are_targets_judged says whether targets were judged one by one before, and
 /// worst_target how far off they were.
 [[nodiscard]] std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged,
                                                          double worst_target);
+
+/// What there is to note of the author's normals: keys that tell nothing of them, and a rule that is not known.
+[[nodiscard]] std::vector<AuditFinding> notes_of_truth(const GltfShading& shading, const AuthorTruth& truth);
+
+/// The fault of a pose in which a file opens, or of those that were asked for.
+[[nodiscard]] std::optional<AuditFinding> fault_of_pose(const AuditSubject& subject);
 
 }  // namespace chronormal::inline internal
 

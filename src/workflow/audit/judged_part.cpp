@@ -28,7 +28,8 @@ std::vector<std::uint32_t> number_used(std::vector<std::uint32_t>& marks) {
 }  // namespace
 
 JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
-                       std::vector<JudgedOutput> outputs, bool needs_faces)
+                       std::vector<JudgedOutput> outputs, bool needs_faces,
+                       std::span<const std::uint32_t> more_vertices)
     : weighting_(weighting), keeps_faces_(needs_faces || weighting != Weighting::kArea), outputs_(std::move(outputs)) {
   std::vector<std::uint32_t> element(groups.size(), kUnused), face(topology.face_count(), kUnused);
   std::vector<std::uint32_t> vertex(topology.vertex_count(), kUnused);
@@ -39,6 +40,7 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
   const std::vector<std::uint32_t> faces = number_used(face);
   for (const std::uint32_t f : faces)
     for (const std::uint32_t v : topology.face(f)) vertex[v] = 0;
+  for (const std::uint32_t v : more_vertices) vertex[v] = 0;
   vertices_ = number_used(vertex);
 
   // Their normals are kept where elements would take long to compute them again, or they take little memory.

@@ -49,8 +49,10 @@ class JudgedPart {
  public:
   /// Elements and faces of the outputs become those of this part; their vertices and corners stay those of the mesh.
   /// Without needs_faces, normals() may leave out those of faces. groups need no corners where the weighting is area.
+  /// more_vertices are those that are needed beside the ones of its faces.
   JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
-             std::vector<JudgedOutput> outputs, bool needs_faces = true);
+             std::vector<JudgedOutput> outputs, bool needs_faces = true,
+             std::span<const std::uint32_t> more_vertices = {});
 
   /// Its vertices and its elements, as the mesh numbers them, ascending.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }

@@ -27,12 +27,12 @@
 #include "workflow/bake/mesh_weights.h"
 #include "workflow/bake/tangents.h"
 #include "workflow/bake/terms.h"
-#include "workflow/bake/undriven/rig_poses.h"
 #include "workflow/bake/write/messages.h"
 #include "workflow/bake/write/write_mesh.h"
 #include "workflow/bake/write/write_tracks.h"
-#include "workflow/shading/authored_weighting.h"
 #include "workflow/shading/gltf_shading.h"
+#include "workflow/shading/rig_poses.h"
+#include "workflow/truth/author_truth.h"
 
 namespace chronormal {
 namespace {
@@ -89,13 +89,17 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
   return result;
 }
 
-// How many stored normals say which weighting they follow: a median over these is as good as one over all.
-constexpr std::size_t kAskedForWeighting = 20000;
+// What the author of a mesh would see, unless a weighting is asked for. Base normals that are made anew have no author.
+AuthorTruth truth_of(GltfShading& shading, const BakeOptions& options) {
+  if (options.recompute_base) return {shading, options.weighting.value_or(Weighting::kArea)};
+  return author_truth(shading, options.weighting);
+}
 
-// The weighting of the right normals. Base normals that are made anew have no author.
-Weighting weighting_of(const GltfShading& shading, const BakeOptions& options) {
-  if (options.weighting) return *options.weighting;
-  return options.recompute_base ? Weighting::kArea : find_authored_weighting(shading, kAskedForWeighting).detected;
+// Lets curves between keys follow what is no quadratic: in short tracks, since the gaps of long ones are small.
+void cut_gaps(MeshWeights& weights) {
+  constexpr std::size_t kNodes = 128, kMostPieces = 8;
+  for (WeightTrack& track : weights.tracks)
+    track.pieces_of_line = std::clamp<std::size_t>(kNodes / std::max<std::size_t>(1, track.size()), 1, kMostPieces);
 }
 
 // The report as far as it follows from the plan.
@@ -196,13 +200,14 @@ class Course {
 };
 
 // Bakes what was read of one mesh, which moves and has normals.
-Status bake_shading(const GltfDocument& document, const GltfShading& shading, const BakeOptions& options,
-                    Course& course, ZeroVectors& zeros, GltfEdit& edit, MeshBake& baked) {
+Status bake_shading(const GltfDocument& document, const GltfShading& shading, const AuthorTruth& truth,
+                    const BakeOptions& options, Course& course, ZeroVectors& zeros, GltfEdit& edit, MeshBake& baked) {
   const GltfMesh& mesh = document.meshes()[shading.mesh];
   if (Status status = check_extras(document, edit, shading.mesh); !status) return status;
   Result<MeshWeights> weights = read_weights(document, shading);
   if (!weights) return weights.error();
-  const NormalTerms terms(shading, baked.report.weighting);
+  const NormalTerms terms(shading, truth);
+  if (terms.is_fitted()) cut_gaps(weights.value());
   const Result<MeshPlan> planned =
       plan_mesh(document, shading, terms, weights.value().use, weights.value().is_driven, options);
   if (!planned) return planned.error();
@@ -288,22 +293,17 @@ bool is_baked(const GltfShading& shading, const BakeOptions& options) {
          (shading.mark->sequence || !shading.mark->extras.empty() || shading.mark->encoding == encoding_of(options));
 }
 
-bool any_tangents(const GltfMesh& mesh) {
-  return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
-                     [](const GltfPrimitive& primitive) { return primitive.has_tangents; });
-}
-
 // Judges a mesh that was baked before, so that a tolerance that it is beyond does not go unnoticed. Keyframes of a
 // sequence mean nothing alone, and cost more: they are judged where a tolerance is asked for.
 Status judge_again(const GltfDocument& document, const BakeOptions& options, GltfShading& shading, MeshBake& baked) {
   const bool is_asked = options.tolerance || options.plan || !shading.mark->sequence;
   if (encoding_of(options) != BakeEncoding::kSmallest || !is_asked || !any_changes(shading) || !any_shaded(shading))
     return Success{};
-  baked.report.weighting = weighting_of(shading, options);
-  if (baked.report.weighting == Weighting::kArea) shading.groups.forget_corners();
+  const AuthorTruth truth = truth_of(shading, options);
+  baked.report.weighting = truth.rule().weighting;
   Result<MeshWeights> weights = read_weights(document, shading);
   if (!weights) return weights.error();
-  const NormalTerms terms(shading, baked.report.weighting);
+  const NormalTerms terms(shading, truth);
   const Result<MeshPlan> plan =
       plan_mesh(document, shading, terms, weights.value().use, weights.value().is_driven, options);
   if (!plan) return plan.error();
@@ -322,9 +322,8 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   MeshBake baked;
   baked.report.mesh = index;
   baked.report.name = mesh.name;
-  Result<GltfShading> shading = read_gltf_shading(
-      document, index,
-      {options.smooth, options.crease_angle, options.encoding != BakeEncoding::kExact || any_tangents(mesh)});
+  Result<GltfShading> shading =
+      read_gltf_shading(document, index, {options.smooth, options.crease_angle, true, options.weld});
   if (!shading) return shading.error();
   if (is_baked(shading.value(), options)) {
     const GltfBakeMark& mark = *shading.value().mark;
@@ -335,14 +334,18 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
     return std::optional(std::move(baked));
   }
   if (!any_changes(shading.value())) return std::optional<MeshBake>();
-  baked.report.weighting = weighting_of(shading.value(), options);
-  if (baked.report.weighting == Weighting::kArea) shading.value().groups.forget_corners();
+  const AuthorTruth truth = truth_of(shading.value(), options);
+  baked.report.weighting = truth.rule().weighting;
+  if (truth.is_plain()) {
+    shading.value().groups.forget_corners();
+    shading.value().point_of_vertex = std::vector<std::uint32_t>();  // it was for the truth alone
+  }
   for (const GltfPrimitive& primitive : mesh.primitives) {
     if (primitive.has_faces() && !primitive.has_normals && !options.smooth) ++baked.report.left_flat;
   }
   warn_of_flat(mesh, baked.report, baked.warnings);
   if (any_shaded(shading.value())) {
-    if (Status status = bake_shading(document, shading.value(), options, course, zeros, edit, baked); !status)
+    if (Status status = bake_shading(document, shading.value(), truth, options, course, zeros, edit, baked); !status)
       return status.error();
   }
   return std::optional(std::move(baked));

@@ -2,14 +2,13 @@
 #include "workflow/bake/terms.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/transform.h"
-#include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
-#include "normals/weighting/sampled_normal.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -24,11 +23,21 @@ void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {
   }
 }
 
-// From the base to other positions of its vertices.
-Segment segment_to(const BlendSet& set, const std::vector<float>& positions) {
-  const std::size_t vertices = set.base.size() / 3;
-  return {&set.topology, VectorView<const float>::packed(set.base.data(), vertices),
-          VectorView<const float>::packed(positions.data(), vertices)};
+// Where vertices are on the way from the base to other positions.
+auto on_the_way(const BlendSet& set, const std::vector<float>& to, double t) {
+  return [&set, &to, t](std::uint32_t v) {
+    const float* const from = set.base.data() + 3 * std::size_t{v};
+    const float* const end = to.data() + 3 * std::size_t{v};
+    const Vec3d a{from[0], from[1], from[2]}, b{end[0], end[1], end[2]};
+    return a + t * (b - a);
+  };
+}
+
+auto placed(std::span<const double> positions) {
+  return [positions](std::uint32_t v) {
+    const double* const p = positions.data() + 3 * std::size_t{v};
+    return Vec3d{p[0], p[1], p[2]};
+  };
 }
 
 std::vector<std::uint32_t> common(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
@@ -39,38 +48,13 @@ std::vector<std::uint32_t> common(const std::vector<std::uint32_t>& a, const std
 
 }  // namespace
 
-NormalTerms::NormalTerms(const GltfShading& shading, Weighting weighting)
-    : shading_(shading), weighting_(weighting), by_area_(shading.set, shading.groups) {
+NormalTerms::NormalTerms(const GltfShading& shading, const AuthorTruth& truth)
+    : shading_(shading), truth_(truth), by_area_(shading.set, shading.groups) {
   constexpr std::size_t kFewElements = 200000;
   if (is_fitted())
     fit_targets();
   else if (shading.groups.size() <= kFewElements)
     base_ = by_area_.base();
-}
-
-Vec3d NormalTerms::sample(const Segment& segment, std::uint32_t element, double t) const {
-  const NormalGroups& groups = shading_.groups;
-  const auto normal_of_face = [&](std::uint32_t face) {
-    Vec3d normal;
-    face_normals_at(segment, t, {face, 1}, {&normal, 1});
-    return normal;
-  };
-  return sample_normal(segment, normal_of_face, groups.corners(element), groups.faces(element), weighting_, t)
-      .with_area_length();
-}
-
-std::vector<Vec3d> NormalTerms::sample_all(const Segment& segment) const {
-  const NormalGroups& groups = shading_.groups;
-  std::vector<Vec3d> of_faces(segment.topology->face_count()), result(groups.size());
-  parallel_blocks(of_faces.size(), kBlock, [&](IndexRange faces) {
-    face_normals_at(segment, 1, faces, std::span(of_faces).subspan(faces.first, faces.count));
-  });
-  const auto normal_of_face = [&](std::uint32_t face) { return of_faces[face]; };
-  parallel_each(result.size(), kBlock, [&](std::size_t e) {
-    result[e] =
-        sample_normal(segment, normal_of_face, groups.corners(e), groups.faces(e), weighting_, 1).with_area_length();
-  });
-  return result;
 }
 
 void NormalTerms::fit_targets() {
@@ -79,21 +63,25 @@ void NormalTerms::fit_targets() {
   for (const std::uint32_t e : shading_.element_of_vertex) {
     if (e != GltfShading::kNoElement) is_shown[e] = true;
   }
-  base_ = sample_all(segment_to(set, set.base));
+  const std::vector<double> at_rest(set.targets.size());
+  base_ = sample_all(at_rest, std::vector<double>(set.base.begin(), set.base.end()));
   fits_.resize(set.targets.size());
   for (std::size_t i = 0; i < set.targets.size(); ++i) {
-    if (set.targets[i].vertices.empty()) continue;
-    std::vector<float> to = set.base;
-    add_deltas(set.targets[i], to);
-    const Segment segment = segment_to(set, to);
     Fit& fit = fits_[i];
     // Elements of faces that stand still have terms that are nothing but rounding.
-    fit.elements = by_area_.elements(i);
+    fit.elements = truth_.elements_of(i);
+    if (fit.elements.empty()) continue;
+    std::vector<float> to = set.base;
+    add_deltas(set.targets[i], to);
+    std::array<AuthorTruth::Pose, kSamples + 1> poses;
+    for (std::size_t s = 0; s <= kSamples; ++s) poses[s] = truth_.pose_alone(i, static_cast<double>(s) / kSamples);
     fit.linear.resize(fit.elements.size());
     fit.square.resize(fit.elements.size());
     const auto fit_element = [&](std::size_t n, double& error) {
       const std::uint32_t e = fit.elements[n];
-      const auto at = [&](std::size_t s) { return sample(segment, e, static_cast<double>(s) / kSamples); };
+      const auto at = [&](std::size_t s) {
+        return truth_.at(e, on_the_way(set, to, static_cast<double>(s) / kSamples), poses[s]).with_area_length();
+      };
       const Vec3d base = base_[e], half = at(kSamples / 2), end = at(kSamples);
       fit.linear[n] = 4.0 * half - 3.0 * base - end;
       fit.square[n] = 2.0 * (base + end) - 4.0 * half;
@@ -127,14 +115,16 @@ BlendTerm NormalTerms::pair(std::size_t i, std::size_t j) const {
   std::vector<float> to = shading_.set.base;
   add_deltas(shading_.set.targets[i], to);
   add_deltas(shading_.set.targets[j], to);
-  const Segment segment = segment_to(shading_.set, to);
+  std::vector<double> both(shading_.set.targets.size());
+  both[i] = both[j] = 1;
+  const AuthorTruth::Pose pose = truth_.pose(both);
   const NormalTerms::Term linear_i = linear_by_element(i), linear_j = linear_by_element(j);
   const NormalTerms::Term square_i = pair_by_element(i, i), square_j = pair_by_element(j, j);
   BlendTerm term{common(fits_[i].elements, fits_[j].elements), {}, {}};
   term.values.resize(term.elements.size());
   parallel_each(term.elements.size(), kBlock, [&](std::size_t n) {
     const std::uint32_t e = term.elements[n];
-    Vec3d value = sample(segment, e, 1) - base_[e];
+    Vec3d value = truth_.at(e, on_the_way(shading_.set, to, 1), pose).with_area_length() - base_[e];
     for (const NormalTerms::Term* own : {&linear_i, &linear_j, &square_i, &square_j}) {
       Vec3d part;
       if (own->find(e, part)) value = value - part;
@@ -181,8 +171,11 @@ std::vector<Vec3d> NormalTerms::exact_at(std::span<const double> weights) const 
 }
 
 std::vector<Vec3d> NormalTerms::sample_all(std::span<const double> weights, std::span<const double> positions) const {
-  const std::vector<float> to(positions.begin(), positions.end());
-  std::vector<Vec3d> all = sample_all(segment_to(shading_.set, to));
+  const AuthorTruth::Pose pose = truth_.pose(weights);
+  std::vector<Vec3d> all(shading_.groups.size());
+  parallel_each(all.size(), kBlock, [&](std::size_t e) {
+    all[e] = truth_.at(static_cast<std::uint32_t>(e), placed(positions), pose).with_area_length();
+  });
   sampled_.keep(weights, all);
   return all;
 }
@@ -195,11 +188,11 @@ std::vector<Vec3d> NormalTerms::weighted_at(std::span<const double> weights, std
     return result;
   };
   if (const std::vector<Vec3d>* kept = sampled_.find(weights)) return take(*kept);
-  // The normals of all faces are worth their time only where most of them are asked for.
+  // All of them are worth their time only where most are asked for.
   if (4 * elements.size() > shading_.groups.size()) return take(sample_all(weights, positions));
-  const std::vector<float> to(positions.begin(), positions.end());
-  const Segment segment = segment_to(shading_.set, to);
-  parallel_each(elements.size(), kBlock, [&](std::size_t n) { result[n] = sample(segment, elements[n], 1); });
+  const AuthorTruth::Pose pose = truth_.pose(weights);
+  parallel_each(elements.size(), kBlock,
+                [&](std::size_t n) { result[n] = truth_.at(elements[n], placed(positions), pose).with_area_length(); });
   return result;
 }
 

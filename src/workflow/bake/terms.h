@@ -12,21 +12,20 @@
 
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
-#include "chronormal/normals/weighting.h"
 #include "normals/blend/blend_terms.h"
 #include "workflow/bake/pose_memory.h"
 #include "workflow/shading/gltf_shading.h"
+#include "workflow/truth/author_truth.h"
 
 namespace chronormal::inline internal {
 
-/// n(w) of all elements as a quadratic form. By area it is exact. By other weightings n(w) is no polynomial, and the
-/// form is fitted: it has the weighted direction, and the length by area, where one target has the weight 0, 1/2 or 1,
-/// and where two have the weight 1.
+/// The truth of all elements as a quadratic form. By area it is exact. By other rules the truth is no polynomial, and
+/// the form is fitted: it has the direction of the truth, and the length by area, where one target has the weight 0, 1/2
+/// or 1, and where two have the weight 1.
 class NormalTerms {
  public:
-  /// The shading must outlive this; its groups need no corners where the weighting is area. Fits all targets where it
-  /// is another.
-  NormalTerms(const GltfShading& shading, Weighting weighting);
+  /// The shading and its truth must outlive this. Fits all targets where the truth is not by area.
+  NormalTerms(const GltfShading& shading, const AuthorTruth& truth);
 
   /// n(0) of an element.
   [[nodiscard]] Vec3d base_of(std::uint32_t element) const {
@@ -58,7 +57,7 @@ class NormalTerms {
   /// (V, 3) are those of all vertices at these weights.
   [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> weights, std::span<const double> positions,
                                                std::span<const std::uint32_t> elements) const;
-  [[nodiscard]] bool is_fitted() const noexcept { return weighting_ != Weighting::kArea; }
+  [[nodiscard]] bool is_fitted() const noexcept { return !truth_.is_plain(); }
   /// How far the fit of a target alone is from the weighted normals that are shown, in radians, at eighths of its
   /// weight; 0 by area.
   [[nodiscard]] double fit_error(std::size_t i) const { return is_fitted() ? fits_[i].error : 0; }
@@ -73,14 +72,11 @@ class NormalTerms {
   static constexpr std::size_t kMostSampledBytes = std::size_t{256} << 20;
 
   void fit_targets();
-  // The weighted normal of an element at t of a segment, and those of all at its end, with the length by area.
-  [[nodiscard]] Vec3d sample(const Segment& segment, std::uint32_t element, double t) const;
-  [[nodiscard]] std::vector<Vec3d> sample_all(const Segment& segment) const;
-  // The latter at some weights, which it keeps where there is room.
+  // The truth of all elements at some weights, with the length by area, which it keeps where there is room.
   [[nodiscard]] std::vector<Vec3d> sample_all(std::span<const double> weights, std::span<const double> positions) const;
 
   const GltfShading& shading_;
-  Weighting weighting_;
+  const AuthorTruth& truth_;
   BlendTerms by_area_;
   std::vector<Vec3d> base_;  // where it is fitted, or takes little memory
   std::vector<Fit> fits_;

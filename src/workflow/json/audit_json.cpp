@@ -7,9 +7,10 @@
 namespace chronormal {
 namespace {
 
-constexpr const char* kKinds[] = {
-    "unlit", "missing_normals", "wrong_at_keys", "wrong_between", "wrong_together",  "stale_tangents", "flat_primitive",
-    "skin",  "unread_skin",     "baked",         "emptied",       "baked_keyframes", "beyond_host"};
+constexpr const char* kKinds[] = {"unlit",      "missing_normals", "wrong_at_keys", "wrong_between", "wrong_together",
+                                  "wrong_pose", "stale_tangents",  "stale_keys",    "unknown_rule",  "flat_primitive",
+                                  "skin",       "unread_skin",     "baked",         "emptied",       "baked_keyframes",
+                                  "beyond_host"};
 
 Json place_json(const AuditPlace& place, const char* moment) {
   Json json;
@@ -22,7 +23,7 @@ Json place_json(const AuditPlace& place, const char* moment) {
   return json;
 }
 
-const char* moment_of(const AuditSubject& subject) { return subject.is_weighed() ? "weight" : "time"; }
+const char* moment_of(const AuditSubject& subject) { return audit_moment_name(subject.kind); }
 
 void add_error(const MotionError& error, Json& json) {
   json["worst_degrees"] = error.worst;
@@ -47,8 +48,7 @@ Json histogram_json(const MotionError& error) {
 }
 
 Json subject_json(const AuditSubject& subject) {
-  constexpr const char* kSubjects[] = {"target", "track", "sequence", "expression"};
-  Json json = {{"kind", kSubjects[static_cast<std::size_t>(subject.kind)]},
+  Json json = {{"kind", audit_subject_name(subject.kind)},
                {"name", subject.name},
                {"mesh", or_null(subject.mesh)},
                {"target", or_null(subject.target)},
@@ -75,6 +75,7 @@ Json offset_json(const AuthoredOffset& offset) {
           {"vertices", offset.vertices},
           {"weighting", weighting_name(offset.weighting)},
           {"weighting_detected", offset.is_detected},
+          {"polygons", offset.of_polygons},
           {"worst_degrees", offset.worst},
           {"mean_degrees", offset.mean()},
           {"worst_at", offset.worst > 0 ? place_json(offset.worst_at, nullptr) : Json()},
@@ -95,8 +96,10 @@ Json finding_json(const AuditFinding& finding) {
           {"count", finding.count},
           {"host", finding.host ? Json(finding.host->name) : Json()},
           {"reason", finding.reason ? Json(finding.reason->text()) : Json()},
-          {"worst_degrees",
-           finding.is_fault() || finding.kind == AuditFinding::Kind::kSkinned ? Json(finding.degrees) : Json()},
+          {"worst_degrees", finding.is_fault() || finding.kind == AuditFinding::Kind::kSkinned ||
+                                    finding.kind == AuditFinding::Kind::kUnknownRule
+                                ? Json(finding.degrees)
+                                : Json()},
           {"worst_at", finding.worst_at
                            ? place_json(*finding.worst_at, finding.target || finding.expression ? "weight" : "time")
                            : Json()}};

@@ -32,19 +32,20 @@ struct Faces {
   std::vector<std::size_t> first;  // triangle of each face, and the end
 };
 
-// The faces of each element, one after the other.
-struct FacesOfElements {
-  FacesOfElements(const ModelPart& part, const Faces& faces) : offsets(part.elements + 1) {
-    const auto each = [&](const auto& use) {
-      for (std::size_t f = 0; f < faces.count(); ++f)
-        for (const std::uint32_t v : faces.corners(part, f))
-          if (part.element[v] != kNone) use(part.element[v], f);
-    };
-    each([&](std::uint32_t e, std::size_t) { ++offsets[e + 1]; });
+// What belongs to each element, one list after the other.
+struct ListsOfElements {
+  // each(use) calls use(element, number) for all that is listed, in order; of no element, it is left out.
+  template <class Each>
+  ListsOfElements(const ModelPart& part, const Each& each) : offsets(part.elements + 1) {
+    each([&](std::uint32_t e, std::size_t) {
+      if (e != kNone) ++offsets[e + 1];
+    });
     for (std::size_t e = 0; e < part.elements; ++e) offsets[e + 1] += offsets[e];
     list.resize(offsets.back());
     std::vector<std::size_t> next(offsets.begin(), offsets.end() - 1);
-    each([&](std::uint32_t e, std::size_t f) { list[next[e]++] = f; });
+    each([&](std::uint32_t e, std::size_t n) {
+      if (e != kNone) list[next[e]++] = n;
+    });
   }
   [[nodiscard]] std::span<const std::size_t> of(std::size_t e) const {
     return std::span(list).subspan(offsets[e], offsets[e + 1] - offsets[e]);
@@ -52,6 +53,44 @@ struct FacesOfElements {
 
   std::vector<std::size_t> offsets, list;
 };
+
+ListsOfElements faces_of_elements(const ModelPart& part, const Faces& faces) {
+  return {part, [&](const auto& use) {
+            for (std::size_t f = 0; f < faces.count(); ++f)
+              for (const std::uint32_t v : faces.corners(part, f)) use(part.element[v], f);
+          }};
+}
+
+// Calls use(corner, element) for the terms of all sums over polygons.
+template <class Use>
+void for_terms(const ModelPart& part, const Use& use) {
+  const ModelTruth& truth = part.truth;
+  for (std::size_t i = 0; i < truth.terms.size(); i += 2) use(truth.terms[i], truth.terms[i + 1]);
+  if (!truth.terms.empty()) return;
+  for (std::uint32_t c = 0; c < truth.corners.size(); ++c) use(c, part.element[truth.corners[c]]);
+}
+
+// The polygon of each corner.
+std::vector<std::uint32_t> polygons_of_corners(const ModelTruth& truth) {
+  std::vector<std::uint32_t> result;
+  result.reserve(truth.corners.size());
+  for (std::uint32_t p = 0; p + 1 < truth.first.size(); ++p) result.resize(truth.first[p + 1], p);
+  return result;
+}
+
+// The vertices that the truth of each element looks at, beside those of its triangles.
+ListsOfElements vertices_of_truths(const ModelPart& part) {
+  const ModelTruth& truth = part.truth;
+  const std::vector<std::uint32_t> polygon_of = polygons_of_corners(truth);
+  return {part, [&](const auto& use) {
+            for_terms(part, [&](std::uint32_t corner, std::uint32_t element) {
+              const std::uint32_t p = polygon_of[corner];
+              for (std::uint32_t c = truth.first[p]; c < truth.first[p + 1]; ++c) use(element, truth.corners[c]);
+            });
+            for (const ModelOffset& offset : truth.offsets)
+              for (const std::uint32_t v : offset.edges) use(offset.element, v);
+          }};
+}
 
 // The faces, vertices and elements that stay in a part.
 struct Kept {
@@ -63,7 +102,7 @@ struct Kept {
 Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size_t most_vertices) {
   const ModelPart& part = model.parts[number];
   const Faces faces(part);
-  const FacesOfElements faces_of(part, faces);
+  const ListsOfElements faces_of = faces_of_elements(part, faces), seen_by = vertices_of_truths(part);
   Kept kept{std::vector<bool>(faces.count()), std::vector<bool>(part.vertex_count()), std::vector<bool>(part.elements)};
   std::vector<std::uint32_t> ring;
   std::vector<bool> is_seen(part.elements);
@@ -77,17 +116,19 @@ Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size
     if (place.part == number) see(static_cast<std::uint32_t>(place.vertex));
   const std::size_t places = ring.size();
   std::size_t count = 0;
+  const auto keep = [&](std::uint32_t vertex) {
+    if (!kept.vertices[vertex]) ++count;
+    kept.vertices[vertex] = true;
+    see(vertex);
+  };
   for (std::size_t i = 0; i < ring.size() && (i < places || count < most_vertices); ++i) {
     kept.elements[ring[i]] = true;
     for (const std::size_t f : faces_of.of(ring[i])) {
       if (kept.faces[f]) continue;
       kept.faces[f] = true;
-      for (const std::uint32_t v : faces.corners(part, f)) {
-        if (!kept.vertices[v]) ++count;
-        kept.vertices[v] = true;
-        see(v);
-      }
+      for (const std::uint32_t v : faces.corners(part, f)) keep(v);
     }
+    for (const std::size_t v : seen_by.of(ring[i])) keep(static_cast<std::uint32_t>(v));
   }
   return kept;
 }
@@ -131,6 +172,50 @@ void keep_vectors(const std::vector<bool>& kept, const std::vector<std::uint32_t
   for (std::uint32_t& v : vectors.vertices) v = number[v];
 }
 
+// Keeps the truth of elements that stay, with numbers of vertices and elements anew. The part has its old ones.
+void keep_truth(const Kept& kept, const std::vector<std::uint32_t>& vertex, const std::vector<std::uint32_t>& element,
+                ModelPart& part) {
+  ModelTruth& truth = part.truth;
+  std::vector<bool> is_polygon_kept(truth.first.empty() ? 0 : truth.first.size() - 1);
+  const std::vector<std::uint32_t> polygon_of = polygons_of_corners(truth);
+  for_terms(part, [&](std::uint32_t corner, std::uint32_t e) {
+    if (e != kNone && kept.elements[e]) is_polygon_kept[polygon_of[corner]] = true;
+  });
+  std::vector<bool> is_corner_kept;
+  for (const std::uint32_t p : polygon_of) is_corner_kept.push_back(is_polygon_kept[p]);
+  const std::vector<std::uint32_t> corner = numbers(is_corner_kept);
+  std::vector<std::uint32_t> terms;
+  for (std::size_t i = 0; i < truth.terms.size(); i += 2)
+    if (kept.elements[truth.terms[i + 1]])
+      terms.insert(terms.end(), {corner[truth.terms[i]], element[truth.terms[i + 1]]});
+  truth.terms = std::move(terms);
+  std::vector<std::uint32_t> first, corners;
+  if (!truth.first.empty()) first.push_back(0);
+  for (std::size_t p = 0; p < is_polygon_kept.size(); ++p) {
+    if (!is_polygon_kept[p]) continue;
+    for (std::uint32_t c = truth.first[p]; c < truth.first[p + 1]; ++c) corners.push_back(vertex[truth.corners[c]]);
+    first.push_back(static_cast<std::uint32_t>(corners.size()));
+  }
+  truth.first = std::move(first);
+  truth.corners = std::move(corners);
+
+  std::vector<bool> is_kept;
+  for (const ModelOffset& offset : truth.offsets) is_kept.push_back(kept.elements[offset.element]);
+  const std::vector<std::uint32_t> number = numbers(is_kept);
+  keep_only(is_kept, 1, truth.offsets);
+  for (ModelOffset& offset : truth.offsets) {
+    offset.element = element[offset.element];
+    for (std::uint32_t& v : offset.edges) v = vertex[v];
+  }
+  for (ModelTruth::Changes& changes : truth.changes) {
+    std::vector<bool> is_change_kept;
+    for (const std::uint32_t n : changes.offsets) is_change_kept.push_back(is_kept[n]);
+    keep_only(is_change_kept, 2, changes.values);
+    keep_only(is_change_kept, 1, changes.offsets);
+    for (std::uint32_t& n : changes.offsets) n = number[n];
+  }
+}
+
 // The number of each vertex in the file: in its primitive, where there are several.
 void label(ModelPart& part) {
   if (!part.labels.empty()) return;
@@ -144,9 +229,13 @@ void make_coarse(ReportModel& model, std::size_t number, std::size_t most_vertic
   ModelPart& part = model.parts[number];
   Kept kept = keep_neighbourhoods(model, number, most_vertices / 2);
   const Faces faces(part);
-  std::vector<std::uint32_t> fine, rest, face_of_fine;
+  std::vector<std::uint32_t> fine, rest, face_of_fine, backs;
   for (std::size_t f = 0; f < faces.count(); ++f) {
     const auto corners = faces.corners(part, f);
+    const std::size_t begin = 3 * faces.first[f];
+    for (std::size_t i = 0; kept.faces[f] && !part.backs.empty() && i < corners.size(); ++i)
+      if (std::binary_search(part.backs.begin(), part.backs.end(), begin + i))
+        backs.push_back(static_cast<std::uint32_t>(fine.size() + i));
     std::vector<std::uint32_t>& to = kept.faces[f] ? fine : rest;
     to.insert(to.end(), corners.begin(), corners.end());
     if (kept.faces[f] && !part.faces.empty())
@@ -156,12 +245,14 @@ void make_coarse(ReportModel& model, std::size_t number, std::size_t most_vertic
   part.coarse = simplified(rest, part.positions, most_vertices);
   part.triangles = std::move(fine);
   part.faces = std::move(face_of_fine);
+  part.backs = std::move(backs);
   for (const std::uint32_t v : part.coarse) kept.vertices[v] = true;
 
   label(part);
   const std::vector<std::uint32_t> vertex = numbers(kept.vertices), element = numbers(kept.elements);
   for (std::vector<std::uint32_t>* corners : {&part.triangles, &part.coarse})
     for (std::uint32_t& v : *corners) v = vertex[v];
+  keep_truth(kept, vertex, element, part);
   for (std::uint32_t& e : part.element) e = e == kNone ? kNone : element[e];
   std::size_t first = 0;
   for (ModelPrimitive& primitive : part.primitives) {

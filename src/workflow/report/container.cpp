@@ -54,20 +54,15 @@ class Arrays {
   std::string bytes_;
 };
 
-const char* kind_of(const AuditSubject& subject) {
-  constexpr const char* kKinds[] = {"target", "track", "sequence", "expression"};
-  return kKinds[static_cast<std::size_t>(subject.kind)];
-}
-
 Json motion_json(const ModelMotion& motion, Arrays& arrays) {
   const AuditSubject& subject = motion.subject;
-  Json json = {{"kind", kind_of(subject)},
+  Json json = {{"kind", audit_subject_name(subject.kind)},
                {"name", subject.name},
                {"animation", or_null(subject.animation)},
                {"node", or_null(subject.node)},
                {"target", or_null(subject.target)},
                {"expression", or_null(subject.expression)},
-               {"seconds", !subject.is_weighed()},
+               {"seconds", std::string_view(audit_moment_name(subject.kind)) == "time"},
                {"subject", motion.subject_index},
                {"at", arrays.add(motion.at)}};
   if (motion.weights.empty()) {
@@ -112,6 +107,41 @@ void add_gltf(const ModelPart& part, Arrays& arrays, Json& json) {
   }
 }
 
+Json offsets_json(const ModelTruth& truth, Arrays& arrays) {
+  if (truth.offsets.empty()) return {};
+  std::vector<std::uint32_t> elements, first = {0}, edges, references;
+  std::vector<float> sides, base;
+  std::vector<double> turned;
+  for (const ModelOffset& offset : truth.offsets) {
+    elements.push_back(offset.element);
+    sides.push_back(offset.is_other_side ? -1.0F : 1.0F);
+    edges.insert(edges.end(), offset.edges.begin(), offset.edges.end());
+    first.push_back(static_cast<std::uint32_t>(edges.size() / 2));
+    references.push_back(offset.reference);
+    if (offset.reference == kNoReportElement) turned.insert(turned.end(), offset.turned.begin(), offset.turned.end());
+    base.insert(base.end(), offset.base.begin(), offset.base.end());
+  }
+  Json targets = Json::array();
+  for (const ModelTruth::Changes& changes : truth.changes)
+    targets.push_back({{"indices", arrays.add(changes.offsets)}, {"changes", arrays.add(changes.values)}});
+  return {{"elements", arrays.add(elements)},
+          {"sides", arrays.add(sides)},
+          {"first", arrays.add(first)},
+          {"edges", arrays.add(edges)},
+          {"references", arrays.add(references)},
+          {"turned", arrays.add_or_null(turned)},
+          {"base", arrays.add(base)},
+          {"targets", std::move(targets)}};
+}
+
+Json truth_json(const ModelTruth& truth, Arrays& arrays) {
+  Json polygons;
+  if (!truth.first.empty()) polygons = {{"first", arrays.add(truth.first)}, {"corners", arrays.add(truth.corners)}};
+  return {{"polygons", std::move(polygons)},
+          {"terms", arrays.add_or_null(truth.terms)},
+          {"offsets", offsets_json(truth, arrays)}};
+}
+
 void add_keyframes(const ModelPart& part, Arrays& arrays, Json& json) {
   Json positions = Json::array(), normals;
   for (const ModelVectors& keyframe : part.keyframe_positions) positions.push_back(arrays.add_keyframe(keyframe));
@@ -137,6 +167,7 @@ Json part_json(const ModelPart& part, Arrays& arrays) {
                {"weighting", weighting_name(part.weighting)},
                {"positions", arrays.add(part.positions)},
                {"normals", arrays.add_or_null(part.normals)}};
+  if (!part.backs.empty()) json["backs"] = arrays.add(part.backs);
   for (const ModelPrimitive& primitive : part.primitives)
     json["primitives"].push_back({{"primitive", primitive.primitive},
                                   {"first", primitive.first},
@@ -146,6 +177,7 @@ Json part_json(const ModelPart& part, Arrays& arrays) {
     add_keyframes(part, arrays, json);
   else
     add_gltf(part, arrays, json);
+  if (!part.truth.is_plain()) json["truth"] = truth_json(part.truth, arrays);
   json["motions"] = Json::array();
   for (const ModelMotion& motion : part.motions) json["motions"].push_back(motion_json(motion, arrays));
   return json;

@@ -4,6 +4,7 @@
 #include "workflow/audit/blend_source.h"
 #include "workflow/report/report_parts.h"
 #include "workflow/shading/gltf_shading.h"
+#include "workflow/truth/author_truth.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -67,13 +68,60 @@ std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Hos
   return result;
 }
 
+// The polygons that are added up, and which corners of them each element adds up where that is more than its own.
+void add_sums(const AuthorTruth& truth, const GltfShading& shading, ModelTruth& result) {
+  const AuthorSums& sums = truth.sums();
+  result.first = {0};
+  for (std::size_t p = 0; p < sums.polygon_count(); ++p) {
+    const std::span<const std::uint32_t> loop = sums.polygon(p);
+    result.corners.insert(result.corners.end(), loop.begin(), loop.end());
+    result.first.push_back(static_cast<std::uint32_t>(result.corners.size()));
+  }
+  if (!truth.rule().any_whole_point && shading.at_the_back.empty()) return;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> terms;
+  for (std::uint32_t e = 0; e < shading.groups.size(); ++e)
+    sums.for_corners(e, [&](std::uint32_t p, std::uint32_t c) { terms.emplace_back(result.first[p] + c, e); });
+  std::sort(terms.begin(), terms.end());
+  for (const auto& [corner, element] : terms) result.terms.insert(result.terms.end(), {corner, element});
+}
+
+void add_offsets(const AuthorTruth& truth, std::size_t targets, ModelTruth& result) {
+  result.offsets.resize(truth.frames().size());
+  for (std::uint32_t e = 0; e < truth.frame_of_element().size(); ++e) {
+    const std::uint32_t n = truth.frame_of_element()[e];
+    if (n == AuthorTruth::kNone) continue;
+    const AuthorTruth::Frame& frame = truth.frames()[n];
+    ModelOffset& offset = result.offsets[n];
+    offset.element = e;
+    offset.is_other_side = frame.side < 0;
+    for (const OffsetEdge& edge : truth.edges().subspan(frame.first_edge, frame.edge_count))
+      offset.edges.insert(offset.edges.end(), {edge.from, edge.to});
+    const Vec3d &z = frame.base_z, &x = frame.base_x;
+    if (frame.edge == AuthorTruth::kNone)
+      offset.turned = {z.x, z.y, z.z, x.x, x.y, x.z};
+    else
+      offset.reference = frame.edge - frame.first_edge;
+    offset.base = {static_cast<float>(frame.base.x), static_cast<float>(frame.base.y)};
+  }
+  if (result.offsets.empty()) return;
+  result.changes.resize(targets);
+  for (std::size_t k = 0; k < truth.changes().size(); ++k) {
+    for (const AuthorTruth::Change& change : truth.changes()[k]) {
+      result.changes[k].offsets.push_back(change.frame);
+      result.changes[k].values.insert(result.changes[k].values.end(),
+                                      {static_cast<float>(change.by.x), static_cast<float>(change.by.y)});
+    }
+  }
+}
+
 }  // namespace
 
-Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh, std::span<const Host> hosts,
-                            WatchedPart watched) {
-  const Result<GltfShading> read = read_gltf_shading(document, mesh);
+Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh, std::optional<Weighting> asked,
+                            std::span<const Host> hosts, WatchedPart watched) {
+  Result<GltfShading> read = read_gltf_shading(document, mesh);
   if (!read) return read.error();
-  const GltfShading& shading = read.value();
+  GltfShading& shading = read.value();
+  const AuthorTruth truth = author_truth(shading, asked);
   const GltfMesh& described = document.meshes()[mesh];
   ModelPart part;
   part.name = described.name;
@@ -83,9 +131,11 @@ Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh, std:
         {p.primitive, p.first_vertex, p.vertex_count, !described.primitives[p.primitive].has_normals});
   const auto corners = shading.set.topology.corners();
   part.triangles.assign(corners.begin(), corners.end());
+  for (std::uint32_t c = 0; c < shading.at_the_back.size(); ++c)
+    if (shading.at_the_back[c]) part.backs.push_back(c);
   part.elements = shading.groups.size();
   part.element = shading.element_of_vertex;
-  part.weighting = watched.motions[0].subject.weighting;
+  part.weighting = truth.rule().weighting;
   part.positions = shading.set.base;
   part.normals = shading.normals;
   part.target_names = described.target_names;
@@ -96,6 +146,8 @@ Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh, std:
   }
   part.mark = shading.mark;
   part.shown = shown_of(shading, hosts);
+  if (truth.rule().any_polygons || truth.rule().any_whole_point) add_sums(truth, shading, part.truth);
+  add_offsets(truth, part.targets.size(), part.truth);
   part.motions = std::move(watched.motions);
   part.peaks = std::move(watched.peaks);
   return part;

@@ -66,7 +66,7 @@ Status read_gltf(const GltfDocument& document, const ReportOptions& options, Rep
   report.audit = std::move(found).value();
   model.kind = "gltf";
   for (auto& [mesh, motions] : watched.take()) {
-    Result<ModelPart> part = gltf_part(document, *mesh, options.hosts, std::move(motions));
+    Result<ModelPart> part = gltf_part(document, *mesh, options.weighting, options.hosts, std::move(motions));
     if (!part) return part.error();
     model.parts.push_back(std::move(part).value());
   }

@@ -3,6 +3,7 @@
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -43,6 +44,33 @@ struct ModelShown {
   double least_weight = 0;
   std::vector<float> normals;         ///< (V, 3)
   std::vector<ModelVectors> targets;  ///< deltas
+};
+
+/// What the author added to the sum of an element, in a frame that the surface carries (truth/offset_frame.h).
+struct ModelOffset {
+  std::uint32_t element = 0;
+  bool is_other_side = false;                  ///< the author shows the other side of the sum
+  std::vector<std::uint32_t> edges;            ///< (n, 2) vertices: from the element to its neighbours
+  std::uint32_t reference = kNoReportElement;  ///< the one of its edges from which azimuths are measured
+  std::array<double, 6> turned = {};           ///< without a reference: z and x of the base
+  std::array<float, 2> base = {};
+};
+
+/// The right normals of a glTF mesh where they are more than sums over its triangles (truth/author_truth.h).
+struct ModelTruth {
+  /// What a target adds to the offsets `offsets` at weight 1.
+  struct Changes {
+    std::vector<std::uint32_t> offsets;
+    std::vector<float> values;  ///< (n, 2)
+  };
+
+  std::vector<std::uint32_t> first, corners;  ///< of polygons; empty where triangles are added up
+  /// (n, 2) corners of polygons, ascending, and elements that add them up; empty where each counts for its vertex
+  std::vector<std::uint32_t> terms;
+  std::vector<ModelOffset> offsets;
+  std::vector<Changes> changes;  ///< of each target; empty where there are no offsets
+
+  [[nodiscard]] bool is_plain() const noexcept { return first.empty() && offsets.empty(); }
 };
 
 /// Weights at all samples as some hosts play them, of the targets that have another weight than 0 at one of them: (S,
@@ -87,6 +115,7 @@ struct ModelPart {
   std::vector<ModelPrimitive> primitives;
   std::vector<std::uint32_t> labels;  ///< (V) the number of each vertex in the file; empty: they count alike
   std::vector<std::uint32_t> triangles, faces, coarse;
+  std::vector<std::uint32_t> backs;  ///< corners of triangles at which a vertex shows the other side of a sheet
   std::size_t elements = 0;
   std::vector<std::uint32_t> element;  ///< (V)
   Weighting weighting = Weighting::kArea;
@@ -96,6 +125,7 @@ struct ModelPart {
   std::vector<ModelVectors> targets;  ///< deltas of positions
   std::optional<GltfBakeMark> mark;
   std::vector<ModelShown> shown;
+  ModelTruth truth;
   // Other motions. Vectors are values, those of keyframe 0 where there are none.
   std::vector<double> times;
   std::vector<std::size_t> keyframe_numbers;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,10 @@
 
 namespace chronormal::inline internal {
 
-/// A mesh of a glTF file, with what `hosts` keep of its normals. Errors: of GltfDocument
-[[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh, std::span<const Host> hosts,
+/// A mesh of a glTF file, with what `hosts` keep of its normals; right is what the author would see, or sums by a
+/// weighting where one is asked for. Errors: of GltfDocument
+[[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh,
+                                          std::optional<Weighting> asked, std::span<const Host> hosts,
                                           WatchedPart watched);
 
 /// The vertices of a motion in a report: a vertex of the file stands there once for each normal that it shows.

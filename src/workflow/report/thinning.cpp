@@ -42,6 +42,11 @@ std::size_t bytes_of_vertices(const ModelPart& part) {
     for (const ModelVectors& target : shown.targets) bytes += bytes_of(target);
   }
   for (const ModelMotion& motion : part.motions) bytes += sizeof(double) * motion.least.size();
+  constexpr std::size_t kOfOffset = 24;
+  numbers += part.truth.first.size() + part.truth.corners.size() + part.truth.terms.size();
+  for (const ModelOffset& offset : part.truth.offsets) bytes += kOfOffset + kNumber * offset.edges.size();
+  for (const ModelTruth::Changes& changes : part.truth.changes)
+    numbers += changes.offsets.size() + changes.values.size();
   return bytes + kNumber * numbers;
 }
 

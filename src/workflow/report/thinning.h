@@ -5,8 +5,8 @@
 ///     triangles   around the worst places all stay, as far as half of the vertices go; the others become fewer, by
 ///                 quadrics (Garland and Heckbert 1997, as meshoptimizer has them), and are not judged
 ///
-/// An element is judged where all of its faces are there, with all of their vertices; so what the normals of a worst
-/// place depend on is as it was.
+/// An element is judged where all that its right normal is made of is there: its faces and its polygons with all of their
+/// vertices, and its edges. So what the normals of a worst place depend on is as it was.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_THINNING_H_
 #define CHRONORMAL_WORKFLOW_REPORT_THINNING_H_
 

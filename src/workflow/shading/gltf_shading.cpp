@@ -5,6 +5,7 @@
 #include <cassert>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "chronormal/normals/transform.h"
 #include "core/blocks.h"
 #include "core/vector_area.h"
+#include "normals/groups/sides.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -210,7 +212,8 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
   Motion base;  // borrows the arrays for a while
   base.topology = std::move(shading.set.topology);
   base.keyframes.push_back({std::move(shading.set.base), 0, ""});
-  Points points = weld(base, shading.set.targets);
+  Points points = options.weld ? weld(base, shading.set.targets) : separate_points(has_normal.size());
+  shading.point_of_vertex = points.point_of_vertex;
   Result<Points> all = Points{};
   if (std::find(has_normal.begin(), has_normal.end(), false) == has_normal.end()) {
     all = std::move(points);
@@ -231,7 +234,7 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
 }
 
 // Splits points by the stored normals of their vertices, which NormalGroups does for corners of faces: so each vertex
-// that shares its point, and has a face, gets one corner of a face that is made up.
+// that shares its point, and has a face, gets all corners of a face that is made up.
 Result<Points> split_by_normals(const Topology& topology, Points points, const std::vector<float>& normals) {
   std::vector<bool> has_face(points.point_of_vertex.size()), is_shared(points.count), is_taken(points.count);
   for (const std::uint32_t v : topology.corners()) has_face[v] = true;
@@ -245,22 +248,25 @@ Result<Points> split_by_normals(const Topology& topology, Points points, const s
   for (std::uint32_t v = 0; v < has_face.size(); ++v)
     if (has_face[v] && is_shared[points.point_of_vertex[v]]) sharing.push_back(v);
   if (sharing.empty()) return points;
-  const std::size_t count = sharing.size();
-  while (sharing.size() % 3 != 0) sharing.push_back(sharing.back());
+  std::vector<std::uint32_t> made_up;
   std::vector<float> of_corner;
-  of_corner.reserve(3 * sharing.size());
+  made_up.reserve(3 * sharing.size());
+  of_corner.reserve(9 * sharing.size());
   for (const std::uint32_t v : sharing) {
     const float* const normal = normals.data() + 3 * std::size_t{v};
-    of_corner.insert(of_corner.end(), normal, normal + 3);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      made_up.push_back(v);
+      of_corner.insert(of_corner.end(), normal, normal + 3);
+    }
   }
-  const Result<Topology> faces = Topology::triangles(topology.vertex_count(), sharing);
+  const Result<Topology> faces = Topology::triangles(topology.vertex_count(), made_up);
   if (!faces) return faces.error();
   const Result<NormalGroups> groups = NormalGroups::by_split_normals(
-      faces.value(), points, VectorView<const float>::packed(of_corner.data(), sharing.size()));
+      faces.value(), points, VectorView<const float>::packed(of_corner.data(), made_up.size()));
   if (!groups) return groups.error();
-  for (std::size_t n = 0; n < count; ++n) {
+  for (std::size_t n = 0; n < sharing.size(); ++n) {
     points.point_of_vertex[sharing[n]] =
-        static_cast<std::uint32_t>(points.count) + groups.value().element_of_corner()[n];
+        static_cast<std::uint32_t>(points.count) + groups.value().element_of_corner()[3 * n];
   }
   points.count += groups.value().size();
   return points;
@@ -281,6 +287,106 @@ void number_by_corners(const Topology& topology, Points& points) {
   points.count = count;
 }
 
+// Which triangles lie back to back: alone, or as two in a row that were cut from a quad.
+struct Backs {
+  std::vector<std::uint32_t> polygon;  // of each triangle, named by its first one
+  std::vector<std::uint32_t> back;     // of each triangle: the polygon at the back of its own, or kNoFace
+
+  [[nodiscard]] bool are_apart(std::uint32_t a, std::uint32_t b) const {
+    return back[a] != kNoFace && back[a] == polygon[b];
+  }
+};
+
+std::optional<Backs> backs_of_triangles(const GltfShading& shading) {
+  const Topology& topology = shading.set.topology;
+  const std::size_t count = topology.face_count();
+  const auto point = [&](std::uint32_t v) { return shading.point_of_vertex[v]; };
+  const std::vector<BackToBack> triangles = find_backs(count, [&](std::uint32_t f, auto& loop) {
+    for (const std::uint32_t v : topology.face(f)) loop.push_back(point(v));
+  });
+  // Quads are named by their first triangles.
+  const std::vector<BackToBack> quads = find_backs(count, [&](std::uint32_t f, auto& loop) {
+    if (f + 1 == count) return;
+    const auto a = topology.face(f), b = topology.face(f + 1);
+    if (a[0] == b[0] && a[2] == b[1]) loop.assign({point(a[0]), point(a[1]), point(a[2]), point(b[2])});
+  });
+  if (triangles.empty() && quads.empty()) return std::nullopt;
+  Backs backs{std::vector<std::uint32_t>(count), std::vector<std::uint32_t>(count, kNoFace)};
+  std::iota(backs.polygon.begin(), backs.polygon.end(), 0U);
+  for (const auto& [face, back] : triangles) {
+    backs.back[face] = back;
+    backs.back[back] = face;
+  }
+  const auto is_free = [&](std::uint32_t f) { return backs.back[f] == kNoFace && backs.back[f + 1] == kNoFace; };
+  for (const auto& [face, back] : quads) {
+    if (!is_free(face) || !is_free(back)) continue;
+    backs.back[face] = backs.back[face + 1] = backs.polygon[back] = backs.polygon[back + 1] = back;
+    backs.back[back] = backs.back[back + 1] = backs.polygon[face] = backs.polygon[face + 1] = face;
+  }
+  return backs;
+}
+
+// The corners at which a vertex shows the side of a sheet that its stored normal does not look to: one value for each
+// corner, or none.
+std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& points) {
+  const Topology& topology = shading.set.topology;
+  const auto corners = topology.corners();
+  const std::optional<Backs> found = backs_of_triangles(shading);
+  std::vector<bool> result;
+  if (!found) return result;
+  const Backs& backs = *found;
+  // The corners of each class that is of both sides.
+  std::vector<bool> may_be(points.count);
+  for (std::uint32_t c = 0; c < corners.size(); ++c)
+    if (backs.back[c / 3] != kNoFace) may_be[points.point_of_vertex[corners[c]]] = true;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> of_classes;
+  for (std::uint32_t c = 0; c < corners.size(); ++c)
+    if (may_be[points.point_of_vertex[corners[c]]]) of_classes.emplace_back(points.point_of_vertex[corners[c]], c);
+  std::sort(of_classes.begin(), of_classes.end());
+  for (std::size_t first = 0, end = 0; first < of_classes.size(); first = end) {
+    for (end = first + 1; end < of_classes.size() && of_classes[end].first == of_classes[first].first;) ++end;
+    const auto here = std::span(of_classes).subspan(first, end - first);
+    std::vector<SideEdge> edges;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> apart;
+    const auto has_back = [&](const auto& corner) { return backs.back[corner.second / 3] != kNoFace; };
+    if (!std::all_of(here.begin(), here.end(), has_back)) continue;
+    for (std::uint32_t n = 0; n < here.size(); ++n) {
+      const std::uint32_t c = here[n].second, f = c / 3;
+      const auto face = topology.face(f);
+      edges.push_back({n, shading.point_of_vertex[face[(c + 1) % 3]], true});
+      edges.push_back({n, shading.point_of_vertex[face[(c + 2) % 3]], false});
+      for (std::uint32_t m = 0; m < n; ++m)
+        if (backs.are_apart(here[m].second / 3, f)) apart.emplace_back(m, n);
+    }
+    if (apart.empty()) continue;
+    const std::vector<std::uint32_t> side = split_sides(here.size(), std::move(edges), apart);
+    const std::uint32_t sides = *std::max_element(side.begin(), side.end()) + 1;
+    // The side that looks where the stored normals do.
+    std::vector<double> along(sides);
+    for (std::size_t n = 0; n < here.size(); ++n) {
+      const std::uint32_t c = here[n].second;
+      const auto face = topology.face(c / 3);
+      const auto at = [](const std::vector<float>& vectors, std::uint32_t v) {
+        const float* const p = vectors.data() + 3 * std::size_t{v};
+        return Vec3d{p[0], p[1], p[2]};
+      };
+      const Vec3d normal = twice_vector_area(3, [&](std::size_t i) { return at(shading.set.base, face[i]); });
+      along[side[n]] += dot(normal, at(shading.normals, corners[c]));
+    }
+    const auto shown = static_cast<std::uint32_t>(std::max_element(along.begin(), along.end()) - along.begin());
+    for (std::size_t n = 0; n < here.size(); ++n) {
+      const bool is_apart = std::any_of(apart.begin(), apart.end(), [&](const auto& pair) {
+        const std::uint32_t a = side[pair.first], b = side[pair.second];
+        return (a == side[n] && b == shown) || (b == side[n] && a == shown);
+      });
+      if (!is_apart) continue;
+      if (result.empty()) result.resize(corners.size());
+      result[here[n].second] = true;
+    }
+  }
+  return result;
+}
+
 Status find_elements(const GltfDocument& document, const GltfShadingOptions& options, GltfShading& shading) {
   const auto& primitives = document.meshes()[shading.mesh].primitives;
   const std::size_t vertices = shading.set.topology.vertex_count();
@@ -294,7 +400,8 @@ Status find_elements(const GltfDocument& document, const GltfShadingOptions& opt
   points = split_by_normals(shading.set.topology, std::move(points).value(), shading.normals);
   if (!points) return invalid_input(mesh_place(document, shading.mesh), points.error().text());
   number_by_corners(shading.set.topology, points.value());
-  shading.groups = NormalGroups::of_vertices(shading.set.topology, points.value());
+  shading.at_the_back = corners_at_the_back(shading, points.value());
+  shading.groups = NormalGroups::of_vertices(shading.set.topology, points.value(), shading.at_the_back);
   shading.element_of_vertex.assign(vertices, GltfShading::kNoElement);
   for (const std::uint32_t v : shading.set.topology.corners())
     if (has_normal[v] || options.smooth) shading.element_of_vertex[v] = points.value().point_of_vertex[v];

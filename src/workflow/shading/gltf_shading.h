@@ -36,6 +36,7 @@ struct GltfShadingOptions {
   double crease_angle = 180;  ///< degrees, for those: edges sharper than this in the base are hard
   /// Whether normal_deltas, tangents and tangent_deltas are kept; otherwise they are checked only.
   bool keep_deltas = true;
+  bool weld = true;  ///< vertices at one point throughout are one
 };
 
 struct GltfShading {
@@ -47,6 +48,12 @@ struct GltfShading {
   NormalGroups groups;          ///< of its topology; outputs are vertices, of flat primitives too
   /// (V), the element of each vertex; kNoElement where it has no face, or its primitive is flat.
   std::vector<std::uint32_t> element_of_vertex;
+  /// (V), which vertices are one point: at one place in the base, with the same deltas in all targets. Below V. For
+  /// whoever looks for the author's truth.
+  std::vector<std::uint32_t> point_of_vertex;
+  /// Corners of faces that lie at the back of those whose normal their vertex shows; elements leave them out. Empty
+  /// where there are none.
+  std::vector<bool> at_the_back;
   std::vector<float> normals;  ///< (V, 3) N as stored; (0, 0, 0) where a primitive has none
   /// Per target the stored deltas (V, 3), or empty where no primitive stores any for it.
   std::vector<std::vector<float>> normal_deltas;

@@ -21,6 +21,9 @@ struct WeightTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   GltfKeys keys;
   std::size_t targets = 0;
+  /// Into how many pieces the curves of extra weights cut each gap of a LINEAR track: one, where what they are for is
+  /// quadratic between keys.
+  std::size_t pieces_of_line = 1;
 
   [[nodiscard]] std::size_t size() const noexcept { return keys.times.size(); }
   [[nodiscard]] double value(std::size_t key, std::size_t target) const noexcept;

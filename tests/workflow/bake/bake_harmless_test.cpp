@@ -267,7 +267,9 @@ TEST(BakeHarmless, nothing_is_worse_than_before_whatever_normals_the_author_gave
       GltfBuilder builder = test::hills_document(2, seed);
       builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, std::vector<float>{0, 0, 1, 0.25F, 0.5F, 1, 0, 0.5F});
       builder = with_deltas(std::move(builder), BakeEncoding::kEndpoint, seed, noise);
-      const Baked result = baked(builder);
+      BakeOptions geometric;  // the right normals are those of the oracle, and not the author's
+      geometric.weighting = Weighting::kArea;
+      const Baked result = baked(builder, geometric);
       for (const Rule rule : {Rule::kSum, Rule::kUnit}) {
         EXPECT_LT(change(result, on_track(result), rule).harm, 0.03);
         EXPECT_LT(change(result, alone(result), rule).harm, 0.03);
@@ -279,6 +281,7 @@ TEST(BakeHarmless, nothing_is_worse_than_before_whatever_normals_the_author_gave
 TEST(BakeHarmless, endpoint_is_no_worse_than_before_where_hosts_add_up) {
   BakeOptions endpoint;
   endpoint.encoding = BakeEncoding::kEndpoint;
+  endpoint.weighting = Weighting::kArea;
   double harm_of_units = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     GltfBuilder builder = test::hills_document(2, seed);
@@ -381,7 +384,8 @@ TEST(BakeHarmless, what_a_target_corrects_of_itself_makes_it_right_half_way) {
   for (const FormLengths lengths : {FormLengths::kUnit, FormLengths::kFree}) {
     const test::GltfFixture file(test::still_hills_document(1, 5));
     const GltfShading shading = read_gltf_shading(*file, 0).value();
-    const NormalTerms terms(shading, Weighting::kArea);
+    const AuthorTruth truth(shading, Weighting::kArea);
+    const NormalTerms terms(shading, truth);
     const std::vector<double> largest(shading.groups.size(), 1.0);
     const RightNormals rights(shading, terms, shading.normals, largest);
     std::vector<std::uint32_t> vertices;

@@ -401,6 +401,7 @@ TEST(BakeSkin, no_normal_gets_worse_behind_the_skin) {
       BakeOptions options = smallest(0.1);
       options.encoding = encoding;
       options.most_targets = kTargets;
+      options.weighting = Weighting::kArea;
       const Baked baked = test::bake_document(builder, options);
       ASSERT_TRUE(baked.ok()) << baked.error;
       std::size_t worse = 0;

@@ -21,7 +21,8 @@ class Field {
   explicit Field(unsigned seed)
       : file_(test::still_hills_document(kTargets, seed)),
         shading_(read_gltf_shading(*file_, 0).value()),
-        terms_(shading_, Weighting::kArea),
+        truth_(shading_, Weighting::kArea),
+        terms_(shading_, truth_),
         is_shown_(shading_.groups.size(), true),
         largest_(shading_.groups.size(), 0.0) {
     std::mt19937 random(seed);
@@ -58,6 +59,7 @@ class Field {
  private:
   test::GltfFixture file_;
   GltfShading shading_;
+  AuthorTruth truth_;
   NormalTerms terms_;
   std::vector<bool> is_shown_;
   std::vector<double> largest_;

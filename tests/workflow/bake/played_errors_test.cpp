@@ -26,7 +26,8 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
 TEST(PlayedErrors, are_those_of_a_sorted_list_of_all_pairs) {
   const test::GltfFixture file(test::still_hills_document(kTargets, kSeed));
   const GltfShading shading = read_gltf_shading(*file, 0).value();
-  const NormalTerms terms(shading, Weighting::kArea);
+  const AuthorTruth truth(shading, Weighting::kArea);
+  const NormalTerms terms(shading, truth);
   const std::vector<double> largest(shading.groups.size(), 1.0);
   const RightNormals rights(shading, terms, shading.normals, largest);
   std::mt19937 random(kSeed);

@@ -66,7 +66,8 @@ TEST(PoseMemory, leaves_the_normals_of_poses_as_they_are) {
   constexpr std::size_t kTargets = 3;
   const test::GltfFixture file(test::still_hills_document(kTargets, 7));
   const GltfShading shading = read_gltf_shading(*file, 0).value();
-  const NormalTerms terms(shading, Weighting::kAngle);
+  const AuthorTruth truth(shading, Weighting::kAngle);
+  const NormalTerms terms(shading, truth);
   ASSERT_TRUE(terms.is_fitted());
   std::vector<std::uint32_t> all(shading.groups.size());
   std::iota(all.begin(), all.end(), 0U);
@@ -77,7 +78,7 @@ TEST(PoseMemory, leaves_the_normals_of_poses_as_they_are) {
       std::vector<double> positions(shading.set.base.size());
       blend_positions(shading.set, pose, positions);
       // As one that was never asked before has them.
-      const std::vector<Vec3d> right = NormalTerms(shading, Weighting::kAngle).weighted_at(pose, positions, all);
+      const std::vector<Vec3d> right = NormalTerms(shading, truth).weighted_at(pose, positions, all);
       EXPECT_EQ(terms.weighted_at(pose, positions, few), (std::vector<Vec3d>{right[3], right[4]}));
       EXPECT_EQ(terms.weighted_at(pose, positions, all), right);
       EXPECT_EQ(terms.exact_at(pose), right);

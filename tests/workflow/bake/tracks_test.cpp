@@ -49,7 +49,8 @@ TEST(Tracks, pieces_that_are_cut_stay_within_the_tolerance) {
 TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_a_gap) {
   const test::GltfFixture file(test::still_hills_document(1, 3));
   const GltfShading shading = read_gltf_shading(*file, 0).value();
-  const NormalTerms terms(shading, Weighting::kArea);
+  const AuthorTruth truth(shading, Weighting::kArea);
+  const NormalTerms terms(shading, truth);
   const std::vector<double> largest(shading.groups.size(), 1.0);
   const RightNormals rights(shading, terms, shading.normals, largest);
   std::vector<VertexVectors> columns(2);  // the target, and its extra one

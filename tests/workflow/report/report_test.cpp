@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,6 +19,7 @@
 
 #include "chronormal/io/output.h"
 #include "tests/support/allocation_counter.h"
+#include "tests/support/authored_mesh.h"
 #include "tests/support/bake_fixture.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/report_file.h"
@@ -70,13 +72,16 @@ ReportFile expect_numbers(const Report& found, std::size_t most_places = kMostWo
   return file;
 }
 
-test::GltfBuilder sheet_file(std::uint64_t seed, double tilt) {
-  test::GltfBuilder builder = test::random_sheet(seed, 9, 3, tilt).file();
+// A file of a mesh with three targets, which an animation plays together.
+test::GltfBuilder talking(const test::ShadedMesh& mesh) {
+  test::GltfBuilder builder = mesh.file();
   const std::size_t animation = builder.add_animation("talk");
   builder.add_track(animation, 0, std::vector<float>{0, 1, 3},
                     std::vector<float>{0, 0, 0, 1, 0.5F, 0.25F, 0.5F, 1.5F, -0.5F});
   return builder;
 }
+
+test::GltfBuilder sheet_file(std::uint64_t seed, double tilt) { return talking(test::random_sheet(seed, 9, 3, tilt)); }
 
 // A box whose six sides are quads, with normals of its sides, so that each of its vertices has three. Its upper side
 // turns, and one corner of it rises, so that no two vertices do the same.
@@ -167,6 +172,53 @@ TEST(Report, numbers_of_another_weighting_follow_from_the_report_alone) {
     const Result<Report> found = report_of_glb(sheet_file(12, 0.1).glb(), options);
     ASSERT_TRUE(found) << found.error().text();
     EXPECT_EQ(expect_numbers(found.value()).part(0)["weighting"], weighting.name);
+  }
+}
+
+TEST(Report, numbers_of_a_file_with_an_author_follow_from_the_report_alone) {
+  for (const std::uint64_t seed : {20U, 21U, 22U}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Result<Report> found = report_of_glb(talking(test::AuthoredMesh(seed, 12).mesh()).glb(), without_plan());
+    ASSERT_TRUE(found) << found.error().text();
+    const ReportFile file = expect_numbers(found.value());
+    const nlohmann::json& part = file.part(0);
+    EXPECT_EQ(part["weighting"], "angle");
+    EXPECT_TRUE(part["faces"].is_null());
+    ASSERT_TRUE(part.contains("truth"));
+    const nlohmann::json &truth = part["truth"], &offsets = truth["offsets"];
+    std::map<std::size_t, std::size_t> polygons;  // by their corners
+    const std::vector<std::uint32_t> first = file.numbers<std::uint32_t>(truth["polygons"]["first"]);
+    for (std::size_t p = 0; p + 1 < first.size(); ++p) ++polygons[first[p + 1] - first[p]];
+    EXPECT_EQ(polygons.size(), 2U);
+    EXPECT_GT(polygons[4], 60U);
+    EXPECT_GT(polygons[6], 0U);
+    EXPECT_GT(file.numbers<std::uint32_t>(truth["terms"]).size(), 2 * first.back());
+    const std::vector<float> sides = file.numbers<float>(offsets["sides"]);
+    EXPECT_GT(std::count(sides.begin(), sides.end(), 1.0F), 0);
+    EXPECT_GT(std::count(sides.begin(), sides.end(), -1.0F), 0);
+    EXPECT_EQ(offsets["turned"]["count"], 6);
+    ASSERT_EQ(offsets["targets"].size(), 3U);
+    for (const nlohmann::json& target : offsets["targets"]) EXPECT_GT(target["indices"]["count"], 0);
+  }
+}
+
+TEST(Report, numbers_of_a_file_with_an_author_and_no_hard_edge_need_no_terms) {
+  const Result<Report> found = report_of_glb(talking(test::AuthoredMesh(24, 12, 0).mesh()).glb(), without_plan());
+  ASSERT_TRUE(found) << found.error().text();
+  const nlohmann::json truth = expect_numbers(found.value()).part(0)["truth"];
+  EXPECT_TRUE(truth["terms"].is_null());
+  EXPECT_FALSE(truth["polygons"].is_null());
+  EXPECT_FALSE(truth["offsets"].is_null());
+}
+
+TEST(Report, numbers_of_what_follows_no_author_need_no_truth) {
+  for (const std::optional<Weighting> asked : {std::optional<Weighting>(), std::optional(Weighting::kMax)}) {
+    ReportOptions options = without_plan();
+    options.weighting = asked;
+    const test::ShadedMesh mesh = asked ? test::AuthoredMesh(20, 12).mesh() : test::random_sheet(11, 9, 3, 0.3);
+    const Result<Report> found = report_of_glb(talking(mesh).glb(), options);
+    ASSERT_TRUE(found) << found.error().text();
+    EXPECT_FALSE(expect_numbers(found.value()).part(0).contains("truth"));
   }
 }
 
@@ -438,6 +490,57 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   }
   EXPECT_EQ(part["elements"], judged);
   EXPECT_GT(judged, 200U);
+}
+
+// What the truth of each judged vertex of part 0 looks at, by the numbers that vertices have in the file: the vertices
+// around its polygons, and the ends of its edges. Throws where one of them is missing.
+std::map<std::size_t, std::vector<std::size_t>> seen_by_truths(const ReportFile& file) {
+  const nlohmann::json &part = file.part(0), &truth = part["truth"], &offsets = truth["offsets"];
+  const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]),
+                                   first = file.numbers<std::uint32_t>(truth["polygons"]["first"]),
+                                   corners = file.numbers<std::uint32_t>(truth["polygons"]["corners"]),
+                                   terms = file.numbers<std::uint32_t>(truth["terms"]),
+                                   bent = file.numbers<std::uint32_t>(offsets["elements"]),
+                                   first_edge = file.numbers<std::uint32_t>(offsets["first"]),
+                                   edges = file.numbers<std::uint32_t>(offsets["edges"]);
+  std::vector<std::size_t> labels;
+  for (std::size_t v = 0; v < elements.size(); ++v) labels.push_back(file.label(part, v));
+  std::map<std::uint32_t, std::vector<std::size_t>> of_element;
+  for (std::size_t i = 0; i < terms.size(); i += 2) {
+    const auto end = std::upper_bound(first.begin(), first.end(), terms[i]);
+    for (std::uint32_t c = *(end - 1); c < *end; ++c) of_element[terms[i + 1]].push_back(labels.at(corners[c]));
+  }
+  for (std::size_t f = 0; f < bent.size(); ++f)
+    for (std::size_t i = 2 * first_edge[f]; i < 2 * first_edge[f + 1]; ++i)
+      of_element[bent[f]].push_back(labels.at(edges[i]));
+  std::map<std::size_t, std::vector<std::size_t>> result;
+  for (std::size_t v = 0; v < elements.size(); ++v)
+    if (elements[v] != ReportFile::kNone) result[labels[v]] = of_element[elements[v]];
+  return result;
+}
+
+TEST(Report, what_an_author_would_see_at_worst_places_stays_whole) {
+  const std::string glb = talking(test::AuthoredMesh(23, 50).mesh()).glb();
+  InputOptions input;
+  input.files = {"a.glb"};
+  input.resolve = [&glb](const std::string&) -> Result<std::string_view> { return std::string_view(glb); };
+  ReportOptions options;
+  options.template_bytes = kTemplate.size();
+  options.samples = 3;
+  options.most_bytes = 120000;
+  const ReportFile file(expect_thinned(input, options).container);
+  const nlohmann::json& part = file.part(0);
+  EXPECT_GT(part["coarse"]["count"], 0);
+  EXPECT_GT(part["truth"]["offsets"]["elements"]["count"], 0);
+  EXPECT_FALSE(part["truth"]["terms"].is_null());
+  options.most_bytes = kMostReportBytes;
+  options.plan = false;
+  const Result<Report> whole = report_of(input, options);
+  ASSERT_TRUE(whole) << whole.error().text();
+  std::map<std::size_t, std::vector<std::size_t>> all = seen_by_truths(ReportFile(whole.value().container)),
+                                                  some = seen_by_truths(file);
+  EXPECT_LT(some.size(), all.size());
+  for (const auto& [label, seen] : some) EXPECT_EQ(seen, all[label]) << label;
 }
 
 TEST(Report, worst_segments_of_a_long_sequence_stay_with_their_neighbours) {

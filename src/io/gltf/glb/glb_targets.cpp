@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<float> base_normals(const Motion& motion) {
-  const Points points = weld_coincident(motion);
+std::vector<float> base_normals(const Motion& motion, bool weld) {
+  const Points points = weld ? weld_coincident(motion) : separate_points(motion.topology.vertex_count());
   const std::vector<float>& base = motion.keyframes[0].positions;
   const auto positions = VectorView<const float>::packed(base.data(), base.size() / 3);
   std::vector<Vec3d> of_points(points.count);
@@ -39,14 +39,14 @@ std::vector<float> base_normals(const Motion& motion) {
 
 }  // namespace
 
-Result<std::string> write_glb_targets(const Motion& motion) {
+Result<std::string> write_glb_targets(const Motion& motion, bool weld) {
   assert(motion.kind == MotionKind::kTargets);
   GlbBuilder builder;
   const std::vector<float>& base = motion.keyframes[0].positions;
   const std::size_t triangles =
       builder.set_triangles(fan_triangles(motion.topology, motion.topology.corners()), base.size() / 3);
   const Json attributes = {{"POSITION", builder.add_vectors(base, {true, true})},
-                           {"NORMAL", builder.add_vectors(base_normals(motion), {false, true})}};
+                           {"NORMAL", builder.add_vectors(base_normals(motion, weld), {false, true})}};
   Json targets = Json::array(), names = Json::array(), weights = Json::array();
   for (std::size_t k = 1; k < motion.keyframes.size(); ++k) {
     std::vector<float> deltas = motion.keyframes[k].positions;

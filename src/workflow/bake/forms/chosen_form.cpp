@@ -210,8 +210,9 @@ ChosenForm choose_endpoint(const DeltaSource& source, const MeshWeights& weights
     forms.push_back(by_vertex(columns_of(own), vertices));
 
   const std::vector<bool> is_new = new_bases(source);
-  const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, options.hosts, is_binding,
-                        options.tolerance.value_or(kHarmlessTolerance));
+  // Keys of a file whose author is known may be right as they are: then no tolerance lets one be turned.
+  const double tolerance = rights.are_by_area() ? options.tolerance.value_or(kHarmlessTolerance) : kHarmless;
+  const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, options.hosts, is_binding, tolerance);
   const std::size_t most = enough_poses(shading, forms);
   const auto numbers = numbers_of_targets(source, stored, vertices);
   const auto sets = [&](const Sampling& sampling) {

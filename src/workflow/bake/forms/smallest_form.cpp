@@ -299,6 +299,34 @@ OwnForm own_form(const DeltaSource& source, const RightNormals& rights, const Ba
   return own;
 }
 
+namespace {
+
+// The stored deltas of the vertices whose choice is 0, and the others of the rest. Lists have ascending vertices.
+std::vector<VertexVectors> mixed_deltas(const OwnForm& own, std::span<const std::uint8_t> choice) {
+  std::vector<std::uint32_t> stored;
+  for (std::size_t n = 0; n < choice.size(); ++n)
+    if (choice[n] == kStored) stored.push_back(own.vertices[n]);
+  std::vector<VertexVectors> result(own.deltas.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    std::vector<std::pair<std::uint32_t, Vec3f>> of_target;
+    const auto take = [&](const VertexVectors& from, bool of_stored) {
+      for (std::size_t n = 0; n < from.vertices.size(); ++n)
+        if (std::binary_search(stored.begin(), stored.end(), from.vertices[n]) == of_stored)
+          of_target.emplace_back(from.vertices[n], from.vectors[n]);
+    };
+    take(own.stored[i], true);
+    take(own.deltas[i], false);
+    std::sort(of_target.begin(), of_target.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [vertex, vector] : of_target) {
+      result[i].vertices.push_back(vertex);
+      result[i].vectors.push_back(vector);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
                            const BakeOptions& options, FormLengths lengths, const OwnForm& own,
                            std::size_t most_extras) {
@@ -310,14 +338,27 @@ ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights
   result.animations_only = options.animations_only;
   result.vertices_ = own.vertices;
   const std::vector<std::uint32_t>& vertices = result.vertices_;
-  result.own_of_form_.push_back(own.deltas);
   std::vector<VertexColumns> forms = {by_vertex(columns_of(own.stored), vertices),
                                       by_vertex(columns_of(own.deltas), vertices)};
+  const std::vector<bool> is_new = new_bases(source);
+  const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, hosts,
+                        std::vector<bool>(hosts.size(), true), tolerance);
+  const auto numbers = numbers_of_targets(source, own.stored, vertices);
+  std::vector<VertexVectors> deltas = own.deltas;
+  if (!rights.are_by_area() && most_extras > 0) {
+    // Extra targets are fitted to what is left of deltas that do no harm by themselves.
+    const std::vector<PoseSet> sets =
+        pose_sets(shading, weights, {}, hosts, numbers,
+                  {4, enough_poses(shading, forms), 0, kFirstSeed, options.animations_only});
+    deltas = mixed_deltas(own, judge.choose(forms, sets, FormPreference::kNearestInFile));
+    forms[1] = by_vertex(columns_of(deltas), vertices);
+  }
+  result.own_of_form_.push_back(deltas);
   ExtraDrivers& drivers = result.drivers;
   const bool refits_own = options.animations_only && lengths == FormLengths::kFree && source.plan.products_fit;
   if ((most_extras > 0 || refits_own) && source.plan.is_driven) {
     const std::size_t for_each = lengths == FormLengths::kFree ? 1 : 2;
-    LowRankForm form = low_rank_form(rights, weights, vertices, shading.element_of_vertex, own.deltas,
+    LowRankForm form = low_rank_form(rights, weights, vertices, shading.element_of_vertex, deltas,
                                      {most_extras / for_each, tolerance, refits_own});
     const std::size_t extras = form.extras.size();
     std::vector<Share> shares = shares_of(rights, std::move(form.extras), lengths);
@@ -335,17 +376,15 @@ ChosenForm choose_low_rank(const DeltaSource& source, const RightNormals& rights
     cut_tracks(rights, weights, hosts, vertices, forms.back(), kSmallestPartOfTracks * tolerance / kDegreesPerRadian,
                drivers, result.track_error);
   }
-  const std::vector<bool> is_new = new_bases(source);
-  const HostJudge judge(rights, vertices, shading.element_of_vertex, is_new, hosts,
-                        std::vector<bool>(hosts.size(), true), tolerance);
-  const auto numbers = numbers_of_targets(source, own.stored, vertices);
   const auto sets = [&](const Sampling& sampling) {
     return pose_sets(shading, weights, drivers, hosts, numbers, sampling);
   };
   const std::size_t most = enough_poses(shading, forms);
   result.choice_ =
       judge.choose(forms, sets({4, most, 0, kFirstSeed, options.animations_only}), FormPreference::kNearestInFile);
-  result.hosts = judge.settle(forms, sets({3, most, 0.37, kSecondSeed, options.animations_only}), result.choice_);
+  // What is no quadratic in the weights is fitted to the file, and to nothing that a program may mix.
+  result.hosts = judge.settle(forms, sets({3, most, 0.37, kSecondSeed, options.animations_only}), result.choice_,
+                              rights.are_by_area());
   drop_unused(vertices, result.choice_, result.extras_, drivers);
   result.kept = kept_elements(shading, vertices, result.choice_);
   return result;

@@ -325,7 +325,7 @@ std::vector<std::uint8_t> HostJudge::choose(std::span<const VertexColumns> forms
 }
 
 std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, std::span<const PoseSet> sets,
-                                          std::vector<std::uint8_t>& choice) const {
+                                          std::vector<std::uint8_t>& choice, bool mixed_count) const {
   constexpr int kMostRounds = 6;
   struct Errors {
     ErrorSpread before, after;
@@ -352,7 +352,7 @@ std::vector<HostChange> HostJudge::settle(std::span<const VertexColumns> forms, 
           if (is_harmed(then[p], now[p])) noted[n] = 1;
       });
       for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
-        if (!of_file && kinds[kind].is_binding)
+        if (!of_file && mixed_count && kinds[kind].is_binding)
           note_what_makes_worse(gathered.before[kind], gathered.after[kind], tolerance_, noted);
         const ErrorSpread then = gathered.before[kind].spread(), now = gathered.after[kind].spread();
         for (const std::size_t h : set.hosts) {

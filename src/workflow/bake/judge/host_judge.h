@@ -77,9 +77,9 @@ class HostJudge {
                                                  FormPreference preference) const;
 
   /// Measures the chosen forms against the stored ones, host by host. Elements whose form is not harmless in these
-  /// poses, and where mixed poses as a whole are worse, those that make them so, get the stored form.
+  /// poses, and where mixed poses as a whole are worse and count, those that make them so, get the stored form.
   [[nodiscard]] std::vector<HostChange> settle(std::span<const VertexColumns> forms, std::span<const PoseSet> sets,
-                                               std::vector<std::uint8_t>& choice) const;
+                                               std::vector<std::uint8_t>& choice, bool mixed_count = true) const;
 
  private:
   struct Kind {

@@ -1,5 +1,5 @@
-// The direction of a right normal is by the weighting that is asked for, its length by area in any case: only areas add
-// up to the same from both sides of a pose.
+// The length of a right normal is by area, whatever weighs its direction (AuthorSum::with_area_length()), in the base and
+// in every pose alike.
 #include "workflow/bake/judge/right_normals.h"
 
 #include <cmath>
@@ -51,10 +51,10 @@ Vec3d RightNormals::stored(std::size_t vertex) const noexcept {
   return to_double(Vec3f{n[0], n[1], n[2]});
 }
 
-Vec3d RightNormals::judged(std::uint32_t element, const Vec3d& by_area, const Vec3d& direction) const noexcept {
-  const double of_base = base_lengths_[element], size = length(by_area);
+Vec3d RightNormals::judged(std::uint32_t element, const Vec3d& normal) const noexcept {
+  const double of_base = base_lengths_[element], size = length(normal);
   if (!(size > kLeastTerms * std::max(of_base, largest_[element]))) return {};
-  return (VertexTerms::has_base(of_base, largest_[element]) ? size / of_base : 1) * unit(direction);
+  return (VertexTerms::has_base(of_base, largest_[element]) ? size / of_base : 1) * unit(normal);
 }
 
 std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose) const {
@@ -69,8 +69,8 @@ std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
   const std::vector<Vec3d> weighted =
       terms_.is_fitted() ? terms_.weighted_at(pose, positions, elements) : std::vector<Vec3d>();
   parallel_each(elements.size(), kRightBlock, [&](std::size_t n) {
-    const Vec3d normal = normal_from_positions(shading_, positions, elements[n]);
-    result[n] = judged(elements[n], normal, weighted.empty() ? normal : weighted[n]);
+    result[n] =
+        judged(elements[n], weighted.empty() ? normal_from_positions(shading_, positions, elements[n]) : weighted[n]);
   });
   return result;
 }

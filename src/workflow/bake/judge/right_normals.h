@@ -28,6 +28,8 @@ class RightNormals {
                const std::vector<double>& largest);
 
   [[nodiscard]] std::size_t targets() const noexcept { return shading_.set.targets.size(); }
+  /// Whether they are by area, and so quadratic in the weights.
+  [[nodiscard]] bool are_by_area() const noexcept { return !terms_.is_fitted(); }
   /// The stored normal of a vertex.
   [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
   /// Of all elements or some of them, before an author's own turn of the base. O(vertices + elements)
@@ -72,7 +74,7 @@ class RightNormals {
     std::vector<std::uint32_t> elements;
     std::vector<std::size_t> of_vertices;
   };
-  [[nodiscard]] Vec3d judged(std::uint32_t element, const Vec3d& by_area, const Vec3d& direction) const noexcept;
+  [[nodiscard]] Vec3d judged(std::uint32_t element, const Vec3d& normal) const noexcept;
 
   const GltfShading& shading_;
   const NormalTerms& terms_;

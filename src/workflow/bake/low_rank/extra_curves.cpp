@@ -59,7 +59,7 @@ struct SplineKey {
 };
 
 ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& curves, std::size_t most_keys) {
-  const CurveNodes nodes(track);
+  const CurveNodes nodes(track, curves);
   const std::size_t columns = track.targets + curves.extras, pieces = nodes.pieces();
   const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline;
   ExtendedTrack result;
@@ -129,7 +129,11 @@ ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& cu
 
 CurveNodes::CurveNodes(const WeightTrack& track) : keys_(track.size()), pieces_(0) {
   if (track.size() < 2 || track.interpolation == GltfInterpolation::kStep) return;
-  pieces_ = track.interpolation == GltfInterpolation::kLinear ? 1 : pieces_of_spline(track);
+  pieces_ = track.interpolation == GltfInterpolation::kLinear ? track.pieces_of_line : pieces_of_spline(track);
+}
+
+CurveNodes::CurveNodes(const WeightTrack& track, const ExtraCurves& curves) : CurveNodes(track) {
+  if (pieces_ > 0 && curves.extras > 0) pieces_ = (curves.values.size() / curves.extras - 1) / (2 * (keys_ - 1));
 }
 
 std::vector<double> CurveNodes::pose(const WeightTrack& track, std::size_t node) const {
@@ -162,7 +166,7 @@ void ExtraCurves::at(const CurveNodes& nodes, std::size_t key, double part, std:
 
 ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& curves,
                                 std::span<const std::uint32_t> pieces, std::size_t most_keys) {
-  const CurveNodes nodes(track);
+  const CurveNodes nodes(track, curves);
   if (nodes.pieces() > 0 && (track.interpolation == GltfInterpolation::kCubicSpline || pieces.empty()))
     return spline_with_curves(track, curves, most_keys);
   if (nodes.pieces() > 0) {

@@ -4,7 +4,8 @@
 /// middles of equal pieces of each gap between two keys, through which it runs as a parabola for each piece:
 ///
 ///     STEP, or a single key    a node at each key; curves hold still as the track does
-///     LINEAR                   a piece for each gap: n(w(t)), and with it all that is missing, is quadratic there
+///     LINEAR                   a piece for each gap where the truth is by area: n(w(t)), and with it all that is
+///                              missing, is quadratic there; else as many as the track says
 ///     CUBICSPLINE              two, four or eight pieces for each gap, so that parabolas are near squares of weights
 ///
 /// Threads    pure
@@ -26,10 +27,14 @@
 
 namespace chronormal::inline internal {
 
+struct ExtraCurves;
+
 /// The nodes of a track.
 class CurveNodes {
  public:
   explicit CurveNodes(const WeightTrack& track);
+  /// The nodes that curves over the track were made with.
+  CurveNodes(const WeightTrack& track, const ExtraCurves& curves);
 
   [[nodiscard]] std::size_t size() const noexcept { return pieces_ == 0 ? keys_ : 2 * pieces_ * (keys_ - 1) + 1; }
   /// Pieces of each gap; 0 where curves hold still between keys.

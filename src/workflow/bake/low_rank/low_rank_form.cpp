@@ -248,7 +248,8 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
   std::vector<PointVertices> points = points_of(rights, vertices, element_of_vertex);
   const FileInstants instants(weights);
   LowRankLimits limits = asked;
-  limits.most_extras = std::min(limits.most_extras, products_of(instants.poses));
+  limits.most_extras =
+      std::min(limits.most_extras, rights.are_by_area() ? products_of(instants.poses) : instants.poses.size());
   if ((limits.most_extras == 0 && !limits.refits_own) || points.empty() || weights.tracks.empty()) return form;
 
   const std::size_t room = kBytes / (6 * sizeof(float) * points.size());

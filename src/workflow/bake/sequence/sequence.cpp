@@ -32,6 +32,7 @@
 #include "workflow/bake/sequence/sequence_deltas.h"
 #include "workflow/bake/sequence/sequence_file.h"
 #include "workflow/bake/sequence/sequence_normals.h"
+#include "workflow/shading/authored_weighting.h"
 
 namespace chronormal {
 namespace {
@@ -41,8 +42,31 @@ using Step = std::function<void(std::size_t done, std::size_t total)>;
 Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options) {
   const bool are_vertices = options.normal_of_corner.count == 0 && options.crease_angle == 180;
   return make_groups(stream, {.kind = are_vertices ? ElementKind::kVertices : ElementKind::kCorners,
+                              .weld = options.weld,
                               .crease_angle = options.crease_angle,
                               .normal_of_corner = options.normal_of_corner});
+}
+
+// The weighting that the stored normals of keyframe 0 follow clearly, or else area. What it would take is weighed, too:
+// fits of all segments are held in memory.
+Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const BakeOptions& options) {
+  constexpr double kMostBytes = 1 << 30, kBytesOfFit = 80;
+  const Motion& motion = stream.motion();
+  const auto segments = static_cast<double>(motion.segments.size());
+  if (options.weighting || options.normal_of_corner.count == 0 ||
+      kBytesOfFit * segments * static_cast<double>(groups.size()) > kMostBytes || !stream.hold(0, 0))
+    return Weighting::kArea;
+  std::vector<StoredNormal> stored;
+  for (std::uint32_t e = 0; e < groups.size(); ++e) {
+    if (groups.corners(e).empty()) continue;
+    const std::size_t c = groups.corners(e)[0];
+    const Vec3d normal = to_double(options.normal_of_corner[c]);
+    if (normal != Vec3d{}) stored.push_back({motion.topology.corners()[c], e, normal});
+  }
+  const std::vector<float>& base = motion.keyframes[0].positions;
+  return find_authored_weighting(motion.topology, VectorView<const float>::packed(base.data(), base.size() / 3), groups,
+                                 std::move(stored))
+      .detected;
 }
 
 // Times as the file has them: float32, and none before 0.
@@ -369,11 +393,23 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& option
   if (const Status status = check_path(motion, options.path); !status) return status.error();
   const Result<NormalGroups> groups = groups_of(stream, options);
   if (!groups) return groups.error();
-  const Result<SequenceNormals> made =
-      SequenceNormals::make(stream, groups.value(), options.weighting.value_or(Weighting::kArea));
+  SequenceBake report;
+  const bool is_authored = !is_curved && encoding != BakeEncoding::kKeys;
+  const VectorView<const float> stored = is_authored ? options.normal_of_corner : VectorView<const float>();
+  Result<SequenceNormals> made = Error{ErrorCode::kFailed, "", ""};
+  if (const Weighting weighting = is_authored ? weighting_of(stream, groups.value(), options) : Weighting::kArea;
+      weighting != Weighting::kArea && !options.weighting) {
+    made = SequenceNormals::make(stream, groups.value(), weighting, stored);
+    if (made)
+      report.weighting = weighting;
+    else
+      report.warnings.push_back("the stored normals are weighted by " + std::string(weighting_name(weighting)) +
+                                ", which cannot be followed here (" + made.error().text() + "): area weighs faces");
+  }
+  if (!made) made = SequenceNormals::make(stream, groups.value(), options.weighting.value_or(Weighting::kArea), stored);
   if (!made) return made.error();
   const SequenceNormals& normals = made.value();
-  SequenceBake report;
+  report.has_offsets = normals.has_offsets();
   Result<std::vector<float>> times = file_times(motion, report.warnings);
   if (!times) return times.error();
 

@@ -42,7 +42,8 @@ bool is_far(float delta) {
 
 }  // namespace
 
-Result<SequenceNormals> SequenceNormals::make(MotionStream& stream, const NormalGroups& groups, Weighting weighting) {
+Result<SequenceNormals> SequenceNormals::make(MotionStream& stream, const NormalGroups& groups, Weighting weighting,
+                                              VectorView<const float> stored) {
   SequenceNormals normals(stream, groups);
   if (const Status status = normals.hold(0, 0); !status) return status.error();
   normals.base_ = normals.motion().keyframes[0].positions;
@@ -50,6 +51,8 @@ Result<SequenceNormals> SequenceNormals::make(MotionStream& stream, const Normal
     if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
     if (const Status status = normals.fit(weighting); !status) return status.error();
   }
+  if (const Status status = normals.hold(0, 0); !status) return status.error();
+  normals.find_offsets(stored);
   return normals;
 }
 
@@ -183,7 +186,7 @@ std::vector<Vec3d> SequenceNormals::vector_areas(const PointRows& points, const 
   return result;
 }
 
-std::vector<Vec3d> SequenceNormals::at_key(std::size_t key) const {
+std::vector<Vec3d> SequenceNormals::computed_at_key(std::size_t key) const {
   if (!fitted_keys_.empty()) return fitted_keys_[key];
   PointRows positions;
   write_positions(key, positions);
@@ -191,14 +194,14 @@ std::vector<Vec3d> SequenceNormals::at_key(std::size_t key) const {
 }
 
 // d = sum of de x df is twice the vector area of the polygon that the displacements of the corners make.
-std::vector<Vec3d> SequenceNormals::bends(std::size_t segment) const {
+std::vector<Vec3d> SequenceNormals::computed_bends(std::size_t segment) const {
   if (!fitted_bends_.empty()) return fitted_bends_[segment];
   PointRows displacements;
   write_displacements(segment, displacements);
   return vector_areas(displacements, exact_bend(segment));
 }
 
-void SequenceNormals::each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const {
+void SequenceNormals::each_computed_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const {
   if (!fitted_keys_.empty()) {
     const std::span<const Vec3d> n = fitted_keys_[segment + 1], d = fitted_bends_[segment];
     return parallel_blocks(elements(), kVertexBlock, [&](IndexRange some) {
@@ -208,6 +211,49 @@ void SequenceNormals::each_block(std::size_t segment, Rows& rows, const AreaSums
   write_positions(segment + 1, rows.positions);
   write_displacements(segment, rows.displacements);
   sums_.each_block(rows.positions, &rows.displacements, exact_at_key(segment + 1), exact_bend(segment), body);
+}
+
+void SequenceNormals::find_offsets(VectorView<const float> stored) {
+  constexpr double kNone = 1e-4;  // radians
+  if (stored.count == 0) return;
+  const std::vector<Vec3d> n = computed_at_key(0);
+  std::vector<ShownTurn> turns(n.size());
+  bool any = false;
+  for (std::size_t e = 0; e < n.size(); ++e) {
+    const auto corners = groups_->corners(e);
+    if (corners.empty()) continue;
+    const Vec3d shown = to_double(stored[corners[0]]);
+    if (n[e] == Vec3d{} || shown == Vec3d{} || angle_between(n[e], shown) <= kNone) continue;
+    turns[e] = ShownTurn(shown, n[e]);
+    any = true;
+  }
+  if (any) turns_ = std::move(turns);
+}
+
+void SequenceNormals::add_offsets(std::size_t first_element, std::span<Vec3d> vectors) const {
+  for (std::size_t i = 0; has_offsets() && i < vectors.size(); ++i) vectors[i] = turns_[first_element + i](vectors[i]);
+}
+
+std::vector<Vec3d> SequenceNormals::at_key(std::size_t key) const {
+  std::vector<Vec3d> n = computed_at_key(key);
+  add_offsets(0, n);
+  return n;
+}
+
+std::vector<Vec3d> SequenceNormals::bends(std::size_t segment) const {
+  std::vector<Vec3d> d = computed_bends(segment);
+  add_offsets(0, d);
+  return d;
+}
+
+void SequenceNormals::each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const {
+  if (!has_offsets()) return each_computed_block(segment, rows, body);
+  each_computed_block(segment, rows, [&](IndexRange some, std::span<const Vec3d> n, std::span<const Vec3d> d) {
+    std::vector<Vec3d> at_key(n.begin(), n.end()), bend(d.begin(), d.end());
+    add_offsets(some.first, at_key);
+    add_offsets(some.first, bend);
+    body(some, at_key, bend);
+  });
 }
 
 }  // namespace chronormal::inline internal

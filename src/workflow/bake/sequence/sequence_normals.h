@@ -18,17 +18,19 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 #include "workflow/bake/sequence/area_sums.h"
+#include "workflow/shading/gltf_shading.h"
 
 namespace chronormal::inline internal {
 
 class SequenceNormals {
  public:
-  /// Reads key 0, and all keyframes to fit all segments where the weighting is not that of areas. Stream and groups
-  /// must outlive this. Errors: kUsage where the fits of two neighbouring segments do not agree at their key, which a
+  /// Reads key 0, and all keyframes to fit all segments where the weighting is not that of areas. Where `stored` has the
+  /// normals of the corners at key 0, (corners, 3), what they add to those of the geometry is added at every instant:
+  /// the rotation there. Stream and groups must outlive this. Errors: kUsage where the fits of two neighbouring segments do not agree at their key, which a
   /// hat cannot show; those of check_deltas(), where there are fits, and of the stream. Memory: that of key 0, and of
   /// the fits.
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
-                                                    Weighting weighting);
+                                                    Weighting weighting, VectorView<const float> stored = {});
 
   /// Holds the positions of keys first to last, until the next hold. The functions below are about keys and segments
   /// that are held. Errors: those of the stream.
@@ -46,6 +48,9 @@ class SequenceNormals {
   [[nodiscard]] std::vector<float> deltas(std::size_t key) const;
   /// The same into memory that is there.
   void deltas(std::size_t key, std::vector<float>& result) const;
+
+  /// Whether stored normals add anything to those of the geometry.
+  [[nodiscard]] bool has_offsets() const noexcept { return !turns_.empty(); }
 
   /// n of every element at a key, and d of every element in a segment. O(corners), on all cores; or a copy.
   [[nodiscard]] std::vector<Vec3d> at_key(std::size_t key) const;
@@ -66,6 +71,13 @@ class SequenceNormals {
   [[nodiscard]] const std::vector<std::vector<double>>& bounds() const noexcept { return bounds_; }
 
  private:
+  // The normals of the geometry.
+  [[nodiscard]] std::vector<Vec3d> computed_at_key(std::size_t key) const;
+  [[nodiscard]] std::vector<Vec3d> computed_bends(std::size_t segment) const;
+  void each_computed_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
+  void find_offsets(VectorView<const float> stored);
+  void add_offsets(std::size_t first_element, std::span<Vec3d> vectors) const;
+
   SequenceNormals(MotionStream& stream, const NormalGroups& groups)
       : stream_(&stream), groups_(&groups), sums_(stream.motion().topology, groups) {}
 
@@ -84,6 +96,7 @@ class SequenceNormals {
   AreaSums sums_;
   std::vector<float> base_;
   std::vector<std::vector<Vec3d>> fitted_keys_, fitted_bends_;
+  std::vector<ShownTurn> turns_;  // of elements; empty where none adds anything
   std::vector<std::vector<double>> bounds_;
 };
 

@@ -1,0 +1,54 @@
+/// Which sums of face normals the normals of a mesh follow. Private to workflow.
+///
+/// The tool that made a mesh weighed polygons or triangles in its own way; what it stored says which. Asked are the
+/// normals of the base and, of each target that stores any, those at weight 1: a base that is flat or a cube is the same
+/// by all rules, and its targets are not.
+///
+///     tells      a stored normal around which two candidates differ by more than 0.1 degrees: elsewhere all agree
+///     distance   of a candidate: the median, over the normals that tell, of the angle to the stored one
+///     found      the candidate at the smallest distance, where that is at most a degree, and two thirds of the
+///                distance of triangles by area; else triangles by area, which are exact at every time
+///
+/// It is the median because it does not ask about the normals that an author bent by hand, nor about targets that are
+/// wrong, as long as most are as they were computed.
+///
+/// Candidates are five weightings of triangles and of quads. The best is then mended around the normals that do not
+/// follow it, as long as that brings them nearer: triangles in a row are put together to larger polygons, and quads are
+/// taken apart; and elements add up their whole point where they follow that and not their own corners.
+#ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
+#define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
+
+#include <cstddef>
+
+#include "chronormal/normals/weighting.h"
+#include "workflow/shading/gltf_shading.h"
+#include "workflow/truth/author_sums.h"
+
+namespace chronormal::inline internal {
+
+struct AuthorRule {
+  Weighting weighting = Weighting::kArea;
+  bool is_followed = false;      ///< or nothing is known of a rule, and area is as good as another
+  bool any_polygons = false;     ///< some triangles count as parts of polygons
+  bool any_whole_point = false;  ///< some elements add up more than the corners that show them
+  std::size_t telling = 0;       ///< stored normals that tell rules apart
+  double distance = 0;           ///< degrees, the median of the candidate that was found
+  double spread = 0;             ///< degrees, the median of how far the candidates are from each other there
+
+  [[nodiscard]] bool is_plain() const noexcept {
+    return weighting == Weighting::kArea && !any_polygons && !any_whole_point;
+  }
+};
+
+struct FoundRule {
+  AuthorRule rule;
+  AuthorSums sums;  ///< empty where the rule is plain, and no target stores normals
+};
+
+/// Finds the rule of a mesh, whose groups must have their corners and whose deltas of normals must be kept. O(corners) for each candidate, base and target, of which some tens
+/// of thousands of normals are asked at most. On all cores; the same bits on any number of threads.
+[[nodiscard]] FoundRule find_author_rule(const GltfShading& shading);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_

@@ -1,0 +1,174 @@
+/// The sums of face normals that an author's normals follow. Private to workflow.
+///
+/// An authoring tool adds up the normals of *polygons* around a vertex, weighted in its own way. A glTF file has
+/// triangles, in the order in which the polygons were cut:
+///
+///     quad         (a, b, c), (a, c, d)     consecutive, with the shared edge at places 0, 2 and 0, 1
+///     larger       any number of triangles in a row, in any order, that fill an outline without a vertex inside
+///
+/// The pattern of quads is strict because pairs that share any edge are often halves of two neighbours. Which faces an
+/// element adds up is a question, too: those whose corners show its normal, or all around the point, as tools do that
+/// give corners of flat faces a normal of their own and go on counting these faces for the others.
+///
+/// What is right here is found out by holding sums against what the file stores (author_rule.h). This file has the
+/// sums.
+///
+/// Shapes     elements are those of GltfShading; positions are those of all its vertices
+/// Threads    const functions may run at once
+#ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_SUMS_H_
+#define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_SUMS_H_
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/normals/weighting.h"
+#include "core/rounding.h"
+#include "core/vector_area.h"
+#include "workflow/shading/gltf_shading.h"
+
+namespace chronormal::inline internal {
+
+/// A weighted sum, and the faces behind it.
+struct AuthorSum {
+  Vec3d normal;
+  double terms = 0;  ///< the lengths of its terms, added up
+  double areas = 0;  ///< those of the normals of its faces, each twice its area long
+
+  /// The same direction, as long as a sum by area of faces that look one way would be; shorter where its terms cancel
+  /// but for a twentieth, so that it comes to zero as the direction is lost.
+  [[nodiscard]] Vec3d with_area_length() const noexcept {
+    constexpr double kLost = 0.05;
+    const double size = length(normal);
+    return size > 0 ? (areas / std::fmax(size, kLost * terms)) * normal : Vec3d{};
+  }
+};
+
+/// What a corner of a polygon adds to a sum. n is the normal of the polygon, twice its area long and not zero; e and f
+/// are the edges from the corner to the next and to the previous one.
+[[nodiscard]] Vec3d author_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept;
+
+/// Triangles put together to polygons again.
+class Polygons {
+ public:
+  explicit Polygons(const Topology& triangles);
+
+  /// Makes one polygon of `count` triangles from `first` on, and triangles of those that it takes apart. Returns false,
+  /// and changes nothing, where their outline is no polygon around all of their vertices.
+  bool join(std::size_t first, std::size_t count);
+  /// Makes quads of all pairs that follow the pattern, within the parts of the mesh. Returns how many.
+  std::size_t join_quads(std::span<const GltfPart> parts);
+
+  /// The first triangle of the polygon that a triangle belongs to; polygons are named by it.
+  [[nodiscard]] std::uint32_t of_triangle(std::size_t triangle) const noexcept {
+    return first_.empty() ? static_cast<std::uint32_t>(triangle) : first_[triangle];
+  }
+  /// How many triangles the polygon that begins with this triangle has.
+  [[nodiscard]] std::size_t triangle_count(std::size_t polygon) const noexcept {
+    return count_.empty() ? 1 : count_[polygon];
+  }
+  /// Its vertices, in order around it.
+  [[nodiscard]] std::span<const std::uint32_t> corners(std::size_t polygon) const noexcept;
+  /// Whether any polygon is more than a triangle.
+  [[nodiscard]] bool any_joined() const noexcept { return joined_ > 0; }
+
+ private:
+  void take_apart(std::size_t polygon);
+
+  const Topology* triangles_;
+  // These are empty until something is joined.
+  std::vector<std::uint32_t> first_, count_;  // of each triangle: its polygon; of a polygon: its triangles
+  std::vector<std::uint32_t> loop_of_;        // where a larger polygon's corners are in loops_, of its first triangle
+  std::vector<std::uint32_t> loops_;          // a larger polygon has two corners more than triangles
+  std::size_t joined_ = 0;
+};
+
+/// The corners of polygons that each element adds up.
+class AuthorSums {
+ public:
+  AuthorSums() = default;
+  /// Adds up the corners that show each element's normal or, where `whole_point` says so for an element, all at its
+  /// point; of elements that are wanted alone, where `wanted` has any: the others have no corners.
+  AuthorSums(const GltfShading& shading, const Polygons& polygons, Weighting weighting,
+             const std::vector<bool>& whole_point, const std::vector<bool>& wanted = {});
+
+  [[nodiscard]] Weighting weighting() const noexcept { return weighting_; }
+
+  /// The sum of an element, from positions that position(vertex) gives. Zero where it is nothing but rounding.
+  template <class PositionOf>
+  [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position) const {
+    return at(element, position, weighting_);
+  }
+  template <class PositionOf>
+  [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position, Weighting weighting) const {
+    constexpr double kRounding = 1e-13;
+    AuthorSum result;
+    for (std::uint32_t i = offsets_[element]; i < offsets_[element + 1]; ++i) {
+      const std::span<const std::uint32_t> loop = polygon(sums_[i].polygon);
+      const Vec3d n = twice_vector_area(loop.size(), [&](std::size_t c) -> Vec3d { return position(loop[c]); });
+      if (n == Vec3d{}) continue;
+      Vec3d term = n;
+      if (weighting != Weighting::kArea) {
+        const std::size_t c = sums_[i].corner, last = loop.size() - 1;
+        const Vec3d here = position(loop[c]);
+        term = author_term(weighting, n, position(loop[c == last ? 0 : c + 1]) - here,
+                           position(loop[c == 0 ? last : c - 1]) - here);
+      }
+      result.normal = result.normal + term;
+      result.terms += length(term);
+      result.areas += length(n);
+    }
+    result.normal = without_rounding(result.normal, kRounding * result.terms);
+    return result;
+  }
+
+  /// The polygons of which some corner is added up, in the order of their triangles, and the vertices around one.
+  [[nodiscard]] std::size_t polygon_count() const noexcept { return loop_offsets_.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> polygon(std::size_t p) const noexcept {
+    return {loops_.data() + loop_offsets_[p], loops_.data() + loop_offsets_[p + 1]};
+  }
+
+  /// Calls visit(polygon, corner) for the corners that an element adds up.
+  template <class Visit>
+  void for_corners(std::uint32_t element, const Visit& visit) const {
+    for (std::uint32_t i = offsets_[element]; i < offsets_[element + 1]; ++i) visit(sums_[i].polygon, sums_[i].corner);
+  }
+
+  /// Calls visit(from, to) for the two edges at each corner that an element adds up, as vertices.
+  template <class Visit>
+  void for_edges(std::uint32_t element, const Visit& visit) const {
+    for (std::uint32_t i = offsets_[element]; i < offsets_[element + 1]; ++i) {
+      const std::span<const std::uint32_t> loop = polygon(sums_[i].polygon);
+      const std::size_t c = sums_[i].corner, last = loop.size() - 1;
+      visit(loop[c], loop[c == last ? 0 : c + 1]);
+      visit(loop[c], loop[c == 0 ? last : c - 1]);
+    }
+  }
+
+  /// Calls visit(vertex) for the vertices whose positions an element looks at; some more than once.
+  template <class Visit>
+  void for_vertices(std::uint32_t element, const Visit& visit) const {
+    for (std::uint32_t i = offsets_[element]; i < offsets_[element + 1]; ++i)
+      for (const std::uint32_t v : polygon(sums_[i].polygon)) visit(v);
+  }
+
+  /// Marks the elements that look at a vertex that is marked.
+  [[nodiscard]] std::vector<bool> elements_around(const std::vector<bool>& vertices) const;
+
+ private:
+  struct Corner {
+    std::uint32_t polygon = 0, corner = 0;
+  };
+
+  Weighting weighting_ = Weighting::kArea;
+  std::vector<std::uint32_t> loop_offsets_ = {0}, loops_;  // vertices of polygons
+  std::vector<std::uint32_t> offsets_ = {0};               // of elements in sums_
+  std::vector<Corner> sums_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_SUMS_H_

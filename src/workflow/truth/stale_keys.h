@@ -1,0 +1,60 @@
+/// Which stored normals of targets tell nothing of their author. Private to workflow.
+///
+/// Another program may have moved vertices after the normals of a target were made, or stored none. A target is *stale*
+/// on a connected part of the mesh where its normals
+///
+///     are no nearer to where the surface turned than those of the base: the median angle between them and what the
+///     faces of their vertices turn the base normals to is at least three quarters of the median of that turn; and
+///     do not turn as the surface does: over the part, their turns and those of the surface, as axes times sines, have
+///     a correlation below a half.
+///
+/// The first alone would find a target whose author weighs faces otherwise. Vertices around which the surface turns by
+/// less than a degree are not asked. It is decided for parts, since exporters drop small deltas.
+#ifndef CHRONORMAL_WORKFLOW_TRUTH_STALE_KEYS_H_
+#define CHRONORMAL_WORKFLOW_TRUTH_STALE_KEYS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "workflow/shading/gltf_shading.h"
+#include "workflow/truth/author_sums.h"
+
+namespace chronormal::inline internal {
+
+/// A target that is stale on some connected parts of the mesh.
+struct StaleKey {
+  std::size_t target = 0;
+  std::size_t vertices = 0;  ///< of these parts, that it turns by more than a degree
+};
+
+class StaleKeys {
+ public:
+  StaleKeys() = default;
+  /// Judges all targets that store normals: by the sums of elements, or else by area around each vertex. O(corners) for
+  /// each, on all cores.
+  explicit StaleKeys(const GltfShading& shading, const AuthorSums* sums = nullptr);
+  /// Keeps those that others find stale, too.
+  void keep_common(const StaleKeys& others);
+
+  [[nodiscard]] bool is_stale(std::size_t target, std::uint32_t vertex) const {
+    return !stale_[target].empty() && stale_[target][part_of_vertex_[vertex]];
+  }
+  /// Whether no part of the mesh that the target turns follows it.
+  [[nodiscard]] bool is_stale_everywhere(std::size_t target) const { return is_all_stale_[target]; }
+  [[nodiscard]] const std::vector<StaleKey>& list() const noexcept { return list_; }
+
+ private:
+  std::vector<std::uint32_t> part_of_vertex_;
+  std::vector<std::vector<bool>> stale_;  // of each target: its parts; empty where none is
+  std::vector<bool> is_all_stale_;        // of each target
+  std::vector<StaleKey> list_;
+};
+
+/// Makes elements of their own of copies of a point whose base normals agree and whose normals at a key do not, unless
+/// the key is stale: an edge may be hard in a target alone. The groups must have their corners.
+void split_by_keys(GltfShading& shading);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_TRUTH_STALE_KEYS_H_

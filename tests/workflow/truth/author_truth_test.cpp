@@ -1,0 +1,287 @@
+// The author's truth against sums over polygons in long double, on meshes that are drawn at random.
+#include "workflow/truth/author_truth.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/gltf_builder.h"
+#include "tests/support/reference_elements.h"
+#include "tests/support/shaded_mesh.h"
+
+namespace chronormal::author_truth_test {
+namespace {
+
+using reference::Real;
+using reference::Vector;
+using test::GltfFixture;
+using test::ShadedMesh;
+
+constexpr unsigned kSeed = 20261126;
+const std::array<const char*, 5> kNames = {"area", "angle", "uniform", "area-angle", "max"};
+
+Vector vector_of(const std::vector<float>& values, std::size_t v) {
+  return {static_cast<Real>(values[3 * v]), static_cast<Real>(values[3 * v + 1]), static_cast<Real>(values[3 * v + 2])};
+}
+
+double degrees_between(const Vector& a, const Vector& b) {
+  using namespace reference;
+  return static_cast<double>(std::atan2(length(cross(a, b)), dot(a, b)) * 180 / kPi);
+}
+
+// Polygons with positions and two targets, and what an author stores for them.
+struct Authored {
+  std::vector<std::vector<std::size_t>> polygons;
+  ShadedMesh file;
+
+  // The polygons at some weights of the targets.
+  [[nodiscard]] reference::Mesh mesh(const std::vector<double>& weights) const {
+    reference::Mesh result{polygons, {}, {}};
+    for (std::size_t v = 0; v < file.vertices(); ++v) {
+      Vector p = vector_of(file.positions, v);
+      for (std::size_t k = 0; k < weights.size(); ++k)
+        p = reference::add(p,
+                           reference::scaled(static_cast<Real>(weights[k]), vector_of(file.targets[k].positions, v)));
+      result.from.push_back(p);
+    }
+    result.to = result.from;
+    return result;
+  }
+  // The weighted sums around all vertices.
+  [[nodiscard]] std::vector<Vector> sums(const std::string& weighting, const std::vector<double>& weights) const {
+    const reference::Mesh at = mesh(weights);
+    std::vector<Vector> result(file.vertices(), Vector{});
+    for (const reference::Corner& corner : reference::corners_of(at)) {
+      Vector& sum = result[reference::vertex_of(at, corner)];
+      sum = reference::add(sum, reference::contribution(at, corner, weighting, 0));
+    }
+    for (Vector& sum : result) sum = reference::normalised(sum);
+    return result;
+  }
+  // Stores normals: those of the base, and deltas of the targets.
+  void store(const std::vector<Vector>& base, const std::vector<std::vector<Vector>>& keys) {
+    file.normals.clear();
+    for (const Vector& n : base)
+      for (const Real c : n) file.normals.push_back(static_cast<float>(c));
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      file.targets[k].normals.clear();
+      for (std::size_t v = 0; v < keys[k].size(); ++v)
+        for (std::size_t c = 0; c < 3; ++c)
+          file.targets[k].normals.push_back(
+              static_cast<float>(keys[k][v][c] - static_cast<Real>(file.normals[3 * v + c])));
+    }
+  }
+  void store_by(const std::string& weighting) {
+    store(sums(weighting, {0, 0}), {sums(weighting, {1, 0}), sums(weighting, {0, 1})});
+  }
+};
+
+// A sheet of quads, with hills, and targets that move every vertex.
+Authored quads(std::mt19937& random, std::size_t side = 9) {
+  Authored mesh;
+  std::uniform_real_distribution<float> hill(-0.35F, 0.35F);
+  for (std::size_t row = 0; row < side; ++row)
+    for (std::size_t column = 0; column < side; ++column)
+      for (const float c :
+           {static_cast<float>(column) + hill(random), static_cast<float>(row) + hill(random), hill(random)})
+        mesh.file.positions.push_back(c);
+  mesh.file.targets.resize(2);
+  for (auto& target : mesh.file.targets)
+    for (std::size_t i = 0; i < mesh.file.positions.size(); ++i) target.positions.push_back(1.5F * hill(random));
+  for (std::size_t row = 0; row + 1 < side; ++row) {
+    for (std::size_t column = 0; column + 1 < side; ++column) {
+      const std::size_t a = row * side + column;
+      mesh.polygons.push_back({a, a + 1, a + side + 1, a + side});
+      for (const std::size_t v : {a, a + 1, a + side + 1, a, a + side + 1, a + side})
+        mesh.file.corners.push_back(static_cast<std::uint32_t>(v));
+    }
+  }
+  return mesh;
+}
+
+struct Truth {
+  explicit Truth(const ShadedMesh& file) : fixture(file.file()), shading(read_gltf_shading(*fixture, 0).value()) {
+    split_by_keys(shading);
+    truth.emplace(shading);
+  }
+  [[nodiscard]] Vector at(std::size_t vertex, const Authored& mesh, const std::vector<double>& weights) const {
+    const std::vector<Vector> places = mesh.mesh(weights).from;
+    const auto position = [&](std::uint32_t v) {
+      return Vec3d{static_cast<double>(places[v][0]), static_cast<double>(places[v][1]),
+                   static_cast<double>(places[v][2])};
+    };
+    const Vec3d n = truth->at(shading.element_of_vertex[vertex], position, truth->pose(weights)).normal;
+    return {n.x, n.y, n.z};
+  }
+
+  GltfFixture fixture;
+  GltfShading shading;
+  std::optional<AuthorTruth> truth;
+};
+
+Vector bent(const Vector& n, std::mt19937& random, double most) {
+  std::uniform_real_distribution<double> part(-1, 1);
+  const Vector by = {part(random), part(random), part(random)};
+  return reference::normalised(reference::add(n, reference::scaled(static_cast<Real>(most), by)));
+}
+
+TEST(AuthorTruth, the_polygons_and_the_weighting_that_keys_follow_are_found) {
+  std::mt19937 random(kSeed);
+  for (std::size_t w = 0; w < kNames.size(); ++w) {
+    SCOPED_TRACE(kNames[w]);
+    for (int draw = 0; draw < 4; ++draw) {
+      Authored mesh = quads(random);
+      mesh.store_by(kNames[w]);
+      const Truth truth(mesh.file);
+      EXPECT_TRUE(truth.truth->rule().is_followed);
+      EXPECT_TRUE(truth.truth->rule().any_polygons);
+      EXPECT_EQ(truth.truth->rule().weighting, kWeightings[w].weighting);
+      EXPECT_TRUE(truth.truth->stale().empty());
+      for (const std::vector<double>& weights : {std::vector<double>{0.5, 0}, {0.3, 0.8}, {-0.4, 1}}) {
+        const std::vector<Vector> right = mesh.sums(kNames[w], weights);
+        for (std::size_t v = 0; v < right.size(); ++v)
+          EXPECT_LT(degrees_between(truth.at(v, mesh, weights), right[v]), 0.02) << v;
+      }
+    }
+  }
+}
+
+TEST(AuthorTruth, a_mesh_of_plain_triangles_keeps_its_triangles) {
+  std::mt19937 random(kSeed + 1);
+  for (int draw = 0; draw < 4; ++draw) {
+    Authored mesh = quads(random);
+    mesh.polygons.clear();
+    for (std::size_t c = 0; c < mesh.file.corners.size(); c += 3)
+      mesh.polygons.push_back({mesh.file.corners[c], mesh.file.corners[c + 1], mesh.file.corners[c + 2]});
+    mesh.store_by("angle");
+    const Truth truth(mesh.file);
+    EXPECT_FALSE(truth.truth->rule().any_polygons);
+    EXPECT_EQ(truth.truth->rule().weighting, Weighting::kAngle);
+    mesh.store_by("area");
+    EXPECT_TRUE(Truth(mesh.file).truth->is_plain());
+  }
+}
+
+TEST(AuthorTruth, larger_polygons_are_found_in_whatever_order_their_triangles_are) {
+  std::mt19937 random(kSeed + 2);
+  for (int draw = 0; draw < 6; ++draw) {
+    // A cylinder of quads with a cap of n corners, which was cut from one of them, at random.
+    const std::size_t n = 5 + random() % 6;
+    Authored mesh;
+    std::uniform_real_distribution<float> hill(-0.15F, 0.15F);
+    for (std::size_t ring = 0; ring < 3; ++ring) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const double angle = 2 * 3.14159265358979 * static_cast<double>(i) / static_cast<double>(n);
+        for (const double c : {std::cos(angle), std::sin(angle), static_cast<double>(ring)})
+          mesh.file.positions.push_back(static_cast<float>(c) + hill(random));
+      }
+    }
+    mesh.file.targets.resize(2);
+    for (auto& target : mesh.file.targets)
+      for (std::size_t i = 0; i < mesh.file.positions.size(); ++i) target.positions.push_back(3 * hill(random));
+    for (std::size_t ring = 0; ring < 2; ++ring) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t a = ring * n + i, b = ring * n + (i + 1) % n;
+        mesh.polygons.push_back({a, b, b + n, a + n});
+        for (const std::size_t v : {a, b, b + n, a, b + n, a + n})
+          mesh.file.corners.push_back(static_cast<std::uint32_t>(v));
+      }
+    }
+    std::vector<std::size_t> cap;
+    for (std::size_t i = 0; i < n; ++i) cap.push_back(2 * n + i);
+    mesh.polygons.push_back(cap);
+    std::vector<std::array<std::size_t, 3>> cut;
+    for (std::size_t i = 1; i + 1 < n; ++i) cut.push_back({cap[0], cap[i], cap[i + 1]});
+    std::shuffle(cut.begin(), cut.end(), random);
+    for (const auto& triangle : cut)
+      for (const std::size_t v : triangle) mesh.file.corners.push_back(static_cast<std::uint32_t>(v));
+    mesh.store_by("angle");
+    const Truth truth(mesh.file);
+    const std::vector<double> weights = {0.4, 0.3};
+    const std::vector<Vector> right = mesh.sums("angle", weights);
+    for (std::size_t v = 0; v < right.size(); ++v)
+      EXPECT_LT(degrees_between(truth.at(v, mesh, weights), right[v]), 0.02) << draw << ", " << v << " of " << n;
+  }
+}
+
+TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
+  std::mt19937 random(kSeed + 3);
+  for (int draw = 0; draw < 4; ++draw) {
+    Authored mesh = quads(random);
+    std::array<std::vector<Vector>, 3> stored = {mesh.sums("angle", {0, 0}), mesh.sums("angle", {1, 0}),
+                                                 mesh.sums("angle", {0, 1})};
+    // A third of the normals is bent, in each key otherwise.
+    for (std::size_t v = 0; v < stored[0].size(); v += 3)
+      for (std::vector<Vector>& of_key : stored) of_key[v] = bent(of_key[v], random, 0.3);
+    mesh.store(stored[0], {stored[1], stored[2]});
+    const Truth truth(mesh.file);
+    EXPECT_EQ(truth.truth->rule().weighting, Weighting::kAngle);
+    EXPECT_GT(truth.truth->offset_count(), stored[0].size() / 4);
+    for (std::size_t v = 0; v < stored[0].size(); ++v) {
+      EXPECT_LT(degrees_between(truth.at(v, mesh, {0, 0}), stored[0][v]), 0.02) << v;
+      EXPECT_LT(degrees_between(truth.at(v, mesh, {1, 0}), stored[1][v]), 0.02) << v;
+      EXPECT_LT(degrees_between(truth.at(v, mesh, {0, 1}), stored[2][v]), 0.02) << v;
+    }
+    // Where nothing was bent the truth is the rule at all weights.
+    const std::vector<Vector> right = mesh.sums("angle", {0.6, 0.7});
+    for (std::size_t v = 1; v < right.size(); v += 3)
+      EXPECT_LT(degrees_between(truth.at(v, mesh, {0.6, 0.7}), right[v]), 0.02) << v;
+  }
+}
+
+TEST(AuthorTruth, a_key_that_does_not_turn_as_the_surface_does_is_stale_and_the_rule_counts) {
+  std::mt19937 random(kSeed + 4);
+  for (const bool is_noise : {false, true}) {
+    Authored mesh = quads(random);
+    const std::vector<Vector> base = mesh.sums("angle", {0, 0});
+    std::vector<Vector> second = base;  // it turns nothing but a little, so that an exporter keeps it
+    for (Vector& n : second) n = bent(n, random, is_noise ? 0.6 : 1e-3);
+    mesh.store(base, {mesh.sums("angle", {1, 0}), second});
+    const Truth truth(mesh.file);
+    ASSERT_EQ(truth.truth->stale().size(), 1U) << is_noise;
+    EXPECT_EQ(truth.truth->stale()[0].target, 1U);
+    const std::vector<Vector> right = mesh.sums("angle", {0, 1});
+    for (std::size_t v = 0; v < right.size(); ++v)
+      EXPECT_LT(degrees_between(truth.at(v, mesh, {0, 1}), right[v]), 0.02) << v;
+  }
+}
+
+TEST(AuthorTruth, an_edge_that_is_hard_in_a_key_alone_stays_hard) {
+  // A box that was flat: the two halves of a sheet, with vertices of their own where they meet, and one normal there.
+  ShadedMesh mesh;
+  mesh.positions = {-1, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  mesh.corners = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
+  for (int v = 0; v < 8; ++v) mesh.normals.insert(mesh.normals.end(), {0, 0, 1});
+  // The right half folds down by a right angle, and shows its own normal.
+  mesh.targets.push_back({{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, -1, -1, 0, -1, 0, 0, 0},
+                          {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, -1, 1, 0, -1, 1, 0, -1},
+                          {}});
+  const Truth truth(mesh);
+  EXPECT_NE(truth.shading.element_of_vertex[1], truth.shading.element_of_vertex[4]);
+  EXPECT_NE(truth.shading.element_of_vertex[2], truth.shading.element_of_vertex[7]);
+  mesh.targets[0].normals.clear();
+  const Truth smooth(mesh);
+  EXPECT_EQ(smooth.shading.element_of_vertex[1], smooth.shading.element_of_vertex[4]);
+}
+
+TEST(AuthorTruth, an_asked_weighting_asks_no_author) {
+  std::mt19937 random(kSeed + 5);
+  Authored mesh = quads(random);
+  mesh.store_by("angle");
+  const GltfFixture fixture(mesh.file.file());
+  const GltfShading shading = read_gltf_shading(*fixture, 0).value();
+  EXPECT_TRUE(AuthorTruth(shading, Weighting::kArea).is_plain());
+  const AuthorTruth uniform(shading, Weighting::kUniform);
+  EXPECT_FALSE(uniform.rule().any_polygons);
+  EXPECT_EQ(uniform.offset_count(), 0U);
+}
+
+}  // namespace
+}  // namespace chronormal::author_truth_test
