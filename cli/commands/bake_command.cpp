@@ -133,8 +133,8 @@ void warn_if_worse(const BakeReport& report, bool of_animations) {
   if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit, of_animations)});
 }
 
-// Audits the input, by audit_before, and the file that was written, both by the normals of the author of a glTF file. A track that got keys is looked at more often than
-// it was, and may show what was there before: the input is looked at as often before the result is called worse. The
+// Audits the input, by audit_before, and the file that was written, both by the normals of the author of a glTF file. A
+// track that got keys is looked at more often than it was, and may show what was there before: the input is looked at as often before the result is called worse. The
 // result is empty where neither has anything that an audit can judge. Errors: kFailed where the written file cannot be
 // read.
 template <class AuditBefore>

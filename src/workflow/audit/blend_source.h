@@ -36,9 +36,9 @@ class BlendSource {
  public:
   static constexpr bool kNeedsEnds = false;
 
-  /// shading, truth and part must outlive this, and so must the skin through which the mesh is seen, if there is one; where its
-  /// joints move, moment says when. Outputs are those of the part. involved are targets, ascending: weights are those
-  /// of them alone, and the others have none at any time. A segment is placed at `samples` moments, one after
+  /// shading, truth and part must outlive this, and so must the skin through which the mesh is seen, if there is one;
+  /// where its joints move, moment says when. Outputs are those of the part. involved are targets, ascending: weights
+  /// are those of them alone, and the others have none at any time. A segment is placed at `samples` moments, one after
   /// the other.
   BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
               std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,

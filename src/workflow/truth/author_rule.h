@@ -1,20 +1,20 @@
 /// Which sums of face normals the normals of a mesh follow. Private to workflow.
 ///
 /// The tool that made a mesh weighed polygons or triangles in its own way; what it stored says which. Asked are the
-/// normals of the base and, of each target that stores any, those at weight 1: a base that is flat or a cube is the same
-/// by all rules, and its targets are not.
+/// normals of the targets at weight 1, with what was added to the base carried along, and where no target tells, those
+/// of the base: a base that is flat or a cube is the same by all rules, and its targets are not.
 ///
-///     tells      a stored normal around which two candidates differ by more than 0.1 degrees: elsewhere all agree
-///     distance   of a candidate: the median, over the normals that tell, of the angle to the stored one
-///     found      the candidate at the smallest distance, where that is at most a degree, and two thirds of the
-///                distance of triangles by area; else triangles by area, which are exact at every time
+///     candidates   five weightings, of triangles and of quads, of an element's own corners and of its whole point
+///     tells        a stored normal around which two candidates differ by more than 0.1 degrees: elsewhere all agree
+///     distance     of a candidate: a quantile, over the normals that tell, of the angle to the stored one
+///     found        the candidate that a tenth of these normals follow to 0.003 degrees, at a third of the distance of
+///                  triangles by area, however much of the mesh was bent by hand; or else the one whose median is
+///                  smallest, where that is at most a degree, and two thirds of that by area; or else triangles by
+///                  area, which are exact at every time
 ///
-/// It is the median because it does not ask about the normals that an author bent by hand, nor about targets that are
-/// wrong, as long as most are as they were computed.
-///
-/// Candidates are five weightings of triangles and of quads. The best is then mended around the normals that do not
-/// follow it, as long as that brings them nearer: triangles in a row are put together to larger polygons, and quads are
-/// taken apart; and elements add up their whole point where they follow that and not their own corners.
+/// What was found is mended around the normals that do not follow it: triangles in a row become larger polygons, quads
+/// are taken apart, and elements add up their whole point, where that makes a normal follow exactly. What is merely
+/// nearer may be so by chance.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 
@@ -45,8 +45,9 @@ struct FoundRule {
   AuthorSums sums;  ///< empty where the rule is plain, and no target stores normals
 };
 
-/// Finds the rule of a mesh, whose groups must have their corners and whose deltas of normals must be kept. O(corners) for each candidate, base and target, of which some tens
-/// of thousands of normals are asked at most. On all cores; the same bits on any number of threads.
+/// Finds the rule of a mesh, whose groups must have their corners and whose deltas of normals must be kept. O(corners)
+/// for each candidate, base and target, of which some tens of thousands of normals are asked at most. On all cores; the
+/// same bits on any number of threads.
 [[nodiscard]] FoundRule find_author_rule(const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

@@ -55,8 +55,8 @@ class AuthorTruth {
     PlaneOffset by;
   };
 
-  /// Finds what the author would see. The shading must outlive this, and have its deltas of normals; its groups need their
-  /// corners for this alone.
+  /// Finds what the author would see. The shading must outlive this, and have its deltas of normals; its groups need
+  /// their corners for this alone.
   explicit AuthorTruth(const GltfShading& shading);
   /// The sums of triangles by a weighting, and nothing that the file stores but the base normals.
   AuthorTruth(const GltfShading& shading, Weighting weighting);

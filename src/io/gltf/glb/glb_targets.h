@@ -10,8 +10,8 @@
 namespace chronormal::inline internal {
 
 /// Makes a GLB of one mesh. Its base has the area-weighted normals of the polygons, which vertices at one point of the
-/// base and of all targets share, unless weld is false; (0, 0, 1) where there is no area. Polygons become fans of triangles. Targets have
-/// deltas of positions alone, sparse where that is smaller, and the names of their keyframes: bake gives them normals.
+/// base and of all targets share, unless weld is false; (0, 0, 1) where there is no area. Polygons become fans of
+/// triangles. Targets have deltas of positions alone, sparse where that is smaller, and the names of their keyframes: bake gives them normals.
 /// The motion must be valid, and have the kind kTargets. Errors: kInvalidInput where the file would be too large.
 [[nodiscard]] Result<std::string> write_glb_targets(const Motion& motion, bool weld = true);
 

@@ -24,11 +24,11 @@ namespace chronormal::inline internal {
 
 class SequenceNormals {
  public:
-  /// Reads key 0, and all keyframes to fit all segments where the weighting is not that of areas. Where `stored` has the
-  /// normals of the corners at key 0, (corners, 3), what they add to those of the geometry is added at every instant:
-  /// the rotation there. Stream and groups must outlive this. Errors: kUsage where the fits of two neighbouring segments do not agree at their key, which a
-  /// hat cannot show; those of check_deltas(), where there are fits, and of the stream. Memory: that of key 0, and of
-  /// the fits.
+  /// Reads key 0, and all keyframes to fit all segments where the weighting is not that of areas. Where `stored` has
+  /// the normals of the corners at key 0, (corners, 3), what they add to those of the geometry is added at every
+  /// instant: the rotation there. Stream and groups must outlive this. Errors: kUsage where the fits of two neighbouring
+  /// segments do not agree at their key, which a hat cannot show; those of check_deltas(), where there are fits, and of
+  /// the stream. Memory: that of key 0, and of the fits.
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting, VectorView<const float> stored = {});
 
