@@ -12,6 +12,8 @@ const FLAG = [(value) => typeof value === 'boolean', 'true or false'];
 const TEXT = [isText, 'a string'];
 const isWord = (value) => isText(value) && value !== '';
 const LIST = [(value) => isWord(value) || (Array.isArray(value) && value.length > 0 && value.every(isWord)), 'a word, or an array of words'];
+const isNumber = (text) => text.trim() !== '' && Number.isFinite(Number(text));
+const RANGE = [(value) => isText(value) && value.split(':').length === 2 && value.split(':').every(isNumber), "two numbers, such as '-1:1'"];
 const NAME = [(value) => isText(value) || NUMBER[0](value), 'a string or a number'];
 
 // How a call is made: meant for the functions, and not for the program.
@@ -31,10 +33,13 @@ const READ = { allowExternal: FLAG, maxExpansion: NUMBER, fps: NUMBER, from: NUM
 const MESHES = { base: TEXT, animation: NAME };
 
 const OPTIONS = {
-  audit: { ...READ, ...MESHES, rule: TEXT, weighting: TEXT, host: LIST, samples: NUMBER, path: TEXT, tolerance: NUMBER, noWeld: FLAG },
+  audit: {
+    ...READ, ...MESHES, rule: TEXT, weighting: TEXT, for: LIST, host: LIST, samples: NUMBER, poses: TEXT, weights: RANGE, path: TEXT,
+    tolerance: NUMBER, noWeld: FLAG,
+  },
   bake: {
     ...READ, for: LIST, encode: TEXT, weighting: TEXT, crease: NUMBER, recomputeBase: FLAG, smooth: FLAG, maxBytes: NUMBER,
-    maxTargets: NUMBER, animationsOnly: FLAG, poses: TEXT, plan: FLAG, path: TEXT, denseZeros: FLAG, tolerance: NUMBER, noAudit: FLAG,
+    maxTargets: NUMBER, animationsOnly: FLAG, poses: TEXT, plan: FLAG, path: TEXT, denseZeros: FLAG, tolerance: NUMBER, noWeld: FLAG, noAudit: FLAG,
   },
   compare: {
     ...READ, ...MESHES, world: FLAG, schemes: LIST, samples: NUMBER, elements: TEXT, crease: NUMBER, noWeld: FLAG, access: TEXT,

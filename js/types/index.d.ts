@@ -52,8 +52,15 @@ interface MotionOptions extends ReadOptions {
 export interface AuditOptions extends MotionOptions {
   rule?: 'gltf' | 'lerp' | 'nlerp' | 'slerp' | 'step' | 'flat';
   weighting?: Weighting;
+  /** The viewers that are judged, too. */
+  for?: Host | 'all' | Array<Host | 'all'>;
+  /** @deprecated the old name of `for` */
   host?: Host | 'all' | Array<Host | 'all'>;
   samples?: number;
+  /** 'random', or a name among `resources`: poses that are judged, too. */
+  poses?: string;
+  /** The weights between which each target is judged alone: '0:1' by default. */
+  weights?: `${number}:${number}`;
   /** How vertices move between the keyframes of a sequence, which is not glTF but .npz, for example: straight by default. */
   path?: PathName;
   tolerance?: number;
@@ -78,6 +85,7 @@ export interface BakeOptions extends ReadOptions {
   path?: PathName;
   denseZeros?: boolean;
   tolerance?: number;
+  noWeld?: boolean;
   noAudit?: boolean;
 }
 

@@ -33,6 +33,8 @@ export interface AuditPlace {
   weight?: number;
   /** Where it is an animation or a sequence. */
   time?: number;
+  /** Its number, where poses were asked for. */
+  pose?: number;
 }
 
 /** How far the shown normals are from the right ones, over all pairs of a vertex and a moment. */
@@ -56,7 +58,7 @@ export interface HistogramBin {
 }
 
 export interface AuditSubject extends MotionError {
-  kind: 'target' | 'track' | 'sequence' | 'expression';
+  kind: 'target' | 'track' | 'sequence' | 'expression' | 'opening' | 'poses';
   name: string;
   mesh: number | null;
   target: number | null;
@@ -96,6 +98,8 @@ export interface AuthoredOffset {
   vertices: number;
   weighting: Weighting;
   weighting_detected: boolean;
+  /** Whether the right normals are weighed by polygons, of which the file has the triangles. */
+  polygons: boolean;
   worst_degrees: number;
   mean_degrees: number;
   worst_at: AuditPlace | null;
@@ -106,8 +110,8 @@ export interface AuthoredOffset {
 }
 
 export interface AuditFinding {
-  kind: 'unlit' | 'missing_normals' | 'wrong_at_keys' | 'wrong_between' | 'wrong_together' | 'stale_tangents' | 'flat_primitive' | 'skin'
-    | 'unread_skin' | 'baked' | 'emptied' | 'baked_keyframes' | 'beyond_host';
+  kind: 'unlit' | 'missing_normals' | 'wrong_at_keys' | 'wrong_between' | 'wrong_together' | 'wrong_pose' | 'stale_tangents' | 'stale_keys'
+    | 'unknown_rule' | 'flat_primitive' | 'skin' | 'unread_skin' | 'baked' | 'emptied' | 'baked_keyframes' | 'beyond_host';
   fault: boolean;
   mesh: number | null;
   target: number | null;

@@ -26,7 +26,7 @@ async function use() {
   const input = new Uint8Array(await (await fetch('/bumps.glb')).arrayBuffer());
   const said = [];
   for (const worker of [true, false]) {
-    const { report } = await audit(input, { name: 'bumps.glb', host: 'three', worker });
+    const { report } = await audit(input, { name: 'bumps.glb', for: 'three', worker });
     const refused = await bake(input.slice(0, 40), { worker }).catch((error) => error);
     said.push({ report, refused: refused instanceof ChronormalError ? refused.code : String(refused) });
   }

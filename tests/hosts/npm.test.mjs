@@ -246,7 +246,7 @@ test('the command of the README works in the command line of glTF-Transform', as
   const run = (words) => spawnSync(process.execPath, [cli, ...words], { cwd: folder, encoding: 'utf8' });
   const { status, stdout, stderr } = run(args);
   assert.equal(status, 0, stdout + stderr);
-  const before = await audit(face, { host: ['three'] }), after = await audit(readFileSync(join(folder, 'bumps.right.glb')), { host: ['three'] });
+  const before = await audit(face, { for: ['three'] }), after = await audit(readFileSync(join(folder, 'bumps.right.glb')), { for: ['three'] });
   assert.ok(after.report.mean_degrees < 0.5 * before.report.mean_degrees, `${after.report.mean_degrees}`);
   const wrong = run(args.map((word) => (word === 'three,godot' ? 'four' : word)));
   assert.notEqual(wrong.status, 0);

@@ -50,9 +50,9 @@ export async function use(input: Uint8Array, document: Document): Promise<number
     for: ['three', 'godot'], tolerance: 0.5, maxTargets: 112, onProgress: ({ label, percent }) => console.log(label, percent),
   });
   await document.transform(chronormal({ for: 'all', onReport: ({ schema }) => console.log(schema) }));
-  try { await audit(bytes, { host: ['three'], samples: 8 }); } catch (error) { if (error instanceof ChronormalError) return error.code; }
+  try { await audit(bytes, { for: ['three'], samples: 8 }); } catch (error) { if (error instanceof ChronormalError) return error.code; }
   await audit(bytes, { name: 'walk.npz', path: 'catmull-rom' });
-  await audit(bytes, { host: 'three' });
+  await audit(bytes, { for: 'three', weights: '-1:1' });
   await bake(input, { for: 'three' });
   // @ts-expect-error: a plan is no file
   (await bake(input, { plan: true })).bytes;
