@@ -60,7 +60,8 @@ async function checkRoundTrip(context, original) {
   context.diagnostic(`Blender ${before.version}`);
   for (const encoding of ['harmless', 'exact']) {
     const [baked, again, anew] = ['baked', 'again', 'anew'].map((name) => join(folder, `${encoding}_${name}.glb`));
-    chronormal('bake', original, '-o', baked, '--encode', encoding, '--force', '--no-audit', '--quiet');
+    const bake = (from, to) => JSON.parse(chronormal('bake', from, '-o', to, '--encode', encoding, '--force', '--json', '--quiet')).audit;
+    const first = bake(original, baked);
     const extras = before.meshes.map(({ keys }) => keys.length);
     const imported = throughBlender(baked, again);
     const apart = distance(before, imported);
@@ -71,15 +72,16 @@ async function checkRoundTrip(context, original) {
 
     assert.ok(kinds(again).includes('emptied'), `${encoding}: ${kinds(again)}`);
     assert.ok(!kinds(again).includes('baked'));
-    chronormal('bake', again, '-o', anew, '--encode', encoding, '--force', '--no-audit', '--quiet');
+    const second = bake(again, anew);
     assert.deepEqual(await newComplaints(anew, again), []);
     assert.ok(kinds(anew).includes('baked') && !kinds(anew).includes('emptied'), `${encoding}: ${kinds(anew)}`);
-    const [first, second] = [audited(baked), audited(anew)];
-    const text = ({ mean_degrees: mean, worst_degrees: worst }) => `${mean.toFixed(3)} / ${worst.toFixed(2)}`;
-    const outcome = `${encoding}: exported by Blender ${text(audited(again))}, baked first ${text(first)}, again ${text(second)}`;
+    // The author of the second file is Blender, which made its normals anew: what is right of it is no polynomial, and fitted.
+    const text = ({ mean_degrees_before: before, mean_degrees_after: mean, worst_degrees_after: worst }) =>
+      `${before.toFixed(3)} on average -> ${mean.toFixed(3)} / ${worst.toFixed(2)}`;
+    const outcome = `${encoding}: first ${text(first)}, again ${text(second)}`;
     context.diagnostic(outcome);
-    // Blender writes weights at every frame, and normals with a few decimals, which it made from all faces of a vertex.
-    assert.ok(second.mean_degrees <= 1.1 * first.mean_degrees + 0.01, outcome);
+    assert.ok(second.mean_degrees_after <= Math.max(1.2 * first.mean_degrees_after + 0.05, 0.1 * second.mean_degrees_before), outcome);
+    assert.ok(second.worst_degrees_after <= second.worst_degrees_before + 0.05, outcome);
     const spare = join(folder, 'spare.glb');
     if (encoding === 'harmless') assert.ok(distance(throughBlender(again, spare), throughBlender(anew, spare)) < 1e-5);
   }
