@@ -90,8 +90,8 @@ class NormalGroups {
   /// Makes an element of each point, with all of its corners. Outputs are vertices; elements are numbered as points.
   /// The points must be of this topology. O(corners log corners), as are all builders unless they say otherwise.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points);
-  /// The same, with some corners left out of the elements of their points: those of each point become an element of
-  /// their own, which no vertex shows. left_out has one value for each corner.
+  /// Leaves some corners out of the elements of their points. Those of each point become an element of their own, which
+  /// no vertex shows. left_out has one value for each corner.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points,
                                                 const std::vector<bool>& left_out);
 

@@ -142,7 +142,7 @@ struct AuditSubject {
 
 /// "target", "track", "sequence", "expression", "opening" or "poses".
 [[nodiscard]] const char* audit_subject_name(AuditSubject::Kind kind) noexcept;
-/// What a sample of a subject is found by: "weight", "time" or, of poses, its number: "pose".
+/// Names what a sample of a subject is found by: "weight", "time" or, of poses, its number: "pose".
 [[nodiscard]] const char* audit_moment_name(AuditSubject::Kind kind) noexcept;
 
 /// How far stored base normals are from the geometry.

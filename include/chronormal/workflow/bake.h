@@ -53,7 +53,7 @@ struct BakeOptions {
   std::optional<Weighting> weighting = {};
   bool smooth = false;        ///< primitives without NORMAL get normals, instead of staying flat
   double crease_angle = 180;  ///< degrees: hard edges of those, and of sequences
-  /// Of sequences: normals of keyframe 0, one for each corner, or empty. They say which edges are hard in place of the
+  /// Normals of keyframe 0 of a sequence, one for each corner, or empty. They say which edges are hard in place of the
   /// crease angle and, unless one is asked for, which weighting the right normals have. What they add to those is kept
   /// throughout. (keys and curved paths take hard edges alone.)
   VectorView<const float> normal_of_corner = {};

@@ -53,7 +53,7 @@ struct SideEdge {
 /// itself stays as it is. O(F), and O(F log F) where sheets may have two sides
 void keep_sides_apart(const Topology& topology, Points& points);
 
-/// The same of sets of corners, each named by any of its corners: those of one side get a name of their own.
+/// Takes sets of corners apart in this way. A set is named by any of its corners, and each side gets a name of its own.
 void take_sides_apart(const Topology& topology, const Points& points, std::vector<std::uint32_t>& set_of_corner);
 
 }  // namespace chronormal::inline internal

@@ -159,7 +159,7 @@ UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, const Loca
   return fine_unit_normal(segment, f, t);
 }
 
-// What elements share in one evaluation.
+// Everything that elements share in one evaluation.
 struct FacesAtTime {
   explicit FacesAtTime(const Segment& segment) : faces(segment) {}
 

@@ -15,7 +15,7 @@ namespace chronormal::inline internal {
 void weighted_normals_at(const SharedFaces& shared, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 
-/// The same for all elements, on all cores.
+/// Returns them for all elements, on all cores.
 [[nodiscard]] std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups,
                                                          Weighting weighting, const LocalTime& t,
                                                          std::span<const Vec3d> of_faces);

@@ -184,7 +184,7 @@ Vec3f BlendSource::shown(const JudgedOutput& output) const {
 
 Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal, SkinRule rule) const {
   const std::size_t i = number(output);
-  // Where the truth has no direction the geometry is all that there is.
+  // The geometry is all that there is where the truth has no direction.
   const bool by_truth = !right_.empty() && normal != Vec3d{} && right_[output.element] != Vec3d{};
   return seen(i, turns_[i](unit(by_truth ? right_[output.element] : normal)), rule);
 }

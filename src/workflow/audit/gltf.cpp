@@ -76,7 +76,7 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
   return tracks;
 }
 
-// How far base normals are from the sums that the truth adds up.
+// Measures how far base normals are from the sums that the truth adds up.
 void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, AuthoredOffset& offset) {
   const auto position = [&](std::uint32_t v) { return to_double(vector_at(shading.set.base, v)); };
   std::vector<Vec3d> sums(shading.groups.size());
@@ -113,7 +113,7 @@ void note_offset(const GltfShading& shading, const AuthorTruth& truth, std::opti
   result.offsets.push_back(offset);
 }
 
-// What a mesh was before it was baked; nothing where that is not known.
+// Reads what a mesh was before it was baked; returns nothing where that is not known.
 Result<std::optional<GltfShading>> shading_of_author(const AuditOptions& options, const GltfShading& baked) {
   if (options.author == nullptr || baked.mesh >= options.author->meshes().size()) return std::optional<GltfShading>();
   Result<GltfShading> read = read_gltf_shading(*options.author, baked.mesh, {.weld = options.weld});

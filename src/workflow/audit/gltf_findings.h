@@ -37,7 +37,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged,
                                                          double worst_target);
 
-/// What there is to note of the author's normals: keys that tell nothing of them, and a rule that is not known.
+/// Notes keys that tell nothing of the author's normals, and a rule that is not known.
 [[nodiscard]] std::vector<AuditFinding> notes_of_truth(const GltfShading& shading, const AuthorTruth& truth);
 
 /// The fault of a pose in which a file opens, or of those that were asked for.

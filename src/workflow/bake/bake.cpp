@@ -89,7 +89,7 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
   return result;
 }
 
-// What the author of a mesh would see, unless a weighting is asked for. Base normals that are made anew have no author.
+// Finds what the author would see, unless a weighting is asked for. Base normals that are made anew have no author.
 AuthorTruth truth_of(GltfShading& shading, const BakeOptions& options) {
   if (options.recompute_base) return {shading, options.weighting.value_or(Weighting::kArea)};
   return author_truth(shading, options.weighting);

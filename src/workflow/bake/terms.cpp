@@ -23,7 +23,7 @@ void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {
   }
 }
 
-// Where vertices are on the way from the base to other positions.
+// Returns a function of where vertices are on the way from the base to other positions.
 auto on_the_way(const BlendSet& set, const std::vector<float>& to, double t) {
   return [&set, &to, t](std::uint32_t v) {
     const float* const from = set.base.data() + 3 * std::size_t{v};

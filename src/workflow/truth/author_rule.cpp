@@ -69,7 +69,7 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
   return edges;
 }
 
-// How far candidates are from what is stored, in degrees.
+// Angles between candidates and what is stored, in degrees.
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
@@ -259,7 +259,7 @@ class Mending {
     return best > 0;
   }
 
-  // How many more elements around follow their sums with a run of triangles as one polygon than without. What is merely
+  // Counts how many more elements around follow their sums with a run of triangles as one polygon. What is merely
   // nearer may be so by chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
     std::vector<std::pair<std::size_t, std::size_t>> before;  // polygons that it takes apart
@@ -381,12 +381,12 @@ class Candidates {
     return std::nullopt;
   }
 
-  // Whether keys agree with all candidates, so that nothing speaks against the quads that the file was cut from.
+  // Returns whether keys agree with all candidates: nothing speaks then against the quads that the file was cut from.
   [[nodiscard]] bool are_quads_as_good() const {
     return is_of_quads_ && keys_.silent > keys_.told[0].size() && 2 * keys_.silent_off < keys_.silent;
   }
 
-  // Whether all that was asked follows a candidate to the last digit, so that there is nothing to mend.
+  // Returns whether all that was asked follows a candidate to the last digit, so that there is nothing to mend.
   [[nodiscard]] bool do_all_follow(std::size_t c) const {
     const auto follows = [](float degrees) { return degrees <= kOff; };
     return keys_.silent_off == 0 && of_base_.silent_off == 0 &&

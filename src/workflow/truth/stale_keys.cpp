@@ -69,7 +69,7 @@ std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums
   return result;
 }
 
-// What is found of a connected part.
+// Sums over a connected part of the mesh.
 struct PartOfKey {
   std::vector<float> turned, off;  // radians, of the vertices that turn
   double together = 0, of_surface = 0, of_stored = 0;
