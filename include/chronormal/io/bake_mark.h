@@ -68,6 +68,7 @@ struct GltfBakeMark {
   bool sequence = false;                ///< the targets are keyframes: alone, from the base, they mean nothing
   std::vector<GltfExtraTarget> extras;  ///< ascending targets; the file need not list any
   bool animations_only = false;         ///< deltas are fitted to the animations of the file, and mean nothing alone
+  bool author = false;  ///< normals of each target at weight 1 are what the author of the input would see
 };
 
 }  // namespace chronormal

@@ -277,7 +277,8 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
     if (Status status = check_size(); !status) return status;
   }
   writer.append_weights(baked.report.extras, deltas.grown.drivers.rest);
-  baked.report.unmarked_nodes = writer.set_mark({plan.encoding, false, baked.report.extras, is_of_animations});
+  baked.report.unmarked_nodes = writer.set_mark(
+      {plan.encoding, false, baked.report.extras, is_of_animations, truth.follows_keys() && !is_of_animations});
   baked.report.bytes = edit.added_bytes() - bytes_before;
 
   baked.grown = std::move(deltas.grown);

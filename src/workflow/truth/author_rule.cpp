@@ -413,13 +413,11 @@ class Candidates {
 
   // So many of the elements whose normals a key turns, evenly.
   [[nodiscard]] std::vector<std::uint32_t> elements_to_ask(std::optional<std::size_t> target, std::size_t most) const {
-    const std::vector<float>* const deltas = target ? &shading_.normal_deltas[*target] : nullptr;
+    const StoredKey key = key_of(shading_, target);
     std::vector<std::uint32_t> elements;
     for (std::uint32_t e = 0; e < vertex_of_.size(); ++e) {
-      const std::size_t v = vertex_of_[e];
-      if (v == kNoVertex) continue;
-      if (deltas == nullptr || (*deltas)[3 * v] != 0 || (*deltas)[3 * v + 1] != 0 || (*deltas)[3 * v + 2] != 0)
-        elements.push_back(e);
+      const std::uint32_t v = vertex_of_[e];
+      if (v != kNoVertex && (!target || key.turns(v))) elements.push_back(e);
     }
     const std::size_t step = elements.size() / most + 1;
     std::vector<std::uint32_t> some;

@@ -220,7 +220,7 @@ AuthorTruth::AuthorTruth(const GltfShading& shading, Weighting weighting) : shad
   sums_ = AuthorSums(shading, Polygons(shading.set.topology), weighting, std::vector<bool>(shading.groups.size()));
 }
 
-AuthorTruth::AuthorTruth(const GltfShading& shading) : shading_(&shading) {
+AuthorTruth::AuthorTruth(const GltfShading& shading, bool any_split) : shading_(&shading), any_split_(any_split) {
   FoundRule found = find_author_rule(shading);
   rule_ = found.rule;
   sums_ = std::move(found.sums);
@@ -272,8 +272,8 @@ std::vector<std::uint32_t> AuthorTruth::elements_of(std::size_t target) const {
 
 AuthorTruth author_truth(GltfShading& shading, std::optional<Weighting> asked) {
   if (asked) return {shading, *asked};
-  split_by_keys(shading);
-  return AuthorTruth(shading);
+  const bool any_split = split_by_keys(shading);
+  return AuthorTruth(shading, any_split);
 }
 
 }  // namespace chronormal::inline internal

@@ -56,8 +56,8 @@ class AuthorTruth {
   };
 
   /// Finds what the author would see. The shading must outlive this, and have its deltas of normals; its groups need
-  /// their corners for this alone.
-  explicit AuthorTruth(const GltfShading& shading);
+  /// their corners for this alone. any_split says whether split_by_keys() made elements of it.
+  explicit AuthorTruth(const GltfShading& shading, bool any_split = false);
   /// The sums of triangles by a weighting, and nothing that the file stores but the base normals.
   AuthorTruth(const GltfShading& shading, Weighting weighting);
 
@@ -66,6 +66,9 @@ class AuthorTruth {
   [[nodiscard]] const AuthorSums& sums() const noexcept { return sums_; }
   /// Whether the truth is n(w), by area, with what is added to the base turned along as it is, so that it can be exact.
   [[nodiscard]] bool is_plain() const noexcept { return rule_.is_plain() && frames_.empty(); }
+  /// Whether the normals that targets store have a part in the truth, beyond what area weighs: a bake that keeps them
+  /// says so in its mark.
+  [[nodiscard]] bool follows_keys() const noexcept { return !is_plain() || any_split_; }
   [[nodiscard]] std::span<const StaleKey> stale() const noexcept { return stale_; }
   /// How many elements have an offset.
   [[nodiscard]] std::size_t offset_count() const noexcept { return frames_.size(); }
@@ -113,6 +116,7 @@ class AuthorTruth {
   std::vector<std::uint32_t> frame_of_element_;  // or empty, where no element has an offset
   std::vector<std::vector<Change>> changes_;     // of each target, by frames
   std::vector<StaleKey> stale_;
+  bool any_split_ = false;
 };
 
 /// What the author of a mesh would see, or sums by a weighting where one is asked for. Copies of a point that a key

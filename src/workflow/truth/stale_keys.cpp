@@ -140,9 +140,9 @@ void StaleKeys::keep_common(const StaleKeys& others) {
   list_ = std::move(kept);
 }
 
-void split_by_keys(GltfShading& shading) {
+bool split_by_keys(GltfShading& shading) {
   const std::vector<std::size_t> targets = targets_with_normals(shading);
-  if (targets.empty() || shading.groups.size() == 0) return;
+  if (targets.empty() || shading.groups.size() == 0) return false;
   const std::vector<std::uint32_t> vertex_of = vertices_of_elements(shading);
   // Vertices that share their elements, since others can be split from nobody.
   std::vector<std::uint32_t> sharing;
@@ -150,7 +150,7 @@ void split_by_keys(GltfShading& shading) {
     const std::uint32_t e = shading.element_of_vertex[v];
     if (e != GltfShading::kNoElement && vertex_of[e] != v) sharing.push_back(v);
   }
-  if (sharing.empty()) return;
+  if (sharing.empty()) return false;
   const double chord = kSplitNormalTolerance / kDegreesPerRadian;
   std::optional<StaleKeys> stale;  // found out where it matters
   std::vector<std::uint32_t> classes(shading.groups.element_of_output().begin(),
@@ -186,10 +186,11 @@ void split_by_keys(GltfShading& shading) {
       first_of.push_back(v);
     }
   }
-  if (count == shading.groups.size()) return;
+  if (count == shading.groups.size()) return false;
   shading.groups = NormalGroups::of_vertices(shading.set.topology, {classes, count}, shading.at_the_back);
   for (std::uint32_t v = 0; v < classes.size(); ++v)
     if (shading.element_of_vertex[v] != GltfShading::kNoElement) shading.element_of_vertex[v] = classes[v];
+  return true;
 }
 
 }  // namespace chronormal::inline internal

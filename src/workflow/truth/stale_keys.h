@@ -52,8 +52,9 @@ class StaleKeys {
 };
 
 /// Makes elements of their own of copies of a point whose base normals agree and whose normals at a key do not, unless
-/// the key is stale: an edge may be hard in a target alone. The groups must have their corners.
-void split_by_keys(GltfShading& shading);
+/// the key is stale: an edge may be hard in a target alone. The groups must have their corners. Returns whether there
+/// are any.
+bool split_by_keys(GltfShading& shading);
 
 }  // namespace chronormal::inline internal
 

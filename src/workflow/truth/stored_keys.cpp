@@ -10,6 +10,25 @@ Vec3d vector_of(const std::vector<float>& values, std::size_t vertex) noexcept {
   return {v[0], v[1], v[2]};
 }
 
+// Returns the weight of an extra target where a target alone has the weight 1.
+double weight_at_key(const GltfExtraTarget& extra, std::size_t target) {
+  double weight = 0;
+  for (const auto& term : extra.linear) weight += term.i == target ? term.a : 0;
+  for (const auto& term : extra.quadratic) weight += term.i == target && term.j == target ? term.q : 0;
+  return weight;
+}
+
+// Calls visit(target, weight) for the targets that show something where one alone has the weight 1.
+template <class Visit>
+void for_shown_at_key(const GltfShading& shading, std::size_t target, const Visit& visit) {
+  if (!shading.normal_deltas[target].empty()) visit(target, 1.0);
+  if (!shading.mark) return;
+  for (const GltfExtraTarget& extra : shading.mark->extras) {
+    const double weight = weight_at_key(extra, target);
+    if (weight != 0 && !shading.normal_deltas[extra.target].empty()) visit(extra.target, weight);
+  }
+}
+
 }  // namespace
 
 StoredKey::StoredKey(const GltfShading& shading) : shading_(&shading) {}
@@ -19,23 +38,35 @@ StoredKey::StoredKey(const GltfShading& shading, std::size_t target) : StoredKey
   if (!moved.vertices.empty()) moved_ = shading.set.base;
   for (std::size_t n = 0; n < moved.vertices.size(); ++n)
     for (std::size_t c = 0; c < 3; ++c) moved_[3 * std::size_t{moved.vertices[n]} + c] += moved.deltas[3 * n + c];
-  deltas_ = &shading.normal_deltas[target];
+  for_shown_at_key(shading, target, [&](std::size_t shown, double weight) {
+    parts_.push_back({&shading.normal_deltas[shown], weight});
+  });
+}
+
+Vec3d StoredKey::delta(std::uint32_t vertex) const noexcept {
+  Vec3d sum;
+  for (const Part& part : parts_) sum = sum + part.weight * vector_of(*part.deltas, vertex);
+  return sum;
 }
 
 Vec3d StoredKey::normal(std::uint32_t vertex) const noexcept {
-  const Vec3d base = vector_of(shading_->normals, vertex);
-  return deltas_ == nullptr || deltas_->empty() ? base : base + vector_of(*deltas_, vertex);
+  return vector_of(shading_->normals, vertex) + delta(vertex);
 }
 
-bool StoredKey::turns(std::uint32_t vertex) const noexcept {
-  return deltas_ != nullptr && !deltas_->empty() && vector_of(*deltas_, vertex) != Vec3d{};
-}
+bool StoredKey::turns(std::uint32_t vertex) const noexcept { return delta(vertex) != Vec3d{}; }
 
 std::vector<std::size_t> targets_with_normals(const GltfShading& shading) {
   std::vector<std::size_t> result;
-  if (shading.mark) return result;
-  for (std::size_t k = 0; k < shading.set.targets.size(); ++k)
-    if (shading.turns[k] && !shading.normal_deltas[k].empty()) result.push_back(k);
+  if (shading.mark && !shading.mark->author) return result;
+  std::vector<bool> is_extra(shading.set.targets.size());
+  if (shading.mark)
+    for (const GltfExtraTarget& extra : shading.mark->extras) is_extra[extra.target] = true;
+  for (std::size_t k = 0; k < is_extra.size(); ++k) {
+    bool turns = false;
+    if (!is_extra[k])
+      for_shown_at_key(shading, k, [&](std::size_t shown, double) { turns = turns || shading.turns[shown]; });
+    if (turns) result.push_back(k);
+  }
   return result;
 }
 

@@ -257,6 +257,21 @@ TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
   EXPECT_EQ(factor_of(builder), 0);
 }
 
+TEST(GltfStructure, mark_of_a_bake_says_whether_its_normals_are_still_those_of_the_author) {
+  GltfBuilder builder = test::quad_document();
+  nlohmann::json& mark = builder.json["meshes"][0]["extras"]["chronormal"];
+  mark = {{"version", 2}, {"encode", "exact"}, {"sequence", false}, {"extras", nlohmann::json::array()}};
+  EXPECT_FALSE(GltfFixture(builder)->meshes()[0].mark.value().author);
+  for (const nlohmann::json& value : {nlohmann::json(true), nlohmann::json(1)}) {
+    mark["author"] = value;
+    EXPECT_TRUE(GltfFixture(builder)->meshes()[0].mark.value().author) << value;
+  }
+  mark["author"] = false;
+  EXPECT_FALSE(GltfFixture(builder)->meshes()[0].mark.value().author);
+  mark["author"] = "me";
+  EXPECT_FALSE(GltfFixture(builder)->meshes()[0].mark);
+}
+
 TEST(GltfStructure, what_is_not_read_is_not_checked) {
   GltfBuilder builder = test::quad_document();
   builder.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 99}}}}}}};

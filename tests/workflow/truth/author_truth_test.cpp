@@ -12,15 +12,18 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/bake_fixture.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/reference_elements.h"
 #include "tests/support/shaded_mesh.h"
+#include "workflow/truth/stored_keys.h"
 
 namespace chronormal::author_truth_test {
 namespace {
 
 using reference::Real;
 using reference::Vector;
+using test::GltfBuilder;
 using test::GltfFixture;
 using test::ShadedMesh;
 
@@ -107,7 +110,8 @@ Authored quads(std::mt19937& random, std::size_t side = 9) {
 }
 
 struct Truth {
-  explicit Truth(const ShadedMesh& file) : fixture(file.file()), shading(read_gltf_shading(*fixture, 0).value()) {
+  explicit Truth(const ShadedMesh& file) : Truth(file.file().glb()) {}
+  explicit Truth(const std::string& glb) : fixture(glb), shading(read_gltf_shading(*fixture, 0).value()) {
     split_by_keys(shading);
     truth.emplace(shading);
   }
@@ -266,9 +270,65 @@ TEST(AuthorTruth, an_edge_that_is_hard_in_a_key_alone_stays_hard) {
   const Truth truth(mesh);
   EXPECT_NE(truth.shading.element_of_vertex[1], truth.shading.element_of_vertex[4]);
   EXPECT_NE(truth.shading.element_of_vertex[2], truth.shading.element_of_vertex[7]);
+  const test::Baked baked = test::bake_document(mesh.file(), {.encoding = BakeEncoding::kExact});
+  ASSERT_TRUE(baked.ok()) << baked.error;
+  const Truth after(baked.bytes);
+  EXPECT_NE(after.shading.element_of_vertex[1], after.shading.element_of_vertex[4]);
+  EXPECT_NE(after.shading.element_of_vertex[2], after.shading.element_of_vertex[7]);
   mesh.targets[0].normals.clear();
   const Truth smooth(mesh);
   EXPECT_EQ(smooth.shading.element_of_vertex[1], smooth.shading.element_of_vertex[4]);
+}
+
+TEST(AuthorTruth, normals_that_a_bake_spread_over_its_targets_are_still_those_of_the_author) {
+  std::mt19937 random(kSeed + 6);
+  RecordProperty("seed", static_cast<int>(kSeed + 6));
+  for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kSmallest}) {
+    for (int draw = 0; draw < 3; ++draw) {
+      Authored mesh = quads(random);
+      std::array<std::vector<Vector>, 3> stored = {mesh.sums("angle", {0, 0}), mesh.sums("angle", {1, 0}),
+                                                   mesh.sums("angle", {0, 1})};
+      for (std::size_t v = 0; v < stored[0].size(); v += 3)
+        for (std::vector<Vector>& of_key : stored) of_key[v] = bent(of_key[v], random, 0.2);
+      mesh.store(stored[0], {stored[1], stored[2]});
+      GltfBuilder builder = mesh.file.file();
+      builder.add_track(builder.add_animation(""), 0, std::vector<float>{0, 1, 2},
+                        std::vector<float>{0, 0, 1, 0.4F, 0.2F, 1});
+      BakeOptions options;
+      options.encoding = encoding;
+      options.hosts = find_hosts("three").value();
+      options.tolerance = 0.01;
+      const test::Baked baked = test::bake_document(builder, options);
+      ASSERT_TRUE(baked.ok()) << baked.error;
+      ASSERT_FALSE(baked.report.meshes.at(0).extras.empty());
+      const Truth before(builder.glb()), after(baked.bytes);
+      ASSERT_TRUE(after.shading.mark && after.shading.mark->author);
+      EXPECT_EQ(after.truth->rule().weighting, Weighting::kAngle);
+      EXPECT_TRUE(after.truth->rule().any_polygons);
+      for (std::size_t v = 0; v < stored[0].size(); ++v) {
+        EXPECT_LT(degrees_between(after.at(v, mesh, {0, 0}), stored[0][v]), 0.02) << v;
+        EXPECT_LT(degrees_between(after.at(v, mesh, {1, 0}), stored[1][v]), 0.02) << v;
+        EXPECT_LT(degrees_between(after.at(v, mesh, {0, 1}), stored[2][v]), 0.02) << v;
+        EXPECT_LT(degrees_between(after.at(v, mesh, {0.6, 0.5}), before.at(v, mesh, {0.6, 0.5})), 0.2) << v;
+      }
+    }
+  }
+}
+
+TEST(AuthorTruth, keys_of_a_bake_that_no_author_made_tell_nothing) {
+  std::mt19937 random(kSeed + 7);
+  Authored mesh = quads(random);
+  // By area, and with the triangles of the file: the bake has nothing to learn from the author.
+  mesh.polygons.clear();
+  for (std::size_t c = 0; c < mesh.file.corners.size(); c += 3)
+    mesh.polygons.push_back({mesh.file.corners[c], mesh.file.corners[c + 1], mesh.file.corners[c + 2]});
+  mesh.store_by("area");
+  const test::Baked baked = test::bake_document(mesh.file.file(), {.encoding = BakeEncoding::kExact});
+  ASSERT_TRUE(baked.ok()) << baked.error;
+  const Truth truth(baked.bytes);
+  ASSERT_TRUE(truth.shading.mark);
+  EXPECT_FALSE(truth.shading.mark->author);
+  EXPECT_TRUE(targets_with_normals(truth.shading).empty());
 }
 
 TEST(AuthorTruth, an_asked_weighting_asks_no_author) {

@@ -120,6 +120,7 @@ GltfBakeMark read_mark(const JsonView& view, const Json& value, std::size_t targ
   mark.encoding = encoding.value_or(BakeEncoding::kExact);
   mark.sequence = read_flag(view, value, "sequence");
   mark.animations_only = read_flag(view, value, "animations_only");
+  mark.author = read_flag(view, value, "author");
   const std::vector<JsonView> extras = items_of(view, value, "extras");
   if (extras.size() > target_count) {
     view.complain("extras", "there are more of them than targets");
@@ -171,6 +172,7 @@ nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark) {
   }
   Ordered result = {{"version", kVersion}, {"encode", name_of(mark.encoding)}, {"sequence", mark.sequence}};
   if (mark.animations_only) result["animations_only"] = true;
+  if (mark.author) result["author"] = true;
   result["extras"] = std::move(extras);
   return result;
 }
