@@ -232,6 +232,13 @@ std::string why_faint(const Audited& audited, const MotionError& error, const st
                    error.faint_worst, *audited.tolerance, place);
 }
 
+// Says why normals that cancel do not pass.
+std::string why_cancelled(const MotionError& error) {
+  return formatted(
+      "{} no right normal although the faces around have an area, and no tolerance allows what nobody can judge",
+      counted(error.cancelled, "pair has", "pairs have"));
+}
+
 // Why a host does not pass.
 std::string why_beyond(const Audited& audited, const HostAudit& found) {
   if (found.beyond > 0)
@@ -240,8 +247,9 @@ std::string why_beyond(const Audited& audited, const HostAudit& found) {
   if (found.error.unlit > 0)
     return formatted("{}: {} cannot be lit, which no tolerance allows", found.host.title,
                      counted(found.error.unlit, "pair", "pairs"));
-  if (found.error.worst <= *audited.tolerance)
+  if (found.error.worst <= *audited.tolerance && found.error.faint_worst > *audited.tolerance)
     return formatted("{}: {}", found.host.title, why_faint(audited, found.error, ""));
+  if (found.error.worst <= *audited.tolerance) return formatted("{}: {}", found.host.title, why_cancelled(found.error));
   return formatted("{}: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", found.host.title,
                    found.error.worst, *audited.tolerance, worst_label(audited, found));
 }
@@ -251,9 +259,11 @@ std::string why_beyond(const Audited& audited) {
   if (error.unlit > 0)
     return formatted("{} cannot be lit, which no tolerance allows: {}", counted(error.unlit, "pair", "pairs"),
                      unlit_label(audited));
-  if (!audited.audit.is_judged())
+  if (!audited.audit.is_judged() && error.cancelled == 0)
     return "no pair could be judged, since no face that moves has an area: nothing is known to be right";
-  if (error.worst <= *audited.tolerance) return why_faint(audited, error, ": " + faint_label(audited));
+  if (error.worst <= *audited.tolerance && error.faint_worst > *audited.tolerance)
+    return why_faint(audited, error, ": " + faint_label(audited));
+  if (error.worst <= *audited.tolerance) return why_cancelled(error) + ": " + cancelled_label(audited);
   return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", error.worst,
                    *audited.tolerance, worst_label(audited));
 }

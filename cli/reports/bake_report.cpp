@@ -333,9 +333,16 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
                       counted(bake.keys->left_out, "keyframe", "keyframes"), grouped(bake.keys->even));
     text += formatted("keys: at most {} degrees from the right normals at every instant, certified\n",
                       four_decimals(bake.largest_error));
-  } else if (encoding == BakeEncoding::kExact && bake.largest_error == 0)
-    text += "exact at every instant\n";
-  else
+  } else if (encoding == BakeEncoding::kExact && bake.largest_error == 0) {
+    bool are_all_known = bake.without_normals == 0;
+    if (report.audit) {
+      const Audit& after = report.audit->after;
+      are_all_known = after.is_judged() && after.error.cancelled == 0 && after.error.unlit == 0;
+    }
+    text += are_all_known ? "exact at every instant\n"
+                          : "exact wherever there is a right normal: around some vertices the normals of faces cancel, "
+                            "or no face\nhas an area\n";
+  } else
     text += formatted(
         "{}: at most {} degrees from the right normals, {}\n",
         encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),

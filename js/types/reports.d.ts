@@ -48,6 +48,8 @@ export interface MotionError {
   no_normal: number;
   faint: number;
   faint_worst_degrees: number;
+  /** Samples without a right normal although the faces around have an area: no tolerance allows any. */
+  cancelled: number;
   unlit: number;
 }
 

@@ -283,6 +283,33 @@ TEST_F(AuditCli, motion_of_which_no_pair_can_be_judged_passes_no_gate) {
   EXPECT_EQ(run_shell(std::string(kProgram) + " merge part.json", folder_.path(), "").exit_code, 4);
 }
 
+// A sheet that folds upon itself has no normal along the fold, and both of its halves are drawn.
+TEST_F(AuditCli, gate_does_not_pass_normals_of_drawn_faces_that_cancel) {
+  const auto sheet = [](const std::string& x) {
+    return "v 0 0 0\nv 0 1 0\nv -1 0 0\nv " + x + " 0 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 2//1 1//1 4//1\n";
+  };
+  folder_.write("open.obj", sheet("1"));
+  folder_.write("half.obj", sheet(".5"));
+  folder_.write("folded.obj", sheet("-1"));
+  const Json json = json_of("open.obj folded.obj --samples 2");
+  EXPECT_EQ(json["no_normal"], 2);
+  EXPECT_EQ(json["cancelled"], 2);
+  const ProcessResult gate = run("open.obj folded.obj --samples 2 --tolerance 180");
+  EXPECT_EQ(gate.exit_code, 4);
+  expect_words(gate.err, {"2 pairs have no right normal although the faces around have an area"});
+  expect_words(gate.out, {"2 of these have faces with an area, whose normals cancel", "beyond 180"});
+  EXPECT_EQ(gate.out.find("nothing to do"), std::string::npos) << gate.out;
+  EXPECT_EQ(run("open.obj half.obj --tolerance 180").exit_code, 0);
+  ASSERT_EQ(run("open.obj folded.obj --samples 2 --tolerance 180 --shard 1/1 -o part.json").exit_code, 0);
+  const ProcessResult merged = run_shell(std::string(kProgram) + " merge part.json", folder_.path(), "");
+  EXPECT_EQ(merged.exit_code, 4);
+  expect_words(merged.out, {"\"cancelled\": 2,"});
+  const ProcessResult baked =
+      run_shell(std::string(kProgram) + " bake open.obj folded.obj -o baked.glb", folder_.path(), "");
+  expect_words(baked.out, {"exact wherever there is a right normal"});
+  EXPECT_EQ(baked.out.find("exact at every instant"), std::string::npos) << baked.out;
+}
+
 // A triangle that shrinks to a hundredth is lit from behind: it is drawn, and its direction is exact.
 TEST_F(AuditCli, gate_judges_small_normals_whose_direction_is_certain) {
   const std::string big = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";

@@ -15,6 +15,7 @@ namespace {
 // Names what a person can do about the errors that an audit found. The last line of the report says it.
 enum class Remedy {
   kNone,      // no normal is off
+  kUnknown,   // none of those that could be judged, and there are others, or none
   kTangents,  // normals are right, and bake writes no tangents
   kHosts,     // right by the specification, and not in hosts that do otherwise
   kRule,      // what was judged is not what a glTF file makes hosts show
@@ -66,7 +67,8 @@ Remedy remedy_of(const Audited& input) {
     if (!wrong_hosts(input).empty()) return Remedy::kHosts;
     const bool any_fault = std::any_of(audit.findings.begin(), audit.findings.end(),
                                        [](const AuditFinding& finding) { return finding.is_fault(); });
-    return any_fault ? Remedy::kTangents : Remedy::kNone;
+    if (any_fault) return Remedy::kTangents;
+    return audit.is_judged() && audit.error.cancelled == 0 ? Remedy::kNone : Remedy::kUnknown;
   }
   if (input.document() != nullptr && audit.rule != AuditRule::kGltf) return Remedy::kRule;
   if (!any_fresh) return Remedy::kOriginal;
@@ -145,6 +147,10 @@ std::string advice(const Audited& input) {
     case Remedy::kNone:
       return formatted("\nnothing to do: no normal is off by more than {:g} {}\n", limit_of(input),
                        limit_of(input) == 1 ? "degree" : "degrees");
+    case Remedy::kUnknown:
+      return input.audit.error.cancelled > 0
+                 ? "\nnobody knows what is right where normals cancel: give each side of a sheet vertices of its own\n"
+                 : "\nnothing is known to be right: no face that moves has an area\n";
     case Remedy::kTangents:
       return "\nthe normals are right, and bake writes no tangents: export them for all targets, or for none, so that "
              "hosts compute them\n";
@@ -169,6 +175,8 @@ std::string verdict(const Audited& input) {
   switch (remedy_of(input)) {
     case Remedy::kNone:
       return "right";
+    case Remedy::kUnknown:
+      return "unknown";
     case Remedy::kTangents:
       return "wrong tangents";
     case Remedy::kHosts:

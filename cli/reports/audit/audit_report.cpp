@@ -69,6 +69,12 @@ std::string headline(const Audited& input) {
   if (audit.error.no_normal > 0)
     text += formatted("  {} without a right direction: the normal of the geometry all but vanishes there\n",
                       pairs(audit.error.no_normal));
+  if (audit.error.cancelled > 0)
+    text += formatted(
+        "  {} of these have faces with an area, whose normals cancel, as those of two sides do that share vertices: "
+        "the "
+        "first is at\n  {}; nobody knows what is right there, and no --tolerance allows it\n",
+        grouped(audit.error.cancelled), cancelled_label(input));
   if (audit.error.faint_worst > input.tolerance.value_or(kAuditFault))
     text += formatted("  {} of these have one all the same, and are off by up to {} degrees: --tolerance counts them\n",
                       grouped(audit.error.faint), degrees(audit.error.faint_worst));
@@ -191,6 +197,14 @@ std::string offset_lines(const Audited& input) {
   return text.empty() ? text : "\nAuthored offset, which is no fault:\n" + text;
 }
 
+// Names the place of the first pair that a count is about.
+std::string first_label(const Audited& input, std::size_t MotionError::*count, AuditPlace MotionError::*place) {
+  const std::vector<AuditSubject>& subjects = input.audit.subjects;
+  const auto first =
+      std::find_if(subjects.begin(), subjects.end(), [&](const AuditSubject& s) { return s.error.*count > 0; });
+  return first == subjects.end() ? "" : place_words(input, *first, first->error.*place);
+}
+
 }  // namespace
 
 std::string worst_label(const Audited& input) {
@@ -204,10 +218,11 @@ std::string worst_label(const Audited& input, const HostAudit& host) {
 }
 
 std::string unlit_label(const Audited& input) {
-  const std::vector<AuditSubject>& subjects = input.audit.subjects;
-  const auto first =
-      std::find_if(subjects.begin(), subjects.end(), [](const AuditSubject& s) { return s.error.unlit > 0; });
-  return first == subjects.end() ? "" : place_words(input, *first, first->error.unlit_at);
+  return first_label(input, &MotionError::unlit, &MotionError::unlit_at);
+}
+
+std::string cancelled_label(const Audited& input) {
+  return first_label(input, &MotionError::cancelled, &MotionError::cancelled_at);
 }
 
 std::string faint_label(const Audited& input) {

@@ -41,6 +41,9 @@ struct Audited {
 /// The same for the worst pair of those whose right normal all but vanishes.
 [[nodiscard]] std::string faint_label(const Audited& input);
 
+/// The same for the first pair around which the normals of faces cancel.
+[[nodiscard]] std::string cancelled_label(const Audited& input);
+
 }  // namespace chronormal::cli
 
 #endif  // CLI_REPORTS_AUDIT_REPORT_H_

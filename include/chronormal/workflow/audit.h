@@ -25,6 +25,8 @@
 /// Faint      those of them whose n(t) is more than what rounding the positions to float32 may change it by have a
 ///            direction all the same, and a gate must not pass what is lit from behind: is_within() of audits and hosts
 ///            looks at them, with the angle less what that rounding explains.
+/// Cancelled  those that are not faint although the faces around have an area: faces that lie back to back and share
+///            their vertices. Nobody knows what is right there, and no gate passes.
 /// Units      degrees; weights; seconds.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_H_

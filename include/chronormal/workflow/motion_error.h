@@ -83,6 +83,10 @@ struct MotionError {
   std::size_t faint = 0;
   double faint_worst = 0;
   AuditPlace faint_at;  ///< the first pair of that error; means nothing where faint_worst is 0
+  /// Of those without a normal, and not faint: the faces around have an area, and their normals cancel, so that nobody
+  /// knows what is right.
+  std::size_t cancelled = 0;
+  AuditPlace cancelled_at;  ///< the first of them; means nothing where there are none
 
   [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
   [[nodiscard]] double rms() const noexcept {
@@ -93,8 +97,10 @@ struct MotionError {
   [[nodiscard]] double percentile(double share) const noexcept;
   /// Whether every pair can be lit and none is off by more than this.
   [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
-  /// The same for a gate, which leaves out no pair that has a direction.
-  [[nodiscard]] bool passes(double degrees) const noexcept { return is_within(degrees) && faint_worst <= degrees; }
+  /// The same for a gate, which leaves out no pair that has a direction, and does not pass what is drawn and has none.
+  [[nodiscard]] bool passes(double degrees) const noexcept {
+    return is_within(degrees) && faint_worst <= degrees && cancelled == 0;
+  }
   void add(double degrees, const AuditPlace& place);
   void add_unlit(const AuditPlace& place);
   void add(const MotionError& other);

@@ -181,6 +181,8 @@ void MotionError::add(const MotionError& other) {
     faint_worst = other.faint_worst;
     faint_at = other.faint_at;
   }
+  if (cancelled == 0) cancelled_at = other.cancelled_at;
+  cancelled += other.cancelled;
 }
 
 double MotionError::percentile(double share) const noexcept {

@@ -28,6 +28,9 @@ namespace chronormal::inline internal {
 /// mostly what they had to be elsewhere. A gate looks at it all the same, as long as it has a direction.
 inline constexpr double kVanished = 1e-4;
 
+/// Stands for the error of a pair whose faces have an area, while their normals cancel.
+inline constexpr double kCancels = -3;
+
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditManySegments = 32;
 
 /// The bin of the histogram for an error of [0, 180] degrees.
@@ -133,7 +136,7 @@ template <class Source>
 
 /// Adds the errors of some outputs, in their order, to a result that has none yet, as MotionError::add() and add_unlit()
 /// do. degrees(output, i) is that of the i-th of them, kNotLit or kNotJudged; faint(output, i) is asked for that of a
-/// pair that is not judged, which a gate looks at.
+/// pair that is not judged, which a gate looks at: kNotJudged where no face around has an area, or kCancels.
 template <class Degrees, class Faint, class At>
 void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
                 MotionError& result) {
@@ -148,6 +151,7 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
         ++result.no_normal;
         const double faint = faint_of(output, i);
         if (faint >= 0) ++result.faint;
+        if (faint == kCancels && result.cancelled++ == 0) result.cancelled_at = at(output);
         if (faint > result.faint_worst) {
           result.faint_worst = faint;
           result.faint_at = at(output);
@@ -183,6 +187,10 @@ template <class Source, class Shown>
                                    std::span<float> each = {}) {
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
   std::vector<MotionError> of_blocks(block_count(outputs.size(), kRange));
+  // A face without area is not drawn, whatever its normal.
+  const auto is_drawn = [&](const JudgedOutput& output, const Vec3d& normal) {
+    return is_flat ? normal != Vec3d{} : placed.normals.sizes[output.element] > kVanished * largest[output.element];
+  };
   numbered_blocks(outputs.size(), kRange, [&](std::size_t b, std::size_t first, std::size_t end) {
     std::vector<double> degrees(end - first);
     std::array<Vec3d, 256> is_shown, is_right;
@@ -192,16 +200,14 @@ template <class Source, class Shown>
       for (std::size_t k = 0; k < count; ++k) {
         const JudgedOutput& output = outputs[from + k];
         const Vec3d& normal = placed.normals.elements[output.element];
-        const double least = kVanished * largest[output.element];
         is_shown[k] = shown(from + k, output);
-        // A face without area is not drawn, whatever its normal. A skin may leave nothing of a normal that is right.
-        const bool is_hidden = source.hides(output, normal);
-        const bool is_drawn = is_flat ? is_shown[k] != Vec3d{} : placed.normals.sizes[output.element] > least;
-        const bool has_normal = length(normal) > least;
-        of_some[k] = is_hidden                                                         ? kNotJudged
-                     : !is_finite(is_shown[k]) || (is_drawn && is_shown[k] == Vec3d{}) ? kNotLit
-                     : !has_normal || !is_drawn                                        ? kNotJudged
-                                                                                       : 0;
+        // A skin may leave nothing of a normal that is right.
+        const bool is_hidden = source.hides(output, normal), may_be_lit = is_drawn(output, is_shown[k]);
+        const bool has_normal = length(normal) > kVanished * largest[output.element];
+        of_some[k] = is_hidden                                                           ? kNotJudged
+                     : !is_finite(is_shown[k]) || (may_be_lit && is_shown[k] == Vec3d{}) ? kNotLit
+                     : !has_normal || !may_be_lit                                        ? kNotJudged
+                                                                                         : 0;
         if (of_some[k] < 0)
           is_shown[k] = is_right[k] = {};
         else
@@ -217,9 +223,13 @@ template <class Source, class Shown>
         outputs.subspan(first, end - first), [&](const JudgedOutput&, std::size_t i) { return degrees[i]; },
         [&](const JudgedOutput& output, std::size_t i) {
           const Vec3d& normal = placed.normals.elements[output.element];
-          if (normal == Vec3d{} || source.hides(output, normal)) return kNotJudged;
-          return faint_degrees(shown(first + i, output), source.right(output, normal), length(normal),
-                               placed.part.rounding_of(placed.positions, output.element));
+          if (normal != Vec3d{} && source.hides(output, normal)) return kNotJudged;
+          const Vec3d now = shown(first + i, output);
+          const double faint = normal == Vec3d{}
+                                   ? kNotJudged
+                                   : faint_degrees(now, source.right(output, normal), length(normal),
+                                                   placed.part.rounding_of(placed.positions, output.element));
+          return faint == kNotJudged && is_drawn(output, now) ? kCancels : faint;
         },
         [&](const JudgedOutput& output) { return source.at(segment, t, output); }, of_blocks[b]);
     for (std::size_t i = first; !each.empty() && i < end; ++i) {

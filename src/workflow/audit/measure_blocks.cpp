@@ -166,8 +166,10 @@ void measure_block(const Segment& segment, std::size_t number, const Block& bloc
         [&](const JudgedOutput& output, std::size_t) {
           const std::size_t e = output.element - block.elements.first;
           const Vec3d normal = normal_of(right, e);
-          if (normal == Vec3d{}) return kNotJudged;
-          return faint_degrees(shown_at(scratch, e, weight), normal, length(normal), rounding_at(segment, t, block, e));
+          const double faint = normal == Vec3d{} ? kNotJudged
+                                                 : faint_degrees(shown_at(scratch, e, weight), normal, length(normal),
+                                                                 rounding_at(segment, t, block, e));
+          return faint == kNotJudged && right.w[e] > scratch.from.w[e] ? kCancels : faint;
         },
         [&](const JudgedOutput& output) { return at(number, t, output); }, errors[i]);
   }

@@ -35,6 +35,7 @@ void add_error(const MotionError& error, Json& json) {
   json["no_normal"] = error.no_normal;
   json["faint"] = error.faint;
   json["faint_worst_degrees"] = error.faint_worst;
+  json["cancelled"] = error.cancelled;
   json["unlit"] = error.unlit;
 }
 

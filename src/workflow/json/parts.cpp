@@ -72,11 +72,27 @@ SchemeTally read_tally(Numbers numbers) {
 
 // Few of the fine bins are not empty; each of these is written with its number.
 Json error_json(const MotionError& error) {
-  Json json = {
-      error.judged,           error.sum,         error.sum_of_squares, error.worst,       error.worst_at.vertex,
-      error.worst_at.segment, error.worst_at.at, error.no_normal,      error.unlit,       error.unlit_at.vertex,
-      error.unlit_at.segment, error.unlit_at.at, error.faint,          error.faint_worst, error.faint_at.vertex,
-      error.faint_at.segment, error.faint_at.at};
+  Json json = {error.judged,
+               error.sum,
+               error.sum_of_squares,
+               error.worst,
+               error.worst_at.vertex,
+               error.worst_at.segment,
+               error.worst_at.at,
+               error.no_normal,
+               error.unlit,
+               error.unlit_at.vertex,
+               error.unlit_at.segment,
+               error.unlit_at.at,
+               error.faint,
+               error.faint_worst,
+               error.faint_at.vertex,
+               error.faint_at.segment,
+               error.faint_at.at,
+               error.cancelled,
+               error.cancelled_at.vertex,
+               error.cancelled_at.segment,
+               error.cancelled_at.at};
   for (const std::size_t count : error.histogram) json.push_back(count);
   for (const FineBins::Bin& bin : error.counts.filled()) {
     json.push_back(bin.number());
@@ -102,6 +118,8 @@ MotionError read_error(const JsonView& list) {
   error.faint = numbers.count();
   error.faint_worst = numbers.real();
   read_place(error.faint_at);
+  error.cancelled = numbers.count();
+  read_place(error.cancelled_at);
   for (std::size_t& count : error.histogram) count = numbers.count();
   while (!numbers.at_end()) {
     const std::size_t bin = numbers.count(), count = numbers.count();

@@ -50,7 +50,7 @@ class KeyframeChecksums {
 };
 
 /// The version of all parts, and what is said of a part that does not end with its checksum.
-inline constexpr std::size_t kPartVersion = 4;
+inline constexpr std::size_t kPartVersion = 5;
 inline constexpr std::string_view kDamagedPart =
     "the part is damaged: its bytes do not have the checksum that it ends with";
 

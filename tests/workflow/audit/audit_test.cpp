@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -444,6 +446,104 @@ TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   EXPECT_EQ(result.error.no_normal, 3U);
   EXPECT_EQ(result.error.judged, 6U);
   EXPECT_NEAR(result.error.sum, 180, 1e-9);
+  // These have faces with an area, and no gate passes; the face of vertex 3 is not drawn.
+  EXPECT_EQ(result.error.cancelled, 2U);
+  EXPECT_EQ(result.error.cancelled_at.vertex, 1U);
+  EXPECT_EQ(result.error.cancelled_at.at, 1);
+  EXPECT_TRUE(result.error.is_within(180));
+  EXPECT_FALSE(result.error.passes(180));
+  EXPECT_FALSE(result.is_within(180));
+}
+
+// Two strips of triangles with a hinge between them, which lie upon each other at t = 1/2 where they are equally wide.
+struct Hinges {
+  std::vector<std::array<int, 3>> from, to;
+  std::vector<std::uint32_t> corners;
+
+  explicit Hinges(std::mt19937& random) {
+    constexpr std::uint32_t kRows = 6;
+    const auto any = [&random](int least, int most) {
+      return least + static_cast<int>(random() % static_cast<unsigned>(most - least + 1));
+    };
+    for (int row = 0; row < static_cast<int>(kRows); ++row) {
+      const int width = any(1, 2), other = any(0, 1) == 0 ? 3 - width : width, height = any(1, 4);
+      from.insert(from.end(), {{0, 2 * row, 0}, {-2 * width, 2 * row, height}, {2 * other, 2 * row, height + 1}});
+      to.insert(to.end(), {{0, 2 * row, 2 * any(-2, 2)}, from[from.size() - 2], {-6 * other, 2 * row, height - 1}});
+    }
+    for (std::uint32_t p = 0; p + 3 < 3 * kRows; p += 3) {
+      corners.insert(corners.end(), {p, p + 3, p + 4, p, p + 4, p + 1});
+      corners.insert(corners.end(), {p, p + 5, p + 3, p, p + 2, p + 5});
+    }
+  }
+
+  // The positions at half t, which are whole.
+  [[nodiscard]] std::vector<std::array<int, 3>> at(int half) const {
+    std::vector<std::array<int, 3>> result = from;
+    for (std::size_t v = 0; v < result.size(); ++v)
+      for (std::size_t c = 0; c < 3; ++c) result[v][c] += half * (to[v][c] - from[v][c]) / 2;
+    return result;
+  }
+  // How many normals of vertices come to nothing there although faces around them have an area.
+  [[nodiscard]] std::size_t count_cancelled(int half) const {
+    const std::vector<std::array<int, 3>> places = at(half);
+    std::vector<std::array<int, 3>> sums(places.size());
+    for (std::size_t c = 0; c < corners.size(); c += 3) {
+      std::array<int, 3> e{}, f{};
+      for (std::size_t i = 0; i < 3; ++i) {
+        e[i] = places[corners[c + 1]][i] - places[corners[c]][i];
+        f[i] = places[corners[c + 2]][i] - places[corners[c]][i];
+      }
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < 3; ++i)
+          sums[corners[c + k]][i] += e[(i + 1) % 3] * f[(i + 2) % 3] - e[(i + 2) % 3] * f[(i + 1) % 3];
+    }
+    return static_cast<std::size_t>(std::count(sums.begin(), sums.end(), std::array<int, 3>{}));
+  }
+  [[nodiscard]] std::vector<float> floats(bool are_deltas) const {
+    std::vector<float> result;
+    for (std::size_t v = 0; v < from.size(); ++v)
+      for (std::size_t c = 0; c < 3; ++c)
+        result.push_back(static_cast<float>(are_deltas ? to[v][c] - from[v][c] : from[v][c]));
+    return result;
+  }
+};
+
+TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_gate) {
+  constexpr unsigned kSeed = 51;
+  RecordProperty("seed", static_cast<int>(kSeed));
+  std::mt19937 random(kSeed);
+  std::size_t with = 0, of_sequences = 0;
+  for (int draw = 0; draw < 40; ++draw) {
+    const Hinges hinges(random);
+    const std::size_t right = hinges.count_cancelled(0) + hinges.count_cancelled(1) + hinges.count_cancelled(2);
+    with += right > 0 ? 1U : 0U;
+    ShadedMesh mesh;
+    mesh.corners = hinges.corners;
+    mesh.positions = hinges.floats(false);
+    for (std::size_t v = 0; v < mesh.vertices(); ++v) mesh.normals.insert(mesh.normals.end(), {0.6F, 0, 0.8F});
+    mesh.targets.push_back({hinges.floats(true), {}, {}});
+    const Audit of_file = audit_of(mesh.file(), {.samples = 3, .hosts = {kHosts[0]}});
+    // The same as a sequence: without normals blocks are measured, and with a slerp outputs one by one.
+    std::vector<float> moved = mesh.positions;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += mesh.targets[0].positions[i];
+    Motion motion;
+    motion.topology = Topology::triangles(mesh.vertices(), mesh.corners).value();
+    motion.keyframes = {{mesh.positions, 0, ""}, {moved, 1, ""}};
+    motion.connect_as_sequence();
+    // A host shows nothing where those at both ends are opposite.
+    for (const Audit& found : {of_file, audit(motion, {}, {.samples = 3}).value(),
+                               audit(motion, {}, {.rule = AuditRule::kSlerp, .samples = 3}).value()}) {
+      EXPECT_EQ(found.error.cancelled + found.error.unlit, right) << draw;
+      EXPECT_EQ(found.error.no_normal, found.error.cancelled) << draw;
+      EXPECT_EQ(found.is_within(180), right == 0) << draw;
+      of_sequences += found.error.cancelled;
+    }
+    EXPECT_EQ(of_file.error.unlit, 0U) << draw;
+    EXPECT_EQ(of_file.hosts[0].error.cancelled, right) << draw;
+  }
+  EXPECT_GT(of_sequences, 20U);
+  EXPECT_GT(with, 10U);
+  EXPECT_LT(with, 40U);
 }
 
 // ---- what cannot be lit

@@ -26,6 +26,7 @@ void expect_same(const MotionError& a, const MotionError& b) {
   EXPECT_EQ(a.histogram, b.histogram);
   EXPECT_EQ(a.counts, b.counts);
   EXPECT_EQ(a.no_normal, b.no_normal);
+  EXPECT_EQ(a.cancelled, b.cancelled);
   EXPECT_EQ(a.unlit, b.unlit);
   if (a.worst > 0) expect_same(a.worst_at, b.worst_at);
   if (a.unlit > 0) expect_same(a.unlit_at, b.unlit_at);

@@ -303,7 +303,7 @@ TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
   EXPECT_EQ(merged({{"a", "{}"}}), "a: this is no part that a --shard has left");
   EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "compare"})"}}).find("another version"),
             std::string::npos);
-  EXPECT_NE(merged({{"a", R"({"chronormal_part": 4, "command": "bake"})"}}).find("the part is damaged"),
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 5, "command": "bake"})"}}).find("the part is damaged"),
             std::string::npos);
   const std::string text = audit_parts(motion, {}, {}, 2)[0].text;
   EXPECT_NE(merged({{"a", edited(text, "\"audit\"", "\"bake\"")}}).find("of compare and of audit"), std::string::npos);
