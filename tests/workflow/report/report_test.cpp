@@ -41,11 +41,16 @@ Result<Report> report_of(InputOptions input, const ReportOptions& options = {}) 
   return report(opened.value(), options);
 }
 
-Result<Report> report_of_glb(const std::string& glb, const ReportOptions& options = {}) {
+// An input of bytes, which must outlive it.
+InputOptions input_of_glb(const std::string& glb) {
   InputOptions input;
   input.files = {"a.glb"};
   input.resolve = [&glb](const std::string&) -> Result<std::string_view> { return std::string_view(glb); };
-  return report_of(input, options);
+  return input;
+}
+
+Result<Report> report_of_glb(const std::string& glb, const ReportOptions& options = {}) {
+  return report_of(input_of_glb(glb), options);
 }
 
 ReportOptions without_plan() {
@@ -442,6 +447,20 @@ Report expect_thinned(const InputOptions& input, ReportOptions options) {
   return found.value();
 }
 
+// The reports of a file that is too large for a page of so many bytes: within them, and whole.
+std::pair<Report, Report> thinned_and_whole(const std::string& glb, std::size_t most_bytes) {
+  ReportOptions options;
+  options.template_bytes = kTemplate.size();
+  options.samples = 3;
+  options.most_bytes = most_bytes;
+  const Report thinned = expect_thinned(input_of_glb(glb), options);
+  options.most_bytes = kMostReportBytes;
+  options.plan = false;
+  const Result<Report> whole = report_of_glb(glb, options);
+  EXPECT_TRUE(whole) << whole.error().text();
+  return {thinned, whole.value()};
+}
+
 // How many judged triangles meet in each vertex of part 0.
 std::vector<std::size_t> corners_of_vertices(const ReportFile& file) {
   std::vector<std::size_t> result(file.part(0)["vertices"].get<std::size_t>());
@@ -450,16 +469,7 @@ std::vector<std::size_t> corners_of_vertices(const ReportFile& file) {
 }
 
 TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
-  test::GltfBuilder builder = test::random_sheet(18, 80, 2, 0.2).file();
-  const std::string glb = builder.glb();
-  InputOptions input;
-  input.files = {"a.glb"};
-  input.resolve = [&glb](const std::string&) -> Result<std::string_view> { return std::string_view(glb); };
-  ReportOptions options;
-  options.template_bytes = kTemplate.size();
-  options.samples = 3;
-  options.most_bytes = 150000;
-  const Report found = expect_thinned(input, options);
+  const auto [found, whole] = thinned_and_whole(test::random_sheet(18, 80, 2, 0.2).file().glb(), 150000);
   ASSERT_EQ(found.thinned.size(), 1U);
   EXPECT_NE(found.thinned[0].find("of 12,482 triangles"), std::string::npos) << found.thinned[0];
   const ReportFile file(found.container);
@@ -471,15 +481,11 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
     EXPECT_EQ("mesh 0, primitive 0, vertex " + std::to_string(file.label(part, found.worst[i].vertex)),
               found.worst[i].label);
   // A whole report of the same file has the same places with the same numbers.
-  options.most_bytes = kMostReportBytes;
-  options.plan = false;
-  const Result<Report> whole = report_of(input, options);
-  ASSERT_TRUE(whole) << whole.error().text();
-  EXPECT_TRUE(whole.value().thinned.empty());
-  ASSERT_EQ(whole.value().worst.size(), found.worst.size());
-  for (std::size_t i = 0; i < found.worst.size(); ++i) EXPECT_EQ(whole.value().worst[i].label, found.worst[i].label);
+  EXPECT_TRUE(whole.thinned.empty());
+  ASSERT_EQ(whole.worst.size(), found.worst.size());
+  for (std::size_t i = 0; i < found.worst.size(); ++i) EXPECT_EQ(whole.worst[i].label, found.worst[i].label);
   // Whatever is still judged has all of its triangles. (Each vertex of the sheet is an element of its own.)
-  const ReportFile all(whole.value().container);
+  const ReportFile all(whole.container);
   const std::vector<std::size_t> had = corners_of_vertices(all), has = corners_of_vertices(file);
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]);
   std::size_t judged = 0;
@@ -520,24 +526,13 @@ std::map<std::size_t, std::vector<std::size_t>> seen_by_truths(const ReportFile&
 }
 
 TEST(Report, what_an_author_would_see_at_worst_places_stays_whole) {
-  const std::string glb = talking(test::AuthoredMesh(23, 50).mesh()).glb();
-  InputOptions input;
-  input.files = {"a.glb"};
-  input.resolve = [&glb](const std::string&) -> Result<std::string_view> { return std::string_view(glb); };
-  ReportOptions options;
-  options.template_bytes = kTemplate.size();
-  options.samples = 3;
-  options.most_bytes = 120000;
-  const ReportFile file(expect_thinned(input, options).container);
+  const auto [found, whole] = thinned_and_whole(talking(test::AuthoredMesh(23, 50).mesh()).glb(), 120000);
+  const ReportFile file(found.container);
   const nlohmann::json& part = file.part(0);
   EXPECT_GT(part["coarse"]["count"], 0);
   EXPECT_GT(part["truth"]["offsets"]["elements"]["count"], 0);
   EXPECT_FALSE(part["truth"]["terms"].is_null());
-  options.most_bytes = kMostReportBytes;
-  options.plan = false;
-  const Result<Report> whole = report_of(input, options);
-  ASSERT_TRUE(whole) << whole.error().text();
-  std::map<std::size_t, std::vector<std::size_t>> all = seen_by_truths(ReportFile(whole.value().container)),
+  std::map<std::size_t, std::vector<std::size_t>> all = seen_by_truths(ReportFile(whole.container)),
                                                   some = seen_by_truths(file);
   EXPECT_LT(some.size(), all.size());
   for (const auto& [label, seen] : some) EXPECT_EQ(seen, all[label]) << label;
