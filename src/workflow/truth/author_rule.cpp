@@ -17,7 +17,7 @@ constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;  // degrees, 
 constexpr double kOff = 0.001;                                      // degrees: a normal does not follow the rule
 constexpr std::size_t kMostKeys = 48, kMostAsked = 20000, kAskedAtOnce = 64;
 constexpr std::uint32_t kNoVertex = GltfShading::kNoElement;
-// Of triangles and of quads: sums of own corners by each weighting, and of whole points.
+// Candidates are sums of own corners and of whole points, of triangles and of quads, by each weighting.
 constexpr std::size_t kKinds = 4, kCandidates = kKinds * kWeightings.size();
 
 double degrees_between(const Vec3d& a, const Vec3d& b) { return angle_between(a, b) * kDegreesPerRadian; }
@@ -190,8 +190,8 @@ class Mending {
     return sides_(element, unit(sum));
   }
 
-  // How far an element is from its sums, at worst, in degrees: at keys beyond what the base is off by, and in the base
-  // alone where no key turns it.
+  // Returns the worst distance of an element from its sums, in degrees: at keys beyond what the base is off by, and in
+  // the base alone where no key turns it.
   [[nodiscard]] double off(std::uint32_t element, bool whole) const {
     if (vertex_of_[element] == kNoVertex) return 0;
     // Each corner of a polygon counts once, however many triangles have a part in it.
@@ -359,8 +359,8 @@ class Candidates {
         best = area();
       }
       if (!(distance[best] <= follows)) continue;
-      // Of those that are as near, the one that most normals follow to the last digit; of these quads, if the file was
-      // cut from them and there are keys, and else triangles, and own corners.
+      // Takes, among those that are as near, the one that most normals follow to the last digit; among these quads, if
+      // the file was cut from them and there are keys, and else triangles, and own corners.
       constexpr double kAlike = 0.003, kAsMany = 0.005;
       std::size_t found = best;
       double most = -1;
@@ -399,7 +399,7 @@ class Candidates {
   [[nodiscard]] double spread() const { return spread_; }
 
  private:
-  // Whether there is a point of which several elements show a part.
+  // Returns whether several elements show parts of one point.
   [[nodiscard]] bool is_any_point_shared() const {
     std::vector<std::uint32_t> element(shading_.point_of_vertex.size(), kNoVertex);
     for (const std::uint32_t v : shading_.set.topology.corners()) {

@@ -12,7 +12,7 @@
 ///                  smallest, where that is at most a degree, and two thirds of that by area; or else triangles by
 ///                  area, which are exact at every time
 ///
-/// What was found is mended around the normals that do not follow it: triangles in a row become larger polygons, quads
+/// The rule is mended around the normals that do not follow it: triangles in a row become larger polygons, quads
 /// are taken apart, and elements add up their whole point, where that makes a normal follow exactly. What is merely
 /// nearer may be so by chance.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_

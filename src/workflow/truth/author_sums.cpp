@@ -41,7 +41,7 @@ std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first,
   return loop.size() == count + 2 ? loop : std::vector<std::uint32_t>();
 }
 
-// Whether a vertex shows the other side of a polygon of some triangles in a row.
+// Returns whether a vertex shows the other side of a polygon of some triangles in a row.
 bool is_at_the_back(const GltfShading& shading, std::size_t first, std::size_t count, std::uint32_t vertex) {
   if (shading.at_the_back.empty()) return false;
   const auto corners = shading.set.topology.corners();

@@ -10,8 +10,7 @@
 /// element adds up is a question, too: those whose corners show its normal, or all around the point, as tools do that
 /// give corners of flat faces a normal of their own and go on counting these faces for the others.
 ///
-/// What is right here is found out by holding sums against what the file stores (author_rule.h). This file has the
-/// sums.
+/// Which sums are right is found out by holding them against what the file stores (author_rule.h).
 ///
 /// Shapes     elements are those of GltfShading; positions are those of all its vertices
 /// Threads    const functions may run at once
@@ -36,10 +35,10 @@ namespace chronormal::inline internal {
 struct AuthorSum {
   Vec3d normal;
   double terms = 0;  ///< the lengths of its terms, added up
-  double areas = 0;  ///< those of the normals of its faces, each twice its area long
+  double areas = 0;  ///< the lengths of the normals of its faces, each twice its area long
 
-  /// The same direction, as long as a sum by area of faces that look one way would be; shorter where its terms cancel
-  /// but for a twentieth, so that it comes to zero as the direction is lost.
+  /// Returns the same direction, as long as a sum by area of faces that look one way would be; shorter where its terms
+  /// cancel but for a twentieth, so that it comes to zero as the direction is lost.
   [[nodiscard]] Vec3d with_area_length() const noexcept {
     constexpr double kLost = 0.05;
     const double size = length(normal);
@@ -47,8 +46,8 @@ struct AuthorSum {
   }
 };
 
-/// What a corner of a polygon adds to a sum. n is the normal of the polygon, twice its area long and not zero; e and f
-/// are the edges from the corner to the next and to the previous one.
+/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, twice its area long and
+/// not zero; e and f are the edges from the corner to the next and to the previous one.
 [[nodiscard]] Vec3d author_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept;
 
 /// Triangles put together to polygons again.
@@ -66,13 +65,13 @@ class Polygons {
   [[nodiscard]] std::uint32_t of_triangle(std::size_t triangle) const noexcept {
     return first_.empty() ? static_cast<std::uint32_t>(triangle) : first_[triangle];
   }
-  /// How many triangles the polygon that begins with this triangle has.
+  /// Returns the number of triangles of the polygon that begins with this one.
   [[nodiscard]] std::size_t triangle_count(std::size_t polygon) const noexcept {
     return count_.empty() ? 1 : count_[polygon];
   }
   /// Its vertices, in order around it.
   [[nodiscard]] std::span<const std::uint32_t> corners(std::size_t polygon) const noexcept;
-  /// Whether any polygon is more than a triangle.
+  /// Returns whether any polygon is more than a triangle.
   [[nodiscard]] bool any_joined() const noexcept { return joined_ > 0; }
 
  private:

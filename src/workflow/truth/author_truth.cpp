@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kFramesOfBlock = 256;
 constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: what is nearer to a sum has no offset
 
-// How far rounding may turn a stored normal, in radians: some exporters store bytes.
+// Returns the angle by which rounding may turn a stored normal, in radians: some exporters store bytes.
 double rounding_of_stored(const GltfShading& shading) {
   constexpr double kSteps = 127, kNear = 1e-3;
   constexpr std::size_t kEnough = 16;
@@ -141,7 +141,7 @@ class AuthorTruth::Finder {
                      mean_edge_angle(truth_.edges_of(frame), z, position));
   }
 
-  // Whether a key says anything of a frame; then its z there.
+  // Returns whether a key says anything of a frame; writes its z there.
   [[nodiscard]] bool tells(const StoredKey& key, std::size_t k, std::size_t n, Vec3d& z) const {
     const std::uint32_t e = element_of_[n];
     if (stale_.is_stale(k, vertex_of_[e])) return false;

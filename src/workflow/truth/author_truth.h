@@ -2,14 +2,14 @@
 ///
 /// Right is what the authoring tool shows. It adds up the normals of polygons by a rule (author_rule.h), r(w), and the
 /// author may have added something to that: normals bent by hand, or made by a modifier. What was added, the *offset*,
-/// is carried by the surface (offset_frame.h). Let o_0 be that of the base, and o_i that of target i at weight 1, as the
-/// file stores them. The truth at weights w has the offset o(w) = o_0 + sum of w_i (o_i - o_0), at most a right angle
-/// from the sum. So it passes through all that is stored, and is r(w) where nothing was added. Azimuths are measured
-/// from the edge with which the offsets of an element differ least; where no edge will do at every key, from a
+/// is carried by the surface (offset_frame.h). Let o_0 be that of the base, and o_i that of target i at weight 1, as
+/// the file stores them. The truth at weights w has the offset o(w) = o_0 + sum of w_i (o_i - o_0), at most a right
+/// angle from the sum. So it passes through all that is stored, and is r(w) where nothing was added. Azimuths are
+/// measured from the edge with which the offsets of an element differ least; where no edge will do at every key, from a
 /// direction that is turned along with the sum by the smallest rotation.
 ///
-/// Unknown    Where no target stores normals that tell, nobody knows how an offset moves: the rotation that it is in the
-///            base stays as it is, so that by area the truth is exact.
+/// Unknown    Where no target stores normals that tell, nobody knows how an offset moves: its rotation in the base
+///            stays as it is, so that by area the truth is exact.
 /// Stale      Where the stored normals of a target tell nothing (stale_keys.h), r counts, with the offset of the base.
 /// Degenerate Where r(w) is zero the truth is zero. Where it is zero at a key, the offset there is that of the base.
 /// Threads    const functions may run at once
@@ -41,15 +41,15 @@ class AuthorTruth {
 
   static constexpr std::uint32_t kNone = GltfShading::kNoElement;
 
-  /// How the offsets of one element are placed.
+  /// The frame in which the offsets of one element are placed.
   struct Frame {
     std::uint32_t first_edge = 0, edge_count = 0;  ///< all edges around it, in edges()
     std::uint32_t edge = kNone;                    ///< the one from which azimuths are measured, in edges()
     double side = 1;                               ///< -1 where the author shows the other side of r
-    Vec3d base_z, base_x;                          ///< where there is no such edge
+    Vec3d base_z, base_x;                          ///< in place of the edge, if there is none
     PlaneOffset base;
   };
-  /// By how much the offsets of a target at weight 1 differ from those of the base.
+  /// The difference between the offset of a target at weight 1 and that of the base.
   struct Change {
     std::uint32_t frame = 0;
     PlaneOffset by;
@@ -64,13 +64,14 @@ class AuthorTruth {
   [[nodiscard]] const AuthorRule& rule() const noexcept { return rule_; }
   /// Empty where the truth is plain.
   [[nodiscard]] const AuthorSums& sums() const noexcept { return sums_; }
-  /// Whether the truth is n(w), by area, with what is added to the base turned along as it is, so that it can be exact.
+  /// Returns whether the truth is n(w), by area, with what is added to the base turned along as it is, so that it can
+  /// be exact.
   [[nodiscard]] bool is_plain() const noexcept { return rule_.is_plain() && frames_.empty(); }
-  /// Whether the normals that targets store have a part in the truth, beyond what area weighs: a bake that keeps them
-  /// says so in its mark.
+  /// Returns whether the normals that targets store have a part in the truth, beyond what area weighs: a bake that
+  /// keeps them says so in its mark.
   [[nodiscard]] bool follows_keys() const noexcept { return !is_plain() || any_split_; }
   [[nodiscard]] std::span<const StaleKey> stale() const noexcept { return stale_; }
-  /// How many elements have an offset.
+  /// Returns the number of elements that have an offset.
   [[nodiscard]] std::size_t offset_count() const noexcept { return frames_.size(); }
   /// Their frames; which of these an element has, or kNone, of all elements if any has one; and the edges around them.
   [[nodiscard]] std::span<const Frame> frames() const noexcept { return frames_; }
@@ -119,8 +120,8 @@ class AuthorTruth {
   bool any_split_ = false;
 };
 
-/// What the author of a mesh would see, or sums by a weighting where one is asked for. Copies of a point that a key
-/// tells apart become elements of their own, unless one is. The shading must be as the first constructor needs it.
+/// Finds what the author of a mesh would see, or sums by a weighting where one is asked for. Copies of a point that a
+/// key tells apart become elements of their own, unless one is. The shading must be as the first constructor needs it.
 [[nodiscard]] AuthorTruth author_truth(GltfShading& shading, std::optional<Weighting> asked);
 
 }  // namespace chronormal::inline internal

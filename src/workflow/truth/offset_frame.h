@@ -1,4 +1,4 @@
-/// How what an author added to a sum of normals is measured, in a frame that the surface carries along. Private to
+/// The offset that an author added to a sum of normals, measured in a frame that the surface carries along. Private to
 /// workflow.
 ///
 /// At a point with the unit sum z and an edge from there, a stored normal s has
@@ -52,8 +52,8 @@ template <class PositionOf>
   return unit(along - dot(along, z) * z);
 }
 
-/// Whether azimuths can be measured from an edge: it is longer than 1e-6 of the longest one, and more than a degree
-/// from z.
+/// Returns whether azimuths can be measured from an edge: it is longer than 1e-6 of the longest one, and more than a
+/// degree from z.
 template <class PositionOf>
 [[nodiscard]] bool gives_azimuth(std::span<const OffsetEdge> edges, const OffsetEdge& edge, const Vec3d& z,
                                  const PositionOf& position) {
@@ -82,8 +82,8 @@ template <class PositionOf>
   return portable::cos(alpha) * z + portable::sin(alpha) * across;
 }
 
-/// How far a stored normal at a key is from what carries the offset of the base there, in radians: by the edge with
-/// which it is nearest. base and at_key are positions, z0 and z the unit sums there, s0 and s what is stored.
+/// Returns the angle between a stored normal at a key and what carries the offset of the base there, in radians: by the
+/// edge with which it is nearest. base and at_key are positions, z0 and z the unit sums there, s0 and s what is stored.
 template <class BaseOf, class KeyOf>
 [[nodiscard]] double carried_error(std::span<const OffsetEdge> edges, const Vec3d& z0, const Vec3d& s0,
                                    const BaseOf& base, const Vec3d& z, const Vec3d& s, const KeyOf& at_key) {

@@ -25,7 +25,7 @@ namespace chronormal::inline internal {
 /// A target that is stale on some connected parts of the mesh.
 struct StaleKey {
   std::size_t target = 0;
-  std::size_t vertices = 0;  ///< of these parts, that it turns by more than a degree
+  std::size_t vertices = 0;  ///< vertices of these parts that it turns by more than a degree
 };
 
 class StaleKeys {
@@ -40,7 +40,7 @@ class StaleKeys {
   [[nodiscard]] bool is_stale(std::size_t target, std::uint32_t vertex) const {
     return !stale_[target].empty() && stale_[target][part_of_vertex_[vertex]];
   }
-  /// Whether no part of the mesh that the target turns follows it.
+  /// Returns whether no part of the mesh that the target turns follows it.
   [[nodiscard]] bool is_stale_everywhere(std::size_t target) const { return is_all_stale_[target]; }
   [[nodiscard]] const std::vector<StaleKey>& list() const noexcept { return list_; }
 

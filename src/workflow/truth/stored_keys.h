@@ -31,7 +31,7 @@ class StoredKey {
   }
   /// The normal that is shown there, of any length.
   [[nodiscard]] Vec3d normal(std::uint32_t vertex) const noexcept;
-  /// Whether the target turns what is stored for the vertex.
+  /// Returns whether the target turns what is stored for the vertex.
   [[nodiscard]] bool turns(std::uint32_t vertex) const noexcept;
 
  private:
