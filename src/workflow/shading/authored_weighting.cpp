@@ -1,6 +1,7 @@
 #include "workflow/shading/authored_weighting.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -116,7 +117,9 @@ Distances distances_of(const Block& block, Stored stored) {
     result.telling += tells ? 1U : 0U;
     for (std::size_t w = 0; w < kWeightings.size(); ++w) {
       if (normals[w][i] == Vec3d{}) continue;
-      const double degrees = angle_between(stored[i].normal, normals[w][i]) * kDegreesPerRadian;
+      // An author may show the other side: that is no offset.
+      const double angle = angle_between(stored[i].normal, normals[w][i]) * kDegreesPerRadian;
+      const double degrees = std::fmin(angle, 180 - angle);
       result.add(w, stored[i], degrees);
       if (tells) result.told[w].push_back(static_cast<float>(degrees));
     }

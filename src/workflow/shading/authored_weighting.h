@@ -34,7 +34,7 @@ struct StoredNormal {
   Vec3d normal;
 };
 
-/// How far stored normals are from those of one weighting, in degrees.
+/// How far stored normals are from those of one weighting, or of its other side, in degrees.
 struct WeightingDistance {
   std::size_t count = 0;  ///< of the stored normals, those whose element has a normal
   double sum = 0, worst = 0;

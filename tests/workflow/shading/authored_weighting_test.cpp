@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "chronormal/motion/motion.h"
 #include "chronormal/workflow/audit.h"
 #include "tests/support/audit_fixture.h"
 #include "tests/support/bake_fixture.h"
@@ -103,6 +104,25 @@ TEST(AuthoredWeighting, each_is_detected_where_normals_follow_it) {
     EXPECT_EQ(audit.weighting, info.weighting) << info.name;
     EXPECT_LT(audit.offsets[0].worst, 1e-4) << info.name;
     EXPECT_EQ(audit.subjects[0].weighting, info.weighting) << info.name;
+  }
+}
+
+TEST(AuthoredWeighting, of_a_sequence_is_found_in_normals_that_show_the_other_side) {
+  for (const WeightingInfo& info : kWeightings) {
+    const ShadedMesh mesh = sheet(std::string(info.name));
+    Motion motion;
+    motion.topology = Topology::triangles(mesh.vertices(), mesh.corners).value();
+    motion.keyframes = {{mesh.positions, 0, ""}, {mesh.positions, 1, ""}};
+    motion.keyframes[1].positions.back() += 1;
+    motion.connect_as_sequence();
+    std::vector<float> of_corners;
+    for (const std::uint32_t v : mesh.corners)
+      for (std::size_t c = 0; c < 3; ++c)
+        of_corners.push_back(v % 2 == 0 ? mesh.normals[3 * v + c] : -mesh.normals[3 * v + c]);
+    const Result<Audit> found = audit(motion, StoredNormals{{of_corners, of_corners}}, {});
+    ASSERT_TRUE(found) << found.error().text();
+    EXPECT_EQ(found.value().offsets.at(0).weighting, info.weighting) << info.name;
+    EXPECT_LT(found.value().offsets.at(0).worst, 1e-4) << info.name;
   }
 }
 
