@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "tests/support/fixtures.h"
@@ -102,6 +103,52 @@ TEST(Sides, sheets_with_vertices_of_their_own_share_none_and_seams_still_do) {
   }
 }
 
+TEST(Sides, polygons_lie_back_to_back_where_one_has_the_points_of_the_other_in_reverse) {
+  std::mt19937 random(kSeed + 3);
+  RecordProperty("seed", static_cast<int>(kSeed + 3));
+  std::size_t pairs = 0;
+  for (int draw = 0; draw < 200; ++draw) {
+    std::vector<std::vector<std::uint32_t>> loops(30);
+    for (std::vector<std::uint32_t>& loop : loops)
+      for (std::size_t c = 0, size = 2 + random() % 3; c < size && size > 2; ++c)
+        loop.push_back(static_cast<std::uint32_t>(random() % 4));
+    const auto is_simple = [](std::vector<std::uint32_t> loop) {
+      std::sort(loop.begin(), loop.end());
+      return !loop.empty() && std::adjacent_find(loop.begin(), loop.end()) == loop.end();
+    };
+    std::vector<BackToBack> right;
+    std::vector<bool> is_taken(loops.size());
+    for (std::uint32_t a = 0; a < loops.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < loops.size() && !is_taken[a]; ++b) {
+        std::vector<std::uint32_t> back(loops[b].rbegin(), loops[b].rend());
+        bool is_back = false;
+        for (std::size_t turn = 0; turn < back.size(); ++turn) {
+          std::rotate(back.begin(), back.begin() + 1, back.end());
+          is_back = is_back || back == loops[a];
+        }
+        if (!is_back || is_taken[b] || !is_simple(loops[a])) continue;
+        is_taken[a] = is_taken[b] = true;
+        right.emplace_back(a, b);
+      }
+    }
+    pairs += right.size();
+    EXPECT_EQ(find_backs(loops.size(), [&](std::uint32_t i, auto& loop) { loop = loops[i]; }), right) << draw;
+  }
+  EXPECT_GT(pairs, 100U);
+}
+
+TEST(Sides, faces_go_together_along_edges_that_one_leaves_by_and_the_other_comes_by) {
+  // 0 and 1 both leave by the edge to 5: they are wound against each other. 2 comes from 6, to which 1 goes.
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> apart = {{0, 2}};
+  EXPECT_EQ(split_sides(3, {{0, 5, true}, {1, 5, true}, {1, 6, true}, {2, 6, false}}, apart),
+            (std::vector<std::uint32_t>{0, 1, 1}));
+  EXPECT_EQ(split_sides(3, {{0, 5, true}, {1, 5, false}, {1, 6, true}, {2, 6, false}}, apart),
+            (std::vector<std::uint32_t>{0, 0, 1}));
+  // Without an edge in common, a face goes with the first that it is not apart from.
+  EXPECT_EQ(split_sides(4, {}, std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {0, 2}}),
+            (std::vector<std::uint32_t>{0, 1, 1, 0}));
+}
+
 TEST(Sides, walls_of_two_boxes_that_touch_stay_one_surface_around_their_rim) {
   // Two cubes with a wall in common, twelve vertices each with its own copy of every corner.
   std::vector<Point> places;
@@ -173,19 +220,23 @@ TEST(Sides, the_stored_normal_of_a_vertex_says_which_side_it_shows) {
 TEST(Sides, corners_of_both_sides_that_store_one_normal_are_elements_of_their_own) {
   std::mt19937 random(kSeed + 2);
   const Sheet sheet(random);
-  const ShadedMesh mesh = two_sided(sheet, false, false);
-  const Result<Topology> topology = Topology::triangles(sheet.points.size(), mesh.corners);
-  ASSERT_TRUE(topology.ok());
-  std::vector<float> of_corners;
-  for (std::size_t c = 0; c < mesh.corners.size(); ++c) of_corners.insert(of_corners.end(), {0, 0, 1});
-  const Result<NormalGroups> groups =
-      NormalGroups::by_split_normals(topology.value(), separate_points(sheet.points.size()),
-                                     VectorView<const float>::packed(of_corners.data(), mesh.corners.size()));
+  ShadedMesh mesh = two_sided(sheet, false, false);
+  const auto groups_of = [&sheet](const std::vector<std::uint32_t>& corners) {
+    const Topology topology = Topology::triangles(sheet.points.size(), corners).value();
+    std::vector<float> of_corners;
+    for (std::size_t c = 0; c < corners.size(); ++c) of_corners.insert(of_corners.end(), {0, 0, 1});
+    return NormalGroups::by_split_normals(topology, separate_points(sheet.points.size()),
+                                          VectorView<const float>::packed(of_corners.data(), corners.size()));
+  };
+  const Result<NormalGroups> groups = groups_of(mesh.corners);
   ASSERT_TRUE(groups.ok());
   EXPECT_EQ(groups.value().size(), 2 * sheet.points.size());
   const auto element = groups.value().element_of_corner();
   for (std::size_t c = 0; c < sheet.corners.size(); ++c)
     for (std::size_t d = sheet.corners.size(); d < mesh.corners.size(); ++d) EXPECT_NE(element[c], element[d]);
+  // Where one face has no back, its three points are not of two sides.
+  mesh.corners.resize(mesh.corners.size() - 3);
+  EXPECT_EQ(groups_of(mesh.corners).value().size(), 2 * sheet.points.size() - 3);
 }
 
 }  // namespace

@@ -240,6 +240,143 @@ TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
   }
 }
 
+// What is added to a sum, in the plane perpendicular to it: as long as the angle between them.
+Vector added_to(const Vector& sum, const Vector& stored) {
+  using namespace reference;
+  const Vector across = normalised(add(stored, scaled(-dot(sum, stored), sum)));
+  return scaled(std::atan2(length(cross(sum, stored)), dot(sum, stored)), across);
+}
+
+TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_and_on_either_side) {
+  using namespace reference;
+  std::mt19937 random(kSeed + 8);
+  RecordProperty("seed", static_cast<int>(kSeed + 8));
+  constexpr std::size_t kSide = 9;
+  for (int draw = 0; draw < 4; ++draw) {
+    // Both targets make five rows larger, so that their sums stay as they are, whatever edge azimuths are measured from.
+    Authored mesh = quads(random, kSide);
+    for (auto& target : mesh.file.targets)
+      for (std::size_t i = 0; i < 3 * 5 * kSide; ++i) target.positions[i] = mesh.file.positions[i];
+    std::array<std::vector<Vector>, 3> stored = {mesh.sums("angle", {0, 0}), mesh.sums("angle", {1, 0}),
+                                                 mesh.sums("angle", {0, 1})};
+    for (std::size_t v = 0; v < 4 * kSide; ++v) {
+      for (std::vector<Vector>& of_key : stored) {
+        if (v % 3 == 0) of_key[v] = bent(of_key[v], random, 0.2);
+        if (v % 4 == 0) of_key[v] = scaled(Real(-1), of_key[v]);  // the other side
+      }
+    }
+    mesh.store(stored[0], {stored[1], stored[2]});
+    const Truth truth(mesh.file);
+    ASSERT_EQ(truth.truth->rule().weighting, Weighting::kAngle);
+    for (const std::vector<double>& weights : {std::vector<double>{0.5, 0}, {0.3, 0.6}, {-0.25, 0.5}, {1, 1}}) {
+      const std::vector<Vector> sums = mesh.sums("angle", weights);
+      for (std::size_t v = 0; v < 4 * kSide; ++v) {
+        const Vector sum = scaled(Real(v % 4 == 0 ? -1 : 1), sums[v]);
+        Vector right = sum;
+        if (v % 3 == 0) {
+          const Vector base = added_to(sum, stored[0][v]);
+          Vector offset = base;
+          for (std::size_t k = 0; k < 2; ++k)
+            offset = add(offset, scaled(static_cast<Real>(weights[k]),
+                                        add(added_to(sum, stored[k + 1][v]), scaled(Real(-1), base))));
+          right = add(scaled(std::cos(length(offset)), sum), scaled(std::sin(length(offset)), normalised(offset)));
+        }
+        const Vector shown = scaled(Real(v % 4 == 0 && v % 3 != 0 ? -1 : 1), truth.at(v, mesh, weights));
+        EXPECT_LT(degrees_between(shown, right), 0.02) << draw << ", " << v;
+      }
+    }
+  }
+}
+
+TEST(AuthorTruth, smooth_normals_beside_faces_that_are_shaded_flat_add_up_these_too) {
+  using namespace reference;
+  std::mt19937 random(kSeed + 10);
+  for (int draw = 0; draw < 4; ++draw) {
+    Authored mesh = quads(random);
+    const std::size_t points = mesh.file.vertices();
+    std::array<std::vector<Vector>, 3> stored = {mesh.sums("angle", {0, 0}), mesh.sums("angle", {1, 0}),
+                                                 mesh.sums("angle", {0, 1})};
+    const std::array<reference::Mesh, 3> keys = {mesh.mesh({0, 0}), mesh.mesh({1, 0}), mesh.mesh({0, 1})};
+    for (std::size_t q = 0; q < mesh.polygons.size(); ++q) {
+      if (random() % 5 != 0) continue;
+      // The flat face gets vertices of its own, while its corners go on counting for those around.
+      const std::vector<std::size_t>& corners = mesh.polygons[q];
+      for (const std::size_t corner : corners) {
+        const auto copy = static_cast<std::uint32_t>(mesh.file.vertices());
+        for (std::size_t c = 0; c < 6; ++c)
+          if (mesh.file.corners[6 * q + c] == corner) mesh.file.corners[6 * q + c] = copy;
+        for (std::size_t c = 0; c < 3; ++c) {
+          mesh.file.positions.push_back(mesh.file.positions[3 * corner + c]);
+          for (auto& target : mesh.file.targets) target.positions.push_back(target.positions[3 * corner + c]);
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto along = [&](std::size_t from, std::size_t to) {
+            return add(keys[k].from[corners[to]], scaled(Real(-1), keys[k].from[corners[from]]));
+          };
+          stored[k].push_back(normalised(cross(along(0, 2), along(1, 3))));
+        }
+      }
+    }
+    mesh.store(stored[0], {stored[1], stored[2]});
+    const Truth truth(mesh.file);
+    EXPECT_TRUE(truth.truth->rule().any_whole_point);
+    EXPECT_EQ(truth.truth->offset_count(), 0U);
+    const std::vector<double> weights = {0.4, 0.5};
+    const std::vector<Vector> right = mesh.sums("angle", weights);
+    for (std::uint32_t v = 0; v < points; ++v) {
+      if (truth.shading.element_of_vertex[v] == AuthorTruth::kNone) continue;
+      EXPECT_LT(degrees_between(truth.at(v, mesh, weights), right[v]), 0.02) << draw << ", " << v;
+    }
+  }
+}
+
+TEST(AuthorTruth, normals_in_eight_bits_have_no_offsets) {
+  std::mt19937 random(kSeed + 11);
+  Authored mesh = quads(random);
+  const auto rounded = [](std::vector<Vector> normals) {
+    for (Vector& n : normals)
+      for (Real& c : n) c = std::round(127 * c) / 127;
+    return normals;
+  };
+  mesh.store(rounded(mesh.sums("angle", {0, 0})),
+             {rounded(mesh.sums("angle", {1, 0})), rounded(mesh.sums("angle", {0, 1}))});
+  const Truth truth(mesh.file);
+  EXPECT_EQ(truth.truth->rule().weighting, Weighting::kAngle);
+  EXPECT_EQ(truth.truth->offset_count(), 0U);
+}
+
+TEST(AuthorTruth, a_key_that_bends_a_normal_far_from_what_it_moves_turns_it) {
+  std::mt19937 random(kSeed + 12);
+  Authored mesh = quads(random);
+  std::vector<float>& moved = mesh.file.targets[1].positions;
+  std::fill(moved.begin(), moved.begin() + 3 * 5 * 9, 0.0F);
+  std::vector<Vector> second = mesh.sums("angle", {0, 1});
+  second[3] = bent(second[3], random, 0.3);
+  mesh.store(mesh.sums("angle", {0, 0}), {mesh.sums("angle", {1, 0}), second});
+  const Truth truth(mesh.file);
+  const std::vector<std::uint32_t> turned = truth.truth->elements_of(1);
+  const auto has = [&](std::size_t v) {
+    return std::find(turned.begin(), turned.end(), truth.shading.element_of_vertex[v]) != turned.end();
+  };
+  EXPECT_TRUE(has(3));
+  EXPECT_FALSE(has(4));
+  EXPECT_TRUE(has(80));
+}
+
+TEST(AuthorTruth, a_key_whose_normals_turn_with_the_surface_but_farther_is_the_authors) {
+  std::mt19937 random(kSeed + 9);
+  Authored mesh = quads(random);
+  for (float& delta : mesh.file.targets[1].positions) delta *= 0.4F;
+  const std::vector<Vector> base = mesh.sums("angle", {0, 0});
+  std::vector<Vector> second = mesh.sums("angle", {0, 1});
+  for (std::size_t v = 0; v < second.size(); ++v) second[v] = test::rotated(base[v], second[v], second[v]);
+  mesh.store(base, {mesh.sums("angle", {1, 0}), second});
+  const Truth truth(mesh.file);
+  EXPECT_TRUE(truth.truth->stale().empty());
+  for (std::size_t v = 0; v < second.size(); ++v)
+    EXPECT_LT(degrees_between(truth.at(v, mesh, {0, 1}), second[v]), 0.02);
+}
+
 TEST(AuthorTruth, a_key_that_does_not_turn_as_the_surface_does_is_stale_and_the_rule_counts) {
   std::mt19937 random(kSeed + 4);
   for (const bool is_noise : {false, true}) {
