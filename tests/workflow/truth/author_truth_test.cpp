@@ -288,6 +288,30 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
   }
 }
 
+TEST(AuthorTruth, azimuths_are_measured_from_the_edge_with_which_offsets_change_least) {
+  std::mt19937 random(kSeed + 13);
+  constexpr std::size_t kSide = 9, kBent = 2 * kSide + 4;
+  Authored mesh = quads(random, kSide);
+  // Five rows are flat, and all that moves there is a neighbour of the bent vertex, within the plane.
+  for (std::size_t v = 0; v < 5 * kSide; ++v) {
+    mesh.file.positions[3 * v] = static_cast<float>(v % kSide);
+    mesh.file.positions[3 * v + 1] = static_cast<float>(v / kSide);
+    mesh.file.positions[3 * v + 2] = 0;
+    for (auto& target : mesh.file.targets)
+      std::fill_n(target.positions.begin() + 3 * static_cast<std::ptrdiff_t>(v), 3, 0.0F);
+  }
+  mesh.file.targets[0].positions[3 * (kBent + 1) + 1] = 0.7F;
+  std::array<std::vector<Vector>, 3> stored = {mesh.sums("angle", {0, 0}), mesh.sums("angle", {1, 0}),
+                                               mesh.sums("angle", {0, 1})};
+  const Vector normal = bent(stored[0][kBent], random, 0.4);
+  for (std::vector<Vector>& of_key : stored) of_key[kBent] = normal;
+  mesh.store(stored[0], {stored[1], stored[2]});
+  const Truth truth(mesh.file);
+  EXPECT_GT(truth.truth->offset_count(), 0U);
+  EXPECT_GT(degrees_between(mesh.sums("angle", {0, 0})[kBent], normal), 5);
+  EXPECT_LT(degrees_between(truth.at(kBent, mesh, {0.5, 0}), normal), 0.02);
+}
+
 TEST(AuthorTruth, smooth_normals_beside_faces_that_are_shaded_flat_add_up_these_too) {
   using namespace reference;
   std::mt19937 random(kSeed + 10);
