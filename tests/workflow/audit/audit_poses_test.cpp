@@ -84,6 +84,11 @@ TEST(AuditPoses, targets_are_judged_between_the_weights_that_are_asked_for) {
   const AuditSubject& subject = audit.subjects.at(0);
   EXPECT_EQ(subject.error.worst_at.at, 2);
   EXPECT_GT(subject.error.worst, 90.001) << "at weight 1 it is 90";
+  options.weights = {-1, 0};
+  const Audit below = audited(hinge().file(), options).value();
+  EXPECT_EQ(below.error.worst, below.subjects.at(0).error.worst);
+  EXPECT_EQ(below.subjects.at(0).error.worst_at.at, -1);
+  EXPECT_GT(below.error.worst, 1);
   options.weights = {1, 1};
   EXPECT_EQ(audited(hinge().file(), options).error().code, ErrorCode::kUsage);
   options.weights = {0, HUGE_VAL};
