@@ -4,12 +4,15 @@
 
 #include "chronormal/analysis/cluster_bounds.h"
 
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <iostream>
@@ -302,6 +305,117 @@ TEST(ClusterBounds, have_every_vertex_in_their_sphere_at_any_instant) {
       }
     }
   }
+}
+
+// Polynomials in rational numbers, by the powers of their argument.
+using Rational = mpq_class;
+using Powers = std::array<Rational, 4>;
+
+Powers product(const Powers& a, const Powers& b) {
+  Powers result;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; i + j < a.size(); ++j) result[i + j] += a[i] * b[j];
+  return result;
+}
+Powers difference(const Powers& a, const Powers& b) {
+  Powers result;
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] - b[i];
+  return result;
+}
+Powers dot_of(const std::array<Powers, 3>& a, const std::array<Powers, 3>& b) {
+  Powers result;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Powers term = product(a[k], b[k]);
+    for (std::size_t i = 0; i < term.size(); ++i) result[i] += term[i];
+  }
+  return result;
+}
+
+// The Bernstein coefficients of the same cubic: sums of its powers by the quotients of binomials.
+std::array<Rational, 4> bernstein_of(const Powers& p) {
+  return {p[0], p[0] + p[1] / 3, p[0] + p[1] * 2 / 3 + p[2] / 3, p[0] + p[1] + p[2] + p[3]};
+}
+
+// The normal of a triangle and its first corner over [t0, t1], as cubics in how far through the interval it is.
+struct MovingPlane {
+  std::array<Powers, 3> normal, corner;
+
+  MovingPlane(const Segment& segment, std::size_t f, double t0, double t1) {
+    std::array<std::array<Powers, 3>, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = segment.topology->face(f)[c];
+      const Vec3f a = segment.from[v], b = segment.to[v];
+      const std::array<float, 3> from{a.x, a.y, a.z}, to{b.x, b.y, b.z};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Rational start{from[k]}, by = Rational(to[k]) - start;
+        corners[c][k][0] = start + Rational(t0) * by;
+        corners[c][k][1] = (Rational(t1) - Rational(t0)) * by;
+      }
+    }
+    std::array<Powers, 3> e, g;
+    for (std::size_t k = 0; k < 3; ++k) {
+      e[k] = difference(corners[1][k], corners[0][k]);
+      g[k] = difference(corners[2][k], corners[0][k]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+      normal[k] = difference(product(e[i], g[j]), product(e[j], g[i]));
+    }
+    corner = corners[0];
+  }
+};
+
+std::array<Powers, 3> constant(const float (&v)[3]) {
+  std::array<Powers, 3> result;
+  for (std::size_t k = 0; k < 3; ++k) result[k][0] = Rational(v[k]);
+  return result;
+}
+
+// The apex goes back from the center as far as some Bernstein coefficient of some face asks, and no further; each of the
+// four decides some cases.
+TEST(ClusterBounds, have_the_nearest_apex_that_bernstein_coefficients_put_behind_all_faces) {
+  constexpr std::uint64_t kSeed = 914;
+  fixtures::Random random(kSeed);
+  std::array<std::size_t, 4> decided{};
+  for (int round = 0; round < 600; ++round) {
+    const Motion motion = fixtures::soup(
+        {.face_count = 1 + random.below(2), .seed = kSeed + random.below(100000), .motion = random.uniform(0.1, 1)});
+    const Segment segment = motion.segment(0);
+    const double t0 = round % 3 == 0 ? 0 : random.uniform(0, 0.5), t1 = round % 3 == 0 ? 1 : random.uniform(0.5, 1);
+    std::vector<std::uint32_t> faces;
+    for (std::uint32_t f = 0; f < motion.topology.face_count(); ++f) faces.push_back(f);
+    const ClusterBounds bounds = cluster_bounds(segment, faces, t0, t1);
+    if (!(bounds.cone_cutoff < 1)) continue;
+    const std::array<Powers, 3> center = constant(bounds.center), axis = constant(bounds.cone_axis);
+    Rational s = 0;
+    std::size_t deciding = 4;
+    for (const std::uint32_t f : faces) {
+      const MovingPlane plane(segment, f, t0, t1);
+      std::array<Powers, 3> to_center;
+      for (std::size_t k = 0; k < 3; ++k) to_center[k] = difference(center[k], plane.corner[k]);
+      const std::array<Rational, 4> height = bernstein_of(dot_of(plane.normal, to_center)),
+                                    along = bernstein_of(dot_of(plane.normal, axis));
+      for (std::size_t k = 0; k < along.size(); ++k) {
+        ASSERT_GT(along[k], 0) << "seed " << kSeed << ", round " << round;
+        const Rational back = height[k] / along[k];
+        if (back > s) deciding = k;
+        s = std::max(s, back);
+      }
+    }
+    if (deciding < 4) ++decided[deciding];
+    double off = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Rational expected = center[k][0] - s * axis[k][0];
+      off = std::fmax(off, std::fabs(Rational(Rational(bounds.cone_apex[k]) - expected).get_d()));
+    }
+    EXPECT_LE(off, 1e-4 * (1 + s.get_d())) << "seed " << kSeed << ", round " << round << ", coefficient " << deciding;
+  }
+  std::cout << "  seed " << kSeed << ", cases that each coefficient decides:";
+  for (const std::size_t count : decided) {
+    std::cout << ' ' << count;
+    EXPECT_GT(count, 20u);
+  }
+  std::cout << '\n';
 }
 
 TEST(ClusterBounds, say_what_can_always_and_what_can_never_be_seen) {
