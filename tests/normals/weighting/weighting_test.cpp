@@ -8,15 +8,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iostream>
 #include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "chronormal/normals/normal_groups.h"
+#include "tests/support/cpu_time.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
+#include "tests/support/hard_motions.h"
+#include "tests/support/integer_normal.h"
 #include "tests/support/reference_elements.h"
 
 namespace chronormal::weighting_test {
@@ -151,6 +156,61 @@ TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
       EXPECT_EQ(scaled, std::ldexp(1.0, 2 * power) * n) << "case " << i << ", 2^" << power;
     }
   }
+}
+
+// The angle between two vectors of any length.
+double angle_to(const Vec3d& u, const std::array<double, 3>& n) {
+  const Vec3d v{n[0], n[1], n[2]};
+  const Vec3d a = (1 / max_abs(u)) * u, b = (1 / max_abs(v)) * v;
+  return std::atan2(length(cross(a, b)), dot(a, b));
+}
+
+// Where double has lost a face, integers know it.
+TEST(Weighting, normals_of_hard_faces_are_those_of_whole_numbers) {
+  constexpr std::uint64_t kSeed = 49100;
+  constexpr double kMost = 0x1p-29;
+  const auto& families = test::hard_motions();
+  for (std::size_t k = 0; k < families.size(); ++k) {
+    fixtures::Random random(kSeed + k);
+    std::size_t wrong = 0, faces = 0;
+    double worst = 0;
+    for (int round = 0; round < 40; ++round) {
+      const Motion motion = families[k].make(random);
+      const Segment segment = motion.segment(0);
+      for (const double t : {0.0, 1.0, 0.5, random.uniform(0, 1)}) {
+        std::vector<Vec3d> found(motion.topology.face_count());
+        face_normals_at(segment, t, {0, found.size()}, found);
+        const auto expected = test::IntegerNormals(segment).at(test::IntegerTime::of(t));
+        for (std::size_t f = 0; f < found.size(); ++f, ++faces) {
+          const bool has_normal = !test::is_zero(expected[f]), is_found = found[f] != Vec3d{};
+          const double angle = has_normal && is_found ? angle_to(found[f], test::direction_of(expected[f])) : 0;
+          wrong += has_normal == is_found && angle <= kMost ? 0U : 1U;
+          worst = std::fmax(worst, angle);
+        }
+      }
+    }
+    EXPECT_EQ(wrong, 0u) << families[k].name << ": of " << faces << " faces from seed " << kSeed + k << ", worst "
+                         << worst << " rad";
+  }
+}
+
+// Integers are twenty times as slow as double, and are used only for faces that need them.
+TEST(Weighting, ordinary_faces_cost_a_fifth_of_what_faces_on_lines_cost) {
+  constexpr std::size_t kFaces = 20000;
+  const auto seconds_for = [](const Motion& motion) {
+    std::vector<Vec3d> result(motion.topology.face_count());
+    double best = 1e9;
+    for (int round = 0; round < 3; ++round) {
+      const test::CpuClock clock;
+      face_normals_at(motion.segment(0), 0, {0, result.size()}, result);
+      best = std::fmin(best, clock.seconds());
+    }
+    return best;
+  };
+  const double ordinary = seconds_for(fixtures::moderate_soup(kFaces));
+  const double hard = seconds_for(fixtures::degenerate_soup(fixtures::Shape::kLine, fixtures::Shape::kLine, kFaces));
+  std::cout << "  " << 1e9 * ordinary / kFaces << " and " << 1e9 * hard / kFaces << " ns for a face\n";
+  EXPECT_LT(5 * ordinary, hard);
 }
 
 TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
