@@ -1,9 +1,10 @@
 // A theorem of time: the normals at t are the same bytes whatever other times are asked for, before, after or together
-// with t; on every instruction set and number of threads, and by every way to compute them. On hard meshes drawn at
-// random, with whole numbers of any size for the truth.
+// with t; on every instruction set and number of threads, and by every way to compute them, the interface for C among
+// them. On hard meshes drawn at random, with whole numbers of any size for the truth.
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,11 +29,14 @@
 #include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
 #include "chronormal/normals/segment_normals.h"
+#include "chronormal_c.h"
+#include "io/mesh/obj.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
 #include "tests/support/integer_normal.h"
 #include "tests/support/large_polygons.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chronormal::times_test {
 namespace {
@@ -49,6 +54,13 @@ using Way = std::function<std::vector<Normals>(const std::vector<double>& times)
 struct NamedWay {
   std::string name;
   std::function<Way()> make;  // prepares it anew
+};
+
+// The faces, vertices or corners of a mesh.
+struct Elements {
+  chronormal_elements kind;
+  const NormalGroups* groups;  // nullptr for faces
+  double crease_angle;         // of corners
 };
 
 // Ways that must agree to the last bit, and to this angle with the truth.
@@ -113,6 +125,122 @@ Way blended(BlendNormals made, Threads threads, bool together) {
   };
 }
 
+// ---- the interface for C -------------------------------------------------------------------------------------------
+
+void expect_done(chronormal_status status) {
+  if (status != CHRONORMAL_DONE) throw std::runtime_error(chronormal_last_message());
+}
+
+// A mesh and the two ends of its segment as C passes them, and options for elements as these tests have them.
+struct MeshInC {
+  std::vector<std::uint32_t> offsets{0};
+  chronormal_mesh mesh;
+  chronormal_vectors from, to;
+  chronormal_options options;
+
+  MeshInC(const Motion& motion, const Elements& elements, double tolerance, Threads threads) {
+    const Topology& topology = motion.topology;
+    for (std::size_t f = 0; f < topology.face_count(); ++f)
+      offsets.push_back(offsets.back() + static_cast<std::uint32_t>(topology.face(f).size()));
+    mesh = {topology.vertex_count(), topology.face_count(), topology.corners().data(), offsets.data()};
+    from = {motion.keyframes[0].positions.data(), 0};
+    to = {motion.keyframes[1].positions.data(), 0};
+    chronormal_options_init(&options);
+    options.elements = elements.kind;
+    options.separate = 1;
+    options.crease_angle = elements.crease_angle;
+    options.tolerance = tolerance;
+    options.all_threads = threads == Threads::kAll ? 1 : 0;
+  }
+};
+
+// Normals of an object of `size` elements: write(t, where) writes those of one time.
+template <class Write>
+Way written_in_c(std::size_t size, Write write) {
+  return [=](const std::vector<double>& times) {
+    std::vector<Normals> results(times.size(), Normals(3 * size));
+    for (std::size_t i = 0; i < times.size(); ++i)
+      expect_done(write(times[i], chronormal_result{results[i].data(), 0}));
+    return results;
+  };
+}
+
+// Curves that are created for the segment, or for its way back and then brought to it.
+Way curves_in_c(const MeshInC& in, bool is_next) {
+  chronormal_curves* made = nullptr;
+  expect_done(chronormal_curves_create(&in.mesh, in.from, is_next ? in.from : in.to, &in.options, &made));
+  const std::shared_ptr<chronormal_curves> curves(made, chronormal_curves_destroy);
+  if (is_next) expect_done(chronormal_curves_next(made, in.from, in.to));
+  return written_in_c(chronormal_curves_size(made), [curves](double t, chronormal_result result) {
+    return chronormal_curves_unit_normals(curves.get(), t, result, nullptr);
+  });
+}
+
+Way blend_in_c(const MeshInC& in, const std::vector<float>& deltas) {
+  chronormal_blend* made = nullptr;
+  const chronormal_target target{in.mesh.vertex_count, nullptr, {deltas.data(), 0}};
+  expect_done(chronormal_blend_create(&in.mesh, in.from, &target, 1, &in.options, &made));
+  const std::shared_ptr<chronormal_blend> blend(made, chronormal_blend_destroy);
+  return written_in_c(chronormal_blend_size(made), [blend](double t, chronormal_result result) {
+    return chronormal_blend_unit_normals(blend.get(), &t, result, nullptr);
+  });
+}
+
+Way motion_in_c(const MeshInC& in, const std::shared_ptr<test::TemporaryFolder>& folder,
+                const std::vector<std::string>& files, const char* path) {
+  chronormal_motion* made = nullptr;
+  const std::vector<const char*> names{files[0].c_str(), files[1].c_str()};
+  expect_done(chronormal_motion_read(names.data(), names.size(), &in.options, &made));
+  const std::shared_ptr<chronormal_motion> motion(made, chronormal_motion_destroy);
+  expect_done(chronormal_motion_follow(made, path));
+  return written_in_c(chronormal_motion_size(made), [motion, folder](double t, chronormal_result result) {
+    return chronormal_motion_unit_normals(motion.get(), t, result);
+  });
+}
+
+// Adds the ways of the interface for C: to the curves of C++ where they have the same elements, one for one.
+void add_ways_of_c(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
+                   std::vector<Kin>& all) {
+  Kin own{std::numeric_limits<double>::infinity(), {}};  // that of corners has a normal for each of them
+  Kin& kin = elements.kind == CHRONORMAL_CORNERS ? own : curves;
+  for (const Threads threads : {Threads::kOne, Threads::kAll}) {
+    for (const bool is_next : {false, true}) {
+      kin.ways.push_back({is_next ? "the next curves in C" : "curves in C", [=, &motion] {
+                            return curves_in_c(MeshInC(motion, elements, tolerance, threads), is_next);
+                          }});
+    }
+  }
+  if (!own.ways.empty()) all.push_back(std::move(own));
+}
+
+// Adds those that blend, or read files.
+void add_files_and_blends_of_c(const Motion& motion, const Elements& elements, std::vector<Kin>& all) {
+  constexpr double kNotJudged = std::numeric_limits<double>::infinity();
+  std::vector<float> deltas = motion.keyframes[1].positions;
+  for (std::size_t i = 0; i < deltas.size(); ++i) deltas[i] -= motion.keyframes[0].positions[i];
+  Kin& blend = all.emplace_back(Kin{kNotJudged, {}});
+  for (const Threads threads : {Threads::kOne, Threads::kAll}) {
+    blend.ways.push_back({"blend shapes in C", [=, &motion] {
+                            return blend_in_c(MeshInC(motion, elements, kExactTolerance, threads), deltas);
+                          }});
+  }
+  const auto folder = std::make_shared<test::TemporaryFolder>();
+  std::vector<std::string> files;
+  for (const Motion::Keyframe& keyframe : motion.keyframes) {
+    const auto positions = VectorView<const float>::packed(keyframe.positions.data(), motion.topology.vertex_count());
+    files.push_back(folder->write(std::to_string(files.size()) + ".obj", write_obj(motion.topology, positions)));
+  }
+  const double judged = elements.kind == CHRONORMAL_CORNERS ? kNotJudged : kExactTolerance;
+  for (const char* const path : {"linear", "catmull-rom"}) {
+    const bool is_linear = path[0] == 'l';
+    Kin& kin = all.emplace_back(Kin{is_linear ? judged : kNotJudged, {}});
+    kin.ways.push_back({std::string("files in C, ") + path, [=, &motion] {
+                          return motion_in_c(MeshInC(motion, elements, kExactTolerance, Threads::kOne), folder, files,
+                                             path);
+                        }});
+  }
+}
+
 // Ways that take curved paths, or blend differences of positions in float32.
 void add_other_ways(const Motion& motion, const NormalGroups* groups, std::vector<Kin>& all) {
   constexpr double kNotJudged = std::numeric_limits<double>::infinity();
@@ -143,8 +271,8 @@ void add_other_ways(const Motion& motion, const NormalGroups* groups, std::vecto
   }
 }
 
-// Faces where groups is nullptr.
-std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const NormalGroups* groups) {
+std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const Elements& elements) {
+  const NormalGroups* const groups = elements.groups;
   std::vector<Kin> all;
   for (const double tolerance : {kExactTolerance, kCompactTolerance, 5e-3}) {
     const CurveOptions options{tolerance};
@@ -152,7 +280,7 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const No
       return groups == nullptr ? NormalCurves::of_faces(segment, options, threads)
                                : NormalCurves::of_groups(segment, *groups, options, threads);
     };
-    Kin& kin = all.emplace_back(Kin{tolerance, {}});
+    Kin kin{tolerance, {}};
     for (const Threads threads : {Threads::kOne, Threads::kAll}) {
       kin.ways.push_back({"curves", [=] { return one_by_one(made(threads), threads); }});
       kin.ways.push_back({"curves, all times together", [=] { return all_together(made(threads), threads); }});
@@ -171,6 +299,8 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const No
                                                               : SegmentNormals(segment, *groups, strategy),
                                             Threads::kOne);
                         }});
+    add_ways_of_c(motion, elements, tolerance, kin, all);
+    all.push_back(std::move(kin));
     Kin& playback = all.emplace_back(Kin{tolerance, {}});
     playback.ways.push_back({"playback", [=] { return played(made(Threads::kOne)); }});
   }
@@ -182,6 +312,7 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const No
          }});
   }
   add_other_ways(motion, groups, all);
+  add_files_and_blends_of_c(motion, elements, all);
   return all;
 }
 
@@ -238,11 +369,11 @@ std::string fault_in_directions(double tolerance, const std::vector<double>& tim
   return "";
 }
 
-std::string fault_of(const Motion& motion, const NormalGroups* groups, Random& random) {
+std::string fault_of(const Motion& motion, const Elements& elements, Random& random) {
   const Segment segment = motion.segment(0);
   const IntegerNormals oracle(segment);
   const std::vector<double> times{0, 1, random.uniform(0, 1), 0.5};
-  for (const Kin& kin : all_ways(motion, segment, groups)) {
+  for (const Kin& kin : all_ways(motion, segment, elements)) {
     std::vector<Normals> expected;
     for (const std::int64_t target : supported_targets()) {
       const ScopedTarget scoped(target);
@@ -253,7 +384,7 @@ std::string fault_of(const Motion& motion, const NormalGroups* groups, Random& r
       }
     }
     if (std::isinf(kin.tolerance)) continue;
-    const std::string fault = fault_in_directions(kin.tolerance, times, expected, oracle, groups);
+    const std::string fault = fault_in_directions(kin.tolerance, times, expected, oracle, elements.groups);
     if (!fault.empty()) return kin.ways[0].name + " to " + std::to_string(kin.tolerance) + ": " + fault;
   }
   return "";
@@ -277,12 +408,15 @@ TEST(Times, do_not_change_each_others_bytes) {
       const Motion motion = families[k].make(random);
       const Points points = separate_points(motion.topology.vertex_count());
       const NormalGroups vertices = NormalGroups::of_vertices(motion.topology, points);
-      const NormalGroups corners = NormalGroups::by_crease_angle(motion, points, random.uniform(0, 180)).value();
-      for (const NormalGroups* const groups : {static_cast<const NormalGroups*>(nullptr), &vertices, &corners}) {
-        const std::string fault = fault_of(motion, groups, random);
+      const double crease = random.uniform(0, 180);
+      const NormalGroups corners = NormalGroups::by_crease_angle(motion, points, crease).value();
+      for (const Elements& elements : {Elements{CHRONORMAL_FACES, nullptr, 180},
+                                       {CHRONORMAL_VERTICES, &vertices, 180},
+                                       {CHRONORMAL_CORNERS, &corners, crease}}) {
+        const std::string fault = fault_of(motion, elements, random);
         if (fault.empty()) continue;
         if (wrong_here++ == 0) {
-          first = groups == nullptr ? "faces" : groups == &vertices ? "vertices" : "corners";
+          first = std::array{"faces", "vertices", "corners"}[elements.kind];
           first += " of mesh " + std::to_string(i) + ": " + fault;
         }
       }
