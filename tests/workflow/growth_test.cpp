@@ -43,10 +43,12 @@ void evaluate(Object&& object, double t) {
   object.unit_normals(t, VectorView<float>::packed(normals.data(), object.size()), Threads::kAll);
 }
 
-Way compare_on(PathKind path) {
-  return {"compare on paths " + std::string(path_name(path)), [path](const Motion& motion) {
+Way compare_on(PathKind path, bool certify) {
+  std::string name = certify ? "certificates on paths " : "compare on paths ";
+  return {name.append(path_name(path)), [path, certify](const Motion& motion) {
             CompareOptions options;
             options.schemes = {"linear"};
+            options.certify = certify;
             options.elements.kind = ElementKind::kVertices;
             options.elements.weld = false;
             options.samples = 3;
@@ -85,8 +87,9 @@ std::vector<Way> ways() {
                    NormalSampler sampler = NormalSampler::make(targets, {}).value();
                    (void)sampler.at_weights(std::vector<double>{0.3, 0.4}).value();
                  }});
-  all.push_back(compare_on(PathKind::kLinear));
-  all.push_back(compare_on(PathKind::kCatmullRom));
+  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
+    for (const bool certify : {false, true}) all.push_back(compare_on(path, certify));
+  }
   all.push_back({"baking a sequence", [](const Motion& motion) {
                    std::string glb;
                    EXPECT_TRUE(bake_sequence(motion, {}, glb));
