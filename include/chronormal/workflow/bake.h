@@ -46,8 +46,15 @@ inline constexpr double kLeastKeyTolerance = 0.001;  ///< degrees: float32 in ho
 
 struct BakeOptions {
   std::optional<BakeEncoding> encoding = {};  ///< nothing: smallest; of sequences exact
-  /// The deltas must be right in these hosts, and the report says what each of them shows.
-  std::vector<Host> hosts = {kHosts.begin(), kHosts.end()};
+  /// The viewers that it is made for. Nothing: those that add up deltas (three.js, Babylon.js, PlayCanvas, Bevy), and
+  /// `spared` are those that keep unit normals (Godot, Filament).
+  std::vector<Host> hosts = {};
+  /// Viewers in which nothing should get worse: of candidates that are alike in the others, one that keeps to that comes
+  /// first.
+  std::vector<Host> spared = {};
+  /// The bytes that the document takes, by which a result is too large where no tolerance and no limit is asked for; 0:
+  /// none is.
+  std::size_t bytes_of_file = 0;
   /// Others than area are fitted, with a stated error. Nothing: for each mesh the one that its stored base normals
   /// follow clearly (as audit has it), or else area; area where normals are made anew, by recompute_base.
   std::optional<Weighting> weighting = {};
@@ -89,28 +96,35 @@ struct BakeOptions {
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
+/// The same options, with viewers where none are named.
+[[nodiscard]] BakeOptions with_viewers(BakeOptions options);
+
 /// Errors of what is shown, degrees.
 struct ShownErrors {
   std::size_t judged = 0;  ///< pairs of a vertex and a pose
   double mean = 0;
   double most = 0;  ///< that of 99.9 % of them is smaller, to a tenth
   double worst = 0;
+  /// Pairs of an edge and a pose at which errors jump by more than 10, 20 and 40 degrees.
+  std::array<std::size_t, 3> tears{};
 };
 
-/// The errors that a host shows of a mesh before and after a bake, seen through the skins of the nodes that carry it.
+/// The errors that a viewer shows of a mesh before and after a bake, seen through the skins of the nodes that carry it.
 struct HostChange {
   struct Errors {
     ShownErrors before, after;
   };
   std::string host;
-  /// In the animations of the file as the host plays them, its standing weights, and each target alone from 0 to 1; in
-  /// random poses of 2 to 16 targets; and on the way from one animation to another.
+  bool is_named = true;    ///< the bake is made for it
+  bool is_better = false;  ///< as a whole, and by more than is allowed for in no respect worse
+  /// In the animations of the file as the viewer plays them, and its standing weights; each target alone from 0 to 1; and
+  /// in poses that a program sets.
   std::array<Errors, 3> poses;
 };
 
 /// A form of a mesh that smallest looked at.
 struct BakeChoice {
-  /// "as it is", "own deltas", "pruned", "pairs", "quadratics", "low rank" or "harmless"
+  /// "as it is", "own deltas", "products", "quadratics" or "low rank"
   std::string_view form;
   std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas and tangents, and those by which tracks grow
   /// In the worst of the named hosts, along the animations of the file, between its keys, and in its standing weights,
@@ -130,11 +144,9 @@ struct BakeChoice {
   double rounded = 0;
 };
 
-/// Whether a form is near enough but for what compressors round, where these were named one by one and a tolerance was
-/// asked for. Among all hosts there are some that round normals by more than most tolerances.
+/// Whether a form is near enough but for what compressors round, and a tolerance was asked for.
 [[nodiscard]] inline bool is_beyond_by_rounding(const BakeChoice& choice, const BakeOptions& options) {
-  return options.tolerance && options.hosts.size() < kHosts.size() && choice.within &&
-         choice.rounded > *options.tolerance;
+  return options.tolerance && choice.within && choice.rounded > *options.tolerance;
 }
 
 /// What was done to one mesh.
@@ -164,7 +176,6 @@ struct BakedMesh {
   bool already_baked = false;       ///< nothing was changed; `choices` has what smallest finds it to be
   std::vector<HostChange> hosts;    ///< but of exact: what each named host shows, where the mesh changed
   std::vector<BakeChoice> choices;  ///< of smallest: the forms that were looked at
-  std::size_t kept = 0;             ///< different normals that targets move and that keep the deltas of the file
   std::size_t left_out = 0;         ///< extra targets that the hosts have no room for
   /// Nodes that carry the mesh and whose extras are no object: what drives extra targets does not stand there.
   std::vector<std::size_t> unmarked_nodes;
@@ -175,6 +186,7 @@ struct GltfBake {
   std::vector<std::string> pointers;  ///< JSON pointers that were replaced or added
   std::vector<std::string> warnings;  ///< for a person: one sentence each
   std::size_t added_targets = 0, added_bytes = 0;
+  std::size_t bytes_of_file = 0;     ///< of the document before
   std::size_t left_out_bytes = 0;    ///< of arrays of the source that nothing refers to any more
   std::size_t converted_tracks = 0;  ///< weight tracks that are cubic splines now
   bool changed = false;

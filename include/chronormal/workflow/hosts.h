@@ -151,8 +151,8 @@ inline constexpr std::array<Host, 9> kHosts = {{
                "packages/extensions/src/ext-meshopt-compression/encoder.ts"},
 }};
 
-/// The hosts of a list of names with commas between them, in the order of the list and each once; "all" names every
-/// one.
+/// The hosts of a list of names with commas between them, in the order of the list and each once; "all" names those
+/// that show a file as it is, which compressors do not.
 /// Errors: kUsage for a name that there is none of, with all names, and the nearest one where it is near.
 [[nodiscard]] Result<std::vector<Host>> find_hosts(std::string_view names);
 

@@ -3,8 +3,7 @@
 //     read_gltf_shading     what its vertices show, and the faces whose normals that should be      shading/
 //     plan_mesh             how it is encoded, and for exact which pairs the animations need         plan
 //     *_target_deltas       the terms of n(w) as arrays for each target                              terms, deltas
-//     choose_*              of other encodings: for each vertex what does no harm in any host        chosen_form,
-//                           and the smallest form of all that are near enough                        smallest_form
+//     choose_candidate      of other encodings: what is best as a whole in the viewers               chooser
 //     MeshWriter            the arrays and all that counts targets, as edits of the file             write_mesh
 //
 // The tracks of animations may drive several meshes, so that they are extended once all meshes are done.
@@ -17,16 +16,15 @@
 #include <utility>
 
 #include "chronormal/analysis/quality.h"
-#include "workflow/bake/exact/deltas.h"
-#include "workflow/bake/exact/plan.h"
-#include "workflow/bake/exact/shared_parts.h"
-#include "workflow/bake/forms/chosen_form.h"
-#include "workflow/bake/forms/form_poses.h"
-#include "workflow/bake/forms/smallest_form.h"
-#include "workflow/bake/mesh_skins.h"
-#include "workflow/bake/mesh_weights.h"
-#include "workflow/bake/tangents.h"
-#include "workflow/bake/terms.h"
+#include "workflow/bake/candidates/chooser.h"
+#include "workflow/bake/deltas/candidate.h"
+#include "workflow/bake/deltas/deltas.h"
+#include "workflow/bake/deltas/plan.h"
+#include "workflow/bake/deltas/shared_parts.h"
+#include "workflow/bake/deltas/tangents.h"
+#include "workflow/bake/deltas/terms.h"
+#include "workflow/bake/poses/mesh_skins.h"
+#include "workflow/bake/poses/mesh_weights.h"
 #include "workflow/bake/write/messages.h"
 #include "workflow/bake/write/write_mesh.h"
 #include "workflow/bake/write/write_tracks.h"
@@ -138,24 +136,18 @@ MeshDeltas exact_deltas(const DeltaSource& source) {
 // Those of the other encodings, with what there is to say of them.
 MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                          std::size_t tangent_bytes, BakedMesh& report, bool& is_of_animations) {
-  const auto choose = [&] {
-    if (source.plan.encoding == BakeEncoding::kSmallest)
-      return choose_smallest(source, weights, options, tangent_bytes);
-    return source.plan.encoding == BakeEncoding::kHarmless ? choose_harmless(source, weights, options)
-                                                           : choose_endpoint(source, weights, options);
-  };
-  auto chosen = std::make_shared<ChosenForm>(choose());
-  report.hosts = chosen->hosts;
-  report.kept = chosen->kept;
-  report.choices = chosen->choices;
-  report.left_out = chosen->left_out;
-  report.resampling_error = chosen->track_error * kDegreesPerRadian;
-  report.largest_error = chosen->fit_error * kDegreesPerRadian;
-  is_of_animations = chosen->animations_only;
-  return {[&source, chosen](std::size_t i) { return chosen->own_deltas(source.shading, i); },
-          [&source, chosen](std::size_t k) { return chosen->extra_deltas(source.shading, k); },
-          {source.shading.mesh, chosen->drivers, source.plan.encoding != BakeEncoding::kEndpoint},
-          chosen->changes(source.shading)};
+  ChosenCandidate chosen = choose_candidate(source, weights, options, tangent_bytes);
+  const auto candidate = std::make_shared<Candidate>(std::move(chosen.candidate));
+  report.hosts = std::move(chosen.hosts);
+  if (source.plan.encoding == BakeEncoding::kSmallest) report.choices = std::move(chosen.choices);
+  report.left_out = candidate->left_out;
+  report.resampling_error = candidate->track_error * kDegreesPerRadian;
+  report.largest_error = candidate->fit_error * kDegreesPerRadian;
+  is_of_animations = candidate->animations_only;
+  return {[&source, candidate](std::size_t i) { return own_deltas(source.shading, *candidate, i); },
+          [&source, candidate](std::size_t k) { return extra_deltas(source.shading, *candidate, k); },
+          {source.shading.mesh, candidate->drivers, source.plan.encoding != BakeEncoding::kEndpoint},
+          changes(source.shading, *candidate)};
 }
 
 // About how many bytes new tangents take.
@@ -354,7 +346,18 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
 
 }  // namespace
 
-Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit) {
+BakeOptions with_viewers(BakeOptions options) {
+  if (!options.hosts.empty()) return options;
+  for (const Host& viewer : kHosts) {
+    if (viewer.normals == NormalRule::kSum) options.hosts.push_back(viewer);
+    if (viewer.normals == NormalRule::kUnit) options.spared.push_back(viewer);
+  }
+  return options;
+}
+
+Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& asked, GltfEdit& edit) {
+  BakeOptions options = with_viewers(asked);
+  if (options.bytes_of_file == 0) options.bytes_of_file = document.expansion().bytes_read();
   assert(options.tolerance.value_or(0) >= 0 && options.crease_angle >= 0 && options.crease_angle <= 180);
   if (options.encoding == BakeEncoding::kKeys)
     return Error{ErrorCode::kUsage, "", "keys are for sequences: the weights of a glTF file may go anywhere"};
@@ -363,6 +366,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, 
   Course course(document, candidates, options.progress);
 
   GltfBake result;
+  result.bytes_of_file = options.bytes_of_file;
   ZeroVectors zeros(edit, options.dense_zeros);
   std::vector<GrownMesh> grown;
   std::vector<std::size_t> report_of_grown;

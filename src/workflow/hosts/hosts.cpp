@@ -137,16 +137,23 @@ Error no_such_host(std::string_view name) {
 }  // namespace
 
 Result<std::vector<Host>> find_hosts(std::string_view names) {
-  if (names == "all") return std::vector<Host>(kHosts.begin(), kHosts.end());
   std::vector<Host> hosts;
+  const auto add = [&hosts](const Host& host) {
+    if (std::find(hosts.begin(), hosts.end(), host) == hosts.end()) hosts.push_back(host);
+  };
   for (std::size_t first = 0; first <= names.size();) {
     const std::size_t end = std::min(names.find(',', first), names.size());
     const std::string_view name = names.substr(first, end - first);
+    first = end + 1;
+    if (name == "all") {
+      for (const Host& host : kHosts)
+        if (host.normals != NormalRule::kClamped) add(host);
+      continue;
+    }
     const auto* const found =
         std::find_if(kHosts.begin(), kHosts.end(), [&](const Host& host) { return host.name == name; });
     if (found == kHosts.end()) return no_such_host(name);
-    if (std::find(hosts.begin(), hosts.end(), *found) == hosts.end()) hosts.push_back(*found);
-    first = end + 1;
+    add(*found);
   }
   return hosts;
 }

@@ -8,8 +8,8 @@
 namespace chronormal {
 namespace {
 
-// 2: without --encode, a file is what the smallest form makes of it, and `choices` has the forms.
-constexpr int kSchema = 2;
+// 3: `viewers` for hosts and `candidates` for choices of forms; kinds of poses; torn edges.
+constexpr int kSchema = 3;
 
 Json common_json(const BakeReport& report) {
   Json json = json_of_command("bake", kSchema);
@@ -25,42 +25,44 @@ Json audit_json(const MotionError& before, const MotionError& after) {
           {"worse", is_worse(after, before)}};
 }
 
-// JSON keys for the kinds of poses that the errors of a host are measured at: the animations and single targets of the
-// file, random poses, and cross-fades between two animations.
-constexpr std::array<const char*, 3> kPoses = {"file", "random", "cross_fades"};
+// Keys for the kinds of poses: animations and standing poses, single targets, and those that a program sets.
+constexpr std::array<const char*, 3> kPoses = {"file", "alone", "posed"};
 
 Json shown_json(const ShownErrors& errors) {
-  return {{"mean_degrees", errors.mean}, {"most_degrees", errors.most}, {"worst_degrees", errors.worst}};
+  return {{"mean_degrees", errors.mean},
+          {"most_degrees", errors.most},
+          {"worst_degrees", errors.worst},
+          {"torn_edges", errors.tears}};
 }
 
-Json hosts_json(const std::vector<HostChange>& changes) {
-  Json hosts = Json::array();
+Json viewers_json(const std::vector<HostChange>& changes) {
+  Json viewers = Json::array();
   for (const HostChange& change : changes) {
-    Json host = {{"host", change.host}};
+    Json viewer = {{"viewer", change.host}, {"named", change.is_named}, {"better", change.is_better}};
     for (std::size_t k = 0; k < kPoses.size(); ++k) {
       const auto& [before, after] = change.poses[k];
       if (before.judged == 0) continue;
-      host[kPoses[k]] = {{"judged", before.judged}, {"before", shown_json(before)}, {"after", shown_json(after)}};
+      viewer[kPoses[k]] = {{"judged", before.judged}, {"before", shown_json(before)}, {"after", shown_json(after)}};
     }
-    hosts.push_back(std::move(host));
+    viewers.push_back(std::move(viewer));
   }
-  return hosts;
+  return viewers;
 }
 
-Json choices_json(const BakedMesh& mesh) {
-  Json choices = Json::array();
+Json candidates_json(const BakedMesh& mesh) {
+  Json candidates = Json::array();
   for (const BakeChoice& choice : mesh.choices) {
-    choices.push_back({{"form", choice.form},
-                       {"targets", choice.targets},
-                       {"bytes", choice.bytes},
-                       {"played", shown_json(choice.played)},
-                       {"hosts", hosts_json(choice.hosts)},
-                       {"within", choice.within},
-                       {"chosen", choice.chosen},
-                       {"animations_only", choice.animations_only},
-                       {"rounded_degrees", choice.rounded}});
+    candidates.push_back({{"name", choice.form},
+                          {"targets", choice.targets},
+                          {"bytes", choice.bytes},
+                          {"played", shown_json(choice.played)},
+                          {"viewers", viewers_json(choice.hosts)},
+                          {"within", choice.within},
+                          {"chosen", choice.chosen},
+                          {"animations_only", choice.animations_only},
+                          {"rounded_degrees", choice.rounded}});
   }
-  return choices;
+  return candidates;
 }
 
 Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
@@ -87,10 +89,9 @@ Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
           {"new_tangents", mesh.new_tangents},
           {"stilled_targets", mesh.stilled},
           {"fitted_normals", mesh.fitted_elements},
-          {"kept_normals", mesh.kept},
           {"left_out_targets", mesh.left_out},
-          {"hosts", hosts_json(mesh.hosts)},
-          {"choices", choices_json(mesh)},
+          {"viewers", viewers_json(mesh.hosts)},
+          {"candidates", candidates_json(mesh)},
           {"target_fit_degrees", mesh.largest_error},
           {"track_fit_degrees", mesh.resampling_error},
           {"audit", report.audit ? audit_json(error_of_mesh(report.audit->before, mesh.mesh),
@@ -128,7 +129,7 @@ std::string plan_json(const GltfBake& bake, const BakeReport& report) {
   json["plan"] = true;
   Json meshes = Json::array();
   for (const BakedMesh& mesh : bake.meshes)
-    meshes.push_back({{"mesh", mesh.mesh}, {"name", mesh.name}, {"choices", choices_json(mesh)}});
+    meshes.push_back({{"mesh", mesh.mesh}, {"name", mesh.name}, {"candidates", candidates_json(mesh)}});
   json["meshes"] = std::move(meshes);
   json["warnings"] = bake.warnings;
   return json_text(json);

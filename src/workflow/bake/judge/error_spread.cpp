@@ -1,4 +1,4 @@
-// Counts errors in bins that are an eighth of an octave wide.
+// Counts errors in bins that are a sixteenth of an octave wide.
 #include "workflow/bake/judge/error_spread.h"
 
 #include <algorithm>
@@ -6,23 +6,24 @@
 #include <utility>
 
 #include "core/bits.h"
-#include "core/portable_math.h"
 
 namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBins = ErrorSpread::kBins;
-constexpr float kBinsPerOctave = 8, kLeastBin = 1e-3F;
+constexpr float kLeastBin = 1e-3F;
 
-// The exponent of a float counts octaves, and its fraction is held against eighths of one.
+// The exponent of a float counts octaves, and the first four bits of its fraction sixteenths of one.
 std::size_t bin_of(float degrees) {
-  constexpr std::array<float, 7> kEighths = {1.0905077F, 1.1892071F, 1.2968396F, 1.4142135F,
-                                             1.5422108F, 1.6817929F, 1.8340081F};
   const auto bits = bit_cast<std::uint32_t>(std::max(degrees, kLeastBin) / kLeastBin);
-  const float fraction = bit_cast<float>((bits & 0x007FFFFFU) | 0x3F800000U);
-  std::size_t bin = std::size_t{8} * ((bits >> 23) - 127);
-  for (const float eighth : kEighths) bin += fraction >= eighth ? 1 : 0;
-  return std::min(kBins - 1, bin);
+  return std::min<std::size_t>(kBins - 1, (bits >> 19) - (127U << 4));
+}
+
+// Where such a bin ends.
+double end_of(std::size_t bin) {
+  const auto octave = static_cast<int>(bin / 16);
+  const double part = 1 + static_cast<double>(bin % 16 + 1) / 16;
+  return static_cast<double>(kLeastBin) * std::ldexp(part, octave);
 }
 
 }  // namespace
@@ -38,8 +39,7 @@ ShownErrors ErrorSpread::errors() const {
   ShownErrors result{count, count > 0 ? sum / static_cast<double>(count) : 0, 0, worst};
   std::size_t beyond = count / 1000, b = kBins - 1;
   while (b > 0 && bins[b] <= beyond) beyond -= bins[b--];
-  const float upper = kLeastBin * static_cast<float>(portable::exp2(static_cast<double>(b + 1) / kBinsPerOctave));
-  result.most = b == 0 ? 0 : std::fmin(static_cast<double>(upper), worst);
+  result.most = b == 0 ? 0 : std::fmin(end_of(b), worst);
   return result;
 }
 

@@ -17,9 +17,9 @@
 
 namespace chronormal::inline internal {
 
-/// Errors with their spread, to a tenth of themselves: how many lie in each eighth of an octave.
+/// Errors with their spread, to a sixteenth of themselves: how many lie in each sixteenth of an octave.
 struct ErrorSpread {
-  static constexpr std::size_t kBins = 160;
+  static constexpr std::size_t kBins = 320;
 
   std::size_t count = 0;
   double sum = 0, worst = 0;

@@ -6,7 +6,7 @@
 
 #include "core/blocks.h"
 #include "core/float32.h"
-#include "workflow/bake/forms/unit_targets.h"
+#include "workflow/bake/deltas/unit_targets.h"
 
 namespace chronormal::inline internal {
 namespace {

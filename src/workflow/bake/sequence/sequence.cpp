@@ -371,9 +371,18 @@ void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, std::size
                          " takes: " + std::string(host.beyond));
 }
 
+// A sequence has no choice of candidates: it is made for the viewers that are named, or for all.
+BakeOptions for_all_viewers(const BakeOptions& asked) {
+  BakeOptions options = with_viewers(asked);
+  options.hosts.insert(options.hosts.end(), options.spared.begin(), options.spared.end());
+  options.spared.clear();
+  return options;
+}
+
 // Puts the arrays of the file into the spool, and gives all of its bytes to take.
-Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& options, Spool spool,
+Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked, Spool spool,
                                  const GlbBuilder::Take& take) {
+  const BakeOptions options = for_all_viewers(asked);
   const Motion& motion = stream.motion();
   const bool is_curved = options.path != PathKind::kLinear;
   const BakeEncoding encoding = options.encoding.value_or(is_curved ? BakeEncoding::kEndpoint : BakeEncoding::kExact);

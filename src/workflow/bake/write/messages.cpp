@@ -18,8 +18,9 @@ using Json = nlohmann::ordered_json;
 // Hosts that keep morphed attributes in vertex attributes have room for so many (WebGL 1, the least that the
 // specification asks for).
 constexpr std::size_t kMorphedAttributes = 8;
-// More extra targets than these make a file large.
-constexpr std::size_t kManyExtras = 64;
+// A file that is so many times as large, or half as many with more than a few correction targets, is told of.
+constexpr double kLargeTimes = 2.5, kLargeTimesOfMany = 2;
+constexpr std::size_t kFewExtras = 8;
 
 // To hundredths of a degree upwards, so that nothing is said to be within what it is beyond.
 double rounded_up(double degrees) { return std::ceil(100 * degrees) / 100; }
@@ -121,14 +122,16 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                    tolerance + ": bake the original file with this tolerance"});
     return;
   }
+  // Where nothing was asked for, the report says what is left.
+  if (!options.tolerance && !options.most_targets && !options.most_delta_bytes) return;
   std::vector<std::string> remedies;
   if (options.most_targets || options.most_delta_bytes)
     remedies.emplace_back("allow more by --max-targets and --max-bytes");
   if (options.hosts.size() > 1 && std::any_of(options.hosts.begin(), options.hosts.end(),
                                               [](const Host& h) { return h.normals != NormalRule::kSum; }))
-    remedies.emplace_back("name the hosts that count by --for");
+    remedies.emplace_back("name the viewers that count by --for");
   remedies.emplace_back("take a larger --tolerance");
-  std::string text = "no form that does no harm is within " + tolerance +
+  std::string text = "no candidate is within " + tolerance +
                      (chosen->skinned ? " degrees throughout, as its skin shows it" : " degrees throughout") +
                      ", and the nearest was taken (--plan lists them all): ";
   for (std::size_t n = 0; n < remedies.size(); ++n)
@@ -145,8 +148,9 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(options.is_posed
              ? "no animation drives its targets, and no extra target that a program could drive brings its poses "
                "nearer: each is right at weight 1"
-             : "no animation drives its targets, so that nothing could drive extra ones: each is right at weight 1 "
-               "(--poses writes extra targets for a program that drives them, and --encode exact all the same)");
+             : "no animation drives its targets, so that the file can hold the rest pose and each slider alone; where "
+               "several are up, a program has to drive correction targets, which --poses writes (chronormal/three and "
+               "chronormal/babylon do)");
   }
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
@@ -156,11 +160,12 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (plan.encoding == BakeEncoding::kExact || plan.encoding == BakeEncoding::kEndpoint) {
     std::string names;
-    for (const Host& host : options.hosts)
-      if (host.normals != NormalRule::kSum) names.append(names.empty() ? "" : ", ").append(host.title);
+    for (const std::vector<Host>* const viewers : {&options.hosts, &options.spared})
+      for (const Host& viewer : *viewers)
+        if (viewer.normals != NormalRule::kSum) names.append(names.empty() ? "" : ", ").append(viewer.title);
     if (!names.empty()) {
       warn("by --encode " + std::string(name_of(plan.encoding)) +
-           " its normals are made for hosts that add up deltas as they are stored; they can be far off in " + names +
+           " its normals are made for viewers that add up deltas as they are stored; they can be far off in " + names +
            ": leave --encode out for these");
     }
   }
@@ -188,18 +193,22 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(std::to_string(baked.without_stored) +
          " stored base normals are zero, or nearly, and stay wrong: add --recompute-base");
   }
-  if (baked.extras.size() > kManyExtras) {
-    warn(std::to_string(baked.extras.size()) +
-         " extra targets, for so many are active at once: a larger --tolerance needs fewer");
+  if (plan.encoding == BakeEncoding::kSmallest && options.bytes_of_file > 0) {
+    const double times = 1 + static_cast<double>(baked.bytes) / static_cast<double>(options.bytes_of_file);
+    if (times > kLargeTimes || (times > kLargeTimesOfMany && baked.extras.size() > kFewExtras)) {
+      warn(std::to_string(baked.extras.size()) + " correction targets make the file " +
+           rounded_text(rounded_up(times)) +
+           " times as large: without --tolerance it stays smaller, and --plan lists the smaller ones");
+    }
   }
   if (baked.without_base > 0) {
     warn(std::to_string(baked.without_base) +
          " vertices have no area around them in the base: their normals are right but for weights near 0");
   }
   // No host that can be named has so little room, but others have.
-  if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && options.hosts.size() == kHosts.size()) {
+  if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
     warn(std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
-         " morphed attributes; other hosts that have room for 8 leave out those of the smallest weights");
+         " morphed attributes; viewers that have room for 8 leave out those of the smallest weights");
   }
   if (shading.split_by_crease > 0) {
     warn(std::to_string(shading.split_by_crease) +

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "workflow/bake/exact/plan.h"
+#include "workflow/bake/deltas/plan.h"
 #include "workflow/shading/gltf_shading.h"
 
 namespace chronormal::inline internal {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "chronormal/io/gltf_edit.h"
-#include "workflow/bake/exact/deltas.h"
-#include "workflow/bake/exact/shared_parts.h"
+#include "workflow/bake/deltas/deltas.h"
+#include "workflow/bake/deltas/shared_parts.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal::inline internal {

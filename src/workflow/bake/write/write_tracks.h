@@ -11,7 +11,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_edit.h"
-#include "workflow/bake/low_rank/extra_curves.h"
+#include "workflow/bake/poses/extra_curves.h"
 
 namespace chronormal::inline internal {
 

@@ -1,0 +1,425 @@
+#include "workflow/bake/candidates/chooser.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "workflow/bake/candidates/low_rank.h"
+#include "workflow/bake/candidates/making.h"
+#include "workflow/bake/candidates/own.h"
+#include "workflow/bake/candidates/products.h"
+#include "workflow/bake/candidates/quadratics.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+// Products of two weights that are worth a look: each takes an extra target.
+constexpr std::size_t kMostProducts = 48;
+// How often extra targets are tried in smaller numbers, where a limit of bytes is exceeded.
+constexpr int kTries = 5;
+// Means that differ by no more of themselves are alike.
+constexpr double kAlike = 1e-3;
+// Where a skin alone keeps candidates beyond the tolerance, they are made again, so often at most, for a smaller one.
+constexpr int kMostTightened = 3;
+constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
+// A glance that shows a mean so many times that of the best candidate ends the look at another.
+constexpr double kHopeless = 2;
+// A file bears more bytes where it gets few extra targets. An extra target has deltas for most vertices.
+constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
+// Of the mean: what a candidate must leave at most to be better than what is stored.
+constexpr double kBetter = 0.95;
+// Of the mean: what twice as many extra targets of a rig must take away to be worth it.
+constexpr double kWorthIt = 0.9;
+
+bool has_new_base(const DeltaSource& source) {
+  return !source.base_normals.empty() && source.base_normals.data() != source.shading.normals.data();
+}
+
+// How many extra targets all viewers have room for, and the options.
+std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
+  std::size_t most = 10000;
+  const auto limit = [&](std::size_t all) { most = std::min(most, all - std::min(all, targets)); };
+  for (const Host& viewer : options.hosts)
+    if (viewer.most_targets > 0) limit(viewer.most_targets);
+  if (options.most_targets) limit(*options.most_targets);
+  return most;
+}
+
+// Whether an error grew by more than may be.
+bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance) {
+  const auto is_beyond = [&](double then, double now) { return now > std::fmax(then + kHarmless, tolerance); };
+  bool is_torn = false;
+  for (std::size_t k = 0; k < before.tears.size(); ++k) is_torn |= after.tears[k] > before.tears[k];
+  return is_torn || is_beyond(before.mean, after.mean) || is_beyond(before.most, after.most) ||
+         is_beyond(before.worst, after.worst);
+}
+
+// A candidate as it was judged.
+struct Judged {
+  BakeChoice choice;
+  std::size_t better = 0, unharmed = 0;  // of the named viewers and of the others, as chooser.h has it
+  bool is_affordable = true, is_bearable = true;
+  double mean = 0, mean_of_spared = 0;  // of the worst of the named viewers, and of the others
+};
+
+// Holds one candidate against the next.
+class Chooser {
+ public:
+  Chooser(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, std::size_t tangent_bytes)
+      : source_(source),
+        weights_(weights),
+        options_(options),
+        viewers_(options.hosts),
+        rights_(source.shading, source.terms, source.base_normals, source.plan.largest),
+        tolerance_(options.tolerance.value_or(kHarmlessTolerance)),
+        prefers_bytes_(source.plan.encoding == BakeEncoding::kSmallest),
+        tangent_bytes_(tangent_bytes) {
+    viewers_.insert(viewers_.end(), options.spared.begin(), options.spared.end());
+    judge_.emplace(source, rights_, weights, viewers_, options.animations_only);
+    stored_ = stored_candidate(source);
+    before_ = judge_->measure(stored_, Judge::Depth::kAll);
+    if (!has_new_base(source)) consider(stored_);
+  }
+
+  [[nodiscard]] Making making(bool animations_only) const {
+    return {source_,
+            rights_,
+            weights_,
+            *judge_,
+            options_.hosts,
+            lengths_for(options_.hosts, options_.spared),
+            made_within_.value_or(tolerance_),
+            most_extras(options_, source_.shading.set.targets.size()),
+            animations_only,
+            std::any_of(options_.hosts.begin(), options_.hosts.end(),
+                        [](const Host& viewer) { return viewer.normals == NormalRule::kUnit; })};
+  }
+
+  // Looks at a candidate, and returns the bytes that it takes.
+  std::size_t consider(Candidate candidate) {
+    const std::size_t targets = source_.shading.set.targets.size();
+    Judged judged;
+    BakeChoice& choice = judged.choice;
+    choice.form = candidate.name;
+    choice.targets = targets + candidate.drivers.size();
+    const std::size_t bytes = bytes_of(source_.shading, weights_, candidate);
+    choice.bytes = bytes + tangent_bytes_;
+    choice.animations_only = candidate.animations_only;
+    choice.skinned = weights_.skins.any();
+    judged.is_affordable = bytes <= most_bytes() && candidate.drivers.size() <= most_extras(options_, targets);
+    judged.is_bearable = bytes <= bearable_bytes(candidate.drivers.size());
+    if (best_ && !options_.plan) {
+      const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
+      if (mean_of(glance) > kHopeless * std::fmax(best_glance_, tolerance_ / 2)) return bytes;
+    }
+    const std::vector<ErrorsOfKinds> after = judge_->measure(candidate, Judge::Depth::kAll);
+    judge(after, judged);
+    const bool is_best = !best_ || is_better(judged, of_best_);
+    if (is_best) of_choice_ = choices_.size();
+    choices_.push_back(choice);
+    if (is_best) {
+      best_ = std::move(candidate);
+      of_best_ = std::move(judged);
+      best_glance_ = mean_of(after);
+    }
+    return bytes;
+  }
+
+  // Whether a glance shows that a candidate is beyond the tolerance, and no plan asks for all of them.
+  [[nodiscard]] bool is_far(const Candidate& candidate) const {
+    if (options_.plan) return false;
+    const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
+    const auto is_beyond = [&](const ErrorsOfKinds& errors) { return errors[0].spread.worst > tolerance_; };
+    return std::any_of(glance.begin(), glance.begin() + static_cast<std::ptrdiff_t>(options_.hosts.size()), is_beyond);
+  }
+
+  [[nodiscard]] std::size_t most_bytes() const {
+    const std::size_t most = options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
+    return most - std::min(most, tangent_bytes_);
+  }
+  // What deltas may take where nobody asked for a tolerance or a limit: so much that the file stays one of its kind.
+  [[nodiscard]] std::size_t bearable_bytes(std::size_t extras) const {
+    const bool is_asked = options_.tolerance || options_.most_targets || options_.most_delta_bytes;
+    if (is_asked || options_.bytes_of_file == 0) return most_bytes();
+    return extras > kFewExtras ? options_.bytes_of_file : options_.bytes_of_file + options_.bytes_of_file / 2;
+  }
+  // About how many extra targets of all vertices there is room for beside deltas that take so many bytes.
+  [[nodiscard]] std::size_t extras_within(std::size_t bytes_of_own) const {
+    const std::size_t of_one = std::max<std::size_t>(1, kBytesOfExtra * judge_->vertices().size());
+    const auto room = [&](std::size_t bytes) { return (bytes - std::min(bytes, bytes_of_own)) / of_one; };
+    if (options_.most_delta_bytes) return room(most_bytes()) + 1;  // what is too much is tried again with fewer
+    return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
+  }
+  // Whether a candidate is near enough, of no more bytes than these, and no plan asks for all the others.
+  [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
+    return best_ && of_best_.choice.within && of_best_.better + of_best_.unharmed == viewers_.size() &&
+           of_best_.choice.bytes - tangent_bytes_ <= bytes && !options_.plan;
+  }
+  [[nodiscard]] bool plans() const noexcept { return options_.plan; }
+  [[nodiscard]] const Judged& of_best() const { return of_best_; }
+
+  // Asks for candidates that are made for a smaller tolerance, where skins keep all of them beyond the one that is asked
+  // for. Returns whether that may help.
+  bool tighten() {
+    if (!best_ || of_best_.choice.within || !weights_.skins.any()) return false;
+    const double now = made_within_.value_or(tolerance_);
+    const double next = kPartOfMissed * now * tolerance_ / of_best_.choice.played.worst;
+    if (next < kLeastPart * tolerance_) return false;
+    made_within_ = next;
+    return true;
+  }
+
+  [[nodiscard]] ChosenCandidate take() {
+    if (!best_) consider(stored_);
+    ChosenCandidate result;
+    choices_[of_choice_].chosen = true;
+    choices_[of_choice_].rounded = rounded_worst();
+    result.hosts = of_best_.choice.hosts;
+    const bool is_rounding = std::any_of(viewers_.begin(), viewers_.end(),
+                                         [](const Host& viewer) { return viewer.normals == NormalRule::kClamped; });
+    if (is_rounding)
+      result.hosts = changes(judge_->measure(stored_, Judge::Depth::kGlance, true),
+                             judge_->measure(*best_, Judge::Depth::kGlance, true), result.hosts);
+    result.candidate = std::move(*best_);
+    result.choices = std::move(choices_);
+    return result;
+  }
+
+ private:
+  // What a choice is made by: what the file plays, or where nothing drives the mesh, all that it shows.
+  [[nodiscard]] ShownErrors file_of(const ErrorsOfKinds& kinds) const {
+    return weights_.is_driven ? kinds[static_cast<std::size_t>(PoseKind::kFile)].errors()
+                              : errors_of_all(kinds).errors();
+  }
+
+  // The smallest mean of the viewers that are named: some gain where others lose.
+  [[nodiscard]] double mean_of(const std::vector<ErrorsOfKinds>& errors) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t v = 0; v < options_.hosts.size(); ++v) least = std::fmin(least, file_of(errors[v]).mean);
+    return least;
+  }
+
+  // The changes of viewers that compressors round for, and of the others as they are known.
+  [[nodiscard]] std::vector<HostChange> changes(const std::vector<ErrorsOfKinds>& before,
+                                                const std::vector<ErrorsOfKinds>& after,
+                                                std::vector<HostChange> known) const {
+    for (std::size_t v = 0; v < viewers_.size(); ++v)
+      if (viewers_[v].normals == NormalRule::kClamped || known.size() <= v)
+        for (std::size_t k = 0; k < kPoseKinds; ++k) known[v].poses[k] = {before[v][k].errors(), after[v][k].errors()};
+    return known;
+  }
+
+  void judge(const std::vector<ErrorsOfKinds>& after, Judged& judged) const {
+    BakeChoice& choice = judged.choice;
+    choice.hosts.resize(viewers_.size());
+    for (std::size_t v = 0; v < viewers_.size(); ++v) {
+      HostChange& change = choice.hosts[v];
+      const bool is_named = v < options_.hosts.size();
+      change.host = std::string(viewers_[v].name);
+      change.is_named = is_named;
+      bool any_grows = false;
+      for (std::size_t k = 0; k < kPoseKinds; ++k) {
+        change.poses[k] = {before_[v][k].errors(), after[v][k].errors()};
+        if (choice.animations_only && k != static_cast<std::size_t>(PoseKind::kFile))
+          change.poses[k].before = {};
+        else
+          any_grows |= grows(change.poses[k].before, change.poses[k].after, tolerance_);
+      }
+      const auto all_of = [&](const ErrorsOfKinds& kinds) {
+        return choice.animations_only ? kinds[0].errors() : errors_of_all(kinds).errors();
+      };
+      const ShownErrors then = all_of(before_[v]), now = all_of(after[v]);
+      // What is asked for by name is taken where it is nearer in what the file plays, or in all, and tears nothing.
+      const bool is_asked = source_.plan.encoding != BakeEncoding::kSmallest;
+      const bool is_nearer = now.mean < then.mean || file_of(after[v]).mean < file_of(before_[v]).mean;
+      change.is_better = is_asked ? is_nearer && (now.tears[0] <= then.tears[0] || !any_grows)
+                                  : !any_grows && now.mean < kBetter * then.mean;
+      if (is_named && change.is_better) ++judged.better;
+      if (!is_named && !any_grows) ++judged.unharmed;
+      if (!is_named) judged.mean_of_spared = std::fmax(judged.mean_of_spared, file_of(after[v]).mean);
+      if (!is_named) continue;
+      const ShownErrors played = file_of(after[v]);
+      choice.played = {std::max(choice.played.judged, played.judged), std::fmax(choice.played.mean, played.mean),
+                       std::fmax(choice.played.most, played.most), std::fmax(choice.played.worst, played.worst),
+                       choice.played.tears};
+      for (std::size_t k = 0; k < played.tears.size(); ++k)
+        choice.played.tears[k] = std::max(choice.played.tears[k], played.tears[k]);
+    }
+    judged.mean = choice.played.mean;
+    choice.within = judged.is_affordable && choice.played.worst <= tolerance_;
+  }
+
+  [[nodiscard]] bool is_better(const Judged& judged, const Judged& than) const {
+    // What is stored gives way to whatever is better in some viewer, unless it is near enough.
+    const bool is_stored = judged.choice.form == stored_.name, was_stored = than.choice.form == stored_.name;
+    if (was_stored && !is_stored)
+      return judged.is_affordable && judged.better > 0 && !(than.choice.within && prefers_bytes_);
+    if (is_stored && !was_stored) return false;
+    const auto rank = [](const Judged& of) {
+      return std::tuple(of.is_affordable, of.better, of.unharmed, of.is_bearable, of.choice.within);
+    };
+    if (rank(judged) != rank(than)) return rank(judged) > rank(than);
+    if (judged.choice.within && prefers_bytes_) {
+      const double in_others = judged.mean_of_spared, in_others_than = than.mean_of_spared;
+      if (in_others < in_others_than / 2 || in_others_than < in_others / 2) return in_others < in_others_than;
+      return judged.choice.bytes < than.choice.bytes;
+    }
+    const bool is_alike = std::fabs(judged.mean - than.mean) <= kAlike * than.mean;
+    return is_alike ? judged.choice.bytes < than.choice.bytes : judged.mean < than.mean;
+  }
+
+  // The worst that compressors leave of the chosen candidate, where some are named.
+  [[nodiscard]] double rounded_worst() const {
+    double worst = 0;
+    const std::vector<ErrorsOfKinds> rounded = judge_->measure(*best_, Judge::Depth::kGlance, true);
+    for (std::size_t v = 0; v < options_.hosts.size(); ++v)
+      if (viewers_[v].normals == NormalRule::kClamped)
+        worst = std::fmax(worst, rounded[v][static_cast<std::size_t>(PoseKind::kFile)].spread.worst);
+    return worst;
+  }
+
+  const DeltaSource& source_;
+  const MeshWeights& weights_;
+  const BakeOptions& options_;
+  std::vector<Host> viewers_;  // those that are named, then the others
+  RightNormals rights_;
+  double tolerance_;
+  std::optional<double> made_within_;  // what candidates are made for, where that is less than the tolerance
+  bool prefers_bytes_;
+  std::size_t tangent_bytes_;
+  std::optional<Judge> judge_;
+  Candidate stored_;
+  std::vector<ErrorsOfKinds> before_;
+  std::optional<Candidate> best_;
+  Judged of_best_;
+  std::size_t of_choice_ = 0;  // of the best, in choices_
+  double best_glance_ = 0;
+  std::vector<BakeChoice> choices_;
+};
+
+// Looks at extra targets of low rank: as many as the tolerance needs and the file bears, and fewer where these take too
+// many bytes.
+void look_at_low_rank(const Making& making, const Candidate& own, std::size_t bytes_of_own, Chooser& chooser) {
+  Making of_try = making;
+  of_try.most_extras = std::min(of_try.most_extras, chooser.extras_within(bytes_of_own));
+  for (int tries = 0; tries < kTries && (of_try.most_extras > 0 || (tries == 0 && making.animations_only)); ++tries) {
+    Candidate candidate = low_rank_candidate(of_try, own);
+    const std::size_t count = candidate.drivers.size(), bytes = chooser.consider(std::move(candidate));
+    const std::size_t most = chooser.bearable_bytes(count);
+    if (bytes <= most || count == 0) return;
+    const double part = static_cast<double>(most - std::min(most, bytes_of_own)) /
+                        static_cast<double>(bytes - std::min(bytes - 1, bytes_of_own));
+    of_try.most_extras = std::min(count - 1, static_cast<std::size_t>(std::ceil(part * static_cast<double>(count))));
+  }
+}
+
+// Looks at extra targets of a mesh that nothing drives: more and more of them, as long as each step is worth it.
+void look_at_quadratics(const Making& making, const Candidate& own, Chooser& chooser) {
+  double mean = std::numeric_limits<double>::infinity();
+  quadratics_candidates(making, own, [&](Candidate candidate) {
+    chooser.consider(std::move(candidate));
+    if (chooser.is_found() || (!chooser.plans() && chooser.of_best().mean > kWorthIt * mean)) return false;
+    mean = chooser.of_best().mean;
+    return true;
+  });
+}
+
+void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Making& making, Chooser& chooser,
+                 const std::function<void(std::size_t)>& reach) {
+  Candidate own = own_candidate(source, making.rights, making.lengths);
+  own.animations_only = false;
+  // Where extra targets may bring more, deltas that are far off at a glance are looked at in the end.
+  const bool has_extras = source.plan.is_driven && source.plan.products_fit && making.most_extras > 0;
+  const bool waits = has_extras && chooser.is_far(own);
+  if (!waits) chooser.consider(own);
+  const std::size_t bytes = bytes_of(source.shading, weights, own);
+  reach(20);
+  if (chooser.is_found() || making.most_extras == 0) return;
+  if ((source.plan.is_driven || weights.rig) && source.plan.products_fit &&
+      count_products(making, kMostProducts) <= kMostProducts)
+    chooser.consider(products_candidate(making));
+  reach(40);
+  if (weights.rig && !chooser.is_found() && source.plan.products_fit) look_at_quadratics(making, own, chooser);
+  if (has_extras) {
+    // What turns normals across N alone is shown alike in every viewer, but may take more extra targets.
+    Making across = making;
+    across.keeps_across |= making.lengths == Lengths::kShort;
+    look_at_low_rank(across, own, bytes, chooser);
+    if (across.keeps_across != making.keeps_across && !chooser.is_found())
+      look_at_low_rank(making, own, bytes, chooser);
+  }
+  if (waits) chooser.consider(own);
+  reach(90);
+}
+
+}  // namespace
+
+ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
+                                 std::size_t tangent_bytes) {
+  // About how much of the time has gone by.
+  const auto reach = [&options](std::size_t percent) {
+    if (options.progress) options.progress(percent, 100);
+  };
+  Chooser chooser(source, weights, options, tangent_bytes);
+  reach(10);
+  if (source.plan.encoding == BakeEncoding::kEndpoint) {
+    MeshPlan alone = source.plan;
+    alone.lines = FittedLines();
+    const RightNormals& rights = chooser.making(false).rights;
+    chooser.consider(own_candidate({source.shading, source.terms, alone, source.base_normals}, rights, Lengths::kFree));
+    // Keys of a file whose author is known may be right as they are: nothing that is fitted to animations may turn them.
+    const bool has_author = !rights.are_by_area() && !options.weighting;
+    if (source.plan.lines.elements() == 0 || has_author) return chooser.take();
+    chooser.consider(own_candidate(source, rights, Lengths::kFree));
+    ChosenCandidate chosen = chooser.take();
+    // Nothing is known of deltas of targets alone, where these are played together, but what was measured.
+    if (chosen.candidate.fit_error < source.plan.lines.largest_error())
+      for (const HostChange& change : chosen.hosts)
+        if (change.is_named)
+          chosen.candidate.fit_error =
+              std::fmax(chosen.candidate.fit_error, change.poses[0].after.worst / kDegreesPerRadian);
+    return chosen;
+  }
+  if (source.plan.encoding == BakeEncoding::kHarmless) {
+    Making making = chooser.making(false);
+    making.lengths = Lengths::kUnit;
+    chooser.consider(own_candidate(source, making.rights, making.lengths));
+    chooser.consider(products_candidate(making));
+    return chooser.take();
+  }
+  if (chooser.is_found(0)) return chooser.take();
+  for (int tries = 0; tries <= kMostTightened; ++tries) {
+    // Only viewers that add up deltas of any length gain by deltas that are fitted to animations.
+    Making making = chooser.making(options.animations_only);
+    if (options.animations_only && source.plan.is_driven && making.lengths == Lengths::kFree) {
+      look_at_low_rank(making, own_candidate(source, making.rights, making.lengths), 0, chooser);
+      making.animations_only = false;
+    }
+    look_at_all(source, weights, making, chooser, reach);
+    if (!chooser.tighten()) break;
+  }
+  return chooser.take();
+}
+
+BakeChoice judge_baked(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
+  constexpr std::size_t kSteps = 8;
+  const GltfShading& shading = source.shading;
+  MeshWeights played = weights;
+  if (!weights.is_driven) {
+    std::vector<std::size_t> own(shading.own_targets());
+    for (std::size_t i = 0; i < own.size(); ++i) own[i] = i;
+    const PoseList alone = alone_poses(own, shading.set.targets.size(), kSteps);
+    played.poses.insert(played.poses.end(), alone.begin(), alone.end());
+    for (std::vector<double>& pose : played.poses) fill_extra_weights(shading, pose);
+    played.is_driven = true;
+  }
+  BakeOptions without_alone = options;
+  without_alone.animations_only = true;  // so that no extra target is judged alone
+  Chooser chooser(source, played, without_alone, 0);
+  return chooser.take().choices.front();
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,417 @@
+// Rows are the nodes of the curves (extra_curves.h), or where there are too many of them, those of some gaps between
+// keys, and of some tracks; the curves at all other nodes follow from the deltas by least squares.
+#include "workflow/bake/candidates/low_rank.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "analysis/fits/kernels/products.h"
+#include "core/blocks.h"
+#include "core/cholesky.h"
+#include "core/portable_math.h"
+#include "workflow/bake/candidates/cut_tracks.h"
+#include "workflow/bake/candidates/shares.h"
+#include "workflow/bake/deltas/unit_targets.h"
+#include "workflow/bake/fits/low_rank_fit.h"
+#include "workflow/bake/fits/missing_normals.h"
+#include "workflow/bake/poses/played_poses.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kMostRows = 480, kBytes = std::size_t{700} << 20, kFewestRows = 48;
+constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
+// Of the tolerance: what needs nothing, what singular vectors alone should leave in 99.9 % of all pairs, and what least
+// squares should then leave at worst.
+constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
+constexpr double kMoreExtras = 1.2;
+// What so many times as many extra targets do not make smaller than this is not made smaller by more.
+constexpr double kNoGain = 1.05;
+constexpr std::size_t kManyMore = 2;
+// Parts of a gap at which a fit is judged, and not made.
+constexpr std::array<double, 2> kUnseen = {0.11, 0.63};
+constexpr int kFits = 4;
+// Of the tolerance: how far the lack of one entry of a delta may turn a normal.
+constexpr double kPartOfEntry = 1.0 / 2000;
+constexpr double kLeastRidge = 1e-9;
+constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14, 16, 20, 24,
+                                                 28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128};
+
+struct LowRankForm {
+  std::vector<VertexVectors> own;     // of each target of the mesh
+  std::vector<VertexVectors> extras;  // of any length, for weights from -1 to 1
+  TrackCurves curves;                 // of the extra targets, for each track
+  PoseList rest;                      // their weights in the poses that the file stores
+  double worst = 0;                   // degrees: of all points at the instants that were fitted to
+};
+
+struct LowRankLimits {
+  std::size_t most_extras = 0;
+  double tolerance = 0;       // degrees: extra targets are added until the worst that is seen is within it
+  bool keeps_across = false;  // extra targets make up for what is missing across N alone
+  bool refits_own = false;    // the deltas of own targets are fitted to the animations too, and to nothing else
+};
+
+// Which instants are fitted to.
+struct Rows {
+  std::vector<std::size_t> instants;  // ascending
+  std::vector<PlaceOfRows> places;    // half-way between neighbouring nodes of a piece
+  std::vector<PlaceOfRows> unseen;    // others, which nothing is fitted to
+};
+
+// The tracks that have a place among so many rows, if each of them has its most telling piece there.
+std::vector<std::size_t> tracks_within(const FileInstants& all, const std::vector<WeightTrack>& tracks,
+                                       std::size_t most) {
+  std::size_t least = 0;
+  for (const CurveNodes& nodes : all.tracks) least += 2 * nodes.pieces() + 1;
+  const std::size_t some = least > most ? tracks.size() * most / least : tracks.size();
+  return telling_tracks(tracks, std::max<std::size_t>(1, some));
+}
+
+Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks, std::size_t most) {
+  const std::size_t standing = all.first.back();
+  const double share = std::fmin(1, static_cast<double>(most) / static_cast<double>(all.poses.size()));
+  Rows rows;
+  std::vector<std::optional<std::size_t>> row_of(all.poses.size());
+  const auto take = [&](std::size_t instant) {
+    if (row_of[instant]) return;
+    row_of[instant] = rows.instants.size();
+    rows.instants.push_back(instant);
+  };
+  for (const std::size_t t : tracks_within(all, tracks, most)) {
+    const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
+    // A piece between others that are left out takes three rows, and else two.
+    const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
+    std::vector<std::size_t> keys(tracks[t].size());
+    std::iota(keys.begin(), keys.end(), std::size_t{0});
+    if (share < 1) keys = telling_keys(tracks[t], std::max<std::size_t>(1, of_share));
+    if (pieces == 0) {
+      for (const std::size_t key : keys) take(first + key);
+      continue;
+    }
+    std::vector<std::size_t> of_pieces;  // the first node of each
+    for (const std::size_t key : keys)
+      for (std::size_t piece = 0; piece < pieces; ++piece) of_pieces.push_back(2 * (pieces * key + piece));
+    for (const std::size_t node : of_pieces) {
+      if (node + 2 >= nodes) continue;
+      for (std::size_t n = 0; n < 3; ++n) take(first + node + n);
+      const std::array<std::size_t, 3> of = {*row_of[first + node], *row_of[first + node + 1],
+                                             *row_of[first + node + 2]};
+      rows.places.push_back({of, {0.375, 0.75, -0.125}});
+      rows.places.push_back({of, {-0.125, 0.75, 0.375}});
+      for (const double part : kUnseen)
+        rows.unseen.push_back({of, {(1 - part) * (1 - 2 * part), 4 * part * (1 - part), part * (2 * part - 1)}});
+    }
+  }
+  for (std::size_t n = standing; n < all.poses.size() && n < standing + most; ++n) take(n);
+  return rows;
+}
+
+PoseList poses_of(const FileInstants& all, std::span<const std::size_t> instants) {
+  PoseList poses;
+  for (const std::size_t n : instants) poses.push_back(all.poses[n]);
+  return poses;
+}
+
+// The weights of own targets in each row.
+std::vector<float> own_weights(const PoseList& poses) {
+  std::vector<float> result;
+  for (const std::vector<double>& pose : poses) result.insert(result.end(), pose.begin(), pose.end());
+  return result;
+}
+
+// What the deltas of own targets should be as well, by least squares over the rows, for each point: (3, targets).
+std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
+  const std::vector<float> weights = own_weights(missing.poses());
+  std::vector<double> matrix(targets * targets, 0.0);
+  double trace = 0;
+  for (std::size_t i = 0; i < targets; ++i) {
+    for (std::size_t j = 0; j < targets; ++j)
+      for (std::size_t r = 0; r < missing.rows(); ++r)
+        matrix[i * targets + j] += static_cast<double>(weights[r * targets + i] * weights[r * targets + j]);
+    trace += matrix[i * targets + i];
+  }
+  const double ridge = std::fmax(1e-6 * trace / static_cast<double>(targets), kLeastRidge);
+  for (std::size_t i = 0; i < targets; ++i) matrix[i * targets + i] += ridge;
+  const Cholesky factors(std::move(matrix), targets, ridge);
+  std::vector<float> result(missing.points() * 3 * targets);
+  parallel_each(missing.points(), kFormBlock, [&](std::size_t p) {
+    std::vector<Vec3d> of(targets);
+    const std::size_t stride = missing.stride();
+    const float* const lack = missing.missing(p);
+    for (std::size_t r = 0; r < missing.rows(); ++r) {
+      const Vec3d here = to_double(Vec3f{lack[r], lack[stride + r], lack[2 * stride + r]});
+      for (std::size_t i = 0; i < targets; ++i) of[i] = of[i] + static_cast<double>(weights[r * targets + i]) * here;
+    }
+    factors.solve(of);
+    std::vector<float> more(3 * stride, 0.0F);
+    for (std::size_t i = 0; i < targets; ++i) {
+      const Vec3f delta = to_float(of[i]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float part = axis == 0 ? delta.x : axis == 1 ? delta.y : delta.z;
+        result[(3 * p + axis) * targets + i] = part;
+        for (std::size_t r = 0; r < missing.rows(); ++r) more[axis * stride + r] += weights[r * targets + i] * part;
+      }
+    }
+    missing.show_more(p, more);
+  });
+  return result;
+}
+
+// How many products of two weights there are: by area, n(w) has no more terms that are missing.
+std::size_t products_of(const PoseList& poses) {
+  std::size_t active = 0;
+  for (std::size_t i = 0; !poses.empty() && i < poses[0].size(); ++i)
+    if (std::any_of(poses.begin(), poses.end(), [i](const auto& pose) { return pose[i] != 0; })) ++active;
+  return active * (active + 1) / 2;
+}
+
+// Fits with as few extra targets as the tolerance needs, as far as a look at some points and three tries can tell.
+void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float> weights, std::size_t own_targets) {
+  std::vector<std::size_t> counts;
+  for (const std::size_t count : kCounts)
+    if (count < limits.most_extras) counts.push_back(count);
+  counts.push_back(std::min(limits.most_extras, kCounts.back()));
+  const std::vector<double> errors = fit.errors_with(counts);
+  const double least = kNoGain * *std::min_element(errors.begin(), errors.end());
+  const double near = kPartOfSingular * limits.tolerance;
+  std::size_t at = 0;
+  while (at < counts.size() && errors[at] > near && !(errors[at] <= least && kManyMore * counts[at] <= counts.back()))
+    ++at;
+  std::size_t extras = counts[std::min(at, counts.size() - 1)];
+  // Between two counts the logarithm of the error falls about evenly.
+  if (at > 0 && at < counts.size() && errors[at] > 0 && errors[at] < near) {
+    const double part = portable::log(errors[at - 1] / near) / portable::log(errors[at - 1] / errors[at]);
+    extras =
+        counts[at - 1] + static_cast<std::size_t>(std::ceil(part * static_cast<double>(counts[at] - counts[at - 1])));
+  }
+  for (int tries = 1;; ++tries) {
+    fit.fit(extras, limits.tolerance, weights, own_targets);
+    const bool is_hopeless = errors[std::min(at, errors.size() - 1)] > near;
+    if (fit.worst() <= kPartOfWorst * limits.tolerance || extras >= limits.most_extras || tries == kFits || is_hopeless)
+      return;
+    extras = std::min(limits.most_extras, 2 + static_cast<std::size_t>(kMoreExtras * static_cast<double>(extras)));
+  }
+}
+
+// The weights of extra targets at instants that were not fitted to, by least squares over all points: (poses, extras).
+std::vector<double> weights_at(const LowRankFit& fit, const MissingNormals& missing, const Cholesky& gram) {
+  const std::size_t extras = fit.extras(), padded = fit.padded(), stride = missing.stride();
+  constexpr std::size_t kParts = 32;
+  std::vector<std::vector<double>> of_parts(kParts);
+  parallel_for(kParts, [&](std::size_t part) {
+    std::vector<double>& sum = of_parts[part];
+    sum.assign(extras * stride, 0.0);
+    std::vector<float> scaled(3 * padded), products(extras * stride);
+    for (std::size_t p = missing.points() * part / kParts; p < missing.points() * (part + 1) / kParts; ++p) {
+      const std::span<const float> deltas = fit.deltas(p);
+      const float square = fit.importance(p) * fit.importance(p);
+      for (std::size_t n = 0; n < scaled.size(); ++n) scaled[n] = square * deltas[n];
+      std::fill(products.begin(), products.end(), 0.0F);
+      add_products({scaled.data(), 3, extras, padded, 1}, {missing.missing(p), 3, stride, stride, 1}, products.data(),
+                   stride);
+      for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += static_cast<double>(products[n]);
+    }
+  });
+  std::vector<double> result(missing.rows() * extras);
+  for (std::size_t r = 0; r < missing.rows(); ++r) {
+    std::vector<Vec3d> right(extras);
+    for (std::size_t k = 0; k < extras; ++k)
+      for (const std::vector<double>& sum : of_parts) right[k].x += sum[k * stride + r];
+    gram.solve(right);
+    for (std::size_t k = 0; k < extras; ++k) result[r * extras + k] = right[k].x;
+  }
+  return result;
+}
+
+Cholesky gram_of_deltas(const LowRankFit& fit, std::size_t points) {
+  const std::size_t extras = fit.extras(), padded = fit.padded();
+  std::vector<double> matrix(extras * extras, 0.0);
+  double trace = 0;
+  for (std::size_t p = 0; p < points; ++p) {
+    const std::span<const float> deltas = fit.deltas(p);
+    const double square = static_cast<double>(fit.importance(p)) * static_cast<double>(fit.importance(p));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t i = 0; i < extras; ++i)
+        for (std::size_t j = 0; j <= i; ++j)
+          matrix[i * extras + j] +=
+              square * static_cast<double>(deltas[axis * padded + i]) * static_cast<double>(deltas[axis * padded + j]);
+  }
+  for (std::size_t i = 0; i < extras; ++i) trace += matrix[i * extras + i];
+  const double ridge = std::fmax(kLeastRidge * trace / static_cast<double>(extras), 1e-300);
+  for (std::size_t i = 0; i < extras; ++i) matrix[i * extras + i] += ridge;
+  return {std::move(matrix), extras, ridge};
+}
+
+// A vertex with the place of its point among those that are fitted.
+struct FittedVertex {
+  std::uint32_t vertex;
+  std::size_t point;
+};
+
+LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights,
+                          std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> element_of_vertex,
+                          std::vector<VertexVectors> own, const LowRankLimits& asked) {
+  const std::size_t targets = rights.targets();
+  LowRankForm form;
+  form.own = std::move(own);
+  std::vector<PointVertices> points = points_of(rights, vertices, element_of_vertex);
+  const FileInstants instants(weights);
+  LowRankLimits limits = asked;
+  limits.most_extras =
+      std::min(limits.most_extras, rights.are_by_area() ? products_of(instants.poses) : instants.poses.size());
+  if ((limits.most_extras == 0 && !limits.refits_own) || points.empty() || weights.tracks.empty()) return form;
+
+  const std::size_t room = kBytes / (6 * sizeof(float) * points.size());
+  const Rows rows = choose_rows(instants, weights.tracks, std::clamp(room, kFewestRows, kMostRows));
+  const auto columns_of_points = [&](std::span<const PointVertices> of) {
+    std::vector<std::uint32_t> first;
+    for (const PointVertices& point : of) first.push_back(point.front());
+    std::vector<const VertexVectors*> columns;
+    for (const VertexVectors& column : form.own) columns.push_back(&column);
+    return by_vertex(columns, first);
+  };
+  MissingNormals missing(rights, points, element_of_vertex, columns_of_points(points),
+                         poses_of(instants, rows.instants), limits.keeps_across);
+  missing.keep_beyond(kPartOfNeed * limits.tolerance);
+  if (missing.points() == 0) return form;
+  std::vector<PointVertices> fitted;
+  for (std::size_t p = 0; p < missing.points(); ++p) fitted.push_back(std::move(points[missing.number(p)]));
+
+  const std::size_t own_targets = limits.refits_own ? targets : 0;
+  const std::vector<float> more_own = limits.refits_own ? refitted_own(missing, targets) : std::vector<float>();
+  LowRankFit fit(missing, rows.places, rows.unseen);
+  fit_few(fit, limits, limits.refits_own ? own_weights(missing.poses()) : std::vector<float>(), own_targets);
+  form.worst = fit.worst();
+
+  // The deltas, point by point and then vertex by vertex.
+  std::vector<FittedVertex> all;
+  for (std::size_t p = 0; p < fitted.size(); ++p)
+    for (const std::uint32_t v : fitted[p]) all.push_back({v, p});
+  std::sort(all.begin(), all.end(), [](const FittedVertex& a, const FittedVertex& b) { return a.vertex < b.vertex; });
+  const auto vector_of = [](std::span<const float> planes, std::size_t stride, std::size_t n) {
+    return Vec3f{planes[n], planes[stride + n], planes[2 * stride + n]};
+  };
+  if (limits.refits_own) {
+    for (std::size_t i = 0; i < targets; ++i) {
+      VertexVectors column;
+      const auto append = [&](std::uint32_t vertex, const Vec3f& delta) {
+        if (delta == Vec3f{}) return;
+        column.vertices.push_back(vertex);
+        column.vectors.push_back(delta);
+      };
+      std::size_t at = 0;
+      const VertexVectors& before = form.own[i];
+      for (const auto& [vertex, p] : all) {
+        for (; at < before.vertices.size() && before.vertices[at] < vertex; ++at)
+          append(before.vertices[at], before.vectors[at]);
+        const bool had = at < before.vertices.size() && before.vertices[at] == vertex;
+        const auto length = static_cast<float>(BaseNormal(rights.stored(vertex)).length);
+        const std::span<const float> of_point = std::span(more_own).subspan(3 * targets * p, 3 * targets);
+        const Vec3f more = vector_of(of_point, targets, i) + vector_of(fit.own_deltas(p), targets, i);
+        append(vertex, (had ? before.vectors[at] : Vec3f{}) + length * more);
+        at += had ? 1 : 0;
+      }
+      for (; at < before.vertices.size(); ++at) append(before.vertices[at], before.vectors[at]);
+      form.own[i] = std::move(column);
+    }
+  }
+
+  // The curves at all nodes.
+  const std::size_t extras = fit.extras();
+  std::vector<double> curves(instants.poses.size() * extras);
+  std::vector<char> is_row(instants.poses.size(), 0);
+  for (std::size_t r = 0; r < rows.instants.size(); ++r) {
+    is_row[rows.instants[r]] = 1;
+    for (std::size_t k = 0; k < extras; ++k)
+      curves[rows.instants[r] * extras + k] = static_cast<double>(fit.weights()[r * fit.padded() + k]);
+  }
+  std::vector<std::size_t> others;
+  for (std::size_t n = 0; n < is_row.size(); ++n)
+    if (is_row[n] == 0) others.push_back(n);
+  if (!others.empty()) {
+    const Cholesky gram = gram_of_deltas(fit, missing.points());
+    const VertexColumns columns = columns_of_points(fitted);
+    for (std::size_t first = 0; first < others.size(); first += kRowsAtOnce) {
+      const std::span<const std::size_t> some =
+          std::span(others).subspan(first, std::min(kRowsAtOnce, others.size() - first));
+      const MissingNormals here(rights, fitted, element_of_vertex, columns, poses_of(instants, some),
+                                limits.keeps_across);
+      const std::vector<double> of_some = weights_at(fit, here, gram);
+      for (std::size_t n = 0; n < some.size(); ++n)
+        for (std::size_t k = 0; k < extras; ++k) curves[some[n] * extras + k] = of_some[n * extras + k];
+    }
+  }
+
+  // Weights become at most 1, and entries that turn nothing become zero.
+  std::vector<std::size_t> kept;
+  std::vector<double> largest(extras, 0.0);
+  for (std::size_t n = 0; n < curves.size(); ++n)
+    largest[n % extras] = std::fmax(largest[n % extras], std::fabs(curves[n]));
+  const double least = kPartOfEntry * limits.tolerance / kDegreesPerRadian;
+  for (std::size_t k = 0; k < extras; ++k) {
+    VertexVectors column;
+    for (const auto& [vertex, p] : all) {
+      const auto scale = static_cast<float>(largest[k]);
+      const Vec3f delta = scale * vector_of(fit.deltas(p), fit.padded(), k);
+      if (static_cast<double>(fit.importance(p)) * length(to_double(delta)) <= least) continue;
+      column.vertices.push_back(vertex);
+      column.vectors.push_back(static_cast<float>(BaseNormal(rights.stored(vertex)).length) * delta);
+    }
+    if (column.vertices.empty()) continue;
+    kept.push_back(k);
+    form.extras.push_back(std::move(column));
+  }
+  const auto weights_of = [&](std::size_t instant) {
+    std::vector<double> result;
+    result.reserve(kept.size());
+    for (const std::size_t k : kept) result.push_back(curves[instant * extras + k] / largest[k]);
+    return result;
+  };
+  for (std::size_t t = 0; t < weights.tracks.size(); ++t) {
+    ExtraCurves& of_track = form.curves[weights.names[t]];
+    of_track.extras = kept.size();
+    for (std::size_t node = 0; node < instants.tracks[t].size(); ++node) {
+      const std::vector<double> values = weights_of(instants.first[t] + node);
+      of_track.values.insert(of_track.values.end(), values.begin(), values.end());
+    }
+  }
+  for (std::size_t n = 0; n < weights.stored_poses; ++n) form.rest.push_back(weights_of(instants.first.back() + n));
+  return form;
+}
+
+}  // namespace
+
+Candidate low_rank_candidate(const Making& making, Candidate own) {
+  Candidate result = std::move(own);
+  result.name = "low rank";
+  result.animations_only = making.animations_only;
+  const bool refits_own = making.animations_only && making.lengths == Lengths::kFree && making.source.plan.products_fit;
+  const std::size_t for_each = making.lengths == Lengths::kUnit ? 2 : 1;
+  LowRankForm form =
+      low_rank_form(making.rights, making.weights, making.judge.vertices(), making.source.shading.element_of_vertex,
+                    result.own, {making.most_extras / for_each, making.tolerance, making.keeps_across, refits_own});
+  const std::size_t extras = form.extras.size();
+  std::vector<Share> shares = shares_of(making.rights, std::move(form.extras), making.lengths);
+  ExtraDrivers& drivers = result.drivers;
+  drivers.curves = std::move(form.curves);
+  drivers.rest = std::move(form.rest);
+  for (auto& [name, curves] : drivers.curves) {
+    take_shares(shares, extras, curves.values);
+    curves.extras = shares.size();
+  }
+  for (std::vector<double>& pose : drivers.rest) take_shares(shares, extras, pose);
+  for (Share& share : shares) result.extras.push_back(std::move(share.vectors));
+  drivers.formulas.assign(shares.size(), ExtraWeight{0, 0, 0, 0});
+  if (shares.empty()) drivers = ExtraDrivers();
+  if (refits_own) result.own = std::move(form.own);
+  cut_tracks(making.rights, making.weights, making.viewers, making.judge.vertices(),
+             kPartOfTracks * making.tolerance / kDegreesPerRadian, result);
+  return result;
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,47 @@
+#include "workflow/bake/candidates/own.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "workflow/bake/candidates/products.h"
+
+namespace chronormal::inline internal {
+
+Lengths lengths_for(std::span<const Host> named, std::span<const Host> spared) {
+  const auto any = [](std::span<const Host> viewers, NormalRule rule) {
+    return std::any_of(viewers.begin(), viewers.end(), [rule](const Host& viewer) { return viewer.normals == rule; });
+  };
+  if (any(named, NormalRule::kClamped)) return Lengths::kUnit;
+  return any(named, NormalRule::kUnit) || any(spared, NormalRule::kUnit) ? Lengths::kShort : Lengths::kFree;
+}
+
+Candidate stored_candidate(const DeltaSource& source) {
+  Candidate result;
+  result.name = "as it is";
+  result.own = stored_deltas(source.shading);
+  result.own.resize(source.shading.set.targets.size());
+  return result;
+}
+
+Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths) {
+  Candidate result;
+  result.name = "own deltas";
+  // Where the truth is no quadratic, terms are fitted, and what is right at the end is known better.
+  const bool is_of_truth = source.plan.encoding == BakeEncoding::kSmallest && !rights.are_by_area();
+  if (lengths != Lengths::kFree || is_of_truth) {
+    // Those that the author stored have the length of N: what is right stays as it is on the whole way.
+    result.own =
+        end_deltas(source.shading, source.terms, rights, lengths == Lengths::kUnit ? lengths : Lengths::kShort);
+    return result;
+  }
+  for (std::size_t i = 0; i < source.shading.set.targets.size(); ++i) {
+    const TargetDeltas deltas = own_target_deltas(source, i);
+    result.fit_error = std::fmax(result.fit_error, deltas.error);
+    result.own.push_back(as_column(source.shading, deltas));
+  }
+  result.fit_error = std::fmax(result.fit_error, source.plan.lines.largest_error());
+  return result;
+}
+
+}  // namespace chronormal::inline internal

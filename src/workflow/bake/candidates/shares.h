@@ -1,0 +1,32 @@
+/// Extra targets of any length as those that viewers keep. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_SHARES_H_
+#define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_SHARES_H_
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "workflow/bake/candidates/making.h"
+#include "workflow/bake/deltas/right_normals.h"
+#include "workflow/bake/deltas/vertex_columns.h"
+
+namespace chronormal::inline internal {
+
+/// One extra target made of another: its weight is `factor` times that one's, or what of this is above zero.
+struct Share {
+  std::size_t of = 0;
+  double factor = 1;
+  bool above_zero = false;
+  VertexVectors vectors;
+};
+
+/// Makes targets of these lengths that add up to the given ones: one for each, or two of unit length.
+[[nodiscard]] std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras,
+                                           Lengths lengths);
+
+/// Replaces the weights of so many extra targets, (poses, extras), by those of shares.
+void take_shares(std::span<const Share> shares, std::size_t extras, std::vector<double>& values);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_SHARES_H_

@@ -1,0 +1,66 @@
+/// The numbers of a bake: base normals and deltas of one mesh as arrays, and how far they are off. Everything here is a
+/// function of what was read and planned; write_mesh.h puts the arrays into the file. Private to workflow.
+///
+/// Shapes     V = vertices of the shading, part after part; a part has a contiguous range of them.
+/// Threads    on all cores; the same bits on any number of them.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "workflow/bake/deltas/plan.h"
+#include "workflow/bake/deltas/terms.h"
+#include "workflow/shading/gltf_shading.h"
+
+namespace chronormal::inline internal {
+
+/// What the deltas of a mesh are computed from.
+struct DeltaSource {
+  const GltfShading& shading;
+  const NormalTerms& terms;
+  const MeshPlan& plan;
+  std::span<const float> base_normals;  ///< (V, 3), as the file will store them
+};
+
+/// The base normals of a file that are not as they were.
+struct NewBaseNormals {
+  std::vector<float> normals;     ///< (V, 3), those that stay among them; empty where all stay
+  std::vector<bool> is_replaced;  ///< of each part: some of its normals are new
+  std::size_t rescaled = 0;       ///< vertices whose normal was brought to length 1
+};
+
+/// Replaces the base normals of some parts by those of the geometry. A vertex without one keeps what is stored, or gets
+/// (0, 0, 1) where that is zero: a file cannot say that there is none. Elsewhere only normals that are longer than
+/// 1e10, or shorter than 1e-10, are brought to length 1: no host can square those in float32, nor add deltas to them.
+/// is_recomputed has one entry for each part.
+[[nodiscard]] NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
+                                              const std::vector<bool>& is_recomputed);
+
+/// Vertices to which no right delta can be added.
+struct BaseFaults {
+  std::size_t without_base = 0;    ///< the faces have no area in the base
+  std::size_t without_stored = 0;  ///< the stored base normal is zero, or nearly
+};
+
+[[nodiscard]] BaseFaults find_base_faults(const DeltaSource& source);
+
+/// What one target adds to the normals of a mesh.
+struct TargetDeltas {
+  /// (vertices, 3) of each part; empty where no normal changes.
+  std::vector<std::vector<float>> of_parts;
+  double error = 0;  ///< a bound of the angle that is left, over the weights of the file, in radians
+};
+
+/// The deltas of one of the mesh's own targets: what its own terms come to at weight 1, or the best single delta where
+/// the plan says so; none where it moves no vertex. The error does not cover fitted lines, which state their own.
+[[nodiscard]] TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target);
+
+/// The deltas of the extra target of two others; of one target with itself, what goes out again between weight 0 and 1
+/// (docs/theory.md, eq. 45).
+[[nodiscard]] TargetDeltas extra_target_deltas(const DeltaSource& source, const ExtraWeight& extra);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_

@@ -1,0 +1,51 @@
+/// What the bake of one mesh needs: which pairs of targets get an extra one, and what is left out. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_
+#define CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "chronormal/workflow/bake.h"
+#include "workflow/bake/deltas/fitted_lines.h"
+#include "workflow/bake/deltas/terms.h"
+#include "workflow/bake/poses/tracks.h"
+#include "workflow/shading/target_weights.h"
+
+namespace chronormal::inline internal {
+
+/// 0 and 1, and what lies beyond them of the weights of a file.
+struct WeightRange {
+  double low = 0, high = 1;
+};
+
+struct MeshPlan {
+  BakeEncoding encoding = BakeEncoding::kExact;
+  bool is_driven = false;           ///< an animation gives some moving target a weight
+  bool products_fit = true;         ///< of weights, into float32: or nothing can be exact
+  std::vector<bool> is_line;        ///< of each target: it gets the best single delta
+  std::vector<WeightRange> ranges;  ///< of each target: what its error is stated for
+  FittedLines lines;                ///< those of targets that are active together, of endpoint
+  std::vector<ExtraWeight> extras;  ///< ascending (i, j)
+  std::vector<bool> is_shown;       ///< of each element: some vertex shows it
+  std::vector<double> largest;      ///< of each element: the length of its largest term
+  double left_out = 0;              ///< degrees: how far the pairs that were left out turn a normal
+};
+
+/// How a mesh is encoded, whether that was asked for or not.
+[[nodiscard]] inline BakeEncoding encoding_of(const BakeOptions& options) {
+  return options.encoding.value_or(BakeEncoding::kSmallest);
+}
+
+/// Decides what to write. use has the weights that the file gives the mesh; is_driven says whether animations give any.
+/// Pure. Errors: kInvalidInput where there would be too many pairs.
+[[nodiscard]] Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shading,
+                                         const NormalTerms& terms, const WeightUse& use, bool is_driven,
+                                         const BakeOptions& options);
+
+[[nodiscard]] inline bool moves(const GltfShading& shading, std::size_t target) noexcept {
+  return !shading.set.targets[target].vertices.empty();
+}
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_

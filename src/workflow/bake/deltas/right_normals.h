@@ -1,0 +1,91 @@
+/// The normals that vertices should show in any pose. Private to workflow.
+///
+/// Units      a right normal has the direction that is asked for and the length |n(w)| / |n(0)|, by area (1 where n(0)
+///            is zero); it is (0, 0, 0) where n(w) is so short beside its terms that its direction means nothing.
+/// Poses       weights of the mesh's own targets, one for each; more weights may follow, which are not looked at.
+/// Threads    const functions may run at once; they run on all cores.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/blocks.h"
+#include "workflow/bake/deltas/terms.h"
+#include "workflow/shading/gltf_shading.h"
+#include "workflow/shading/target_weights.h"
+
+namespace chronormal::inline internal {
+
+class RightNormals {
+ public:
+  /// base_normals (V, 3) are those that the file will store; largest has the length of the largest term of each
+  /// element. All of them must outlive this.
+  RightNormals(const GltfShading& shading, const NormalTerms& terms, std::span<const float> base_normals,
+               const std::vector<double>& largest);
+
+  [[nodiscard]] std::size_t targets() const noexcept { return shading_.set.targets.size(); }
+  /// Whether they are by area, and so quadratic in the weights.
+  [[nodiscard]] bool are_by_area() const noexcept { return !terms_.is_fitted(); }
+  /// The stored normal of a vertex.
+  [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
+  /// Of all elements or some of them, before an author's own turn of the base. O(vertices + elements)
+  [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose) const;
+  [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose,
+                                               std::span<const std::uint32_t> elements) const;
+  /// What a vertex should show where that of its element is given.
+  [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
+
+  /// Calls visit(n, first, right) for vertex number n of a list and batches of poses: right are the unit normals of the
+  /// vertex in the poses from number `first` on. Different n are visited at once, the batches one after the other.
+  /// Cost: for each pose all positions, and the normals that these vertices show.
+  template <class Visit>
+  void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
+    constexpr std::size_t kBytes = std::size_t{32} << 20, kFewest = 4, kVertices = 64;
+    const Places places(shading_, vertices);
+    const std::size_t elements = places.elements.size();
+    const std::size_t batch = std::max(kFewest, kBytes / (sizeof(Vec3d) * (elements + 1)));
+    std::vector<Vec3d> of_elements_in_poses(elements * std::min(batch, poses.size()));
+    for (std::size_t first = 0; first < poses.size(); first += batch) {
+      const std::size_t count = std::min(batch, poses.size() - first);
+      parallel_for(count, [&](std::size_t p) {
+        const std::vector<Vec3d> of_pose = of_elements(std::span(poses[first + p]).first(targets()), places.elements);
+        for (std::size_t e = 0; e < elements; ++e) of_elements_in_poses[e * count + p] = of_pose[e];
+      });
+      parallel_blocks(vertices.size(), kVertices, [&](IndexRange range) {
+        std::vector<Vec3f> right(count);
+        for (std::size_t n = range.first; n < range.first + range.count; ++n) {
+          const ShownTurn& turn = turns_[vertices[n]];
+          const Vec3d* const of_element = of_elements_in_poses.data() + places.of_vertices[n] * count;
+          for (std::size_t p = 0; p < count; ++p) right[p] = to_float(turn(unit(of_element[p])));
+          visit(n, first, std::span<const Vec3f>(right));
+        }
+      });
+    }
+  }
+
+ private:
+  // The elements of some vertices, ascending, and where in that list each vertex finds its own.
+  struct Places {
+    Places(const GltfShading& shading, std::span<const std::uint32_t> vertices);
+    std::vector<std::uint32_t> elements;
+    std::vector<std::size_t> of_vertices;
+  };
+  [[nodiscard]] Vec3d judged(std::uint32_t element, const Vec3d& normal) const noexcept;
+
+  const GltfShading& shading_;
+  const NormalTerms& terms_;
+  std::span<const float> base_normals_;
+  const std::vector<double>& largest_;
+  std::vector<Vec3d> base_;           // n(0) of each element: many ask for it
+  std::vector<double> base_lengths_;  // and how long it is
+  std::vector<std::uint32_t> all_elements_;
+  std::vector<ShownTurn> turns_;  // of each vertex
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_

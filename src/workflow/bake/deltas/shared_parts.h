@@ -1,0 +1,41 @@
+/// Primitives of a mesh that have the same vertices, of which each shows some: exporters cut a mesh into one for each
+/// material, with arrays that all of them share. What a bake writes for them is one array too. Private to workflow.
+///
+///     part 0 shows the vertices 0, 1, 2 of some arrays, and part 1 shows 2, 3, 4 of the same ones: the deltas of both
+///     are one array, of the vertices 0 to 4
+///
+/// Threads    pure
+#ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_
+
+#include <cstddef>
+#include <vector>
+
+#include "workflow/bake/deltas/deltas.h"
+#include "workflow/bake/deltas/vertex_columns.h"
+#include "workflow/shading/gltf_shading.h"
+
+namespace chronormal::inline internal {
+
+class SharedParts {
+ public:
+  /// The shading must have its deltas, and outlive this. O(bytes of all arrays) where there are several parts.
+  explicit SharedParts(const GltfShading& shading);
+
+  /// Gives parts of the same vertices the same array, where no vertex has two different deltas.
+  void join(TargetDeltas& deltas) const;
+  /// How many bytes of arrays these deltas take, sparse or not, each array once. They must be joined.
+  [[nodiscard]] std::size_t bytes_of(const TargetDeltas& deltas) const;
+  /// The same of deltas of some vertices, which need not be joined.
+  [[nodiscard]] std::size_t bytes_of(const VertexVectors& deltas) const;
+
+ private:
+  [[nodiscard]] bool are_alike(const GltfPart& a, const GltfPart& b) const;
+
+  const GltfShading& shading_;
+  std::vector<std::vector<std::size_t>> groups_;  // of parts that have the same vertices, one part at least
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_

@@ -1,0 +1,89 @@
+// With q = base - shown / weight, what is looked for is u = q + x right with |u| = 1 and a sum weight x right that is
+// longer than nothing: the part of q across `right` stays, and the part along it is what length 1 leaves, on either
+// side.
+#include "workflow/bake/deltas/unit_targets.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/portable_math.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr int kDirections = 16;
+constexpr int kSteps = 24;                 // of a bisection: a part of 1e-7 of the arc
+constexpr double kShortestSum = 1.0 / 16;  // of a sum of unit normals: shorter ones turn with every rounding
+
+// A little within 1: differences are rounded to float32.
+constexpr double kMost = 1 - 1e-6;
+
+// The point of the arc; anything on the way where the ends are opposite.
+Vec3d on_arc(const Vec3d& from, const Vec3d& to, double part) {
+  const Vec3d aside = to - dot(from, to) * from;
+  const Vec3d across = length(aside) > 1e-9 ? unit(aside) : any_perpendicular(from);
+  const double angle = part * angle_between(from, to);
+  return portable::cos(angle) * from + portable::sin(angle) * across;
+}
+
+}  // namespace
+
+bool fits(const Vec3d& base, const Vec3d& u) noexcept { return max_abs(u - base) <= kMost || max_abs(base) == 0; }
+
+Vec3d farthest_that_fits(const Vec3d& base, const Vec3d& u) noexcept {
+  if (fits(base, u)) return u;
+  double low = 0, high = 1;
+  for (int step = 0; step < kSteps; ++step) {
+    const double middle = (low + high) / 2;
+    (fits(base, on_arc(base, u, middle)) ? low : high) = middle;
+  }
+  return on_arc(base, u, low);
+}
+
+std::optional<Vec3d> turning_unit(const Vec3d& base, const Vec3d& shown, const Vec3d& right, double weight) noexcept {
+  const Vec3d q = base - (1 / weight) * shown;
+  const double along = dot(q, right);
+  const Vec3d across = q - along * right;
+  const double room = 1 - dot(across, across);
+  if (!(room >= 0)) return farthest_that_fits(base, unit(across));
+  const double part = std::copysign(std::sqrt(room), weight);
+  std::optional<Vec3d> reachable;
+  for (const double of_u : {part, -part}) {
+    if (weight * (of_u - along) < kShortestSum) continue;
+    const Vec3d u = unit(across + of_u * right);
+    if (fits(base, u)) return u;
+    if (!reachable) reachable = farthest_that_fits(base, u);
+  }
+  return reachable;
+}
+
+std::optional<std::array<Vec3d, 2>> two_units(const Vec3d& base, const Vec3d& vector) noexcept {
+  const Vec3d middle = base + 0.5 * vector;
+  const double room = 1 - dot(middle, middle);
+  if (!(room >= 0)) return std::nullopt;
+  // Any direction across the middle will do; the best is the one with the smallest components.
+  const Vec3d x = any_perpendicular(max_abs(middle) > 0 ? unit(middle) : Vec3d{1, 0, 0});
+  const Vec3d y = max_abs(middle) > 0 ? cross(unit(middle), x) : Vec3d{1, 0, 0};
+  std::optional<std::array<Vec3d, 2>> best;
+  double least = kMost;
+  for (int n = 0; n < kDirections; ++n) {
+    const double angle = std::numbers::pi * n / kDirections;
+    const Vec3d aside = std::sqrt(room) * (portable::cos(angle) * x + portable::sin(angle) * y);
+    const std::array<Vec3d, 2> both = {middle + aside, middle - aside};
+    const double largest = std::fmax(max_abs(both[0] - base), max_abs(both[1] - base));
+    if (largest > least) continue;
+    least = largest;
+    best = both;
+  }
+  return best;
+}
+
+Vec3d unit_delta(const Vec3d& base, const Vec3d& vector) noexcept {
+  Vec3d across = vector - dot(vector, base) * base;
+  const double size = length(across);
+  if (size > 1) across = (1 / size) * across;
+  const Vec3d u = across + std::sqrt(std::fmax(0, 1 - dot(across, across))) * base;
+  return farthest_that_fits(base, unit(u)) - base;
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,181 @@
+// Computes the missing normals at the instants of a file.
+#include "workflow/bake/fits/missing_normals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "analysis/fits/kernels/products.h"
+#include "chronormal/core/parallel.h"
+#include "core/blocks.h"
+#include "core/portable_math.h"
+#include "workflow/bake/deltas/unit_targets.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kMissingBlock = 64;
+constexpr std::size_t kPosesAtOnce = 16;    // whose normals are held
+constexpr std::size_t kStridePadding = 16;  // floats: the widest vector
+
+// The vector in a right direction that a sum comes to by what is added to it across the normal N; where that would be far
+// off, the right normal itself.
+Vec3d reached_across(const Vec3d& base, const Vec3d& sum, const Vec3d& right) {
+  constexpr double kLeastAlong = 0.15;
+  const Vec3d u = unit(right);
+  const double of_sum = dot(base, sum), of_right = dot(base, u);
+  return of_sum > kLeastAlong && of_right > kLeastAlong ? (of_sum / of_right) * u : right;
+}
+
+}  // namespace
+
+std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const std::uint32_t> vertices,
+                                     std::span<const std::uint32_t> element_of_vertex) {
+  using Key = std::tuple<std::uint32_t, double, double, double, std::uint32_t>;
+  std::vector<Key> keys;
+  for (const std::uint32_t v : vertices) {
+    const Vec3d stored = rights.stored(v);
+    if (length(stored) >= BaseNormal::kShortest)
+      keys.emplace_back(element_of_vertex[v], stored.x, stored.y, stored.z, v);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<PointVertices> points;
+  for (std::size_t n = 0; n < keys.size(); ++n) {
+    const auto& [element, x, y, z, vertex] = keys[n];
+    const bool is_new =
+        n == 0 || std::tie(element, x, y, z) != std::tie(std::get<0>(keys[n - 1]), std::get<1>(keys[n - 1]),
+                                                         std::get<2>(keys[n - 1]), std::get<3>(keys[n - 1]));
+    if (is_new) points.emplace_back();
+    points.back().push_back(vertex);
+  }
+  // By vertex, so that neighbours in the file are neighbours here.
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+FileInstants::FileInstants(const MeshWeights& weights) {
+  for (const WeightTrack& track : weights.tracks) {
+    const CurveNodes& nodes = tracks.emplace_back(track);
+    first.push_back(poses.size());
+    for (std::size_t node = 0; node < nodes.size(); ++node) poses.push_back(nodes.pose(track, node));
+  }
+  first.push_back(poses.size());
+  const auto stored = weights.poses.begin() + static_cast<std::ptrdiff_t>(weights.stored_poses);
+  poses.insert(poses.end(), weights.poses.begin(), stored);
+}
+
+MissingNormals::MissingNormals(const RightNormals& rights, std::span<const PointVertices> points,
+                               std::span<const std::uint32_t> element_of_vertex, const VertexColumns& own,
+                               PoseList poses, bool across)
+    : poses_(std::move(poses)),
+      stride_((poses_.size() + kStridePadding - 1) / kStridePadding * kStridePadding),
+      numbers_(points.size()),
+      shown_(points.size() * 3 * stride_),
+      missing_(points.size() * 3 * stride_) {
+  for (std::size_t p = 0; p < points.size(); ++p) numbers_[p] = p;
+  for (std::size_t first = 0; first < poses_.size(); first += kPosesAtOnce) {
+    const std::size_t count = std::min(kPosesAtOnce, poses_.size() - first);
+    std::vector<std::vector<Vec3d>> normals(count);
+    parallel_for(count, [&](std::size_t r) {
+      normals[r] = rights.of_elements(std::span(poses_[first + r]).first(rights.targets()));
+    });
+    parallel_each(points.size(), kMissingBlock, [&](std::size_t p) {
+      const std::uint32_t vertex = points[p].front();
+      const BaseNormal base(rights.stored(vertex));
+      float* const shown = shown_.data() + 3 * stride_ * p + first;
+      float* const missing = missing_.data() + 3 * stride_ * p + first;
+      for (std::size_t r = 0; r < count; ++r) {
+        const Vec3d right = rights.of_vertex(vertex, normals[r][element_of_vertex[vertex]]);
+        if (right == Vec3d{}) continue;
+        Vec3d sum = base.direction;
+        for (const auto& [column, delta] : own.of(p))
+          sum = sum + (poses_[first + r][column] / base.length) * to_double(delta);
+        const Vec3d goal = across ? reached_across(base.direction, sum, right) : right;
+        const Vec3f of_shown = to_float(sum), of_missing = to_float(goal - sum);
+        for (std::size_t c = 0; c < 3; ++c) {
+          shown[c * stride_ + r] = c == 0 ? of_shown.x : c == 1 ? of_shown.y : of_shown.z;
+          missing[c * stride_ + r] = c == 0 ? of_missing.x : c == 1 ? of_missing.y : of_missing.z;
+        }
+      }
+    });
+  }
+}
+
+std::vector<double> MissingNormals::inner_products(std::span<const float> importance, std::size_t step) const {
+  constexpr std::size_t kPoints = 16, kParts = 32, kColumnsAtOnce = 64;
+  const std::size_t rows = this->rows(), sampled = (points() + step - 1) / step;
+  std::vector<std::vector<double>> of_parts(kParts);  // sums over points, each in the memory of a whole matrix
+  parallel_for(kParts, [&](std::size_t part) {
+    std::vector<double>& sum = of_parts[part];
+    sum.assign(rows * stride_, 0.0);
+    std::vector<float> scaled(3 * kPoints * stride_), products(rows * stride_);
+    const std::size_t end = sampled * (part + 1) / kParts;
+    for (std::size_t first = sampled * part / kParts; first < end; first += kPoints) {
+      const std::size_t count = std::min(kPoints, end - first);
+      for (std::size_t n = 0; n < count; ++n) {
+        const std::size_t point = (first + n) * step;
+        const float* const lack = missing(point);
+        for (std::size_t c = 0; c < 3 * stride_; ++c) scaled[3 * stride_ * n + c] = importance[point] * lack[c];
+      }
+      std::fill(products.begin(), products.end(), 0.0F);
+      for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {  // what is right of the diagonal
+        const StridedMatrix a{scaled.data() + i, 3 * count, std::min(kColumnsAtOnce, rows - i), stride_, 1};
+        const StridedMatrix b{scaled.data() + i, 3 * count, stride_ - i, stride_, 1};
+        add_products(a, b, products.data() + i * stride_ + i, stride_);
+      }
+      for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += static_cast<double>(products[n]);
+    }
+  });
+  std::vector<double> result(rows * rows, 0.0);
+  for (const std::vector<double>& sum : of_parts) {
+    for (std::size_t i = 0; i < rows; ++i)
+      for (std::size_t j = i; j < rows; ++j) result[i * rows + j] += sum[i * stride_ + j];
+  }
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < i; ++j) result[i * rows + j] = result[j * rows + i];
+  return result;
+}
+
+void MissingNormals::show_more(std::size_t point, std::span<const float> more) {
+  const std::size_t first = 3 * stride_ * point;
+  for (std::size_t n = 0; n < more.size(); ++n) {
+    shown_[first + n] += more[n];
+    missing_[first + n] -= more[n];
+  }
+}
+
+void MissingNormals::keep_beyond(double degrees) {
+  std::vector<char> is_kept(points(), 0);
+  parallel_each(points(), kMissingBlock, [&](std::size_t p) {
+    const float *s = shown(p), *m = missing(p);
+    for (std::size_t r = 0; r < rows() && is_kept[p] == 0; ++r) {
+      const Vec3f now = {s[r], s[stride_ + r], s[2 * stride_ + r]};
+      const Vec3f lack = {m[r], m[stride_ + r], m[2 * stride_ + r]};
+      if (static_cast<double>(degrees_between(now, now + lack)) > degrees) is_kept[p] = 1;
+    }
+  });
+  const std::size_t size = 3 * stride_;
+  std::size_t kept = 0;
+  for (std::size_t p = 0; p < is_kept.size(); ++p) {
+    if (is_kept[p] == 0) continue;
+    for (std::vector<float>* floats : {&shown_, &missing_}) {
+      const auto from = floats->begin() + static_cast<std::ptrdiff_t>(size * p);
+      if (kept < p)
+        std::copy(from, from + static_cast<std::ptrdiff_t>(size),
+                  floats->begin() + static_cast<std::ptrdiff_t>(size * kept));
+    }
+    numbers_[kept++] = numbers_[p];
+  }
+  numbers_.resize(kept);
+  shown_.resize(size * kept);
+  missing_.resize(size * kept);
+}
+
+float degrees_between(const Vec3f& a, const Vec3f& b) noexcept {
+  const Vec3f aside = cross(a, b);
+  return static_cast<float>(kDegreesPerRadian) *
+         static_cast<float>(portable::atan2(std::sqrt(dot(aside, aside)), dot(a, b)));
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,86 @@
+/// What the deltas of a mesh's own targets lack at the instants of its file: the matrix that extra targets of low rank
+/// stand for (docs/theory.md, section 17). Private to workflow.
+///
+/// Points     vertices that show the same normal: of one element, and with the same stored base normal.
+/// Shapes     (points, 3, stride) floats, of which the first rows() of each run of `stride` count and the rest is zero.
+/// Units      lengths of the stored base normal.
+/// Threads    on all cores; the same bits on any number of them.
+#ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_MISSING_NORMALS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_MISSING_NORMALS_H_
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "workflow/bake/deltas/right_normals.h"
+#include "workflow/bake/deltas/vertex_columns.h"
+#include "workflow/bake/poses/extra_curves.h"
+#include "workflow/bake/poses/mesh_weights.h"
+
+namespace chronormal::inline internal {
+
+/// Rounds a number of floats up to whole groups, which loops over them take at once.
+[[nodiscard]] constexpr std::size_t padded_to(std::size_t count) noexcept {
+  constexpr std::size_t kPadding = 16;
+  return (count + kPadding - 1) / kPadding * kPadding;
+}
+
+/// Vertices that show the same normal; the first stands for all.
+using PointVertices = std::vector<std::uint32_t>;
+
+/// Groups vertices into points. Those whose base normal is too short to add to are left out.
+[[nodiscard]] std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const std::uint32_t> vertices,
+                                                   std::span<const std::uint32_t> element_of_vertex);
+
+/// All instants of a file that a curve has a value at: the nodes of each track, and then the poses that the file stores.
+struct FileInstants {
+  explicit FileInstants(const MeshWeights& weights);
+
+  std::vector<CurveNodes> tracks;
+  std::vector<std::size_t> first;  ///< of each track, and of the poses that the file stores
+  PoseList poses;
+};
+
+/// The weights of own targets beside the rows, and what normals show and lack there.
+class MissingNormals {
+ public:
+  /// own has the deltas of the mesh's own targets for the first vertex of each point. across: what is missing has no part
+  /// along N, as far as the right direction can be reached so; the length that comes of it is any.
+  MissingNormals(const RightNormals& rights, std::span<const PointVertices> points,
+                 std::span<const std::uint32_t> element_of_vertex, const VertexColumns& own, PoseList poses,
+                 bool across = false);
+
+  [[nodiscard]] std::size_t points() const noexcept { return numbers_.size(); }
+  [[nodiscard]] std::size_t rows() const noexcept { return poses_.size(); }
+  [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
+  [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
+  /// The number of a point among those that this was made of.
+  [[nodiscard]] std::size_t number(std::size_t point) const { return numbers_[point]; }
+  /// (3, stride): what the own deltas show of a point; zero where the right normal is not known.
+  [[nodiscard]] const float* shown(std::size_t point) const { return shown_.data() + 3 * stride_ * point; }
+  /// (3, stride): what that lacks of the right normal, whose length is |n(w)| / |n(0)|.
+  [[nodiscard]] const float* missing(std::size_t point) const { return missing_.data() + 3 * stride_ * point; }
+
+  /// The inner products of what is missing in two rows, over every step-th point, each times its importance: (rows,
+  /// rows). Sums of a few points are float32, those of all double.
+  [[nodiscard]] std::vector<double> inner_products(std::span<const float> importance, std::size_t step = 1) const;
+
+  /// Has own deltas show more of a point, so that less is missing; more is (3, stride).
+  void show_more(std::size_t point, std::span<const float> more);
+  /// Leaves out the points that are within some degrees of right in all rows.
+  void keep_beyond(double degrees);
+
+ private:
+  PoseList poses_;
+  std::size_t stride_;
+  std::vector<std::size_t> numbers_;
+  std::vector<float> shown_, missing_;
+};
+
+/// The angle in degrees between two vectors of any length; 0 where one is zero.
+[[nodiscard]] float degrees_between(const Vec3f& a, const Vec3f& b) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_MISSING_NORMALS_H_

@@ -1,0 +1,306 @@
+// Poses are columns of weights side by side, so that a delta is added to many poses in one loop over memory.
+#include "workflow/bake/judge/judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "analysis/quality/kernels/shown_angles.h"
+#include "core/blocks.h"
+
+namespace chronormal::inline internal {
+namespace {
+
+constexpr std::size_t kBlock = 32, kEdgeBlock = 1024;
+constexpr int kFineBits = 16;
+constexpr auto kDegrees = static_cast<float>(kDegreesPerRadian);
+// Pairs of a vertex and a pose whose right normals are held, and poses of one kind.
+constexpr std::size_t kMostPairs = 5000000, kFewestPoses = 12, kMostPoses = 1500;
+// At a glance: every eighth pose, but no fewer than these where there are more.
+constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
+// Errors of vertices that are held at once.
+constexpr std::size_t kMostErrors = 4000000;
+
+// The viewer without what is too fine to choose by, or a compressor's own: halves, and numbers of a few bits.
+Host without_rounding(Host viewer) {
+  viewer.bits = viewer.normals == NormalRule::kClamped ? kFineBits : 32;
+  viewer.octahedral_base = false;
+  return viewer;
+}
+
+// Whether two viewers show the same of all deltas.
+bool shows_alike(const Host& a, const Host& b, bool is_skinned) {
+  return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
+         a.octahedral_base == b.octahedral_base && (a.skins == b.skins || !is_skinned);
+}
+
+// The weights of poses, for each column side by side, and between which poses it has any: where targets are judged
+// alone, most columns have none in most poses.
+class PoseWeights {
+ public:
+  explicit PoseWeights(std::span<const SeenPose> poses)
+      : poses_(poses.size()), active_(poses.empty() ? 0 : poses[0].weights.size()), weights_(poses_ * active_.size()) {
+    for (std::size_t p = 0; p < poses_; ++p) {
+      for (std::size_t c = 0; c < active_.size(); ++c) {
+        const auto weight = static_cast<float>(poses[p].weights[c]);
+        weights_[c * poses_ + p] = weight;
+        if (weight == 0) continue;
+        IndexRange& active = active_[c];
+        if (active.count == 0) active.first = p;
+        active.count = p + 1 - active.first;
+      }
+    }
+  }
+
+  // (poses)
+  [[nodiscard]] const float* of(std::size_t column) const { return weights_.data() + column * poses_; }
+  // Beyond these poses the column has no weight.
+  [[nodiscard]] const IndexRange& active(std::size_t column) const { return active_[column]; }
+
+ private:
+  std::size_t poses_;
+  std::vector<IndexRange> active_;
+  std::vector<float> weights_;
+};
+
+// Sums of one vertex in many poses.
+class Sums {
+ public:
+  void add_up(const Host& viewer, const Vec3f& normal, std::span<const VertexColumns::Entry> entries,
+              const PoseWeights& weights, std::size_t first, std::size_t count) {
+    const Vec3f base = kept_normal(viewer, normal);
+    x_.assign(count, base.x);
+    y_.assign(count, base.y);
+    z_.assign(count, base.z);
+    for (const auto& [column, delta] : entries) {
+      const IndexRange& active = weights.active(column);
+      const std::size_t begin = std::max(active.first, first), end = std::min(active.end(), first + count);
+      if (begin >= end) continue;
+      const Vec3f kept = kept_delta(viewer, normal, base, delta);
+      const float* const w = weights.of(column) + first;
+      for (std::size_t p = begin - first; p < end - first; ++p) {
+        x_[p] += w[p] * kept.x;
+        y_[p] += w[p] * kept.y;
+        z_[p] += w[p] * kept.z;
+      }
+    }
+  }
+
+  // Makes of the sums what is seen of them.
+  void carry(const SkinsInPoses::Vertex& carrying, SkinRule rule) {
+    for (std::size_t p = 0; p < x_.size(); ++p) {
+      const Vec3f seen = to_float(carrying.seen(rule, p, to_double(at(p))));
+      x_[p] = seen.x;
+      y_[p] = seen.y;
+      z_[p] = seen.z;
+    }
+  }
+
+  // Writes the angles to the right normals in degrees, negative where one is not known, and the differences of unit
+  // vectors as planes, NaN where one is not. Returns the largest length of a difference.
+  float compare_with(std::span<const Vec3f> right, std::span<float> degrees, std::span<float> errors) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    across_.resize(right.size());
+    along_.resize(right.size());
+    angles_.resize(right.size());
+    for (std::size_t p = 0; p < right.size(); ++p) {
+      const Vec3f shown = at(p), aside = cross(shown, right[p]);
+      across_[p] = static_cast<double>(std::sqrt(dot(aside, aside)));
+      along_[p] = static_cast<double>(dot(shown, right[p]));
+    }
+    upper_angles(across_, along_, angles_);
+    float largest = 0;
+    for (std::size_t p = 0; p < right.size(); ++p) {
+      const Vec3f shown = at(p);
+      const float size = std::sqrt(dot(shown, shown)), angle = kDegrees * static_cast<float>(angles_[p]);
+      const bool is_lit = size > 0 && std::isfinite(size) && std::isfinite(angle);
+      const bool is_known = right[p] != Vec3f{};
+      degrees[p] = !is_known ? -1 : is_lit ? angle : 180;
+      const Vec3f error = !is_known ? Vec3f{kNan, kNan, kNan}
+                          : is_lit  ? (1 / size) * shown - right[p]
+                                    : -2.0F * right[p];
+      errors[p] = error.x;
+      errors[right.size() + p] = error.y;
+      errors[2 * right.size() + p] = error.z;
+      largest = std::fmax(largest, dot(error, error));
+    }
+    return std::sqrt(largest);
+  }
+
+ private:
+  [[nodiscard]] Vec3f at(std::size_t p) const { return {x_[p], y_[p], z_[p]}; }
+
+  std::vector<float> x_, y_, z_;
+  std::vector<double> across_, along_, angles_;
+};
+
+// The edges with an end among some vertices, by their places there; the place of others is behind all of these.
+std::vector<SurfaceEdge> edges_of(std::span<const SurfaceEdge> edges, std::span<const std::uint32_t> vertices,
+                                  std::size_t vertex_count) {
+  const auto none = static_cast<std::uint32_t>(vertices.size());
+  std::vector<std::uint32_t> places(vertex_count, none);
+  for (std::uint32_t place = 0; place < none; ++place) places[vertices[place]] = place;
+  std::vector<SurfaceEdge> result;
+  for (const auto& [a, b] : edges)
+    if (places[a] != none || places[b] != none)
+      result.push_back({std::min(places[a], places[b]), std::max(places[a], places[b])});
+  return result;
+}
+
+std::vector<std::uint32_t> numbers_up_to(std::size_t count) {
+  std::vector<std::uint32_t> result(count);
+  for (std::size_t n = 0; n < count; ++n) result[n] = static_cast<std::uint32_t>(n);
+  return result;
+}
+
+}  // namespace
+
+ShownErrors JudgedErrors::errors() const {
+  ShownErrors result = spread.errors();
+  result.tears = tears.beyond;
+  return result;
+}
+
+JudgedErrors errors_of_all(const ErrorsOfKinds& kinds) {
+  JudgedErrors all;
+  for (const JudgedErrors& errors : kinds) all.add(errors);
+  return all;
+}
+
+Judge::Judge(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
+             std::span<const Host> viewers, bool animations_only)
+    : rights_(rights), weights_(weights), viewers_(viewers) {
+  const std::vector<VertexVectors> stored = stored_deltas(source.shading);
+  vertices_ = judged_vertices(source, stored);
+  const std::vector<SurfaceEdge> edges = surface_edges(source.shading);
+  const std::size_t most =
+      std::clamp(kMostPairs / std::max<std::size_t>(1, vertices_.size()), kFewestPoses, kMostPoses);
+  for (PoseSet& set :
+       pose_sets(weights, viewers, numbers_of_targets(source, stored, vertices_), most, animations_only)) {
+    KnownSet& known = sets_.emplace_back();
+    known.set = std::move(set);
+    known.numbers = known.set.numbers.empty() ? numbers_up_to(vertices_.size()) : known.set.numbers;
+    std::vector<std::uint32_t> some;
+    for (const std::uint32_t n : known.numbers) some.push_back(vertices_[n]);
+    PoseList poses;
+    for (const PlayedPose& pose : known.set.poses) poses.push_back(pose.seen.weights);
+    known.edges = edges_of(edges, some, source.shading.element_of_vertex.size());
+    known.right.resize(some.size() * poses.size());
+    rights_.for_each(some, poses, [&](std::size_t at, std::size_t first, std::span<const Vec3f> right) {
+      std::copy(right.begin(), right.end(),
+                known.right.begin() + static_cast<std::ptrdiff_t>(at * poses.size() + first));
+    });
+  }
+}
+
+std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& poses) const {
+  std::vector<float> result(vertices_.size(), 0.0F);
+  const std::vector<SeenPose> seen = seen_through(poses, nullptr);
+  const PoseWeights weights(seen);
+  rights_.for_each(vertices_, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
+    thread_local Sums sums;
+    thread_local std::vector<float> degrees;
+    thread_local std::vector<float> errors;
+    sums.add_up(Host{}, to_float(rights_.stored(vertices_[n])), columns.of(n), weights, first, right.size());
+    degrees.resize(right.size());
+    errors.resize(3 * right.size());
+    (void)sums.compare_with(right, degrees, errors);
+    for (const float error : degrees) result[n] = std::fmax(result[n], error);
+  });
+  return result;
+}
+
+std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth depth, bool with_rounding) const {
+  std::vector<ErrorsOfKinds> result(viewers_.size());
+  const VertexColumns columns = columns_of(candidate, vertices_);
+  for (const KnownSet& known : sets_) {
+    if (candidate.animations_only && known.set.kind != PoseKind::kFile) continue;
+    const std::size_t count = known.set.poses.size();
+    const std::size_t step = depth == Depth::kAll ? 1 : std::clamp<std::size_t>(count / kFewestAtGlance, 1, kGlance);
+    const std::vector<SeenPose> poses =
+        with_extra_targets(known.set, weights_, candidate.drivers, viewers_[known.set.viewers[0]]);
+    const bool is_skinned = any_skinned(poses);
+    std::vector<std::pair<Host, JudgedErrors>> measured;
+    for (const std::size_t v : known.set.viewers) {
+      const Host viewer = with_rounding ? viewers_[v] : without_rounding(viewers_[v]);
+      auto found = std::find_if(measured.begin(), measured.end(),
+                                [&](const auto& of_other) { return shows_alike(of_other.first, viewer, is_skinned); });
+      if (found == measured.end()) {
+        measured.emplace_back(viewer, errors_of(known, viewer, columns, poses, step));
+        found = measured.end() - 1;
+      }
+      result[v][static_cast<std::size_t>(known.set.kind)].add(found->second);
+    }
+  }
+  return result;
+}
+
+JudgedErrors Judge::errors_of(const KnownSet& known, const Host& viewer, const VertexColumns& columns,
+                              std::span<const SeenPose> all, std::size_t step) const {
+  JudgedErrors result;
+  const std::size_t count = known.numbers.size();
+  const std::size_t at_once = std::max<std::size_t>(1, kMostErrors / std::max<std::size_t>(1, count));
+  std::vector<SeenPose> looked_at;
+  std::vector<std::size_t> places;
+  for (std::size_t p = step / 2; p < all.size(); p += step) {
+    looked_at.push_back(all[p]);
+    places.push_back(p);
+  }
+  Differences differences{std::vector<float>(), std::vector<float>(count), 0};
+  for (std::size_t first = 0; first < looked_at.size(); first += at_once) {
+    const std::size_t poses = std::min(at_once, looked_at.size() - first);
+    const std::span<const SeenPose> some = std::span(looked_at).subspan(first, poses);
+    const PoseWeights weights(some);
+    const SkinsInPoses skins(some);
+    differences.poses = poses;
+    differences.planes.resize(3 * count * poses);
+    GatheredErrors gathered(count);
+    parallel_each(count, kBlock, [&](std::size_t at) {
+      thread_local Sums sums;
+      thread_local std::vector<float> degrees;
+      thread_local std::vector<Vec3f> right;
+      const std::size_t n = known.numbers[at];
+      const std::uint32_t vertex = vertices_[n];
+      const Vec3f* const of_all = known.right.data() + at * all.size();
+      right.resize(poses);
+      if (step == 1)
+        std::copy(of_all + first, of_all + first + poses, right.begin());
+      else
+        for (std::size_t p = 0; p < poses; ++p) right[p] = of_all[places[first + p]];
+      degrees.resize(poses);
+      sums.add_up(viewer, to_float(rights_.stored(vertex)), columns.of(n), weights, 0, poses);
+      if (skins.any()) {
+        const SkinsInPoses::Vertex carrying(skins, vertex, 0, poses);
+        sums.carry(carrying, viewer.skins);
+        for (std::size_t p = 0; p < poses; ++p)
+          right[p] = to_float(carrying.seen(viewer.skins, p, to_double(right[p])));
+      }
+      differences.largest[at] =
+          sums.compare_with(right, degrees, std::span(differences.planes).subspan(3 * at * poses, 3 * poses));
+      gathered.add(at, degrees, degrees);
+    });
+    result.spread.add(gathered.spread());
+    result.tears.add(tears_of(known, differences));
+  }
+  return result;
+}
+
+TearCounts Judge::tears_of(const KnownSet& known, const Differences& differences) const {
+  // Vertices that are not looked at show no error.
+  const std::size_t count = known.numbers.size(), poses = differences.poses;
+  const std::vector<float> none(3 * poses, 0.0F);
+  return parallel_fold<TearCounts>(
+      known.edges.size(), kEdgeBlock,
+      [&](std::size_t edge, TearCounts& counts) {
+        const auto [a, b] = known.edges[edge];
+        // No jump is longer than both errors together.
+        const float most = differences.largest[a] + (b < count ? differences.largest[b] : 0);
+        if (most * most < TearCounts::kSquares[0]) return;
+        counts.add(differences.planes.data() + 3 * a * poses,
+                   b < count ? differences.planes.data() + 3 * b * poses : none.data(), poses);
+      },
+      [](TearCounts& to, const TearCounts& from) { to.add(from); });
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,55 @@
+/// The pairs of vertices between which a picture shows a jump of errors. Private to workflow.
+///
+/// Normals are interpolated over faces, so that two neighbours that are wrong alike look right, and two that are wrong in
+/// different ways show a fold that is not there. The *tear* of a pair is the angle that belongs to the length of the
+/// difference of their errors:
+///
+///     tear(a, b) = 2 asin(min(1, |(s_a - u_a) - (s_b - u_b)| / 2)),   s shown and u right, both unit vectors
+#ifndef CHRONORMAL_WORKFLOW_SHADING_SURFACE_EDGES_H_
+#define CHRONORMAL_WORKFLOW_SHADING_SURFACE_EDGES_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "workflow/shading/gltf_shading.h"
+
+namespace chronormal::inline internal {
+
+/// A pair of vertices of which the first has the lower number.
+using SurfaceEdge = std::array<std::uint32_t, 2>;
+
+/// Lists the edges of all faces, and the pairs of copies of a point that share a normal (seams of textures), each once,
+/// ascending. Vertices that show no normal of their own are in none. O(corners log corners)
+[[nodiscard]] std::vector<SurfaceEdge> surface_edges(const GltfShading& shading);
+
+/// How many tears there are beyond 10, 20 and 40 degrees.
+struct TearCounts {
+  static constexpr std::array<float, 3> kDegrees = {10, 20, 40};
+
+  /// The squares of the lengths of s - u that belong to these angles: (2 sin(angle / 2))^2.
+  static constexpr std::array<float, 3> kSquares = {0.030384494F, 0.12061476F, 0.46791112F};
+
+  std::array<std::size_t, 3> beyond{};
+
+  void add(const TearCounts& other) noexcept {
+    for (std::size_t k = 0; k < beyond.size(); ++k) beyond[k] += other.beyond[k];
+  }
+  /// Adds the tears between two vertices in some poses, of which the errors s - u are planes (3, poses). Those that are
+  /// NaN add nothing.
+  void add(const float* a, const float* b, std::size_t poses) noexcept {
+    std::array<std::uint32_t, 3> counts{};
+    for (std::size_t p = 0; p < poses; ++p) {
+      const float x = a[p] - b[p], y = a[poses + p] - b[poses + p], z = a[2 * poses + p] - b[2 * poses + p];
+      const float square = x * x + y * y + z * z;
+      for (std::size_t k = 0; k < counts.size(); ++k) counts[k] += square > kSquares[k] ? 1U : 0U;
+    }
+    for (std::size_t k = 0; k < counts.size(); ++k) beyond[k] += counts[k];
+  }
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_SHADING_SURFACE_EDGES_H_
