@@ -34,7 +34,7 @@ struct BakeArguments {
   double crease_angle = 180;
   bool recompute_base = false, smooth = false, dense_zeros = false;
   std::optional<std::size_t> most_bytes;
-  std::string hosts = "all";
+  std::string hosts;                  // empty: the usual ones
   std::optional<std::string> output;  // where it is asked for by name
   std::optional<double> tolerance;
   std::optional<std::size_t> most_targets;
@@ -58,9 +58,12 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     if (!how.encoding)
       return misuse("--encode", "it must be harmless, exact, endpoint, smallest, or of sequences keys");
   }
-  Result<std::vector<Host>> hosts = find_hosts(options.hosts);
-  if (!hosts) return misuse("--for", hosts.error().message);
-  how.hosts = std::move(hosts).value();
+  if (!options.hosts.empty()) {
+    Result<std::vector<Host>> hosts = find_hosts(options.hosts);
+    if (!hosts) return misuse("--for", hosts.error().message);
+    how.hosts = std::move(hosts).value();
+  }
+  how = with_viewers(std::move(how));
   if (!options.weighting.empty()) {
     const Result<Weighting> weighting = make_weighting(options.weighting);
     if (!weighting) return misuse("--weighting", weighting.error().message);
@@ -252,7 +255,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (is_curved && how.weighting.value_or(Weighting::kArea) != Weighting::kArea)
     return misuse("--weighting", "on curved paths normals are weighted by area, and by nothing else");
   if (is_curved) how.encoding = BakeEncoding::kEndpoint;
-  if (!how.encoding && options.hosts != "all" && !adds_up) how.encoding = BakeEncoding::kHarmless;
+  if (!how.encoding && !options.hosts.empty() && options.hosts != "all" && !adds_up)
+    how.encoding = BakeEncoding::kHarmless;
   if (how.encoding == BakeEncoding::kSmallest)
     return misuse("--encode", "a sequence is written harmless, exact, endpoint or keys");
   if (how.encoding == BakeEncoding::kKeys && how.tolerance.value_or(kHarmlessTolerance) < kLeastKeyTolerance)
@@ -388,15 +392,17 @@ Command bake_command() {
       "bake",
       "Write right normals into a glTF file, or make a glTF file of a sequence",
       {input_table(options->input, refused),
-       {{"--for HOST,...", &options->hosts,
-         "the hosts in which the result must be right, and nowhere worse than before:\n" + host_names() +
-             ", or all (default)"},
+       {{"--for VIEWER,...", &options->hosts,
+         "the viewers that the result is made for: " + host_names() +
+             ",\nor all that are no compressors (default: those that add up deltas, three,\n"
+             "babylon, playcanvas and bevy, and no worse in the others)"},
         {"--encode HOW", &options->encode,
-         "smallest (default): the fewest bytes that are within the tolerance in these hosts,\n"
-         "of what the file has, one delta per target, and extra targets, which its weights or\n"
-         "its animations drive; harmless: extra targets wherever they bring all of these\n"
-         "nearer; exact: extra targets for all quadratic terms, right where a host adds up\n"
-         "targets as stored; endpoint: the best single delta per target, by least squares\n"
+         "smallest (default): the best candidate as a whole, of what the file has, new deltas\n"
+         "of its targets, and extra targets that weights or animations drive: at most 2.5\n"
+         "times as large a file, or with --tolerance the fewest bytes within that; harmless:\n"
+         "unit normals that every viewer shows alike, after any compressor; exact: extra\n"
+         "targets for all quadratic terms, right where a viewer adds up targets as stored; endpoint: the best single "
+         "delta per target, by least squares\n"
          "where several are active at once; keys: of sequences, the fewest keys between which\n"
          "straight lines are within the tolerance at every instant"},
         {"--weighting NAME", &options->weighting,
@@ -414,7 +420,7 @@ Command bake_command() {
          {.check = check_whole(0)}},
         {"--max-targets N",
          &options->most_targets,
-         "of smallest: how many targets a mesh may have (default: what the hosts bear)",
+         "of smallest: how many targets a mesh may have (default: what the viewers bear)",
          {.check = check_whole(0)}},
         {"--animations-only", &options->animations_only,
          "of smallest: nothing but the animations will ever be played, so that deltas may be\n"
@@ -423,7 +429,7 @@ Command bake_command() {
          "of smallest: a program poses the meshes that no animation drives, and drives their\n"
          "extra targets as the file says; FILE has the poses that they are made for, as JSON:\n"
          "[{\"smile\": 1, \"jaw\": 0.5}, ...] (default: such meshes get no extra targets)"},
-        {"--plan", &options->plan, "of smallest: print what each form would come to, and write nothing"},
+        {"--plan", &options->plan, "of smallest: print what each candidate would come to, and write nothing"},
         options->path.table("positions are exact then, by cubic weights, and normals fitted").front(),
         {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
         {"--tolerance DEG", &options->tolerance,

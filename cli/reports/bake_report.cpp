@@ -84,6 +84,7 @@ void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
   all.mean = all.judged > 0 ? sum / static_cast<double>(all.judged) : 0;
   all.most = std::max(all.most, of_mesh.most);
   all.worst = std::max(all.worst, of_mesh.worst);
+  for (std::size_t k = 0; k < all.tears.size(); ++k) all.tears[k] += of_mesh.tears[k];
 }
 
 // The form that an optimiser chose for a mesh has deltas that are fitted to the animations.
@@ -92,60 +93,132 @@ bool is_of_animations(const BakedMesh& mesh) {
                      [](const BakeChoice& choice) { return choice.chosen && choice.animations_only; });
 }
 
-// Says what the errors in a table of hosts are those of.
-std::string poses_words(bool of_animations) {
-  return of_animations
-             ? "in the animations of the file (targets alone, which --animations-only gives up, are not in it)"
-             : "in the animations of the file, and for each target alone";
+// What one viewer shows before and after.
+struct ViewerRow {
+  const Host* viewer = nullptr;
+  HostChange::Errors errors;
+  bool is_named = true, is_better = true;
+};
+
+// Adds up the errors of all poses and of all meshes whose deltas are fitted to the animations, or of all others.
+std::vector<ViewerRow> viewer_rows(const GltfBake& bake, bool of_animations) {
+  std::vector<ViewerRow> rows;
+  for (const Host& viewer : kHosts) {
+    ViewerRow row{&viewer, {}};
+    bool any_better = false;
+    for (const BakedMesh& mesh : bake.meshes) {
+      for (const HostChange& change : mesh.hosts) {
+        if (change.host != viewer.name || is_of_animations(mesh) != of_animations) continue;
+        for (const HostChange::Errors& of_kind : change.poses) {
+          if (of_kind.before.judged == 0) continue;
+          add_errors(of_kind.before, row.errors.before);
+          add_errors(of_kind.after, row.errors.after);
+        }
+        row.is_named = change.is_named;
+        any_better |= change.is_better;
+      }
+    }
+    row.is_better = any_better;
+    if (row.errors.before.judged > 0) rows.push_back(row);
+  }
+  return rows;
 }
 
-// Prints a row for each named host: the errors that it shows before and after, over all meshes whose deltas are fitted
-// to the animations, or over all others.
-std::string hosts_table(const GltfBake& bake, bool of_animations) {
+// Says what the errors in a table of viewers are those of.
+std::string poses_words(bool of_animations) {
+  return of_animations ? "in what the file plays (targets alone, which --animations-only gives up, are not in it)"
+                       : "in what the file plays, and for each target alone";
+}
+
+std::string viewers_table(const GltfBake& bake, bool of_animations) {
+  const std::vector<ViewerRow> rows = viewer_rows(bake, of_animations);
+  if (rows.empty()) return "";
   Table table;
-  table.add_column("host", "", Table::Align::kLeft);
-  table.add_column("mean", "degrees", Table::Align::kRight);
-  table.add_column("after", "", Table::Align::kRight);
-  table.add_column("99.9 %", "", Table::Align::kRight);
+  table.add_column("viewer", "", Table::Align::kLeft);
+  table.add_column("average", "degrees", Table::Align::kRight);
   table.add_column("after", "", Table::Align::kRight);
   table.add_column("worst", "", Table::Align::kRight);
   table.add_column("after", "", Table::Align::kRight);
-  bool any = false;
-  for (const Host& host : kHosts) {
-    HostChange::Errors all;
-    for (const BakedMesh& mesh : bake.meshes) {
-      for (const HostChange& change : mesh.hosts) {
-        if (change.host != host.name || is_of_animations(mesh) != of_animations) continue;
-        add_errors(change.poses[0].before, all.before);
-        add_errors(change.poses[0].after, all.after);
-      }
-    }
-    if (all.before.judged == 0) continue;
-    any = true;
-    table.add_row({std::string(host.title), four_decimals(all.before.mean), four_decimals(all.after.mean),
-                   four_decimals(all.before.most), four_decimals(all.after.most), four_decimals(all.before.worst),
-                   four_decimals(all.after.worst)});
-  }
-  return any ? formatted("\n{}:\n\n{}\n", poses_words(of_animations), table.text()) : "";
+  table.add_column("torn edges", "", Table::Align::kRight);
+  table.add_column("after", "", Table::Align::kRight);
+  for (const auto& [viewer, errors, is_named, is_better] : rows)
+    table.add_row({std::string(viewer->title), four_decimals(errors.before.mean), four_decimals(errors.after.mean),
+                   four_decimals(errors.before.worst), four_decimals(errors.after.worst),
+                   grouped(errors.before.tears[0]), grouped(errors.after.tears[0])});
+  return formatted("\n{}:\n\n{}\n", poses_words(of_animations), table.text());
 }
 
-std::string hosts_text(const GltfBake& bake) { return hosts_table(bake, false) + hosts_table(bake, true); }
+std::string viewers_text(const GltfBake& bake) { return viewers_table(bake, false) + viewers_table(bake, true); }
 
-// Says how many normals keep their old deltas and how many corrections bake left out, and why.
-std::string left_text(const GltfBake& bake) {
-  std::size_t kept = 0, left_out = 0;
-  for (const BakedMesh& mesh : bake.meshes) {
-    kept += mesh.kept;
-    left_out += mesh.left_out;
-  }
+// "three.js, Babylon.js"
+std::string titles_of(const std::vector<ViewerRow>& rows) {
   std::string text;
-  if (kept > 0)
-    text += counted(
-        kept, "normal keeps the deltas that it had: no others are as near, and nowhere worse, in all of these hosts\n",
-        "normals keep the deltas that they had: no others are as near, and nowhere worse, in all of these hosts\n");
+  for (const ViewerRow& row : rows) text.append(text.empty() ? "" : ", ").append(row.viewer->title);
+  return text;
+}
+
+// The row with the largest mean afterwards.
+const ViewerRow& worst_of(const std::vector<ViewerRow>& rows) {
+  return *std::max_element(rows.begin(), rows.end(), [](const ViewerRow& a, const ViewerRow& b) {
+    return a.errors.after.mean < b.errors.after.mean;
+  });
+}
+
+std::string rounded_change(double before, double after) { return formatted("{:.3g} -> {:.3g}", before, after); }
+
+// What a person wants to know first: how much better the file is, where, and how much larger.
+std::string verdict(const GltfBake& bake) {
+  std::vector<ViewerRow> better, left_out, others;
+  for (const bool of_animations : {false, true})
+    for (const ViewerRow& row : viewer_rows(bake, of_animations))
+      (!row.is_named ? others : row.is_better ? better : left_out).push_back(row);
+  if (better.empty()) return "";
+  const auto& [before, after] = worst_of(better).errors;
+  std::string text = formatted("on average {} degrees, at worst {}", rounded_change(before.mean, after.mean),
+                               rounded_change(before.worst, after.worst));
+  if (before.tears[0] + after.tears[0] > 0)
+    text += after.tears[0] == 0 ? ", no torn edges left"
+                                : formatted(", torn edges {} -> {}", grouped(before.tears[0]), grouped(after.tears[0]));
+  if (bake.bytes_of_file > 0) {
+    const auto size = static_cast<double>(bake.bytes_of_file + bake.added_bytes - bake.left_out_bytes);
+    text += formatted("; the file is {:.2f} times as large", size / static_cast<double>(bake.bytes_of_file));
+  }
+  text += formatted("\n({})\n", titles_of(better));
+  const auto add_others = [&](const std::vector<ViewerRow>& rows, const char* words) {
+    if (rows.empty()) return;
+    const auto& errors = worst_of(rows).errors;
+    text += formatted("{}{}: on average {} degrees, at worst {}\n", words, titles_of(rows),
+                      rounded_change(errors.before.mean, errors.after.mean),
+                      rounded_change(errors.before.worst, errors.after.worst));
+  };
+  add_others(others, "in ");
+  add_others(left_out, "no better in ");
+  return text;
+}
+
+// What the file still plays wrongly in the viewers that it is made for, with a way out.
+std::string left_over(const GltfBake& bake) {
+  double worst = 0;
+  for (const BakedMesh& mesh : bake.meshes)
+    for (const BakeChoice& choice : mesh.choices)
+      for (const HostChange& change : choice.hosts)
+        if (choice.chosen && !choice.within && change.is_named && change.is_better)
+          worst = std::max(worst, change.poses[0].after.worst);
+  if (worst <= kHarmlessTolerance) return "";
+  return formatted(
+      "what it plays is still up to {:.3g} degrees off in places: --tolerance {} takes as many bytes as that needs\n",
+      worst, kHarmlessTolerance);
+}
+
+// Says how many corrections bake left out, and why.
+std::string left_text(const GltfBake& bake) {
+  std::size_t left_out = 0;
+  for (const BakedMesh& mesh : bake.meshes) left_out += mesh.left_out;
+  std::string text;
   if (left_out > 0)
-    text += counted(left_out, "correction that would gain least is left out: one of these hosts has no room for more\n",
-                    "corrections that would gain least are left out: one of these hosts has no room for more\n");
+    text +=
+        counted(left_out, "correction that would gain least is left out: one of these viewers has no room for more\n",
+                "corrections that would gain least are left out: one of these viewers has no room for more\n");
   return text;
 }
 
@@ -167,13 +240,13 @@ std::string form_words(const BakeChoice& choice) {
   return std::string(choice.form) + (choice.animations_only ? ", animations only" : "");
 }
 
-// Prints a row for each host and form whose deltas are fitted to the animations, or each other form.
+// Prints a row for each viewer and candidate whose deltas are fitted to the animations, or each other form.
 std::string plan_of_hosts(const GltfBake& bake, bool of_animations) {
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
-  table.add_column("form", "", Table::Align::kLeft);
-  table.add_column("host", "", Table::Align::kLeft);
-  table.add_column("mean", "degrees", Table::Align::kRight);
+  table.add_column("candidate", "", Table::Align::kLeft);
+  table.add_column("viewer", "", Table::Align::kLeft);
+  table.add_column("average", "degrees", Table::Align::kRight);
   table.add_column("99.9 %", "", Table::Align::kRight);
   table.add_column("worst", "", Table::Align::kRight);
   bool any = false;
@@ -253,12 +326,13 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
     }
     if (bake.meshes.empty())
       return text + "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n";
-    return text + (are_all_within(bake)
-                       ? "nothing to bake: its normals are within the tolerance; the output is as the input\n"
-                       : "nothing to bake: no other normals are nearer, and nowhere worse, in all of these hosts; the "
-                         "output is as "
-                         "the input\n");
+    return text +
+           (are_all_within(bake)
+                ? "nothing to bake: its normals are within the tolerance; the output is as the input\n"
+                : "nothing to bake: no other normals are better as a whole in any of these viewers; the output is as "
+                  "the input\n");
   }
+  text += verdict(bake);
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
   table.add_column("encoding", "", Table::Align::kLeft);
@@ -294,25 +368,26 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   if (tangents > 0)
     text += counted(tangents, "target has new tangents: its", "targets have new tangents: their") +
             " stored ones leaned on the right normals\n";
-  return text + left_text(bake) + hosts_text(bake) + lines_after(report);
+  return text + left_text(bake) + viewers_text(bake) + left_over(bake) + lines_after(report);
 }
 
 std::string plan_text(const GltfBake& bake, const BakeReport& report) {
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
-  table.add_column("form", "", Table::Align::kLeft);
+  table.add_column("candidate", "", Table::Align::kLeft);
   table.add_column("targets", "", Table::Align::kRight);
   table.add_column("deltas", "bytes", Table::Align::kRight);
-  table.add_column("mean", "degrees", Table::Align::kRight);
-  table.add_column("99.9 %", "", Table::Align::kRight);
+  table.add_column("average", "degrees", Table::Align::kRight);
   table.add_column("worst", "", Table::Align::kRight);
   table.add_column("", "", Table::Align::kLeft);
   for (const BakedMesh& mesh : bake.meshes) {
     for (const BakeChoice& choice : mesh.choices) {
-      const char* const word = choice.chosen ? "the smallest" : "";
+      const bool is_smallest = choice.chosen && choice.within;
       table.add_row({mesh_name(mesh), form_words(choice), grouped(choice.targets), grouped(choice.bytes),
-                     four_decimals(choice.played.mean), four_decimals(choice.played.most),
-                     four_decimals(choice.played.worst), choice.chosen && !choice.within ? "the nearest" : word});
+                     four_decimals(choice.played.mean), four_decimals(choice.played.worst),
+                     is_smallest     ? "recommended"
+                     : choice.chosen ? "the nearest"
+                                     : ""});
     }
   }
   return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text() + plan_of_hosts(bake, false) +

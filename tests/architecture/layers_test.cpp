@@ -190,6 +190,39 @@ TEST(Layers, every_file_includes_only_its_own_room_and_those_above) {
   }
 }
 
+// The rooms of bake, from the one that uses none of the others to the last.
+const std::vector<std::string> kRoomsOfBake = {"poses", "deltas", "judge", "fits", "candidates", "write", "sequence"};
+
+// The lines that include a room of bake which comes later than that of the file.
+std::vector<std::string> later_rooms(const std::string& room, const std::string& text) {
+  const auto place_of = [](const std::string& name) {
+    return std::find(kRoomsOfBake.begin(), kRoomsOfBake.end(), name) - kRoomsOfBake.begin();
+  };
+  std::vector<std::string> found;
+  const std::string include = "#include \"workflow/bake/";
+  for (const std::string& line : lines_of(text)) {
+    if (!line.starts_with(include)) continue;
+    const std::string rest = line.substr(include.size());
+    const std::size_t slash = rest.find('/');
+    if (slash == std::string::npos || place_of(rest.substr(0, slash)) > place_of(room)) found.push_back(line);
+  }
+  return found;
+}
+
+TEST(Layers, rooms_of_bake_use_only_those_before_them) {
+  EXPECT_EQ(later_rooms("judge", "#include \"workflow/bake/fits/x.h\"\n#include \"workflow/bake/deltas/x.h\"\n").size(),
+            1u);
+  std::size_t count = 0;
+  for (const std::string& room : kRoomsOfBake) {
+    for (const auto& entry : fs::directory_iterator(kRoot / "src/workflow/bake" / room)) {
+      ++count;
+      for (const std::string& line : later_rooms(room, read(entry.path())))
+        ADD_FAILURE() << entry.path() << ": " << line;
+    }
+  }
+  EXPECT_GT(count, 50u);
+}
+
 TEST(Layers, public_headers_include_only_public_headers) {
   for (const fs::path& file : product_files()) {
     if (!file.string().starts_with("include/")) continue;

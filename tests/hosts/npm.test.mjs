@@ -302,7 +302,7 @@ test('npx chronormal report writes the page of the program', () => {
 });
 
 test('messages name the kind of a file, and have no long fractions', async () => {
-  const picture = readFileSync(join(installed, 'filament.png'));
+  const picture = readFileSync(join(installed, 'head.png'));
   for (const call of [audit, bake, inspect, compare]) {
     await assert.rejects(call(picture), { name: 'ChronormalError', code: 3, message: 'input.gltf, byte 0: this is a PNG image, not glTF' });
   }

@@ -121,7 +121,7 @@ TEST(KnownKindsOfBytes, are_no_files_of_ours_and_no_noise) {
 }
 
 TEST_F(KnownKinds, real_files_of_the_repository) {
-  std::ifstream picture(std::string(kSourceFolder) + "/docs/pictures/filament.png", std::ios::binary);
+  std::ifstream picture(std::string(kSourceFolder) + "/docs/pictures/head.png", std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(picture), {}};
   EXPECT_EQ(known_kind(bytes), "a PNG image");
   EXPECT_EQ(check_kind(bytes, "p", "json").error().text(), "p: this is a PNG image, not JSON");

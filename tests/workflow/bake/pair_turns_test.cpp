@@ -1,5 +1,5 @@
 // The search for the largest angle looks at few elements and poses; here it is held against a look at all of them.
-#include "workflow/bake/exact/pair_turns.h"
+#include "workflow/bake/deltas/pair_turns.h"
 
 #include <gtest/gtest.h>
 

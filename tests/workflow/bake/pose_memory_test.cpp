@@ -1,7 +1,7 @@
 // A memory of poses keeps what came first, as far as there is room; and normals of poses are the same however often, and
 // in whichever order, they are asked for.
 
-#include "workflow/bake/pose_memory.h"
+#include "workflow/bake/poses/pose_memory.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 
 #include "core/blocks.h"
 #include "tests/support/bake_fixture.h"
-#include "workflow/bake/terms.h"
+#include "workflow/bake/deltas/terms.h"
 
 namespace chronormal::pose_memory_test {
 namespace {

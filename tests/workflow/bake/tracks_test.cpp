@@ -1,4 +1,4 @@
-#include "workflow/bake/write/tracks.h"
+#include "workflow/bake/poses/tracks.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/bake_fixture.h"
-#include "workflow/bake/forms/form_poses.h"
+#include "workflow/bake/candidates/cut_tracks.h"
 
 namespace chronormal::tracks_test {
 namespace {
@@ -71,16 +71,16 @@ TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_
 
   MeshWeights weights{
       {{GltfInterpolation::kLinear, {{0, 1}, {0, 1}}, 1}}, {{0, 0}}, {{}}, {}, 0, WeightUse(1), true, {}};
-  const VertexColumns form = by_vertex(columns_of(columns), vertices);
   for (const std::size_t pieces : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
     // As many pieces as this tolerance takes: each leaves the square of its share.
     const auto count = static_cast<double>(pieces);
-    ExtraDrivers drivers;
-    drivers.formulas = {{0, 0, 4, -4}};
-    double left = 0;
-    cut_tracks(rights, weights, kHosts, vertices, form, 1.01 * expected / (count * count), drivers, left);
-    EXPECT_EQ(drivers.pieces.at({0, 0}), std::vector<std::uint32_t>{static_cast<std::uint32_t>(pieces)});
-    EXPECT_NEAR(left, expected / (count * count), 1e-6) << pieces;
+    Candidate form;
+    form.own = {columns[0]};
+    form.extras = {columns[1]};
+    form.drivers.formulas = {{0, 0, 4, -4}};
+    cut_tracks(rights, weights, kHosts, vertices, 1.01 * expected / (count * count), form);
+    EXPECT_EQ(form.drivers.pieces.at({0, 0}), std::vector<std::uint32_t>{static_cast<std::uint32_t>(pieces)});
+    EXPECT_NEAR(form.track_error, expected / (count * count), 1e-6) << pieces;
   }
 }
 
