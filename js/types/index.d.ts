@@ -68,7 +68,7 @@ export interface AuditOptions extends MotionOptions {
 }
 
 export interface BakeOptions extends ReadOptions {
-  /** The hosts in which the result must be right, and nowhere worse than before. Default: all. */
+  /** The viewers that the result is made for. Default: those that add up deltas, and none worse in the others. */
   for?: Host | 'all' | Array<Host | 'all'>;
   encode?: 'smallest' | 'harmless' | 'exact' | 'endpoint' | 'keys';
   weighting?: Weighting;

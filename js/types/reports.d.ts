@@ -160,27 +160,33 @@ export interface ShownErrors {
   mean_degrees: number;
   most_degrees: number;
   worst_degrees: number;
+  /** Pairs of an edge and a pose at which errors jump by more than 10, 20 and 40 degrees. */
+  torn_edges: [number, number, number];
 }
 
-export interface HostPoses {
+export interface JudgedPoses {
   judged: number;
   before: ShownErrors;
   after: ShownErrors;
 }
 
-export interface HostChange {
-  host: string;
-  file?: HostPoses;
-  random?: HostPoses;
-  cross_fades?: HostPoses;
+export interface ViewerChange {
+  viewer: string;
+  /** Whether the bake is made for it, and whether it shows the result better as a whole. */
+  named: boolean;
+  better: boolean;
+  /** What the file plays, each target alone, and poses that a program sets. */
+  file?: JudgedPoses;
+  alone?: JudgedPoses;
+  posed?: JudgedPoses;
 }
 
-export interface BakeChoice {
-  form: string;
+export interface BakeCandidate {
+  name: string;
   targets: number;
   bytes: number;
   played: ShownErrors;
-  hosts: HostChange[];
+  viewers: ViewerChange[];
   within: boolean;
   chosen: boolean;
   animations_only: boolean;
@@ -205,16 +211,15 @@ export interface BakedMesh {
   new_tangents: number;
   stilled_targets: number;
   fitted_normals: number;
-  kept_normals: number;
   left_out_targets: number;
-  hosts: HostChange[];
-  choices: BakeChoice[];
+  viewers: ViewerChange[];
+  candidates: BakeCandidate[];
   target_fit_degrees: number;
   track_fit_degrees: number;
   audit: BakeAudit | null;
 }
 
-interface BakeHead extends Head<'bake', 2> {
+interface BakeHead extends Head<'bake', 3> {
   input: { name: string };
   warnings: string[];
 }
@@ -251,10 +256,10 @@ export interface SequenceBakeReport extends BakeHead, CurvedPath {
 /** Which of the two it is, a key of one alone says: 'meshes' in report. */
 export type BakeReport = GltfBakeReport | SequenceBakeReport;
 
-/** What bake() with `plan` says: what each form would come to. */
+/** What bake() with `plan` says: what each candidate would come to. */
 export interface PlanReport extends BakeHead {
   plan: true;
-  meshes: Array<{ mesh: number; name: string; choices: BakeChoice[] }>;
+  meshes: Array<{ mesh: number; name: string; candidates: BakeCandidate[] }>;
 }
 
 // Of a comparison.

@@ -260,16 +260,17 @@ def compare(source=None, *, schemes=(), samples=21, access="random", elements="f
     return _json.loads(text)
 
 
-def bake(source=None, *, encode=None, hosts="all", weighting=None, tolerance=None, smooth=False, recompute_base=False,
+def bake(source=None, *, encode=None, hosts=None, weighting=None, tolerance=None, smooth=False, recompute_base=False,
          sample=None, fps=1.0, path="linear"):
     """Write right normals into a glTF file, or make one of a sequence; return (glb, report).
 
+    hosts   the viewers that it is made for; None: those that add up deltas, and none worse in the others
     path    as for audit(); on curves positions are exact, by cubic weights, and normals are fitted
     glb     bytes of a GLB
     report  the dict of `chronormal bake --json`, but for its audit: audit(glb) has that
     """
     opened = _source(source, sample, None, fps, velocities=path == "hermite")
-    glb, text = _chronormal.bake(opened, encode or "", _names(hosts), weighting or "", tolerance, smooth, recompute_base, path)
+    glb, text = _chronormal.bake(opened, encode or "", _names(hosts or ""), weighting or "", tolerance, smooth, recompute_base, path)
     return glb, _json.loads(text)
 
 

@@ -100,7 +100,7 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
             sample: str | None = None, base: _Path | None = None, fps: float = 1.0, animation: str | int | None = None,
             world: bool = False, path: _PathName = "linear") -> dict[str, Any]: ...
 def bake(source: _Source = None, *, encode: Literal["smallest", "harmless", "exact", "endpoint", "keys"] | None = None,
-         hosts: str | Iterable[str] = "all", weighting: _Weighting | None = None, tolerance: float | None = None,
+         hosts: str | Iterable[str] | None = None, weighting: _Weighting | None = None, tolerance: float | None = None,
          smooth: bool = False, recompute_base: bool = False, sample: str | None = None,
          fps: float = 1.0, path: _PathName = "linear") -> tuple[bytes, dict[str, Any]]: ...
 def errors(source: _Source = None, *, scheme: str | None = None, samples: int | None = None,

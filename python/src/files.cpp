@@ -177,7 +177,7 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
     options.encoding = find_bake_encoding(encode);
     require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact, endpoint or keys");
   }
-  options.hosts = value_or_raise(find_hosts(hosts));
+  if (!hosts.empty()) options.hosts = value_or_raise(find_hosts(hosts));
   if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
   require(!tolerance || (*tolerance >= 0 && *tolerance <= 90), "tolerance", "it must be an angle from 0 to 90 degrees");
   options.tolerance = tolerance;

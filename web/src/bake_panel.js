@@ -8,16 +8,20 @@ const HOSTS = [
   ['gltfpack', 'after gltfpack'], ['quantize', 'after quantize'], ['meshopt', 'after meshopt'],
 ];
 
+/** The viewers that add up deltas: a plain bake is made for these, and makes nothing worse in others that show files. */
+const ADDING_UP = ['three', 'babylon', 'playcanvas', 'bevy'];
+
 /**
- * @param input of page.js; its member `options` is what was chosen: {hosts, tolerance, maxTargets, maxBytes}, hosts empty for all
+ * @param input of page.js; its member `options` is what was chosen: {hosts, tolerance, maxTargets, maxBytes}, hosts empty for the usual ones
  * @param {{plan: () => void, bake: () => void}} acts
  */
 export function makeBakePanel(input, { plan, bake }) {
   const chosen = (input.options ??= { hosts: [], tolerance: '', maxTargets: '', maxBytes: '' });
+  const USUAL = HOSTS.map(([name]) => name).filter((name) => ADDING_UP.includes(name));
   const boxes = HOSTS.map(([name, title]) => {
-    const box = h('input', { type: 'checkbox', value: name, checked: chosen.hosts.length === 0 || chosen.hosts.includes(name), onchange: () => {
+    const box = h('input', { type: 'checkbox', value: name, checked: (chosen.hosts.length === 0 ? USUAL : chosen.hosts).includes(name), onchange: () => {
       const named = boxes.map((label) => label.firstChild).filter(({ checked }) => checked).map(({ value }) => value);
-      chosen.hosts = named.length === HOSTS.length ? [] : named;
+      chosen.hosts = String(named) === String(USUAL) ? [] : named;
     } });
     return h('label', { className: 'tick' }, box, title);
   });

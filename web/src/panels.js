@@ -108,19 +108,19 @@ export function hostTable({ audit }) {
   return panel('What hosts show', false, table('Errors in each host', ['host', 'mean ', '99.9 % below ', 'worst '], rows));
 }
 
-/** What a bake would come to, by form: the table of `bake --plan`. */
+/** What a bake would come to, by candidate: the table of `bake --plan`. */
 export function choiceTable({ plan, plan_message: message }) {
   if (!plan) return message ? panel('What a bake would write', false, h('p', { className: 'note' }, message)) : null;
-  const tables = plan.meshes.filter(({ choices }) => choices?.length).map(({ mesh, name, choices }) => {
-    const rows = choices.map(({ form, targets, bytes, played, chosen }) => ({
+  const tables = plan.meshes.filter(({ candidates }) => candidates?.length).map(({ mesh, name, candidates }) => {
+    const rows = candidates.map(({ name: form, targets, bytes, played, chosen }) => ({
       className: chosen ? 'chosen' : '',
       cells: [chosen ? `✓ ${form}` : form, count(targets), count(bytes), degreesText(played?.mean_degrees), degreesText(played?.worst_degrees)],
     }));
-    return [plan.meshes.length > 1 && h('h3', {}, name || `mesh ${mesh}`), table('Forms of a bake', ['form', 'targets ', 'bytes added ', 'mean ', 'worst '], rows)];
+    return [plan.meshes.length > 1 && h('h3', {}, name || `mesh ${mesh}`), table('Candidates of a bake', ['candidate', 'targets ', 'bytes added ', 'mean ', 'worst '], rows)];
   });
   if (tables.length === 0) return null;
   return panel('What a bake would write', false, tables,
-    h('p', { className: 'note' }, 'Degrees along the animations of the file. The form with a mark is the one that bake writes.'));
+    h('p', { className: 'note' }, 'Degrees along the animations of the file. The one with a mark is what bake writes.'));
 }
 
 /** How the schemes compare on this motion; one of them can be shown by a click. */
