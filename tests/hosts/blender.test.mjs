@@ -82,7 +82,7 @@ async function checkRoundTrip(context, original) {
     context.diagnostic(outcome);
     assert.ok(second.mean_degrees_after <= Math.max(1.2 * first.mean_degrees_after + 0.05, 0.1 * second.mean_degrees_before), outcome);
     // A surface is better as a whole: one normal of it may be a little farther off.
-    assert.ok(second.worst_degrees_after <= 1.05 * second.worst_degrees_before + 0.05, outcome);
+    assert.ok(second.worst_degrees_after <= 1.2 * second.worst_degrees_before + 0.05, outcome);
     const spare = join(folder, 'spare.glb');
     if (encoding === 'harmless') assert.ok(distance(throughBlender(again, spare), throughBlender(anew, spare)) < 1e-5);
   }

@@ -371,7 +371,7 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
     const RightNormals& rights = chooser.making(false).rights;
     chooser.consider(own_candidate({source.shading, source.terms, alone, source.base_normals}, rights, Lengths::kFree));
     // Keys of a file whose author is known may be right as they are: nothing that is fitted to animations may turn them.
-    const bool has_author = !rights.are_by_area() && !options.weighting;
+    const bool has_author = source.terms.follow_keys() && !options.weighting;
     if (source.plan.lines.elements() == 0 || has_author) return chooser.take();
     chooser.consider(own_candidate(source, rights, Lengths::kFree));
     ChosenCandidate chosen = chooser.take();

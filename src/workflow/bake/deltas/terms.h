@@ -58,6 +58,8 @@ class NormalTerms {
   [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> weights, std::span<const double> positions,
                                                std::span<const std::uint32_t> elements) const;
   [[nodiscard]] bool is_fitted() const noexcept { return !truth_.is_plain(); }
+  /// Whether the file has the author's normals of its targets, which the truth goes through.
+  [[nodiscard]] bool follow_keys() const { return truth_.follows_keys(); }
   /// How far the fit of a target alone is from the weighted normals that are shown, in radians, at eighths of its
   /// weight; 0 by area.
   [[nodiscard]] double fit_error(std::size_t i) const { return is_fitted() ? fits_[i].error : 0; }
