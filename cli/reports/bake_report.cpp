@@ -93,7 +93,7 @@ bool is_of_animations(const BakedMesh& mesh) {
                      [](const BakeChoice& choice) { return choice.chosen && choice.animations_only; });
 }
 
-// What one viewer shows before and after.
+// The errors that one viewer shows before and after.
 struct ViewerRow {
   const Host* viewer = nullptr;
   HostChange::Errors errors;
@@ -166,7 +166,7 @@ const ViewerRow& worst_of(const std::vector<ViewerRow>& rows) {
 
 std::string rounded_change(double before, double after) { return formatted("{:.3g} -> {:.3g}", before, after); }
 
-// What a person wants to know first: how much better the file is, where, and how much larger.
+// Says first how much better the file is, in which viewers, and how much larger.
 std::string verdict(const GltfBake& bake) {
   std::vector<ViewerRow> better, left_out, others;
   for (const bool of_animations : {false, true})
@@ -196,7 +196,7 @@ std::string verdict(const GltfBake& bake) {
   return text;
 }
 
-// What the file still plays wrongly in the viewers that it is made for, with a way out.
+// Says what is still wrong in the viewers that the file is made for, with a way out.
 std::string left_over(const GltfBake& bake) {
   double worst = 0;
   for (const BakedMesh& mesh : bake.meshes)

@@ -41,7 +41,7 @@ struct Audited {
 /// The same for the worst pair of those whose right normal all but vanishes.
 [[nodiscard]] std::string faint_label(const Audited& input);
 
-/// The same for the first pair around which the normals of faces cancel.
+/// Names the first pair around which the normals of faces cancel, likewise.
 [[nodiscard]] std::string cancelled_label(const Audited& input);
 
 }  // namespace chronormal::cli

@@ -37,7 +37,7 @@ class Expansion {
   [[nodiscard]] static Expansion unlimited() noexcept { return Expansion(static_cast<std::size_t>(-1), kAlways); }
 
   void add_read(std::uint64_t bytes) noexcept { read_ += bytes; }
-  /// How much was read.
+  /// Returns how many bytes were read.
   [[nodiscard]] std::uint64_t bytes_read() const noexcept { return read_; }
 
   /// The most bytes that may be asked for.

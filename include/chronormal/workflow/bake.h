@@ -96,7 +96,7 @@ struct BakeOptions {
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// The same options, with viewers where none are named.
+/// Returns the options with the usual viewers where they name none.
 [[nodiscard]] BakeOptions with_viewers(BakeOptions options);
 
 /// Errors of what is shown, degrees.
@@ -144,7 +144,7 @@ struct BakeChoice {
   double rounded = 0;
 };
 
-/// Whether a form is near enough but for what compressors round, and a tolerance was asked for.
+/// Returns whether a candidate misses the tolerance that was asked for only by what compressors round.
 [[nodiscard]] inline bool is_beyond_by_rounding(const BakeChoice& choice, const BakeOptions& options) {
   return options.tolerance && choice.within && choice.rounded > *options.tolerance;
 }

@@ -83,8 +83,8 @@ struct MotionError {
   std::size_t faint = 0;
   double faint_worst = 0;
   AuditPlace faint_at;  ///< the first pair of that error; means nothing where faint_worst is 0
-  /// Of those without a normal, and not faint: the faces around have an area, and their normals cancel, so that nobody
-  /// knows what is right.
+  /// Pairs without a normal that are not faint although the faces around have an area: their normals cancel, so that
+  /// nobody knows what is right.
   std::size_t cancelled = 0;
   AuditPlace cancelled_at;  ///< the first of them; means nothing where there are none
 
@@ -97,7 +97,7 @@ struct MotionError {
   [[nodiscard]] double percentile(double share) const noexcept;
   /// Whether every pair can be lit and none is off by more than this.
   [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
-  /// The same for a gate, which leaves out no pair that has a direction, and does not pass what is drawn and has none.
+  /// Returns the same for a gate, which leaves out no pair with a direction and passes nothing that is drawn without.
   [[nodiscard]] bool passes(double degrees) const noexcept {
     return is_within(degrees) && faint_worst <= degrees && cancelled == 0;
   }

@@ -18,7 +18,7 @@ namespace {
 
 // Products of two weights that are worth a look: each takes an extra target.
 constexpr std::size_t kMostProducts = 48;
-// How often extra targets are tried in smaller numbers, where a limit of bytes is exceeded.
+// Extra targets are tried so often in smaller numbers, where a limit of bytes is exceeded.
 constexpr int kTries = 5;
 // Means that differ by no more of themselves are alike.
 constexpr double kAlike = 1e-3;
@@ -29,16 +29,16 @@ constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
 constexpr double kHopeless = 2;
 // A file bears more bytes where it gets few extra targets. An extra target has deltas for most vertices.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
-// Of the mean: what a candidate must leave at most to be better than what is stored.
+// A candidate is better than what is stored if it leaves at most this part of the mean.
 constexpr double kBetter = 0.95;
-// Of the mean: what twice as many extra targets of a rig must take away to be worth it.
+// Twice as many extra targets of a rig are worth it if they leave at most this part of the mean.
 constexpr double kWorthIt = 0.9;
 
 bool has_new_base(const DeltaSource& source) {
   return !source.base_normals.empty() && source.base_normals.data() != source.shading.normals.data();
 }
 
-// How many extra targets all viewers have room for, and the options.
+// Returns how many extra targets all viewers and the options have room for.
 std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   std::size_t most = 10000;
   const auto limit = [&](std::size_t all) { most = std::min(most, all - std::min(all, targets)); };
@@ -48,7 +48,7 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Whether an error grew by more than may be.
+// Returns whether an error grew by more than it may.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance) {
   const auto is_beyond = [&](double then, double now) { return now > std::fmax(then + kHarmless, tolerance); };
   bool is_torn = false;
@@ -128,7 +128,7 @@ class Chooser {
     return bytes;
   }
 
-  // Whether a glance shows that a candidate is beyond the tolerance, and no plan asks for all of them.
+  // Returns whether a glance shows that a candidate is beyond the tolerance, unless a plan asks for all of them.
   [[nodiscard]] bool is_far(const Candidate& candidate) const {
     if (options_.plan) return false;
     const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
@@ -140,7 +140,7 @@ class Chooser {
     const std::size_t most = options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
     return most - std::min(most, tangent_bytes_);
   }
-  // What deltas may take where nobody asked for a tolerance or a limit: so much that the file stays one of its kind.
+  // Returns the bytes that deltas may take where nobody asked for a tolerance or a limit.
   [[nodiscard]] std::size_t bearable_bytes(std::size_t extras) const {
     const bool is_asked = options_.tolerance || options_.most_targets || options_.most_delta_bytes;
     if (is_asked || options_.bytes_of_file == 0) return most_bytes();
@@ -153,7 +153,7 @@ class Chooser {
     if (options_.most_delta_bytes) return room(most_bytes()) + 1;  // what is too much is tried again with fewer
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
-  // Whether a candidate is near enough, of no more bytes than these, and no plan asks for all the others.
+  // Returns whether a candidate of no more bytes than these is near enough, unless a plan asks for all others.
   [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
     return best_ && of_best_.choice.within && of_best_.better + of_best_.unharmed == viewers_.size() &&
            of_best_.choice.bytes - tangent_bytes_ <= bytes && !options_.plan;
@@ -189,7 +189,7 @@ class Chooser {
   }
 
  private:
-  // What a choice is made by: what the file plays, or where nothing drives the mesh, all that it shows.
+  // Returns the errors that a choice is made by: those of what the file plays or, without an animation, all of them.
   [[nodiscard]] ShownErrors file_of(const ErrorsOfKinds& kinds) const {
     return weights_.is_driven ? kinds[static_cast<std::size_t>(PoseKind::kFile)].errors()
                               : errors_of_all(kinds).errors();

@@ -24,7 +24,7 @@
 
 namespace chronormal::inline internal {
 
-/// What was chosen, and what else was looked at.
+/// The candidate that was chosen, and all that were looked at.
 struct ChosenCandidate {
   Candidate candidate;
   std::vector<HostChange> hosts;    ///< what each viewer shows before and after: those that are named, then the others

@@ -1,4 +1,4 @@
-/// What every maker of candidates is given. Private to workflow.
+/// The input of every maker of candidates. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_MAKING_H_
 #define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_MAKING_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::inline internal {
 
-/// How long N + D and the deltas E of extra targets may be.
+/// The lengths that N + D and the deltas E of extra targets may have.
 enum class Lengths {
   kUnit,  ///< N + D and N + E are as long as N, no component of D and E is beyond 1, and weights are from 0 to 1: in any
           ///< viewer, after any compressor
@@ -26,7 +26,7 @@ enum class Lengths {
 /// Returns the lengths that all of these viewers keep, or lose little of.
 [[nodiscard]] Lengths lengths_for(std::span<const Host> named, std::span<const Host> spared);
 
-/// How many times larger weights are than they would be beside deltas of any length.
+/// Returns how many times larger weights are than beside deltas of any length.
 [[nodiscard]] constexpr double weight_factor(Lengths lengths) noexcept { return lengths == Lengths::kShort ? 64 : 1; }
 
 /// A mesh, with what is asked of a candidate. The members that are references must outlive it.
@@ -45,7 +45,7 @@ struct Making {
   [[nodiscard]] std::size_t targets() const { return source.shading.set.targets.size(); }
 };
 
-/// Of the tolerance: what straight pieces between keys may leave of it.
+/// The part of the tolerance that straight pieces between keys may leave.
 inline constexpr double kPartOfTracks = 0.2;
 
 }  // namespace chronormal::inline internal

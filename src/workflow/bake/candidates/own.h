@@ -8,7 +8,7 @@
 
 namespace chronormal::inline internal {
 
-/// What the file stores, as it is.
+/// Makes a candidate of what the file stores.
 [[nodiscard]] Candidate stored_candidate(const DeltaSource& source);
 
 /// Deltas that are right at weight 1 of each target alone. Where lengths are free they are those that leave least on the

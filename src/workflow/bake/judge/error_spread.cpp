@@ -19,7 +19,7 @@ std::size_t bin_of(float degrees) {
   return std::min<std::size_t>(kBins - 1, (bits >> 19) - (127U << 4));
 }
 
-// Where such a bin ends.
+// Returns where such a bin ends.
 double end_of(std::size_t bin) {
   const auto octave = static_cast<int>(bin / 16);
   const double part = 1 + static_cast<double>(bin % 16 + 1) / 16;

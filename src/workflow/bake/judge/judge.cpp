@@ -29,7 +29,7 @@ Host without_rounding(Host viewer) {
   return viewer;
 }
 
-// Whether two viewers show the same of all deltas.
+// Returns whether two viewers show the same of all deltas.
 bool shows_alike(const Host& a, const Host& b, bool is_skinned) {
   return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
          a.octahedral_base == b.octahedral_base && (a.skins == b.skins || !is_skinned);

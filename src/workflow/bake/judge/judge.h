@@ -29,10 +29,10 @@
 
 namespace chronormal::inline internal {
 
-/// By how much an error may grow where nothing else is said: what the rounding of float32 and of float16 may turn.
+/// Degrees by which an error may grow where nothing else is said: rounding to float32 and float16 may turn so much.
 inline constexpr double kHarmless = 0.02;
 
-/// What one viewer shows in poses of one kind.
+/// The errors that one viewer shows in poses of one kind.
 struct JudgedErrors {
   ErrorSpread spread;
   TearCounts tears;
@@ -44,7 +44,7 @@ struct JudgedErrors {
   [[nodiscard]] ShownErrors errors() const;
 };
 
-/// Those of every kind.
+/// The errors of every kind.
 using ErrorsOfKinds = std::array<JudgedErrors, kPoseKinds>;
 
 /// Over all kinds.
@@ -52,7 +52,7 @@ using ErrorsOfKinds = std::array<JudgedErrors, kPoseKinds>;
 
 class Judge {
  public:
-  /// What a judge looks at: about an eighth of the poses, or all of them.
+  /// The poses that a judge looks at: about an eighth of them, or all.
   enum class Depth { kGlance, kAll };
 
   /// All arguments must outlive this.
@@ -78,7 +78,7 @@ class Judge {
     std::vector<Vec3f> right;            // (vertices, poses) unit vectors, or (0, 0, 0) where none is known
   };
 
-  // What is shown less what is right, of the vertices of a set.
+  // The differences between shown and right unit normals, of the vertices of a set.
   struct Differences {
     std::vector<float> planes;   // (vertices, 3, poses)
     std::vector<float> largest;  // (vertices), how long any of them is
