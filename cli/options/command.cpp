@@ -55,8 +55,8 @@ std::vector<Option> JudgeArguments::table(const std::string& of_hosts) {
           {"--host NAME,...", &hosts_by_old_name, "the old name of --for, for this version alone"},
           {"--samples N",
            &samples,
-           "how many moments of each segment are judged, its ends included (default 21; 5 in\n"
-           "animations of more than 32 key intervals)",
+           "how many moments of each segment are judged, its ends included (default 21; in\n"
+           "animations of more than 10 key intervals about 210 in all, at least 5 of each)",
            {.check = check_whole(2, kMostAuditSamples)}}};
 }
 

@@ -81,7 +81,7 @@ inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< of a segment
 
 struct AuditOptions {
   std::optional<AuditRule> rule = {};       ///< nothing: kGltf for glTF, kNlerp for sequences
-  std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, and 5 in tracks of more than 32 key intervals
+  std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, or fewer in long tracks (about 210 in all)
   std::string animation = {};  ///< glTF: this one alone, by name or index; empty: the targets and all of them
   /// Of the right normals: that of the program which the file comes from. Nothing: of each mesh, and of a sequence, the
   /// one that its stored base normals follow clearly, or else area.

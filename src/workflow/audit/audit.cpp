@@ -216,7 +216,9 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
 }
 
 std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments) noexcept {
-  return options.samples.value_or(segments > kAuditManySegments ? kAuditFewSamples : kAuditSamples);
+  if (options.samples) return *options.samples;
+  // An odd number, so that the middle is among them.
+  return std::clamp(kAuditSamplesOfAll / std::max<std::size_t>(1, segments) | 1U, kAuditFewSamples, kAuditSamples);
 }
 
 Status check_samples(const AuditOptions& options) {

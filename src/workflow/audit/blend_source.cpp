@@ -42,13 +42,7 @@ BlendSource::BlendSource(const GltfShading& shading, const AuthorTruth& truth, c
   place_base(positions);
   PartNormals normals;
   part.normals(positions, normals);
-  if (!truth.is_plain()) {
-    number_of_vertex_.resize(shading.element_of_vertex.size());
-    for (std::uint32_t i = 0; i < part.vertices().size(); ++i) number_of_vertex_[part.vertices()[i]] = i;
-    const std::vector<Vec3d> of_base = truths(positions, std::vector<double>(involved_.size()));
-    for (std::size_t e = 0; e < of_base.size(); ++e)
-      if (of_base[e] != Vec3d{}) normals.elements[e] = of_base[e];
-  }
+  turn_at(std::vector<double>(involved_.size()), positions, normals.elements);
   turns_.resize(part.outputs().size());
   parallel_each(turns_.size(), kBlock, [&](std::size_t i) {
     const JudgedOutput& output = part.outputs()[i];
@@ -65,7 +59,6 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   const bool turns = skin_ != nullptr && skin_->pose(moment_(segment, t), t == 1);
   const bool same = known_ && !turns && now == now_ && (rule_ == AuditRule::kGltf || start_ == end_);
   known_ = true;
-  positions_ = positions;
   segment_ = segment;
   t_ = t;
   if (same) return false;
@@ -118,22 +111,19 @@ bool BlendSource::is_between_ends(double t) const {
   return true;
 }
 
-std::vector<Vec3d> BlendSource::truths(std::span<const Vec3d> positions, std::span<const double> weights) const {
-  std::vector<Vec3d> result;
-  if (truth_.is_plain()) return result;
+void BlendSource::turn_at(std::span<const double> weights, std::span<const Vec3d> positions,
+                          std::span<Vec3d> normals) const {
+  if (truth_.offset_count() == 0) return;
   std::vector<double> all(shading_.set.targets.size());
   for (std::size_t i = 0; i < involved_.size(); ++i) all[involved_[i]] = weights[i];
   const AuthorTruth::Pose pose = truth_.pose(all);
-  result.resize(part_.elements().size());
-  parallel_each(result.size(), kBlock, [&](std::size_t e) {
-    const auto position = [&](std::uint32_t v) { return positions[number_of_vertex_[v]]; };
-    result[e] = truth_.at(part_.elements()[e], position, pose).normal;
+  parallel_each(normals.size(), kBlock, [&](std::size_t e) {
+    const auto position = [&](std::uint32_t v) { return positions[part_.place_of(v)]; };
+    normals[e] = truth_.with_offset(part_.elements()[e], normals[e], position, pose);
   });
-  return result;
 }
 
 void BlendSource::show() {
-  right_ = truths(positions_, now_);
   if (rule_ == AuditRule::kGltf) {
     if (sums_.find(now_).empty()) sums_.add_up(now_and_next());
     shown_now_ = sums_.find(now_);
@@ -184,9 +174,7 @@ Vec3f BlendSource::shown(const JudgedOutput& output) const {
 
 Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal, SkinRule rule) const {
   const std::size_t i = number(output);
-  // The geometry is all that there is where the truth has no direction.
-  const bool by_truth = !right_.empty() && normal != Vec3d{} && right_[output.element] != Vec3d{};
-  return seen(i, turns_[i](unit(by_truth ? right_[output.element] : normal)), rule);
+  return seen(i, turns_[i](unit(normal)), rule);
 }
 
 std::size_t BlendSource::number(const JudgedOutput& output) const {
@@ -243,13 +231,8 @@ std::vector<std::vector<double>> BlendSource::now_and_next() const {
 
 JudgedPart judged_part(const GltfShading& shading, const AuthorTruth& truth, std::vector<JudgedOutput> outputs,
                        AuditRule rule) {
-  std::vector<std::uint32_t> vertices;
-  if (!truth.is_plain()) {
-    for (const JudgedOutput& output : outputs)
-      truth.sums().for_vertices(output.element, [&](std::uint32_t v) { vertices.push_back(v); });
-  }
   return {shading.set.topology, shading.groups,           truth.rule().weighting,
-          std::move(outputs),   rule == AuditRule::kFlat, vertices};
+          std::move(outputs),   rule == AuditRule::kFlat, truth.is_plain() ? nullptr : &truth.sums()};
 }
 
 std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,

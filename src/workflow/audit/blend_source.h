@@ -55,8 +55,10 @@ class BlendSource {
   [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
-  /// Adds up the normals that are shown at the moment that was placed, and finds the right ones and what the skin does
-  /// to them. The positions that place() wrote must still be there.
+  /// Makes the truths of sums at the moment that was placed, or at any weights: adds what the author added to them.
+  void turn(std::span<const Vec3d> positions, std::span<Vec3d> normals) const { turn_at(now_, positions, normals); }
+  void turn_at(std::span<const double> weights, std::span<const Vec3d> positions, std::span<Vec3d> normals) const;
+  /// Adds up the normals that are shown at the moment that was placed, and finds what the skin does to them.
   void show();
   /// A normal of the i-th output, of any length, as it is seen: carried along by the skin, or else as it is.
   [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const noexcept;
@@ -81,8 +83,6 @@ class BlendSource {
   void place_ends(std::size_t segment);
   [[nodiscard]] bool is_between_ends(double t) const;
   void place_base(std::span<Vec3d> positions) const;
-  // The truth of all elements of the part; empty where it is the normal by area.
-  [[nodiscard]] std::vector<Vec3d> truths(std::span<const Vec3d> positions, std::span<const double> weights) const;
   const std::vector<Delta>& moved(std::size_t k);
   [[nodiscard]] std::size_t number(const JudgedOutput& output) const;
   [[nodiscard]] std::vector<std::vector<double>> now_and_next() const;
@@ -99,9 +99,6 @@ class BlendSource {
   std::size_t placed_ = 0;
   std::vector<std::optional<std::vector<Delta>>> moved_;  // of each involved target, once it was asked for
   std::vector<ShownTurn> turns_;                          // of outputs
-  std::vector<std::uint32_t> number_of_vertex_;           // in the part; empty where the truth is by area
-  std::span<const Vec3d> positions_;                      // that were placed
-  std::vector<Vec3d> right_;                              // of elements, as truths() has them
   std::optional<SegmentEnds> ends_;
   bool known_ = false;
   std::size_t samples_, segment_ = 0;

@@ -80,8 +80,7 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
 void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, AuthoredOffset& offset) {
   const auto position = [&](std::uint32_t v) { return to_double(vector_at(shading.set.base, v)); };
   std::vector<Vec3d> sums(shading.groups.size());
-  parallel_each(sums.size(), kRange,
-                [&](std::size_t e) { sums[e] = truth.sums().at(static_cast<std::uint32_t>(e), position).normal; });
+  truth.sums().for_all(position, [&](std::uint32_t e, const AuthorSum& sum) { sums[e] = sum.normal; });
   offset.vertices = 0;
   offset.sum = offset.worst = 0;
   for (std::size_t v = 0; v < shading.element_of_vertex.size(); ++v) {

@@ -38,6 +38,7 @@ std::optional<AuditFinding> stale_tangents(const GltfShading& shading, const Aut
   source.place(0, 1, positions);
   source.show();
   part.normals(positions, normals);
+  source.turn(positions, normals.elements);
   AuditFinding finding = finding_of(Kind::kStaleTangents, shading.mesh);
   finding.target = k;
   finding.degrees = kAuditFault;

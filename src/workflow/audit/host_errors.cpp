@@ -128,6 +128,7 @@ void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
       if (!elsewhere_) elsewhere_.emplace(part_);
       source.place_at(now_[h], elsewhere_->positions);
       part_.normals(elsewhere_->positions, elsewhere_->normals);
+      source.turn_at(now_[h], elsewhere_->positions, elsewhere_->normals.elements);
       where = &*elsewhere_;
       if (size_ > 0) displaced = largest_distance(sample.placed.positions, elsewhere_->positions) / size_;
     } else if (source.rule() == AuditRule::kGltf) {

@@ -7,6 +7,7 @@
 #include "core/blocks.h"
 #include "core/rounding.h"
 #include "core/vector_area.h"
+#include "workflow/shading/corner_terms.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -28,9 +29,8 @@ std::vector<std::uint32_t> number_used(std::vector<std::uint32_t>& marks) {
 }  // namespace
 
 JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
-                       std::vector<JudgedOutput> outputs, bool needs_faces,
-                       std::span<const std::uint32_t> more_vertices)
-    : weighting_(weighting), keeps_faces_(needs_faces || weighting != Weighting::kArea), outputs_(std::move(outputs)) {
+                       std::vector<JudgedOutput> outputs, bool needs_faces, const AuthorSums* sums)
+    : weighting_(weighting), sums_(sums), keeps_faces_(needs_faces), outputs_(std::move(outputs)) {
   std::vector<std::uint32_t> element(groups.size(), kUnused), face(topology.face_count(), kUnused);
   std::vector<std::uint32_t> vertex(topology.vertex_count(), kUnused);
   for (const JudgedOutput& output : outputs_) element[output.element] = 0;
@@ -40,19 +40,21 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
   const std::vector<std::uint32_t> faces = number_used(face);
   for (const std::uint32_t f : faces)
     for (const std::uint32_t v : topology.face(f)) vertex[v] = 0;
-  for (const std::uint32_t v : more_vertices) vertex[v] = 0;
+  if (sums_ != nullptr) {
+    for (const std::uint32_t e : elements_) sums_->for_vertices(e, [&](std::uint32_t v) { vertex[v] = 0; });
+  }
   vertices_ = number_used(vertex);
 
   // Their normals are kept where elements would take long to compute them again, or they take little memory.
   constexpr std::size_t kSmallFace = 4, kFewFaces = 100000;
-  keeps_faces_ = keeps_faces_ || faces.size() <= kFewFaces;
+  const bool has_corners = weighting != Weighting::kArea;
+  keeps_faces_ = keeps_faces_ || (!has_corners && faces.size() <= kFewFaces);
   std::size_t face_corners = 0, element_corners = 0;
   for (const std::uint32_t f : faces) {
     face_corners += topology.face(f).size();
-    keeps_faces_ = keeps_faces_ || topology.face(f).size() > kSmallFace;
+    keeps_faces_ = keeps_faces_ || (!has_corners && topology.face(f).size() > kSmallFace);
   }
   for (const std::uint32_t e : elements_) element_corners += groups.faces(e).size();
-  const bool has_corners = weighting != Weighting::kArea;
   face_vertices_.reserve(face_corners);
   face_offsets_.reserve(faces.size() + 1);
   faces_of_element_.reserve(element_corners);
@@ -75,6 +77,7 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
     output.element = element[output.element];
     output.face = face[output.face];
   }
+  if (sums_ != nullptr) places_ = std::move(vertex);
 }
 
 void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) const {
@@ -82,6 +85,8 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
   result.elements.resize(elements_.size());
   result.sizes.resize(elements_.size());
   parallel_each(result.faces.size(), kRange, [&](std::size_t f) { result.faces[f] = face_normal(positions, f); });
+  if (sums_ != nullptr) return given_normals(positions, result);
+  if (weighting_ != Weighting::kArea) return weighted_normals(positions, result);
   numbered_blocks(result.elements.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
     // The faces that were computed last, since neighbours ask for them again.
     struct Known {
@@ -100,11 +105,41 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
       Vec3d sum;
       double size = 0;
       for (std::uint32_t i = element_offsets_[e]; i < element_offsets_[e + 1]; ++i) {
-        const std::uint32_t f = faces_of_element_[i];
-        const Vec3d& normal = normal_of(f);
-        const Vec3d added = corners_of_element_.empty() ? normal : term(positions, f, corners_of_element_[i], normal);
-        sum = sum + added;
-        size += max_abs(added);
+        const Vec3d& normal = normal_of(faces_of_element_[i]);
+        sum = sum + normal;
+        size += max_abs(normal);
+      }
+      result.sizes[e] = size;
+      result.elements[e] = without_rounding(sum, kRoundingOfTerms * size);
+    }
+  });
+}
+
+void JudgedPart::given_normals(std::span<const Vec3d> positions, PartNormals& result) const {
+  parallel_blocks(elements_.size(), kElementsOfBlock, [&](IndexRange range) {
+    sums_->for_each(
+        std::span(elements_).subspan(range.first, range.count), [&](std::uint32_t v) { return positions[places_[v]]; },
+        [&](std::size_t i, const AuthorSum& sum) {
+          result.elements[range.first + i] = sum.normal;
+          result.sizes[range.first + i] = sum.terms;
+        });
+  });
+}
+
+void JudgedPart::weighted_normals(std::span<const Vec3d> positions, PartNormals& result) const {
+  parallel_blocks(result.elements.size(), kElementsOfBlock, [&](IndexRange range) {
+    CornerTerms& corners = CornerTerms::emptied(weighting_);
+    const std::uint32_t begin = element_offsets_[range.first], end = element_offsets_[range.end()];
+    for (std::uint32_t i = begin; i < end; ++i)
+      corners.add(faces_of_element_[i], corners_of(faces_of_element_[i]), corners_of_element_[i],
+                  [&](std::uint32_t v) { return positions[v]; });
+    corners.finish();
+    for (std::size_t e = range.first; e < range.end(); ++e) {
+      Vec3d sum;
+      double size = 0;
+      for (std::uint32_t i = element_offsets_[e]; i < element_offsets_[e + 1]; ++i) {
+        sum = sum + corners.terms()[i - begin];
+        size += max_abs(corners.terms()[i - begin]);
       }
       result.sizes[e] = size;
       result.elements[e] = without_rounding(sum, kRoundingOfTerms * size);
@@ -136,13 +171,11 @@ Vec3d JudgedPart::face_normal(std::span<const Vec3d> positions, std::size_t face
 
 Vec3d JudgedPart::term(std::span<const Vec3d> positions, std::size_t face, std::size_t corner,
                        const Vec3d& normal) const {
-  if (weighting_ == Weighting::kUniform || normal == Vec3d{}) return unit(normal);
-  const std::size_t first = face_offsets_[face], corners = face_offsets_[face + 1] - first;
-  const auto at = [&](std::size_t c) { return positions[face_vertices_[first + c % corners]]; };
-  const Vec3d e = at(corner + 1) - at(corner), f = at(corner + corners - 1) - at(corner);
-  if (e == Vec3d{} || f == Vec3d{}) return {};
-  if (weighting_ == Weighting::kMax) return (1 / (dot(e, e) * dot(f, f))) * cross(e, f);
-  return angle_between(e, f) * (weighting_ == Weighting::kAngle ? unit(normal) : normal);
+  const std::span<const std::uint32_t> corners = corners_of(face);
+  const auto edge_to = [&](std::size_t c) {
+    return positions[corners[c % corners.size()]] - positions[corners[corner]];
+  };
+  return corner_term(weighting_, normal, edge_to(corner + 1), edge_to(corner + corners.size() - 1));
 }
 
 }  // namespace chronormal::inline internal

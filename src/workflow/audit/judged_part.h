@@ -11,6 +11,7 @@
 #include "chronormal/motion/topology.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
+#include "workflow/truth/author_sums.h"
 
 namespace chronormal::inline internal {
 
@@ -49,10 +50,9 @@ class JudgedPart {
  public:
   /// Elements and faces of the outputs become those of this part; their vertices and corners stay those of the mesh.
   /// Without needs_faces, normals() may leave out those of faces. groups need no corners where the weighting is area.
-  /// more_vertices are those that are needed beside the ones of its faces.
+  /// Where there are sums, the normals of elements are those, and the sums must outlive this.
   JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
-             std::vector<JudgedOutput> outputs, bool needs_faces = true,
-             std::span<const std::uint32_t> more_vertices = {});
+             std::vector<JudgedOutput> outputs, bool needs_faces = true, const AuthorSums* sums = nullptr);
 
   /// Its vertices and its elements, as the mesh numbers them, ascending.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
@@ -68,9 +68,11 @@ class JudgedPart {
     return std::span(face_vertices_).subspan(face_offsets_[face], face_offsets_[face + 1] - face_offsets_[face]);
   }
   [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }
+  /// Where a vertex of the mesh is in vertices(); of parts with sums, and vertices that they need.
+  [[nodiscard]] std::uint32_t place_of(std::uint32_t vertex) const noexcept { return places_[vertex]; }
 
   /// Computes the normals of its faces and elements from positions of vertices(): cross products, and for elements
-  /// their weighted sums (normals/weighting.h), without a look at what is rounding.
+  /// their weighted sums (normals/weighting.h) or the given ones, without a look at what is rounding.
   void normals(std::span<const Vec3d> positions, PartNormals& result) const;
 
   /// By how much the normal of an element may change, at most, where each of these positions is rounded to float32. The
@@ -78,6 +80,8 @@ class JudgedPart {
   [[nodiscard]] double rounding_of(std::span<const Vec3d> positions, std::size_t element) const;
 
  private:
+  void given_normals(std::span<const Vec3d> positions, PartNormals& result) const;
+  void weighted_normals(std::span<const Vec3d> positions, PartNormals& result) const;
   [[nodiscard]] Vec3d face_normal(std::span<const Vec3d> positions, std::size_t face) const;
   // What a corner of a face adds to the normal of its element.
   [[nodiscard]] Vec3d term(std::span<const Vec3d> positions, std::size_t face, std::size_t corner,
@@ -88,6 +92,8 @@ class JudgedPart {
   std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // of this part
   std::vector<std::uint32_t> corners_of_element_;  // 0, 1, 2 ... within these faces; empty where faces count by area
   Weighting weighting_;
+  const AuthorSums* sums_;
+  std::vector<std::uint32_t> places_;  // of the vertices of the mesh, in vertices_
   bool keeps_faces_;  // or each element computes the normals of its faces: no memory, and little time for small ones
   std::vector<JudgedOutput> outputs_;
 };

@@ -31,7 +31,7 @@ inline constexpr double kVanished = 1e-4;
 /// Stands for the error of a pair whose faces have an area, while their normals cancel.
 inline constexpr double kCancels = -3;
 
-inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditManySegments = 32;
+inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditSamplesOfAll = 210;
 
 /// The bin of the histogram for an error of [0, 180] degrees.
 [[nodiscard]] inline std::size_t bin_of(double degrees) noexcept {
@@ -84,6 +84,7 @@ void finish(Audit& result);
 //     enter(segment)                 makes ready what is asked about this segment; a Status
 //     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
 //     forget()                       makes the next call differ
+//     turn(positions, normals)       makes right directions of the normals of the part, as long as they are
 //     begin(start, end)              gets the normals of elements at both ends before the samples (where kNeedsEnds)
 //     show()                         is called where something was placed, before shown()
 //     shown(output)                  a normal of any length, zero for none
@@ -100,7 +101,10 @@ struct PlacedPart {
   template <class Source>
   bool place(Source& source, std::size_t segment, double t) {
     const bool differs = source.place(segment, t, positions);
-    if (differs) part.normals(positions, normals);
+    if (differs) {
+      part.normals(positions, normals);
+      source.turn(positions, normals.elements);
+    }
     return differs;
   }
 

@@ -69,6 +69,7 @@ class SequenceSource {
   }
   void forget() { known_ = false; }
   void show() {}
+  static void turn(std::span<const Vec3d> /*positions*/, std::span<Vec3d> /*normals*/) {}
 
   void begin(std::vector<Vec3d> start, const std::vector<Vec3d>& end) {
     start_ = std::move(start);

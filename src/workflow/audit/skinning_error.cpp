@@ -34,6 +34,7 @@ void SkinningErrors::add_sample(const BlendSource& source, const MeasuredSample&
     });
     PartNormals skinned;
     part.normals(positions, skinned);
+    source.turn(positions, skinned.elements);
     last_ = parallel_fold<SkinningError>(
         part.outputs().size(), kBlock,
         [&](std::size_t i, SkinningError& result) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;  // degrees, degrees, a share
 constexpr double kOff = 0.001;                                      // degrees: a normal does not follow the rule
-constexpr std::size_t kMostKeys = 48, kMostAsked = 20000, kAskedAtOnce = 64;
+constexpr std::size_t kMostKeys = 48, kMostAsked = 5000, kMostFollowers = 20000, kAskedAtOnce = 64;
 constexpr std::uint32_t kNoVertex = GltfShading::kNoElement;
 // Candidates are sums of own corners and of whole points, of triangles and of quads, by each weighting.
 constexpr std::size_t kKinds = 4, kCandidates = kKinds * kWeightings.size();
@@ -184,7 +184,7 @@ class Mending {
       const Vec3d n = twice_vector_area(loop.size(), [&](std::size_t c) { return key.position(loop[c]); });
       if (n == Vec3d{}) continue;
       const Vec3d here = key.position(loop[part.corner]);
-      sum = sum + author_term(weighting_, n, key.position(loop[(part.corner + 1) % loop.size()]) - here,
+      sum = sum + corner_term(weighting_, n, key.position(loop[(part.corner + 1) % loop.size()]) - here,
                               key.position(loop[(part.corner + loop.size() - 1) % loop.size()]) - here);
     }
     return sides_(element, unit(sum));
@@ -308,12 +308,11 @@ class Candidates {
     const Weighting weighting = Weighting::kArea;
     const std::vector<bool> none(shading.groups.size());
     const bool any_quads = quads.any_joined();
-    const auto keys = keys_to_ask(shading, kMostKeys);
-    std::vector<std::vector<std::uint32_t>> elements;
+    asked_keys_ = keys_to_ask(shading, kMostKeys);
     std::vector<bool> wanted(shading.groups.size());
-    for (const std::optional<std::size_t> target : keys) {
-      elements.push_back(elements_to_ask(target, kMostAsked / keys.size()));
-      for (const std::uint32_t e : elements.back()) wanted[e] = true;
+    for (const std::optional<std::size_t> target : asked_keys_) {
+      followers_.push_back(elements_to_ask(target, kMostFollowers / asked_keys_.size()));
+      for (const std::uint32_t e : followers_.back()) wanted[e] = true;
     }
     const bool any_shared = is_any_point_shared();
     for (const Polygons* polygons : {&plain, &quads}) {
@@ -328,7 +327,8 @@ class Candidates {
       sums_of_kind_.push_back(of_kinds_.size() - 1);
     }
     sides_.emplace(shading, vertex_of);
-    for (std::size_t k = 0; k < keys.size(); ++k) ask(keys[k], elements[k]);
+    for (std::size_t k = 0; k < asked_keys_.size(); ++k)
+      ask(asked_keys_[k], elements_to_ask(asked_keys_[k], kMostAsked / asked_keys_.size()));
     std::size_t paired = 0;
     for (std::size_t t = 0; t < shading.set.topology.face_count(); t += quads.triangle_count(t))
       paired += quads.triangle_count(t) == 2 ? 2U : 0U;
@@ -386,12 +386,20 @@ class Candidates {
     return is_of_quads_ && keys_.silent > keys_.told[0].size() && 2 * keys_.silent_off < keys_.silent;
   }
 
-  // Returns whether all that was asked follows a candidate to the last digit, so that there is nothing to mend.
+  // Returns whether many elements follow a candidate to the last digit, so that there is nothing to mend.
   [[nodiscard]] bool do_all_follow(std::size_t c) const {
-    const auto follows = [](float degrees) { return degrees <= kOff; };
-    return keys_.silent_off == 0 && of_base_.silent_off == 0 &&
-           std::all_of(keys_.told[c].begin(), keys_.told[c].end(), follows) &&
-           std::all_of(of_base_.told[c].begin(), of_base_.told[c].end(), follows);
+    if (keys_.silent_off > 0 || of_base_.silent_off > 0) return false;
+    const AuthorSums& sums = of_kinds_[sums_of_kind_[c / kWeightings.size()]];
+    for (std::size_t k = 0; k < asked_keys_.size(); ++k) {
+      const StoredKey key = key_of(shading_, asked_keys_[k]);
+      const auto check = [&](std::size_t i, int& off) {
+        const std::uint32_t e = followers_[k][i];
+        if (!(distance_of(e, asked_keys_[k] ? &key : nullptr, sums, weighting_of(c)) <= kOff)) ++off;
+      };
+      if (parallel_fold<int>(followers_[k].size(), kAskedAtOnce, check, [](int& all, int each) { all += each; }) > 0)
+        return false;
+    }
+    return true;
   }
 
   [[nodiscard]] double distance() const { return distance_; }
@@ -435,6 +443,21 @@ class Candidates {
                                      [](Distances& sum, const Distances& each) { sum.add(each); }));
   }
 
+  // The angle between what is stored of an element and what follows of one candidate, in degrees; 0 where nothing does.
+  [[nodiscard]] double distance_of(std::uint32_t e, const StoredKey* key, const AuthorSums& of,
+                                   Weighting weighting) const {
+    const auto of_base = [&](std::uint32_t v) { return base_.position(v); };
+    const Vec3d s0 = base_.normal(vertex_of_[e]), s = key == nullptr ? s0 : key->normal(vertex_of_[e]);
+    const Vec3d z0 = (*sides_)(e, unit(of.at(e, of_base, weighting).normal));
+    if (s0 == Vec3d{} || s == Vec3d{} || z0 == Vec3d{}) return 0;
+    if (key == nullptr) return degrees_between(s, z0);
+    const auto of_key = [&](std::uint32_t v) { return key->position(v); };
+    const Vec3d z = (*sides_)(e, unit(of.at(e, of_key, weighting).normal));
+    if (z == Vec3d{}) return 0;
+    const auto edges = edges_around(shading_, [&](const auto& visit) { of.for_edges(e, visit); });
+    return carried_error(edges, z0, s0, of_base, z, s, of_key) * kDegreesPerRadian;
+  }
+
   void ask_element(std::uint32_t e, const StoredKey* key, Distances& found) const {
     const auto of_base = [&](std::uint32_t v) { return base_.position(v); };
     const auto of_key = [&](std::uint32_t v) { return key->position(v); };
@@ -475,6 +498,8 @@ class Candidates {
   std::vector<AuthorSums> of_kinds_;
   std::vector<std::size_t> sums_of_kind_;  // whole points are own corners where no point has several elements
   std::optional<Sides> sides_;
+  std::vector<std::optional<std::size_t>> asked_keys_;
+  std::vector<std::vector<std::uint32_t>> followers_;  // of each key: the elements that must all follow a rule
   Distances of_base_, keys_;
   bool is_of_quads_ = false;
   double distance_ = 0, spread_ = 0;

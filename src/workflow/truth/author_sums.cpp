@@ -52,14 +52,6 @@ bool is_at_the_back(const GltfShading& shading, std::size_t first, std::size_t c
 
 }  // namespace
 
-Vec3d author_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept {
-  if (weighting == Weighting::kArea) return n;
-  if (weighting == Weighting::kUniform) return unit(n);
-  if (e == Vec3d{} || f == Vec3d{}) return {};
-  if (weighting == Weighting::kMax) return (1 / (dot(e, e) * dot(f, f))) * cross(e, f);
-  return angle_between(e, f) * (weighting == Weighting::kAngle ? unit(n) : n);
-}
-
 Polygons::Polygons(const Topology& triangles) : triangles_(&triangles) {}
 
 std::span<const std::uint32_t> Polygons::corners(std::size_t polygon) const noexcept {

@@ -17,16 +17,19 @@
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_SUMS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_SUMS_H_
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/normals/weighting.h"
+#include "core/blocks.h"
 #include "core/rounding.h"
-#include "core/vector_area.h"
+#include "workflow/shading/corner_terms.h"
 #include "workflow/shading/gltf_shading.h"
 
 namespace chronormal::inline internal {
@@ -45,10 +48,6 @@ struct AuthorSum {
     return size > 0 ? (areas / std::fmax(size, kLost * terms)) * normal : Vec3d{};
   }
 };
-
-/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, twice its area long and
-/// not zero; e and f are the edges from the corner to the next and to the previous one.
-[[nodiscard]] Vec3d author_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept;
 
 /// Triangles put together to polygons again.
 class Polygons {
@@ -103,25 +102,49 @@ class AuthorSums {
   }
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position, Weighting weighting) const {
-    constexpr double kRounding = 1e-13;
     AuthorSum result;
-    for (std::uint32_t i = offsets_[element]; i < offsets_[element + 1]; ++i) {
-      const std::span<const std::uint32_t> loop = polygon(sums_[i].polygon);
-      const Vec3d n = twice_vector_area(loop.size(), [&](std::size_t c) -> Vec3d { return position(loop[c]); });
-      if (n == Vec3d{}) continue;
-      Vec3d term = n;
-      if (weighting != Weighting::kArea) {
-        const std::size_t c = sums_[i].corner, last = loop.size() - 1;
-        const Vec3d here = position(loop[c]);
-        term = author_term(weighting, n, position(loop[c == last ? 0 : c + 1]) - here,
-                           position(loop[c == 0 ? last : c - 1]) - here);
-      }
-      result.normal = result.normal + term;
-      result.terms += length(term);
-      result.areas += length(n);
-    }
-    result.normal = without_rounding(result.normal, kRounding * result.terms);
+    for_each(
+        std::span(&element, 1), position, [&](std::size_t, const AuthorSum& sum) { result = sum; }, weighting);
     return result;
+  }
+
+  /// Calls visit(i, sum) for the i-th of some elements, one after the other; visit() may not ask for sums itself. Many
+  /// of them together, kElementsOfBlock or so, take a fraction of the time of one by one.
+  template <class PositionOf, class Visit>
+  void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Visit& visit) const {
+    for_each(elements, position, visit, weighting_);
+  }
+  template <class PositionOf, class Visit>
+  void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Visit& visit,
+                Weighting weighting) const {
+    constexpr double kRounding = 1e-13;
+    CornerTerms& corners = CornerTerms::emptied(weighting);
+    for (const std::uint32_t e : elements)
+      for_corners(e, [&](std::uint32_t p, std::uint32_t corner) { corners.add(p, polygon(p), corner, position); });
+    corners.finish();
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      AuthorSum sum;
+      for (const std::size_t end = next + offsets_[elements[i] + 1] - offsets_[elements[i]]; next < end; ++next) {
+        const Vec3d& term = corners.terms()[next];
+        sum.normal = sum.normal + term;
+        sum.terms += length(term);
+        sum.areas += corners.areas()[next];
+      }
+      sum.normal = without_rounding(sum.normal, kRounding * sum.terms);
+      visit(i, sum);
+    }
+  }
+
+  /// Calls visit(element, sum) for all elements, on all cores.
+  template <class PositionOf, class Visit>
+  void for_all(const PositionOf& position, const Visit& visit) const {
+    parallel_blocks(offsets_.size() - 1, kElementsOfBlock, [&](IndexRange range) {
+      std::array<std::uint32_t, kElementsOfBlock> elements;
+      const std::span<std::uint32_t> block = std::span(elements).first(range.count);
+      std::iota(block.begin(), block.end(), static_cast<std::uint32_t>(range.first));
+      for_each(block, position, [&](std::size_t i, const AuthorSum& sum) { visit(block[i], sum); });
+    });
   }
 
   /// The polygons of which some corner is added up, in the order of their triangles, and the vertices around one.

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "chronormal/core/vec3.h"
+#include "core/blocks.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/truth/author_rule.h"
 #include "workflow/truth/author_sums.h"
@@ -87,15 +88,35 @@ class AuthorTruth {
   /// The truth of an element, in a pose with the positions that position(vertex) gives, as long as r(w).
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position, const Pose& pose) const {
-    AuthorSum sum = sums_.at(element, position);
+    return turned_sum(element, sums_.at(element, position), position, pose);
+  }
+  /// Adds to r(w) of an element what the author added, and leaves its length as it is.
+  template <class PositionOf>
+  [[nodiscard]] Vec3d with_offset(std::uint32_t element, const Vec3d& sum, const PositionOf& position,
+                                  const Pose& pose) const {
     const std::uint32_t n = frame_of_element_.empty() ? kNone : frame_of_element_[element];
-    if (n == kNone || sum.normal == Vec3d{}) return sum;
-    const double size = length(sum.normal);
-    const Vec3d z = (frames_[n].side / size) * sum.normal;
+    if (n == kNone || sum == Vec3d{}) return sum;
+    const double size = length(sum);
+    const Vec3d z = (frames_[n].side / size) * sum;
     const Frame& frame = frames_[n];
     const Vec3d x = frame.edge == kNone ? turned_with(frame, z) : zero_azimuth(edges_[frame.edge], z, position);
-    sum.normal = size * with_offset(pose[n], z, x, mean_edge_angle(edges_of(frame), z, position));
-    return sum;
+    return size * internal::with_offset(pose[n], z, x, mean_edge_angle(edges_of(frame), z, position));
+  }
+  /// Calls visit(i, truth) for the i-th of some elements, or visit(element, truth) for all, on all cores.
+  template <class PositionOf, class Visit>
+  void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Pose& pose,
+                const Visit& visit) const {
+    parallel_blocks(elements.size(), kElementsOfBlock, [&](IndexRange range) {
+      const std::span<const std::uint32_t> block = elements.subspan(range.first, range.count);
+      sums_.for_each(block, position, [&](std::size_t i, const AuthorSum& sum) {
+        visit(range.first + i, turned_sum(block[i], sum, position, pose));
+      });
+    });
+  }
+  template <class PositionOf, class Visit>
+  void for_all(const PositionOf& position, const Pose& pose, const Visit& visit) const {
+    sums_.for_all(position,
+                  [&](std::uint32_t e, const AuthorSum& sum) { visit(e, turned_sum(e, sum, position, pose)); });
   }
 
   /// The elements of which a target turns the truth, ascending; none for targets that the author's mesh does not have.
@@ -104,6 +125,12 @@ class AuthorTruth {
  private:
   class Finder;
 
+  template <class PositionOf>
+  [[nodiscard]] AuthorSum turned_sum(std::uint32_t element, AuthorSum sum, const PositionOf& position,
+                                     const Pose& pose) const {
+    sum.normal = with_offset(element, sum.normal, position, pose);
+    return sum;
+  }
   [[nodiscard]] std::span<const OffsetEdge> edges_of(const Frame& frame) const noexcept {
     return std::span(edges_).subspan(frame.first_edge, frame.edge_count);
   }

@@ -60,10 +60,10 @@ std::vector<Vec3d> sums_of_vertices(const Topology& topology, const StoredKey& k
 std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums& sums, const StoredKey& key) {
   const std::vector<std::uint32_t> vertex_of = vertices_of_elements(shading);
   std::vector<Vec3d> of_elements(vertex_of.size()), result(shading.element_of_vertex.size());
-  parallel_each(vertex_of.size(), 256, [&](std::size_t e) {
-    if (vertex_of[e] == GltfShading::kNoElement) return;
-    of_elements[e] = sums.at(static_cast<std::uint32_t>(e), [&](std::uint32_t v) { return key.position(v); }).normal;
-  });
+  sums.for_all([&](std::uint32_t v) { return key.position(v); },
+               [&](std::uint32_t e, const AuthorSum& sum) {
+                 if (vertex_of[e] != GltfShading::kNoElement) of_elements[e] = sum.normal;
+               });
   for (std::size_t v = 0; v < result.size(); ++v)
     if (shading.element_of_vertex[v] != GltfShading::kNoElement) result[v] = of_elements[shading.element_of_vertex[v]];
   return result;

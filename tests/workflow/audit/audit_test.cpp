@@ -764,7 +764,7 @@ TEST(Audit, long_tracks_get_fewer_samples_and_single_keys_one) {
   const Audit result = audit_of(builder);
   ASSERT_EQ(result.subjects.size(), 3U);
   EXPECT_EQ(result.subjects[1].segments, 33U);
-  EXPECT_EQ(result.subjects[1].samples, 5U);
+  EXPECT_EQ(result.subjects[1].samples, 7U);
   EXPECT_EQ(result.subjects[2].segments, 1U);
   EXPECT_EQ(result.subjects[2].samples, 1U);
   EXPECT_NEAR(result.subjects[2].error.mean(), 60, 1e-12);

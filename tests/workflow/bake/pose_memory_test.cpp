@@ -75,12 +75,10 @@ TEST(PoseMemory, leaves_the_normals_of_poses_as_they_are) {
   std::vector<Pose> poses = {{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.25, 1}, {1, 0.25, 0.5}};
   for (int round = 0; round < 3; ++round) {
     for (const Pose& pose : poses) {
-      std::vector<double> positions(shading.set.base.size());
-      blend_positions(shading.set, pose, positions);
       // As one that was never asked before has them.
-      const std::vector<Vec3d> right = NormalTerms(shading, truth).weighted_at(pose, positions, all);
-      EXPECT_EQ(terms.weighted_at(pose, positions, few), (std::vector<Vec3d>{right[3], right[4]}));
-      EXPECT_EQ(terms.weighted_at(pose, positions, all), right);
+      const std::vector<Vec3d> right = NormalTerms(shading, truth).weighted_at(pose, all);
+      EXPECT_EQ(terms.weighted_at(pose, few), (std::vector<Vec3d>{right[3], right[4]}));
+      EXPECT_EQ(terms.weighted_at(pose, all), right);
       EXPECT_EQ(terms.exact_at(pose), right);
     }
     std::reverse(poses.begin(), poses.end());

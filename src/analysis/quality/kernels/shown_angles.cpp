@@ -149,13 +149,13 @@ void ShownAngles(const ShownElements& elements, double time, std::span<double> d
   }
 }
 
-void AnglesOfPairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> degrees) {
-  const auto angles = [](const Vec3d* of_a, const Vec3d* of_b, double* result) HWY_ATTR {
+void AnglesOfPairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> degrees, double per_radian) {
+  const auto angles = [per_radian](const Vec3d* of_a, const Vec3d* of_b, double* result) HWY_ATTR {
     Real3 u, v;
     hn::LoadInterleaved3(kDoubles, &of_a->x, u.x.v, u.y.v, u.z.v);
     hn::LoadInterleaved3(kDoubles, &of_b->x, v.x.v, v.y.v, v.z.v);
     // As in angle_between(): -0 becomes 0.
-    (upper_angle(Scaled(cross(u, v)).whole_length(), dot(u, v) + Real(0.0)) * Real(kDegreesPerRadian)).store(result);
+    (upper_angle(Scaled(cross(u, v)).whole_length(), dot(u, v) + Real(0.0)) * Real(per_radian)).store(result);
   };
   std::size_t i = 0;
   for (; i + kDoubleLanes <= degrees.size(); i += kDoubleLanes) angles(&a[i], &b[i], &degrees[i]);
@@ -224,9 +224,10 @@ void shown_angles(const ShownElements& elements, double t, std::span<double> deg
   HWY_DYNAMIC_DISPATCH(ShownAngles)(elements, t, degrees);
 }
 
-void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> degrees) noexcept {
-  assert(a.size() == degrees.size() && b.size() == degrees.size());
-  HWY_DYNAMIC_DISPATCH(AnglesOfPairs)(a, b, degrees);
+void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> angles,
+                     double per_radian) noexcept {
+  assert(a.size() == angles.size() && b.size() == angles.size());
+  HWY_DYNAMIC_DISPATCH(AnglesOfPairs)(a, b, angles, per_radian);
 }
 
 void upper_angles(std::span<const double> y, std::span<const double> x, std::span<double> radians) noexcept {

@@ -66,9 +66,10 @@ struct ShownElements {
 /// All planes must have as many elements as the result; no number may be infinite or NaN.
 void shown_angles(const ShownElements& elements, double t, std::span<double> degrees) noexcept;
 
-/// Writes, in degrees, the angles between pairs of vectors of any length: 0 where one is zero.
-/// All three must have the same size; no number may be infinite or NaN.
-void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> degrees) noexcept;
+/// Writes the angles between pairs of vectors of any length, times a factor: in degrees, or 1 for radians. 0 where one
+/// vector is zero. All three must have the same size; no number may be infinite or NaN.
+void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> angles,
+                     double per_radian = kDegreesPerRadian) noexcept;
 
 /// Writes, in radians, the angles of the vectors (x, y): those of portable::atan2(), but NaN where both are infinite.
 /// All three must have the same size; no y may be below 0.

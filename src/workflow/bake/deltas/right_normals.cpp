@@ -64,13 +64,15 @@ std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose) const
 std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
                                              std::span<const std::uint32_t> elements) const {
   std::vector<Vec3d> result(elements.size());
+  if (terms_.is_fitted()) {
+    const std::vector<Vec3d> weighted = terms_.weighted_at(pose, elements);
+    parallel_each(elements.size(), kRightBlock, [&](std::size_t n) { result[n] = judged(elements[n], weighted[n]); });
+    return result;
+  }
   std::vector<double> positions(shading_.set.base.size());
   blend_positions(shading_.set, pose, positions);
-  const std::vector<Vec3d> weighted =
-      terms_.is_fitted() ? terms_.weighted_at(pose, positions, elements) : std::vector<Vec3d>();
   parallel_each(elements.size(), kRightBlock, [&](std::size_t n) {
-    result[n] =
-        judged(elements[n], weighted.empty() ? normal_from_positions(shading_, positions, elements[n]) : weighted[n]);
+    result[n] = judged(elements[n], normal_from_positions(shading_, positions, elements[n]));
   });
   return result;
 }

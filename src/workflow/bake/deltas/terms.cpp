@@ -73,23 +73,25 @@ void NormalTerms::fit_targets() {
     if (fit.elements.empty()) continue;
     std::vector<float> to = set.base;
     add_deltas(set.targets[i], to);
-    std::array<AuthorTruth::Pose, kSamples + 1> poses;
-    for (std::size_t s = 0; s <= kSamples; ++s) poses[s] = truth_.pose_alone(i, static_cast<double>(s) / kSamples);
+    // What is right at each eighth of the weight; nothing at 0.
+    std::array<std::vector<Vec3d>, kSamples + 1> right;
+    for (std::size_t s = 1; s <= kSamples; ++s) {
+      const double weight = static_cast<double>(s) / kSamples;
+      right[s].resize(fit.elements.size());
+      truth_.for_each(fit.elements, on_the_way(set, to, weight), truth_.pose_alone(i, weight),
+                      [&](std::size_t n, const AuthorSum& truth) { right[s][n] = truth.with_area_length(); });
+    }
     fit.linear.resize(fit.elements.size());
     fit.square.resize(fit.elements.size());
     const auto fit_element = [&](std::size_t n, double& error) {
       const std::uint32_t e = fit.elements[n];
-      const auto at = [&](std::size_t s) {
-        return truth_.at(e, on_the_way(set, to, static_cast<double>(s) / kSamples), poses[s]).with_area_length();
-      };
-      const Vec3d base = base_[e], half = at(kSamples / 2), end = at(kSamples);
+      const Vec3d base = base_[e], half = right[kSamples / 2][n], end = right[kSamples][n];
       fit.linear[n] = 4.0 * half - 3.0 * base - end;
       fit.square[n] = 2.0 * (base + end) - 4.0 * half;
       for (std::size_t s = 1; s < kSamples && is_shown[e]; ++s) {
         const double t = static_cast<double>(s) / kSamples;
-        const Vec3d right = s == kSamples / 2 ? half : at(s);
         const Vec3d fitted = base + t * fit.linear[n] + (t * t) * fit.square[n];
-        if (right != Vec3d{}) error = std::fmax(error, angle_between(fitted, right));
+        if (right[s][n] != Vec3d{}) error = std::fmax(error, angle_between(fitted, right[s][n]));
       }
     };
     fit.error = parallel_fold<double>(fit.elements.size(), kTermsBlock, fit_element,
@@ -122,9 +124,9 @@ BlendTerm NormalTerms::pair(std::size_t i, std::size_t j) const {
   const NormalTerms::Term square_i = pair_by_element(i, i), square_j = pair_by_element(j, j);
   BlendTerm term{common(fits_[i].elements, fits_[j].elements), {}, {}};
   term.values.resize(term.elements.size());
-  parallel_each(term.elements.size(), kTermsBlock, [&](std::size_t n) {
+  truth_.for_each(term.elements, on_the_way(shading_.set, to, 1), pose, [&](std::size_t n, const AuthorSum& truth) {
     const std::uint32_t e = term.elements[n];
-    Vec3d value = truth_.at(e, on_the_way(shading_.set, to, 1), pose).with_area_length() - base_[e];
+    Vec3d value = truth.with_area_length() - base_[e];
     for (const NormalTerms::Term* own : {&linear_i, &linear_j, &square_i, &square_j}) {
       Vec3d part;
       if (own->find(e, part)) value = value - part;
@@ -173,14 +175,13 @@ std::vector<Vec3d> NormalTerms::exact_at(std::span<const double> weights) const 
 std::vector<Vec3d> NormalTerms::sample_all(std::span<const double> weights, std::span<const double> positions) const {
   const AuthorTruth::Pose pose = truth_.pose(weights);
   std::vector<Vec3d> all(shading_.groups.size());
-  parallel_each(all.size(), kTermsBlock, [&](std::size_t e) {
-    all[e] = truth_.at(static_cast<std::uint32_t>(e), placed(positions), pose).with_area_length();
-  });
+  truth_.for_all(placed(positions), pose,
+                 [&](std::uint32_t e, const AuthorSum& truth) { all[e] = truth.with_area_length(); });
   sampled_.keep(weights, all);
   return all;
 }
 
-std::vector<Vec3d> NormalTerms::weighted_at(std::span<const double> weights, std::span<const double> positions,
+std::vector<Vec3d> NormalTerms::weighted_at(std::span<const double> weights,
                                             std::span<const std::uint32_t> elements) const {
   std::vector<Vec3d> result(elements.size());
   const auto take = [&](const std::vector<Vec3d>& all) {
@@ -188,11 +189,13 @@ std::vector<Vec3d> NormalTerms::weighted_at(std::span<const double> weights, std
     return result;
   };
   if (const std::vector<Vec3d>* kept = sampled_.find(weights)) return take(*kept);
+  std::vector<double> positions(shading_.set.base.size());
+  blend_positions(shading_.set, weights, positions);
   // All of them are worth their time only where most are asked for.
   if (4 * elements.size() > shading_.groups.size()) return take(sample_all(weights, positions));
   const AuthorTruth::Pose pose = truth_.pose(weights);
-  parallel_each(elements.size(), kTermsBlock,
-                [&](std::size_t n) { result[n] = truth_.at(elements[n], placed(positions), pose).with_area_length(); });
+  truth_.for_each(elements, placed(positions), pose,
+                  [&](std::size_t n, const AuthorSum& truth) { result[n] = truth.with_area_length(); });
   return result;
 }
 

@@ -53,9 +53,8 @@ class NormalTerms {
   [[nodiscard]] std::vector<Vec3d> by_area_at(std::span<const double> weights) const {
     return normals_from_positions(shading_, weights);
   }
-  /// The normals of some elements at some weights by a weighting that is fitted, with the length by area. positions
-  /// (V, 3) are those of all vertices at these weights.
-  [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> weights, std::span<const double> positions,
+  /// The normals of some elements at some weights by a weighting that is fitted, with the length by area.
+  [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> weights,
                                                std::span<const std::uint32_t> elements) const;
   [[nodiscard]] bool is_fitted() const noexcept { return !truth_.is_plain(); }
   /// Whether the file has the author's normals of its targets, which the truth goes through.

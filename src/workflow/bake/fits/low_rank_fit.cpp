@@ -47,11 +47,11 @@ float at_place(const PlaceOfRows& place, const float* of_rows) {
   return static_cast<float>(sum);
 }
 
-double quantile(std::vector<float>& errors, double part) {
+float quantile(std::vector<float>& errors, double part) {
   if (errors.empty()) return 0;
   const auto at = errors.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(errors.size() - 1));
   std::nth_element(errors.begin(), at, errors.end());
-  return static_cast<double>(*at);
+  return *at;
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ void LowRankFit::set_first_importance() {
         if (square > 0) lengths.push_back(std::sqrt(square));
         most = std::fmax(most, kPartOfLack * std::sqrt(of_lack));
       }
-      importance_[p] = 1 / std::fmax(static_cast<float>(quantile(lengths, kShortQuantile)), most);
+      importance_[p] = 1 / std::fmax(quantile(lengths, kShortQuantile), most);
     }
   });
 }
@@ -132,13 +132,13 @@ std::vector<double> LowRankFit::errors_with(std::span<const std::size_t> counts)
         const Vec3f should = {shown[r] + lack[r], shown[stride + r] + lack[stride + r],
                               shown[2 * stride + r] + lack[2 * stride + r]};
         const bool is_known = dot(should, should) > kLeastLength * kLeastLength;
-        errors[c][n * rows + r] = is_known ? degrees_between(is, should) : 0;
+        errors[c][n * rows + r] = is_known ? openness(is, should) : 0;
       }
     }
   });
   std::vector<double> result;
   result.reserve(errors.size());
-  for (std::vector<float>& of_count : errors) result.push_back(quantile(of_count, 0.999));
+  for (std::vector<float>& of_count : errors) result.push_back(degrees_of(quantile(of_count, 0.999)));
   return result;
 }
 
@@ -190,6 +190,12 @@ LowRankFit::Course LowRankFit::course_of(std::size_t point, std::span<const Plac
   return course;
 }
 
+// The largest error of each point at its rows.
+void LowRankFit::measure_rows() {
+  const Basis basis = basis_of({}, {});
+  parallel_each(missing_.points(), kPointBlock, [&](std::size_t p) { errors_[p] = error_of(p, basis, {}); });
+}
+
 // The largest error of each point at rows, places, unseen ones and its dips. own_weights go with the corrections of own
 // deltas, where there are any.
 void LowRankFit::measure(std::span<const float> own_weights) {
@@ -227,8 +233,8 @@ float LowRankFit::error_of(std::size_t point, const Basis& basis, std::span<cons
   float worst = 0;
   for (std::size_t n = 0; n < basis.instants; ++n)
     if (course.is_known[n] != 0)
-      worst = std::fmax(worst, degrees_between(vector_at(course.shown, n), vector_at(course.right, n)));
-  return worst;
+      worst = std::max(worst, openness(vector_at(course.shown, n), vector_at(course.right, n)));
+  return static_cast<float>(degrees_of(worst));
 }
 
 // The places between nodes where the right normal of a point is much shorter than at the nodes around, and still has a
@@ -290,9 +296,9 @@ void LowRankFit::refit(std::size_t point, const Basis& basis, std::span<const Pl
       const Vec3f is = {shown[n], shown[plane + n], shown[2 * plane + n]};
       const Vec3f should = {course.right[n], course.right[plane + n], course.right[2 * plane + n]};
       directions[n] = unit(to_double(should));
-      const float error = degrees_between(is, should);
-      worst = std::fmax(worst, error);
-      const double part = static_cast<double>(error) / (kPartOfBad * tolerance);
+      const float open = openness(is, should);
+      worst = std::max(worst, open);
+      const double part = kDegreesPerRadian * std::sqrt(static_cast<double>(open)) / (kPartOfBad * tolerance);
       counts[n] = (1 + part * part) / std::fmax(static_cast<double>(dot(is, is)), kLeastSquare);
     }
     if (worst < least) {
@@ -360,13 +366,14 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
   for (int round = 0; round < kFitRounds; ++round) {
     take_weights(leading_vectors(missing_.inner_products(importance_), missing_.rows(), extras), extras, extras);
     project();
-    measure({});
     if (round + 1 == kFitRounds) break;
+    measure_rows();
     for (std::size_t p = 0; p < errors_.size(); ++p) {
       const float beyond = errors_[p] / static_cast<float>(kPartThatCounts * tolerance);
       importance_[p] *= std::sqrt(std::clamp(beyond, 0.5F, 4.0F));
     }
   }
+  measure({});
   own_targets_ = own_targets;
   own_deltas_.assign(missing_.points() * 3 * own_targets, 0.0F);
   std::vector<std::size_t> bad;

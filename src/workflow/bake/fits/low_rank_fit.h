@@ -64,6 +64,7 @@ class LowRankFit {
   void set_first_importance();
   void take_weights(std::span<const double> vectors, std::size_t columns, std::size_t extras);
   void project();
+  void measure_rows();
   void measure(std::span<const float> own_weights);
   [[nodiscard]] float error_of(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places) const;
   [[nodiscard]] std::vector<PlaceOfRows> dips_of(std::size_t point) const;

@@ -147,12 +147,14 @@ void MissingNormals::show_more(std::size_t point, std::span<const float> more) {
 
 void MissingNormals::keep_beyond(double degrees) {
   std::vector<char> is_kept(points(), 0);
+  const double sine = portable::sin(degrees / kDegreesPerRadian);
+  const auto most = static_cast<float>(degrees < 90 ? sine * sine : 2 - sine * sine);
   parallel_each(points(), kMissingBlock, [&](std::size_t p) {
     const float *s = shown(p), *m = missing(p);
     for (std::size_t r = 0; r < rows() && is_kept[p] == 0; ++r) {
       const Vec3f now = {s[r], s[stride_ + r], s[2 * stride_ + r]};
       const Vec3f lack = {m[r], m[stride_ + r], m[2 * stride_ + r]};
-      if (static_cast<double>(degrees_between(now, now + lack)) > degrees) is_kept[p] = 1;
+      if (openness(now, now + lack) > most) is_kept[p] = 1;
     }
   });
   const std::size_t size = 3 * stride_;
@@ -172,10 +174,10 @@ void MissingNormals::keep_beyond(double degrees) {
   missing_.resize(size * kept);
 }
 
-float degrees_between(const Vec3f& a, const Vec3f& b) noexcept {
-  const Vec3f aside = cross(a, b);
-  return static_cast<float>(kDegreesPerRadian) *
-         static_cast<float>(portable::atan2(std::sqrt(dot(aside, aside)), dot(a, b)));
+double degrees_of(float openness) noexcept {
+  const double square = static_cast<double>(openness > 1 ? 2 - openness : openness);
+  const double angle = portable::atan2(std::sqrt(square), std::sqrt(1 - square)) * kDegreesPerRadian;
+  return openness > 1 ? 180 - angle : angle;
 }
 
 }  // namespace chronormal::inline internal

@@ -78,8 +78,16 @@ class MissingNormals {
   std::vector<float> shown_, missing_;
 };
 
-/// The angle in degrees between two vectors of any length; 0 where one is zero.
-[[nodiscard]] float degrees_between(const Vec3f& a, const Vec3f& b) noexcept;
+/// A measure of the angle between two vectors of any length that grows with it, from 0 to 2, and takes no arc tangent:
+/// its squared sine up to a right angle, and 2 less that beyond. 0 where one vector is zero.
+[[nodiscard]] inline float openness(const Vec3f& a, const Vec3f& b) noexcept {
+  const Vec3f aside = cross(a, b);
+  const float across = dot(aside, aside), along = dot(a, b), both = across + along * along;
+  const float square = both > 0 ? across / both : 0;
+  return along < 0 ? 2 - square : square;
+}
+/// The angle that has this openness, in degrees.
+[[nodiscard]] double degrees_of(float openness) noexcept;
 
 }  // namespace chronormal::inline internal
 

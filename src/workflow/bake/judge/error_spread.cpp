@@ -44,19 +44,25 @@ ShownErrors ErrorSpread::errors() const {
 }
 
 void GatheredErrors::add(std::size_t vertex, std::span<const float> errors, std::span<const float> known) {
-  // The errors of one vertex lie in few bins. Between calls all of these are empty.
-  thread_local std::array<std::uint32_t, kBins> here{};
+  // The errors of one vertex lie in few bins, so that they are counted here first. Between calls all of these are empty.
+  thread_local std::array<std::uint32_t, kBins> of_thread{};
+  std::uint32_t* const here = of_thread.data();
   std::size_t lowest = kBins, highest = 0;
+  float all = 0, most = 0;
+  std::uint32_t count = 0;
   for (std::size_t p = 0; p < errors.size(); ++p) {
     if (known[p] < 0) continue;
-    sum[vertex] += errors[p];
-    worst[vertex] = std::fmax(worst[vertex], errors[p]);
-    ++counts[vertex];
+    all += errors[p];
+    most = std::max(most, errors[p]);
+    ++count;
     const std::size_t bin = bin_of(errors[p]);
     ++here[bin];
     lowest = std::min(lowest, bin);
     highest = std::max(highest, bin);
   }
+  sum[vertex] += all;
+  worst[vertex] = std::max(worst[vertex], most);
+  counts[vertex] += count;
   for (std::size_t b = lowest; b <= highest; ++b)
     if (here[b] > 0) bins[b].fetch_add(std::exchange(here[b], 0), std::memory_order_relaxed);
 }

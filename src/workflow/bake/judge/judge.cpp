@@ -16,7 +16,7 @@ constexpr std::size_t kBlock = 32, kEdgeBlock = 1024;
 constexpr int kFineBits = 16;
 constexpr auto kDegrees = static_cast<float>(kDegreesPerRadian);
 // Pairs of a vertex and a pose whose right normals are held, and poses of one kind.
-constexpr std::size_t kMostPairs = 5000000, kFewestPoses = 12, kMostPoses = 1500;
+constexpr std::size_t kMostPairs = 2500000, kFewestPoses = 12, kMostPoses = 800;
 // At a glance: every eighth pose, but no fewer than these where there are more.
 constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
 // Errors of vertices that are held at once.

@@ -1,0 +1,37 @@
+#include "workflow/shading/corner_terms.h"
+
+#include "analysis/quality/kernels/shown_angles.h"
+
+namespace chronormal::inline internal {
+
+Vec3d corner_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept {
+  if (weighting == Weighting::kArea) return n;
+  if (weighting == Weighting::kUniform || n == Vec3d{}) return unit(n);
+  if (e == Vec3d{} || f == Vec3d{}) return {};
+  if (weighting == Weighting::kMax) return (1 / (dot(e, e) * dot(f, f))) * cross(e, f);
+  return angle_between(e, f) * (weighting == Weighting::kAngle ? unit(n) : n);
+}
+
+CornerTerms& CornerTerms::emptied(Weighting weighting) {
+  thread_local CornerTerms terms;
+  terms.weighting_ = weighting;
+  terms.needs_edges_ = weighting != Weighting::kArea && weighting != Weighting::kUniform;
+  ++terms.use_;
+  for (std::vector<Vec3d>* const vectors : {&terms.terms_, &terms.next_, &terms.previous_}) vectors->clear();
+  terms.areas_.clear();
+  return terms;
+}
+
+void CornerTerms::finish() {
+  if (!needs_edges_) return;
+  if (weighting_ == Weighting::kMax) {
+    for (std::size_t i = 0; i < terms_.size(); ++i)
+      terms_[i] = corner_term(weighting_, terms_[i], next_[i], previous_[i]);
+    return;
+  }
+  angles_.resize(terms_.size());
+  angles_of_pairs(next_, previous_, angles_, 1);
+  for (std::size_t i = 0; i < terms_.size(); ++i) terms_[i] = angles_[i] * terms_[i];
+}
+
+}  // namespace chronormal::inline internal

@@ -1,0 +1,81 @@
+/// What corners of polygons add to the normals of elements, by a weighting. Private to workflow.
+///
+/// Terms are computed for many corners at once: the normal of a polygon once for the corners that come near each other,
+/// and angles in lanes. The bits are those of corner_term(), one by one.
+#ifndef CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
+#define CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chronormal/core/vec3.h"
+#include "chronormal/normals/weighting.h"
+#include "core/vector_area.h"
+
+namespace chronormal::inline internal {
+
+/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, twice its area long; e and
+/// f are the edges from the corner to the next and to the previous one.
+[[nodiscard]] Vec3d corner_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept;
+
+/// Elements are computed together in blocks of so many: their corners fill lanes, and stay in the fastest cache.
+inline constexpr std::size_t kElementsOfBlock = 128;
+
+class CornerTerms {
+ public:
+  /// An empty object for this thread, which keeps its memory. Valid until the next call in this thread.
+  [[nodiscard]] static CornerTerms& emptied(Weighting weighting);
+
+  /// Appends a corner of a polygon with the vertices `loop`. One number must always mean the same polygon.
+  template <class PositionOf>
+  void add(std::uint32_t polygon, std::span<const std::uint32_t> loop, std::size_t corner, const PositionOf& position) {
+    const Face& face = face_of(polygon, loop, position);
+    terms_.push_back(face.term);
+    areas_.push_back(face.area);
+    if (!needs_edges_) return;
+    const std::size_t last = loop.size() - 1;
+    const Vec3d here = position(loop[corner]);
+    next_.push_back(position(loop[corner == last ? 0 : corner + 1]) - here);
+    previous_.push_back(position(loop[corner == 0 ? last : corner - 1]) - here);
+  }
+
+  /// Computes the terms of all corners that were appended. Call it once.
+  void finish();
+
+  /// In the order in which they were appended: the terms, and the lengths of the normals of their polygons.
+  [[nodiscard]] std::span<const Vec3d> terms() const noexcept { return terms_; }
+  [[nodiscard]] std::span<const double> areas() const noexcept { return areas_; }
+
+ private:
+  struct Face {
+    std::uint64_t use = 0;  // of the object, in which this is known
+    std::uint32_t polygon = 0;
+    Vec3d term;  // the whole of it, or what an angle is multiplied by
+    double area = 0;
+  };
+  static constexpr std::size_t kFaces = 512;
+
+  template <class PositionOf>
+  const Face& face_of(std::uint32_t polygon, std::span<const std::uint32_t> loop, const PositionOf& position) {
+    Face& face = faces_[polygon % kFaces];
+    if (face.use == use_ && face.polygon == polygon) return face;
+    const Vec3d n = twice_vector_area(loop.size(), [&](std::size_t c) -> Vec3d { return position(loop[c]); });
+    const bool is_unit = weighting_ == Weighting::kAngle || weighting_ == Weighting::kUniform;
+    face = {use_, polygon, is_unit ? unit(n) : n, length(n)};
+    return face;
+  }
+
+  Weighting weighting_ = Weighting::kArea;
+  bool needs_edges_ = false;
+  std::uint64_t use_ = 0;
+  std::array<Face, kFaces> faces_;
+  std::vector<Vec3d> terms_, next_, previous_;
+  std::vector<double> areas_, angles_;
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
