@@ -56,7 +56,7 @@ std::vector<Option> JudgeArguments::table(const std::string& of_hosts) {
           {"--samples N",
            &samples,
            "how many moments of each segment are judged, its ends included (default 21; in\n"
-           "animations of more than 10 key intervals about 210 in all, at least 5 of each)",
+           "animations of more than 10 key intervals, and of more than 10 targets, fewer)",
            {.check = check_whole(2, kMostAuditSamples)}}};
 }
 

@@ -215,10 +215,10 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
   return to_float((portable::sin((1 - t) * angle) / sine) * u0 + (portable::sin(t * angle) / sine) * u1);
 }
 
-std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments) noexcept {
+std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments, std::size_t fewest) noexcept {
   if (options.samples) return *options.samples;
   // An odd number, so that the middle is among them.
-  return std::clamp(kAuditSamplesOfAll / std::max<std::size_t>(1, segments) | 1U, kAuditFewSamples, kAuditSamples);
+  return std::clamp(kAuditSamplesOfAll / std::max<std::size_t>(1, segments) | 1U, fewest, kAuditSamples);
 }
 
 Status check_samples(const AuditOptions& options) {

@@ -220,7 +220,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   subject.weighting = mesh.truth.rule().weighting;
   subject.target = k;
   subject.segments = 1;
-  subject.samples = samples_per_segment(mesh.options, 1);
+  subject.samples = samples_per_segment(mesh.options, mesh.shading.set.targets.size(), kAuditFewSamplesOfTarget);
   SubjectWeights weights;
   const auto weight_at = [&](double t) {
     const auto [least, most] = mesh.options.weights;

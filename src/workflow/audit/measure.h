@@ -32,6 +32,7 @@ inline constexpr double kVanished = 1e-4;
 inline constexpr double kCancels = -3;
 
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditSamplesOfAll = 210;
+inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
 
 /// The bin of the histogram for an error of [0, 180] degrees.
 [[nodiscard]] inline std::size_t bin_of(double degrees) noexcept {
@@ -60,8 +61,9 @@ inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditSam
 /// What a rule shows between two stored normals; (0, 0, 0) where that is zero.
 [[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
 
-/// The samples of a segment.
-[[nodiscard]] std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments) noexcept;
+/// The samples of each of some segments, or of some targets alone.
+[[nodiscard]] std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments,
+                                              std::size_t fewest = kAuditFewSamples) noexcept;
 
 /// Where the i-th sample of a segment is in it.
 [[nodiscard]] inline double time_of_sample(std::size_t i, std::size_t samples) noexcept {

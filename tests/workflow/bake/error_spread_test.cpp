@@ -1,4 +1,4 @@
-// Gathered errors have the mean, the worst and the quantile of a list of all of them.
+// The spread of errors has the mean, the worst and the quantile of a list of all of them.
 #include "workflow/bake/judge/error_spread.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,6 @@
 #include <numeric>
 #include <vector>
 
-#include "chronormal/core/parallel.h"
 #include "tests/support/fixtures.h"
 
 namespace chronormal::error_spread_test {
@@ -26,19 +25,16 @@ std::vector<float> errors_of_all(unsigned seed) {
 }
 
 // Adds them vertex by vertex, in batches of poses.
-void add_all(const std::vector<float>& errors, GatheredErrors& to) {
-  for (std::size_t first = 0; first < kPoses; first += kBatch) {
-    parallel_for(kVertices, [&](std::size_t v) {
-      const auto some = std::span(errors).subspan(v * kPoses + first, std::min(kBatch, kPoses - first));
-      to.add(v, some, some);
-    });
-  }
+void add_all(const std::vector<float>& errors, ErrorSpread& to) {
+  for (std::size_t first = 0; first < kPoses; first += kBatch)
+    for (std::size_t v = 0; v < kVertices; ++v)
+      to.add(std::span(errors).subspan(v * kPoses + first, std::min(kBatch, kPoses - first)));
 }
 
 TEST(ErrorSpread, is_that_of_a_list_of_all_errors) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const std::vector<float> errors = errors_of_all(seed);
-    GatheredErrors gathered(kVertices);
+    ErrorSpread gathered;
     add_all(errors, gathered);
     std::vector<double> known;
     double sum = 0;
@@ -48,9 +44,9 @@ TEST(ErrorSpread, is_that_of_a_list_of_all_errors) {
       sum += known.back();
     }
     std::sort(known.begin(), known.end());
-    const ShownErrors result = gathered.spread().errors();
+    const ShownErrors result = gathered.errors();
     EXPECT_EQ(result.judged, known.size());
-    const auto& bins = gathered.spread().bins;
+    const auto& bins = gathered.bins;
     EXPECT_EQ(std::accumulate(bins.begin(), bins.end(), std::size_t{0}), known.size());
     EXPECT_NEAR(result.mean, sum / static_cast<double>(known.size()), 1e-5 * result.mean);
     EXPECT_EQ(result.worst, known.back());
@@ -62,21 +58,21 @@ TEST(ErrorSpread, is_that_of_a_list_of_all_errors) {
 
 TEST(ErrorSpread, of_two_sets_is_that_of_both) {
   const std::vector<float> small(kVertices * kPoses, 0.01F), large(kVertices * kPoses, 3.0F);
-  GatheredErrors a(kVertices), b(kVertices), both(kVertices);
+  ErrorSpread a, b, both;
   add_all(small, a);
   add_all(large, b);
   add_all(small, both);
   add_all(large, both);
-  ErrorSpread sum = a.spread();
-  sum.add(b.spread());
-  EXPECT_EQ(sum.bins, both.spread().bins);
+  ErrorSpread sum = a;
+  sum.add(b);
+  EXPECT_EQ(sum.bins, both.bins);
   EXPECT_EQ(sum.count, 2 * kVertices * kPoses);
   EXPECT_NEAR(sum.errors().mean, 1.505, 1e-4);
   EXPECT_EQ(sum.errors().worst, 3);
 }
 
 TEST(ErrorSpread, of_nothing_is_zero) {
-  const ShownErrors none = GatheredErrors(3).spread().errors();
+  const ShownErrors none = ErrorSpread().errors();
   EXPECT_EQ(none.judged, 0U);
   EXPECT_EQ(none.mean, 0);
   EXPECT_EQ(none.most, 0);

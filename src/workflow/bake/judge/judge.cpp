@@ -12,7 +12,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 32, kEdgeBlock = 1024;
+constexpr std::size_t kSamplesOfBlock = 8192, kMostOfBlock = 1024, kEdgeBlock = 1024;
 constexpr int kFineBits = 16;
 constexpr auto kDegrees = static_cast<float>(kDegreesPerRadian);
 // Pairs of a vertex and a pose whose right normals are held, and poses of one kind.
@@ -51,16 +51,21 @@ class PoseWeights {
         active.count = p + 1 - active.first;
       }
     }
+    for (std::uint32_t c = 0; c < active_.size(); ++c)
+      if (active_[c].count > 0) columns_.push_back(c);
   }
 
   // (poses)
   [[nodiscard]] const float* of(std::size_t column) const { return weights_.data() + column * poses_; }
+  // The columns that have any, ascending.
+  [[nodiscard]] std::span<const std::uint32_t> columns() const { return columns_; }
   // Beyond these poses the column has no weight.
   [[nodiscard]] const IndexRange& active(std::size_t column) const { return active_[column]; }
 
  private:
   std::size_t poses_;
   std::vector<IndexRange> active_;
+  std::vector<std::uint32_t> columns_;
   std::vector<float> weights_;
 };
 
@@ -73,10 +78,10 @@ class Sums {
     x_.assign(count, base.x);
     y_.assign(count, base.y);
     z_.assign(count, base.z);
-    for (const auto& [column, delta] : entries) {
+    const auto add = [&](std::uint32_t column, const Vec3f& delta) {
       const IndexRange& active = weights.active(column);
       const std::size_t begin = std::max(active.first, first), end = std::min(active.end(), first + count);
-      if (begin >= end) continue;
+      if (begin >= end) return;
       const Vec3f kept = kept_delta(viewer, normal, base, delta);
       const float* const w = weights.of(column) + first;
       for (std::size_t p = begin - first; p < end - first; ++p) {
@@ -84,13 +89,23 @@ class Sums {
         y_[p] += w[p] * kept.y;
         z_[p] += w[p] * kept.z;
       }
+    };
+    constexpr std::size_t kFew = 8;  // columns, of so many entries each, that are worth a search
+    if (kFew * weights.columns().size() > entries.size()) {
+      for (const auto& [column, delta] : entries) add(column, delta);
+      return;
+    }
+    for (const std::uint32_t column : weights.columns()) {
+      const auto found = std::lower_bound(entries.begin(), entries.end(), column,
+                                          [](const auto& entry, std::uint32_t c) { return entry.column < c; });
+      if (found != entries.end() && found->column == column) add(column, found->delta);
     }
   }
 
   // Makes of the sums what is seen of them.
   void carry(const SkinsInPoses::Vertex& carrying, SkinRule rule) {
     for (std::size_t p = 0; p < x_.size(); ++p) {
-      const Vec3f seen = to_float(carrying.seen(rule, p, to_double(at(p))));
+      const Vec3f seen = to_float(carrying.seen(rule, p, to_double(Vec3f{x_[p], y_[p], z_[p]})));
       x_[p] = seen.x;
       y_[p] = seen.y;
       z_[p] = seen.z;
@@ -98,39 +113,39 @@ class Sums {
   }
 
   // Writes the angles to the right normals in degrees, negative where one is not known, and the differences of unit
-  // vectors as planes, NaN where one is not. Returns the largest length of a difference.
-  float compare_with(std::span<const Vec3f> right, std::span<float> degrees, std::span<float> errors) {
+  // vectors as planes, NaN where one is not. Returns the largest length of a difference. right are three planes.
+  float compare_with(const std::array<const float*, 3>& right, std::span<float> degrees, std::span<float> errors) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    across_.resize(right.size());
-    along_.resize(right.size());
-    angles_.resize(right.size());
-    for (std::size_t p = 0; p < right.size(); ++p) {
-      const Vec3f shown = at(p), aside = cross(shown, right[p]);
-      across_[p] = static_cast<double>(std::sqrt(dot(aside, aside)));
-      along_[p] = static_cast<double>(dot(shown, right[p]));
+    const std::size_t count = degrees.size();
+    const auto [u, v, w] = right;
+    const float *const x = x_.data(), *const y = y_.data(), *const z = z_.data();
+    for (std::vector<double>* const of : {&across_, &along_, &angles_}) of->resize(count);
+    for (std::size_t p = 0; p < count; ++p) {
+      const float a = y[p] * w[p] - z[p] * v[p], b = z[p] * u[p] - x[p] * w[p], c = x[p] * v[p] - y[p] * u[p];
+      across_[p] = static_cast<double>(std::sqrt(a * a + b * b + c * c));
+      along_[p] = static_cast<double>(x[p] * u[p] + y[p] * v[p] + z[p] * w[p]);
     }
     upper_angles(across_, along_, angles_);
-    float largest = 0;
-    for (std::size_t p = 0; p < right.size(); ++p) {
-      const Vec3f shown = at(p);
-      const float size = std::sqrt(dot(shown, shown)), angle = kDegrees * static_cast<float>(angles_[p]);
-      const bool is_lit = size > 0 && std::isfinite(size) && std::isfinite(angle);
-      const bool is_known = right[p] != Vec3f{};
-      degrees[p] = !is_known ? -1 : is_lit ? angle : 180;
-      const Vec3f error = !is_known ? Vec3f{kNan, kNan, kNan}
-                          : is_lit  ? (1 / size) * shown - right[p]
-                                    : -2.0F * right[p];
-      errors[p] = error.x;
-      errors[right.size() + p] = error.y;
-      errors[2 * right.size() + p] = error.z;
-      largest = std::fmax(largest, dot(error, error));
+    float *const to_x = errors.data(), *const to_y = to_x + count, *const to_z = to_y + count;
+    for (std::size_t p = 0; p < count; ++p) {
+      const float size = std::sqrt(x[p] * x[p] + y[p] * y[p] + z[p] * z[p]);
+      const float angle = kDegrees * static_cast<float>(angles_[p]);
+      const bool is_lit = size > 0 && size <= std::numeric_limits<float>::max() && angle <= 180.5F;
+      const bool is_known = u[p] != 0 || v[p] != 0 || w[p] != 0;
+      degrees[p] = is_known ? is_lit ? angle : 180 : -1;
+      // What is not lit shows the other side.
+      const float scale = is_lit ? 1 / size : 0, side = is_known ? is_lit ? 1 : 2 : kNan;
+      to_x[p] = (is_lit ? scale * x[p] : 0) - side * u[p];
+      to_y[p] = (is_lit ? scale * y[p] : 0) - side * v[p];
+      to_z[p] = (is_lit ? scale * z[p] : 0) - side * w[p];
     }
+    float largest = 0;
+    for (std::size_t p = 0; p < count; ++p)
+      largest = std::max(largest, to_x[p] * to_x[p] + to_y[p] * to_y[p] + to_z[p] * to_z[p]);  // NaN counts for nothing
     return std::sqrt(largest);
   }
 
  private:
-  [[nodiscard]] Vec3f at(std::size_t p) const { return {x_[p], y_[p], z_[p]}; }
-
   std::vector<float> x_, y_, z_;
   std::vector<double> across_, along_, angles_;
 };
@@ -146,6 +161,19 @@ std::vector<SurfaceEdge> edges_of(std::span<const SurfaceEdge> edges, std::span<
     if (places[a] != none || places[b] != none)
       result.push_back({std::min(places[a], places[b]), std::max(places[a], places[b])});
   return result;
+}
+
+// Writes vectors as planes that are so far apart.
+void write_planes(std::span<const Vec3f> vectors, float* planes, std::size_t stride) {
+  for (std::size_t p = 0; p < vectors.size(); ++p) {
+    planes[p] = vectors[p].x;
+    planes[stride + p] = vectors[p].y;
+    planes[2 * stride + p] = vectors[p].z;
+  }
+}
+
+std::array<const float*, 3> planes_at(const float* first, std::size_t stride) {
+  return {first, first + stride, first + 2 * stride};
 }
 
 std::vector<std::uint32_t> numbers_up_to(std::size_t count) {
@@ -186,10 +214,10 @@ Judge::Judge(const DeltaSource& source, const RightNormals& rights, const MeshWe
     PoseList poses;
     for (const PlayedPose& pose : known.set.poses) poses.push_back(pose.seen.weights);
     known.edges = edges_of(edges, some, source.shading.element_of_vertex.size());
-    known.right.resize(some.size() * poses.size());
+    const std::size_t count = poses.size();
+    known.right.resize(3 * some.size() * count);
     rights_.for_each(some, poses, [&](std::size_t at, std::size_t first, std::span<const Vec3f> right) {
-      std::copy(right.begin(), right.end(),
-                known.right.begin() + static_cast<std::ptrdiff_t>(at * poses.size() + first));
+      write_planes(right, known.right.data() + 3 * at * count + first, count);
     });
   }
 }
@@ -201,11 +229,13 @@ std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& po
   rights_.for_each(vertices_, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
     thread_local Sums sums;
     thread_local std::vector<float> degrees;
-    thread_local std::vector<float> errors;
+    thread_local std::vector<float> errors, planes;
     sums.add_up(Host{}, to_float(rights_.stored(vertices_[n])), columns.of(n), weights, first, right.size());
     degrees.resize(right.size());
     errors.resize(3 * right.size());
-    (void)sums.compare_with(right, degrees, errors);
+    planes.resize(3 * right.size());
+    write_planes(right, planes.data(), right.size());
+    (void)sums.compare_with(planes_at(planes.data(), right.size()), degrees, errors);
     for (const float error : degrees) result[n] = std::fmax(result[n], error);
   });
   return result;
@@ -255,32 +285,38 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Host& viewer, const V
     const SkinsInPoses skins(some);
     differences.poses = poses;
     differences.planes.resize(3 * count * poses);
-    GatheredErrors gathered(count);
-    parallel_each(count, kBlock, [&](std::size_t at) {
+    const auto measure_vertex = [&](std::size_t at, ErrorSpread& spread) {
       thread_local Sums sums;
-      thread_local std::vector<float> degrees;
-      thread_local std::vector<Vec3f> right;
+      thread_local std::vector<float> degrees, right;
       const std::size_t n = known.numbers[at];
       const std::uint32_t vertex = vertices_[n];
-      const Vec3f* const of_all = known.right.data() + at * all.size();
-      right.resize(poses);
-      if (step == 1)
-        std::copy(of_all + first, of_all + first + poses, right.begin());
-      else
-        for (std::size_t p = 0; p < poses; ++p) right[p] = of_all[places[first + p]];
+      const float* const of_all = known.right.data() + 3 * at * all.size();
+      std::array<const float*, 3> planes = planes_at(of_all + first, all.size());
+      if (step > 1 || skins.any()) {
+        right.resize(3 * poses);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          for (std::size_t p = 0; p < poses; ++p)
+            right[axis * poses + p] = of_all[axis * all.size() + places[first + p]];
+        planes = planes_at(right.data(), poses);
+      }
       degrees.resize(poses);
       sums.add_up(viewer, to_float(rights_.stored(vertex)), columns.of(n), weights, 0, poses);
       if (skins.any()) {
         const SkinsInPoses::Vertex carrying(skins, vertex, 0, poses);
         sums.carry(carrying, viewer.skins);
-        for (std::size_t p = 0; p < poses; ++p)
-          right[p] = to_float(carrying.seen(viewer.skins, p, to_double(right[p])));
+        for (std::size_t p = 0; p < poses; ++p) {
+          const Vec3f of_mesh{right[p], right[poses + p], right[2 * poses + p]};
+          const Vec3f seen = to_float(carrying.seen(viewer.skins, p, to_double(of_mesh)));
+          write_planes(std::span(&seen, 1), right.data() + p, poses);
+        }
       }
       differences.largest[at] =
-          sums.compare_with(right, degrees, std::span(differences.planes).subspan(3 * at * poses, 3 * poses));
-      gathered.add(at, degrees, degrees);
-    });
-    result.spread.add(gathered.spread());
+          sums.compare_with(planes, degrees, std::span(differences.planes).subspan(3 * at * poses, 3 * poses));
+      spread.add(degrees);
+    };
+    result.spread.add(
+        parallel_fold<ErrorSpread>(count, std::clamp<std::size_t>(kSamplesOfBlock / poses, 1, kMostOfBlock),
+                                   measure_vertex, [](ErrorSpread& to, const ErrorSpread& from) { to.add(from); }));
     result.tears.add(tears_of(known, differences));
   }
   return result;

@@ -75,7 +75,7 @@ class Judge {
     PoseSet set;
     std::vector<std::uint32_t> numbers;  // of the vertices that it looks at
     std::vector<SurfaceEdge> edges;      // by places in `numbers`; the second may be behind all of these
-    std::vector<Vec3f> right;            // (vertices, poses) unit vectors, or (0, 0, 0) where none is known
+    std::vector<float> right;            // (vertices, 3, poses): unit vectors, or (0, 0, 0) where none is known
   };
 
   // The differences between shown and right unit normals, of the vertices of a set.
