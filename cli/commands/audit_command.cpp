@@ -36,7 +36,7 @@ struct AuditArguments {
   PathArgument path;
   std::optional<std::string> poses;  // "random", or the file of the poses
   std::optional<std::string> weights;
-  std::optional<double> tolerance;
+  AuditLimits limits;
   std::optional<std::string> errors;  // where to write every single one
   ShardArgument shard;
   ResumeArgument resume;
@@ -46,7 +46,7 @@ struct AuditArguments {
 
 // What a gate says where there is nothing to look at: a build that has lost its animations must not pass.
 constexpr const char* kNothingMoves =
-    "nothing moves stored normals, so that there is nothing to judge, and --tolerance is of no use";
+    "nothing moves stored normals, so that there is nothing to judge, and no limit is of use";
 
 // A word as a shell reads it back.
 std::string shell_word(const std::string& word) {
@@ -79,28 +79,31 @@ const std::vector<RefusedOption> kRefusedByAudit = {
     {"--world", "audit judges each mesh in its own space, since nodes turn the shown and the right normal alike"}};
 
 std::vector<std::vector<Option>> tables(AuditArguments& options) {
-  return {
-      input_table(options.input, kRefusedByAudit),
-      {{"--rule NAME", &options.rule,
-        "what a host makes of stored normals between keyframes: gltf (default for\n"
-        "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
-      options.judge.table("judge what these viewers show of a glTF file"),
-      options.path.table("the right normals are those of this path"),
-      {{"--tolerance DEG", &options.tolerance, "exit with code 4 if the worst error is larger, in any viewer of --for"},
-       {"--poses FILE|random", &options.poses,
-        "judge poses of a glTF file, too: those of FILE, as JSON ([{\"jawOpen\": 0.7}, ...]), or\n"
-        "random ones that a program may set"},
-       {"--weights LO:HI", &options.weights,
-        "judge each target of a glTF file alone from weight LO to HI (default 0:1)"},
-       {"--errors FILE", &options.errors,
-        "write the error of every vertex at every sample: .npz for programs, or .ply\n"
-        "with the worst of each vertex as its quality, for MeshLab and Blender"},
-       {"--no-weld", &options.no_weld, "keep vertices apart that are at one point throughout"},
-       options.shard.option("judge the Ith of N equal shares of the segments of a sequence alone: OUT is a part\n"
-                            "for chronormal merge"),
-       options.resume.option(),
-       {"--json", &options.json, "print one JSON object, for programs"}},
-      options.common.table(false)};
+  return {input_table(options.input, kRefusedByAudit),
+          {{"--rule NAME", &options.rule,
+            "what a host makes of stored normals between keyframes: gltf (default for\n"
+            "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
+          options.judge.table("judge what these viewers show of a glTF file"),
+          options.path.table("the right normals are those of this path"),
+          {{"--tolerance DEG", &options.limits.degrees,
+            "exit with code 4 if the worst error is larger, in any viewer of --for"},
+           {"--tears N", &options.limits.torn_edges,
+            "exit with code 4 if more than N edges of a glTF file are torn at any moment: errors jump\n"
+            "by more than 10 degrees over them, and a fold is seen that is not there"},
+           {"--poses FILE|random", &options.poses,
+            "judge poses of a glTF file, too: those of FILE, as JSON ([{\"jawOpen\": 0.7}, ...]), or\n"
+            "random ones that a program may set"},
+           {"--weights LO:HI", &options.weights,
+            "judge each target of a glTF file alone from weight LO to HI (default 0:1)"},
+           {"--errors FILE", &options.errors,
+            "write the error of every vertex at every sample: .npz for programs, or .ply\n"
+            "with the worst of each vertex as its quality, for MeshLab and Blender"},
+           {"--no-weld", &options.no_weld, "keep vertices apart that are at one point throughout"},
+           options.shard.option("judge the Ith of N equal shares of the segments of a sequence alone: OUT is a part\n"
+                                "for chronormal merge"),
+           options.resume.option(),
+           {"--json", &options.json, "print one JSON object, for programs"}},
+          options.common.table(false)};
 }
 
 Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
@@ -143,6 +146,8 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
     return misuse("--poses", "it gives the targets of a glTF file weights; this input is none");
   if (document == nullptr && options.weights)
     return misuse("--weights", "it is for the targets of a glTF file; this input is none");
+  if (document == nullptr && options.limits.torn_edges)
+    return misuse("--tears", "torn edges are counted in glTF files; this input is none");
   if (document != nullptr && how.shard)
     return misuse(has_ranks() ? "mpirun" : "--shard", "it divides the segments of a sequence, and a glTF file is none");
   if (const Status known = check_path("audit", input, how.path); !known) return known.error();
@@ -155,7 +160,7 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   progress.clear();
   warn_if_sparse("audit", found.value().path, keyframe_count(found.value()), found.value().bend);
   const bool can_be_baked = document != nullptr || input.stream().value()->motion().kind != MotionKind::kTargets;
-  return Audited{std::move(input), std::move(found).value(), options.tolerance,
+  return Audited{std::move(input), std::move(found).value(), options.limits,
                  can_be_baked ? words_of(options.input, how.path) : ""};
 }
 
@@ -197,7 +202,7 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
     if (!poses) return poses.error();
     how.poses = std::move(poses).value();
   }
-  if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
+  if (options.limits.degrees && !(*options.limits.degrees >= 0 && std::isfinite(*options.limits.degrees)))
     return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
   if (const Status status = check_input(options.input); !status) return status.error();
   if (options.errors) {
@@ -229,7 +234,13 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
 // Why small normals do not pass; place ends the sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
   return formatted("where faces all but vanish, the worst error is {:.4g} degrees, beyond the tolerance of {:g}{}",
-                   error.faint_worst, *audited.tolerance, place);
+                   error.faint_worst, *audited.limits.degrees, place);
+}
+
+// Says why torn edges do not pass.
+std::string why_torn(const Audited& audited, const MotionError& error) {
+  return formatted("at one moment {}, beyond the limit of {}",
+                   counted(error.most_torn, "edge is torn", "edges are torn"), grouped(*audited.limits.torn_edges));
 }
 
 // Says why normals that cancel do not pass.
@@ -239,33 +250,37 @@ std::string why_cancelled(const MotionError& error) {
       counted(error.cancelled, "pair has", "pairs have"));
 }
 
-// Why a host does not pass.
+// Says why errors are beyond the tolerance, or, where they are not, why others are.
+std::string why_beyond(const Audited& audited, const MotionError& error, const std::string& worst_label,
+                       const std::string& unlit_label, const std::string& faint_label,
+                       const std::string& cancelled_label) {
+  const auto at = [](const std::string& label) { return label.empty() ? "" : ": " + label; };
+  const std::optional<double> tolerance = audited.limits.degrees;
+  if (tolerance && error.unlit > 0)
+    return counted(error.unlit, "pair", "pairs") + " cannot be lit, which no tolerance allows" + at(unlit_label);
+  if (tolerance && error.worst > *tolerance)
+    return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}{}", error.worst, *tolerance,
+                     at(worst_label));
+  if (tolerance && error.faint_worst > *tolerance) return why_faint(audited, error, at(faint_label));
+  if (tolerance && error.cancelled > 0) return why_cancelled(error) + at(cancelled_label);
+  return why_torn(audited, error);
+}
+
+// Says why a viewer does not pass.
 std::string why_beyond(const Audited& audited, const HostAudit& found) {
-  if (found.beyond > 0)
+  if (found.beyond > 0 && audited.limits.degrees)
     return formatted("{}: a mesh has {} more than it takes: {}", found.host.title,
                      counted(found.beyond, "target", "targets"), found.host.beyond);
-  if (found.error.unlit > 0)
-    return formatted("{}: {} cannot be lit, which no tolerance allows", found.host.title,
-                     counted(found.error.unlit, "pair", "pairs"));
-  if (found.error.worst <= *audited.tolerance && found.error.faint_worst > *audited.tolerance)
-    return formatted("{}: {}", found.host.title, why_faint(audited, found.error, ""));
-  if (found.error.worst <= *audited.tolerance) return formatted("{}: {}", found.host.title, why_cancelled(found.error));
-  return formatted("{}: the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", found.host.title,
-                   found.error.worst, *audited.tolerance, worst_label(audited, found));
+  return formatted("{}: {}", found.host.title,
+                   why_beyond(audited, found.error, worst_label(audited, found), "", "", ""));
 }
 
 std::string why_beyond(const Audited& audited) {
   const MotionError& error = audited.audit.error;
-  if (error.unlit > 0)
-    return formatted("{} cannot be lit, which no tolerance allows: {}", counted(error.unlit, "pair", "pairs"),
-                     unlit_label(audited));
-  if (!audited.audit.is_judged() && error.cancelled == 0)
+  if (!audited.audit.is_judged() && error.cancelled == 0 && error.unlit == 0)
     return "no pair could be judged, since no face that moves has an area: nothing is known to be right";
-  if (error.worst <= *audited.tolerance && error.faint_worst > *audited.tolerance)
-    return why_faint(audited, error, ": " + faint_label(audited));
-  if (error.worst <= *audited.tolerance) return why_cancelled(error) + ": " + cancelled_label(audited);
-  return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}: {}", error.worst,
-                   *audited.tolerance, worst_label(audited));
+  return why_beyond(audited, error, worst_label(audited), unlit_label(audited), faint_label(audited),
+                    cancelled_label(audited));
 }
 
 // Says why an input does not pass, where it does not; place is its name, where there are several. Returns whether it
@@ -288,7 +303,7 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
   if (!audited) return audited.error();
   Audited& found = audited.value();
   if (has_ranks()) {
-    const std::vector<Part> parts = gather_parts(audit_part(found.name(), found.audit, found.tolerance));
+    const std::vector<Part> parts = gather_parts(audit_part(found.name(), found.audit, found.limits.degrees));
     if (parts.empty()) return kExitDone;  // the first rank prints
     Result<Audit> all = merge_audit_parts(parts);
     if (!all) return all.error();
@@ -298,14 +313,14 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
     const Status written = write_errors(found.audit.errors, *options.errors, options.common.force);
     if (!written) return written.error();
   }
-  const std::string text = options.shard.text ? audit_part(found.name(), found.audit, found.tolerance)
-                           : options.json     ? audit_json(found.name(), found.audit, found.tolerance)
+  const std::string text = options.shard.text ? audit_part(found.name(), found.audit, found.limits.degrees)
+                           : options.json     ? audit_json(found.name(), found.audit, found.limits)
                                               : audit_text(found);
   const Status written = options.resume.asked ? resumed.value()->finish(text, options.common.force)
                                               : print_to(options.common.output, text, options.common.force);
   if (!written) return written.error();
   if (options.shard.text) return kExitDone;
-  if (options.tolerance && found.audit.subjects.empty()) {
+  if (options.limits.any() && found.audit.subjects.empty()) {
     say("audit", kNothingMoves, Tone::kError);
     return kExitBeyond;
   }
@@ -347,12 +362,11 @@ Result<int> run_several(const AuditArguments& options, const AuditOptions& how, 
   const bool any_moves = std::any_of(files.begin(), files.end(), [](const AuditedFile& file) {
     return !file.error || file.error->judged + file.error->faint > 0;
   });
-  if (options.tolerance && !any_moves && exit == kExitDone) {
+  if (options.limits.any() && !any_moves && exit == kExitDone) {
     say("audit", kNothingMoves, Tone::kError);
     exit = kExitBeyond;
   }
-  const std::string text =
-      options.json ? audit_files_json(std::move(files), options.tolerance) : audit_files_text(files);
+  const std::string text = options.json ? audit_files_json(std::move(files), options.limits) : audit_files_text(files);
   if (const Status written = print_to(options.common.output, text, options.common.force); !written)
     return written.error();
   return exit;

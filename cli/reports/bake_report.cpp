@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "chronormal/normals/weighting.h"
 #include "cli/reports/rows.h"
@@ -85,6 +86,7 @@ void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
   all.most = std::max(all.most, of_mesh.most);
   all.worst = std::max(all.worst, of_mesh.worst);
   for (std::size_t k = 0; k < all.tears.size(); ++k) all.tears[k] += of_mesh.tears[k];
+  all.poses += of_mesh.poses;
 }
 
 // The form that an optimiser chose for a mesh has deltas that are fitted to the animations.
@@ -93,35 +95,68 @@ bool is_of_animations(const BakedMesh& mesh) {
                      [](const BakeChoice& choice) { return choice.chosen && choice.animations_only; });
 }
 
-// The errors that one viewer shows before and after.
-struct ViewerRow {
-  const Host* viewer = nullptr;
-  HostChange::Errors errors;
-  bool is_named = true, is_better = true;
+// What one viewer shows, over all samples.
+struct Shown {
+  double mean = 0, worst = 0, torn_edges = 0;
 };
 
-// Adds up the errors of all poses and of all meshes whose deltas are fitted to the animations, or of all others.
-std::vector<ViewerRow> viewer_rows(const GltfBake& bake, bool of_animations) {
+Shown shown_of(const MotionError& error) { return {error.mean(), error.worst, error.torn_edges()}; }
+
+Shown shown_of(const ShownErrors& errors) { return {errors.mean, errors.worst, errors.torn_edges()}; }
+
+// What one viewer shows before and after.
+struct ViewerRow {
+  const Host* viewer = nullptr;
+  Shown before, after;
+  bool is_named = true, is_better = false;
+};
+
+// What bake itself measured: adds up the errors of all poses and of all meshes whose deltas are fitted to the
+// animations, or of all others. Its means are those of fewer samples than an audit's.
+std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   std::vector<ViewerRow> rows;
   for (const Host& viewer : kHosts) {
-    ViewerRow row{&viewer, {}};
-    bool any_better = false;
+    ViewerRow row{&viewer, {}, {}};
+    ShownErrors before, after;
     for (const BakedMesh& mesh : bake.meshes) {
       for (const HostChange& change : mesh.hosts) {
         if (change.host != viewer.name || is_of_animations(mesh) != of_animations) continue;
         for (const HostChange::Errors& of_kind : change.poses) {
           if (of_kind.before.judged == 0) continue;
-          add_errors(of_kind.before, row.errors.before);
-          add_errors(of_kind.after, row.errors.after);
+          add_errors(of_kind.before, before);
+          add_errors(of_kind.after, after);
         }
         row.is_named = change.is_named;
-        any_better |= change.is_better;
+        row.is_better |= change.is_better;
       }
     }
-    row.is_better = any_better;
-    if (row.errors.before.judged > 0) rows.push_back(row);
+    row.before = shown_of(before);
+    row.after = shown_of(after);
+    if (before.judged > 0) rows.push_back(row);
   }
   return rows;
+}
+
+// What the audits found, by which a file is judged after all, where there are any and no deltas are fitted to the
+// animations alone; else what bake measured.
+std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& report, bool of_animations) {
+  std::vector<ViewerRow> rows = measured_rows(bake, of_animations);
+  if (!report.audit || any_of_animations(bake)) return rows;
+  const std::vector<HostAudit>&before = report.audit->before.hosts, &after = report.audit->after.hosts;
+  for (ViewerRow& row : rows) {
+    for (std::size_t h = 0; h < std::min(before.size(), after.size()); ++h) {
+      if (before[h].host.name != row.viewer->name) continue;
+      row.before = shown_of(before[h].error);
+      row.after = shown_of(after[h].error);
+    }
+  }
+  return rows;
+}
+
+// Torn edges: "1,234", or "0.7" where there are few.
+std::string torn(double edges) {
+  if (edges < 10 && edges > 0) return formatted("{:.1g}", std::max(edges, 0.1));
+  return grouped(static_cast<std::size_t>(std::lround(edges)));
 }
 
 // Says what the errors in a table of viewers are those of.
@@ -130,8 +165,8 @@ std::string poses_words(bool of_animations) {
                        : "in what the file plays, and for each target alone";
 }
 
-std::string viewers_table(const GltfBake& bake, bool of_animations) {
-  const std::vector<ViewerRow> rows = viewer_rows(bake, of_animations);
+std::string viewers_table(const GltfBake& bake, const BakeReport& report, bool of_animations) {
+  const std::vector<ViewerRow> rows = viewer_rows(bake, report, of_animations);
   if (rows.empty()) return "";
   Table table;
   table.add_column("viewer", "", Table::Align::kLeft);
@@ -141,14 +176,16 @@ std::string viewers_table(const GltfBake& bake, bool of_animations) {
   table.add_column("after", "", Table::Align::kRight);
   table.add_column("torn edges", "", Table::Align::kRight);
   table.add_column("after", "", Table::Align::kRight);
-  for (const auto& [viewer, errors, is_named, is_better] : rows)
-    table.add_row({std::string(viewer->title), four_decimals(errors.before.mean), four_decimals(errors.after.mean),
-                   four_decimals(errors.before.worst), four_decimals(errors.after.worst),
-                   grouped(errors.before.tears[0]), grouped(errors.after.tears[0])});
+  for (const ViewerRow& row : rows)
+    table.add_row({std::string(row.viewer->title), four_decimals(row.before.mean), four_decimals(row.after.mean),
+                   four_decimals(row.before.worst), four_decimals(row.after.worst), torn(row.before.torn_edges),
+                   torn(row.after.torn_edges)});
   return formatted("\n{}:\n\n{}\n", poses_words(of_animations), table.text());
 }
 
-std::string viewers_text(const GltfBake& bake) { return viewers_table(bake, false) + viewers_table(bake, true); }
+std::string viewers_text(const GltfBake& bake, const BakeReport& report) {
+  return viewers_table(bake, report, false) + viewers_table(bake, report, true);
+}
 
 // "three.js, Babylon.js"
 std::string titles_of(const std::vector<ViewerRow>& rows) {
@@ -159,26 +196,25 @@ std::string titles_of(const std::vector<ViewerRow>& rows) {
 
 // The row with the largest mean afterwards.
 const ViewerRow& worst_of(const std::vector<ViewerRow>& rows) {
-  return *std::max_element(rows.begin(), rows.end(), [](const ViewerRow& a, const ViewerRow& b) {
-    return a.errors.after.mean < b.errors.after.mean;
-  });
+  return *std::max_element(rows.begin(), rows.end(),
+                           [](const ViewerRow& a, const ViewerRow& b) { return a.after.mean < b.after.mean; });
 }
 
 std::string rounded_change(double before, double after) { return formatted("{:.3g} -> {:.3g}", before, after); }
 
 // Says first how much better the file is, in which viewers, and how much larger.
-std::string verdict(const GltfBake& bake) {
+std::string verdict(const GltfBake& bake, const BakeReport& report) {
   std::vector<ViewerRow> better, left_out, others;
   for (const bool of_animations : {false, true})
-    for (const ViewerRow& row : viewer_rows(bake, of_animations))
+    for (const ViewerRow& row : viewer_rows(bake, report, of_animations))
       (!row.is_named ? others : row.is_better ? better : left_out).push_back(row);
   if (better.empty()) return "";
-  const auto& [before, after] = worst_of(better).errors;
+  const Shown before = worst_of(better).before, after = worst_of(better).after;
   std::string text = formatted("on average {} degrees, at worst {}", rounded_change(before.mean, after.mean),
                                rounded_change(before.worst, after.worst));
-  if (before.tears[0] + after.tears[0] > 0)
-    text += after.tears[0] == 0 ? ", no torn edges left"
-                                : formatted(", torn edges {} -> {}", grouped(before.tears[0]), grouped(after.tears[0]));
+  if (before.torn_edges + after.torn_edges > 0)
+    text += after.torn_edges == 0 ? ", no torn edges left"
+                                  : formatted(", torn edges {} -> {}", torn(before.torn_edges), torn(after.torn_edges));
   if (bake.bytes_of_file > 0) {
     const auto size = static_cast<double>(bake.bytes_of_file + bake.added_bytes - bake.left_out_bytes);
     text += formatted("; the file is {:.2f} times as large", size / static_cast<double>(bake.bytes_of_file));
@@ -186,10 +222,10 @@ std::string verdict(const GltfBake& bake) {
   text += formatted("\n({})\n", titles_of(better));
   const auto add_others = [&](const std::vector<ViewerRow>& rows, const char* words) {
     if (rows.empty()) return;
-    const auto& errors = worst_of(rows).errors;
-    text += formatted("{}{}: on average {} degrees, at worst {}\n", words, titles_of(rows),
-                      rounded_change(errors.before.mean, errors.after.mean),
-                      rounded_change(errors.before.worst, errors.after.worst));
+    const ViewerRow& row = worst_of(rows);
+    text +=
+        formatted("{}{}: on average {} degrees, at worst {}\n", words, titles_of(rows),
+                  rounded_change(row.before.mean, row.after.mean), rounded_change(row.before.worst, row.after.worst));
   };
   add_others(others, "in ");
   add_others(left_out, "no better in ");
@@ -275,6 +311,8 @@ std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& a
   if (respects.worst)
     add(formatted("where a normal is farthest off (by {} degrees, before by {})", four_decimals(after.worst),
                   four_decimals(before.worst)));
+  if (respects.torn)
+    add(formatted("in how many edges are torn ({}, before {})", torn(after.torn_edges()), torn(before.torn_edges())));
   if (respects.unlit)
     add(formatted("in how many cannot be lit ({}, before {})", counted(after.unlit, "pair", "pairs"),
                   grouped(before.unlit)));
@@ -332,7 +370,7 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
                 : "nothing to bake: no other normals are better as a whole in any of these viewers; the output is as "
                   "the input\n");
   }
-  text += verdict(bake);
+  text += verdict(bake, report);
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
   table.add_column("encoding", "", Table::Align::kLeft);
@@ -368,7 +406,7 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   if (tangents > 0)
     text += counted(tangents, "target has new tangents: its", "targets have new tangents: their") +
             " stored ones leaned on the right normals\n";
-  return text + left_text(bake) + viewers_text(bake) + left_over(bake) + lines_after(report);
+  return text + left_text(bake) + viewers_text(bake, report) + left_over(bake) + lines_after(report);
 }
 
 std::string plan_text(const GltfBake& bake, const BakeReport& report) {

@@ -35,7 +35,7 @@ const MESHES = { base: TEXT, animation: NAME };
 const OPTIONS = {
   audit: {
     ...READ, ...MESHES, rule: TEXT, weighting: TEXT, for: LIST, host: LIST, samples: NUMBER, poses: TEXT, weights: RANGE, path: TEXT,
-    tolerance: NUMBER, noWeld: FLAG,
+    tolerance: NUMBER, tears: NUMBER, noWeld: FLAG,
   },
   bake: {
     ...READ, for: LIST, encode: TEXT, weighting: TEXT, crease: NUMBER, recomputeBase: FLAG, smooth: FLAG, maxBytes: NUMBER,

@@ -64,6 +64,8 @@ export interface AuditOptions extends MotionOptions {
   /** How vertices move between the keyframes of a sequence, which is not glTF but .npz, for example: straight by default. */
   path?: PathName;
   tolerance?: number;
+  /** The most edges of a glTF file that may be torn at a moment. */
+  tears?: number;
   noWeld?: boolean;
 }
 

@@ -51,6 +51,10 @@ export interface MotionError {
   /** Samples without a right normal although the faces around have an area: no tolerance allows any. */
   cancelled: number;
   unlit: number;
+  /** Edges over which errors jump by more than 10, 20 and 40 degrees: on average over the samples. Of glTF files. */
+  torn_edges?: [number, number, number];
+  /** Those beyond 10 degrees at the sample with most of them. */
+  most_torn_edges?: number;
 }
 
 export interface HistogramBin {
@@ -80,7 +84,7 @@ export interface AuditSubject extends MotionError {
   histogram: HistogramBin[];
 }
 
-export interface HostAudit extends MotionError {
+export interface ViewerAudit extends MotionError {
   name: string;
   title: string;
   normals: 'sum' | 'unit' | 'clamped';
@@ -113,7 +117,7 @@ export interface AuthoredOffset {
 
 export interface AuditFinding {
   kind: 'unlit' | 'missing_normals' | 'wrong_at_keys' | 'wrong_between' | 'wrong_together' | 'wrong_pose' | 'stale_tangents' | 'stale_keys'
-    | 'unknown_rule' | 'flat_primitive' | 'skin' | 'unread_skin' | 'baked' | 'emptied' | 'baked_keyframes' | 'beyond_host';
+    | 'unknown_rule' | 'flat_primitive' | 'skin' | 'unread_skin' | 'baked' | 'emptied' | 'baked_keyframes' | 'beyond_viewer';
   fault: boolean;
   mesh: number | null;
   target: number | null;
@@ -121,25 +125,26 @@ export interface AuditFinding {
   node: number | null;
   expression: number | null;
   count: number;
-  host: string | null;
+  viewer: string | null;
   reason: string | null;
   worst_degrees: number | null;
   worst_at: AuditPlace | null;
 }
 
-export interface AuditReport extends Head<'audit', 1>, MotionError, CurvedPath {
+export interface AuditReport extends Head<'audit', 2>, MotionError, CurvedPath {
   input: { name: string };
   rule: string;
   weighting: Weighting | null;
   stored_normals: boolean;
   tolerance_degrees: number | null;
+  tolerance_torn_edges: number | null;
   passed: boolean | null;
   worst_subject: number | null;
   worst_at: AuditPlace | null;
   histogram: HistogramBin[];
   still: number;
   subjects: AuditSubject[];
-  hosts: HostAudit[];
+  viewers: ViewerAudit[];
   authored_offsets: AuthoredOffset[];
   findings: AuditFinding[];
 }
@@ -153,14 +158,21 @@ export interface BakeAudit {
   mean_degrees_after: number;
   unlit_before: number;
   unlit_after: number;
+  torn_edges_before: number;
+  torn_edges_after: number;
   worse: boolean;
+}
+
+export interface WholeBakeAudit extends BakeAudit {
+  /** What each viewer shows, of those that the bake is made for and that it spares; none of sequences. */
+  viewers: Array<BakeAudit & { viewer: string }>;
 }
 
 export interface ShownErrors {
   mean_degrees: number;
   most_degrees: number;
   worst_degrees: number;
-  /** Pairs of an edge and a pose at which errors jump by more than 10, 20 and 40 degrees. */
+  /** Edges over which errors jump by more than 10, 20 and 40 degrees: on average over the poses. */
   torn_edges: [number, number, number];
 }
 
@@ -235,7 +247,7 @@ export interface GltfBakeReport extends BakeHead {
   converted_tracks: number;
   pointers: string[];
   drivers: string | null;
-  audit?: BakeAudit;
+  audit?: WholeBakeAudit;
 }
 
 /** What bake() says of a sequence, of which it makes a glTF file. */
@@ -250,7 +262,7 @@ export interface SequenceBakeReport extends BakeHead, CurvedPath {
   bound_degrees: number;
   without_normals: number;
   keys?: { count: number; in_between: number; keyframes_left_out: number; even: number; beyond: number };
-  audit?: BakeAudit;
+  audit?: WholeBakeAudit;
 }
 
 /** Which of the two it is, a key of one alone says: 'meshes' in report. */

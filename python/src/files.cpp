@@ -100,7 +100,7 @@ py::tuple audit_source(const py::dict& source, const std::string& rule, const st
     if (!normals) return normals.error();
     return audit(*motion.value(), *normals.value(), options);
   });
-  return py::make_tuple(audit_json(input.name(), found, tolerance), dicts_of(std::move(found.errors)));
+  return py::make_tuple(audit_json(input.name(), found, {tolerance}), dicts_of(std::move(found.errors)));
 }
 
 py::tuple compare_source(const py::dict& source, const std::vector<std::string>& schemes, std::size_t samples,

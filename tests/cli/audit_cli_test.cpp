@@ -62,7 +62,8 @@ void expect_words(const std::string& text, const std::vector<std::string>& words
 
 TEST_F(AuditCli, verdict_comes_first_and_what_to_do_last) {
   const std::string text = text_of("hinge.glb");
-  EXPECT_EQ(text.find("hinge.glb: worst 90.00 degrees, mean "), 0U) << text;
+  EXPECT_EQ(text.find("hinge.glb: wrong by 28.33 degrees on average, by 90.00 at worst, 3 torn edges on average\n"), 0U)
+      << text;
   expect_words(text,
                {"vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n",
                 "shown by the rule gltf, from the stored normals; 126 pairs judged in 2 motions\n",
@@ -82,11 +83,23 @@ TEST_F(AuditCli, verdict_comes_first_and_what_to_do_last) {
 TEST_F(AuditCli, tolerance_is_a_gate) {
   const ProcessResult beyond = run("hinge.glb --tolerance 89.9");
   EXPECT_EQ(beyond.exit_code, 4);
-  expect_words(beyond.out, {"worst 90.00 degrees, ", ", beyond 89.9 degrees\n"});
+  expect_words(beyond.out, {"by 90.00 at worst", ": beyond 89.9 degrees\n"});
   EXPECT_EQ(beyond.err,
             "chronormal audit: the worst error is 90 degrees, beyond the tolerance of 89.9: "
             "vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n");
-  expect_words(text_of("hinge.glb --tolerance 90.1"), {", within 90.1 degrees\n"});
+  expect_words(text_of("hinge.glb --tolerance 90.1"), {": within 90.1 degrees\n"});
+  // Three edges are torn at one moment, in viewers too.
+  EXPECT_EQ(run("hinge.glb --tears 3").exit_code, 0);
+  const ProcessResult torn = run("hinge.glb --tears 2 --tolerance 91");
+  EXPECT_EQ(torn.exit_code, 4);
+  EXPECT_EQ(torn.err, "chronormal audit: at one moment 3 edges are torn, beyond the limit of 2\n");
+  expect_words(torn.out, {": beyond 91 degrees and 2 torn edges\n"});
+  const ProcessResult in_viewer = run("hinge.glb --tears 2 --for three --json");
+  EXPECT_EQ(in_viewer.exit_code, 4);
+  const Json torn_json = Json::parse(in_viewer.out);
+  EXPECT_EQ(torn_json["tolerance_torn_edges"], 2);
+  EXPECT_EQ(torn_json["viewers"][0]["most_torn_edges"], 3);
+  EXPECT_EQ(torn_json["viewers"][0]["passed"], false);
   const ProcessResult json = run("hinge.glb --tolerance 1 --json");
   EXPECT_EQ(json.exit_code, 4);
   EXPECT_EQ(Json::parse(json.out)["passed"], false);
@@ -96,7 +109,7 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
 
 TEST_F(AuditCli, hosts_have_a_row_each_below_the_specification) {
   const std::string text = text_of("hinge.glb --for three,godot");
-  expect_words(text, {"\nhost ", "\n(specification) ", "\nthree.js ", "\nGodot 4 "});
+  expect_words(text, {"\nviewer ", "\n(specification) ", "\nthree.js ", "\nGodot 4 "});
   EXPECT_LT(text.find("(specification)"), text.find("three.js"));
   EXPECT_LT(text.find("three.js"), text.find("Godot 4"));
   EXPECT_LT(text.find("Godot 4"), text.find("\nmotion "));
@@ -108,8 +121,8 @@ TEST_F(AuditCli, hosts_have_a_row_each_below_the_specification) {
 
 TEST_F(AuditCli, hosts_are_in_the_json_with_their_errors_and_sources) {
   const Json json = json_of("hinge.glb --for filament,gltfpack");
-  ASSERT_EQ(json["hosts"].size(), 2U);
-  const Json& filament = json["hosts"][0];
+  ASSERT_EQ(json["viewers"].size(), 2U);
+  const Json& filament = json["viewers"][0];
   EXPECT_EQ(filament["name"], "filament");
   EXPECT_EQ(filament["title"], "Filament");
   EXPECT_EQ(filament["normals"], "unit");
@@ -125,9 +138,9 @@ TEST_F(AuditCli, hosts_are_in_the_json_with_their_errors_and_sources) {
   EXPECT_EQ(filament["worst_at"]["vertex"], 3);
   EXPECT_EQ(filament["worst_subject"], 0);
   EXPECT_EQ(filament["displaced_share"], 0.0);
-  EXPECT_EQ(json["hosts"][1]["most_targets"], Json());
-  EXPECT_EQ(json["hosts"][1]["tracks"], "all_resampled");
-  EXPECT_EQ(json_of("hinge.glb")["hosts"], Json::array());
+  EXPECT_EQ(json["viewers"][1]["most_targets"], Json());
+  EXPECT_EQ(json["viewers"][1]["tracks"], "all_resampled");
+  EXPECT_EQ(json_of("hinge.glb")["viewers"], Json::array());
 }
 
 TEST_F(AuditCli, tolerance_is_a_gate_for_every_host_that_is_named) {
@@ -140,14 +153,14 @@ TEST_F(AuditCli, tolerance_is_a_gate_for_every_host_that_is_named) {
   EXPECT_EQ(run(one_weight + " --for three,godot").exit_code, 0);
   const ProcessResult half_way = run("long.glb --samples 3 --tolerance 20 --for three,godot");
   EXPECT_EQ(half_way.exit_code, 4);
-  expect_words(half_way.out, {"within 20 degrees in 1 of 2 hosts\n", "beyond the tolerance"});
+  expect_words(half_way.out, {"within 20 degrees in 1 of 2 viewers\n", "beyond the limits"});
   expect_words(half_way.err, {"chronormal audit: three.js: the worst error is ",
                               " degrees, beyond the tolerance of 20: vertex 3 of "});
   EXPECT_EQ(half_way.err.find("Godot"), std::string::npos);
   const Json json = Json::parse(run("long.glb --samples 3 --tolerance 20 --for three,godot --json").out);
   EXPECT_EQ(json["passed"], false);
-  EXPECT_EQ(json["hosts"][0]["passed"], false);
-  EXPECT_EQ(json["hosts"][1]["passed"], true);
+  EXPECT_EQ(json["viewers"][0]["passed"], false);
+  EXPECT_EQ(json["viewers"][1]["passed"], true);
   EXPECT_EQ(Json::parse(run("long.glb --samples 3 --tolerance 20 --for godot --json").out)["passed"], true);
 }
 
@@ -172,7 +185,7 @@ TEST_F(AuditCli, gate_is_shut_for_what_cannot_be_lit) {
       const ProcessResult result = run(file + " --tolerance " + tolerance);
       EXPECT_EQ(result.exit_code, 4);
       expect_words(result.out,
-                   {"worst 180.00 degrees, ", " cannot be lit, which counts as 180 degrees: the first is at vertex ",
+                   {"by 180.00 at worst", " cannot be lit, which counts as 180 degrees: the first is at vertex ",
                     " cannot be lit: what is shown is zero, infinite or no number (vertex "});
       expect_words(result.err, {" cannot be lit, which no tolerance allows: vertex "});
     }
@@ -189,10 +202,10 @@ TEST_F(AuditCli, gate_is_shut_for_what_cannot_be_lit) {
   EXPECT_EQ(json_of("hinge.glb")["subjects"][0]["unlit_at"], Json());
 }
 
-TEST_F(AuditCli, json_is_one_object_with_schema_1) {
+TEST_F(AuditCli, json_is_one_object_with_schema_2) {
   const Json json = json_of("hinge.glb --samples 2");
   EXPECT_EQ(json["command"], "audit");
-  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["schema"], 2);
   EXPECT_EQ(json["input"]["name"], "hinge.glb");
   EXPECT_EQ(json["rule"], "gltf");
   EXPECT_EQ(json["weighting"], "area");
@@ -226,11 +239,11 @@ TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_host)
   EXPECT_GT(json["worst_degrees"], 4);
   expect_words(
       text_of("bare.obj a.obj --rule slerp"),
-      {"normals that a host computes at keyframes, where none are stored", "right at keyframes, and off by up to"});
+      {"normals that a viewer computes at keyframes, where none are stored", "right at keyframes, and off by up to"});
 }
 
 TEST_F(AuditCli, built_in_morphs_and_targets_of_a_base_are_inputs) {
-  expect_words(text_of("--sample twist --samples 3"), {"twist: worst ", "chronormal bake --sample twist"});
+  expect_words(text_of("--sample twist --samples 3"), {"twist: wrong by ", "chronormal bake --sample twist"});
   expect_words(text_of("--base a.obj b.obj bare.obj --rule slerp"),
                {"put the targets into a glTF file, and bake that\n"});
   const Json json = json_of("--base a.obj b.obj bare.obj");
@@ -241,9 +254,9 @@ TEST_F(AuditCli, built_in_morphs_and_targets_of_a_base_are_inputs) {
 
 TEST_F(AuditCli, file_comes_on_standard_input_and_leaves_by_o) {
   const std::string bytes = test::read_whole(folder_ / "hinge.glb");
-  expect_words(text_of("-", bytes), {"<stdin>: worst 90.00"});
+  expect_words(text_of("-", bytes), {"<stdin>: wrong by 28.33 degrees"});
   EXPECT_EQ(text_of("hinge.glb --json -o out.json"), "");
-  EXPECT_EQ(Json::parse(test::read_whole(folder_ / "out.json"))["schema"], 1);
+  EXPECT_EQ(Json::parse(test::read_whole(folder_ / "out.json"))["schema"], 2);
   expect_error("hinge.glb -o out.json", 1, "out.json");
 }
 
@@ -499,7 +512,7 @@ TEST_F(AuditCli, several_gltf_files_are_a_row_each) {
   expect_words(all.out, {"nothing moves\n", "not judged\n", "wrong: bake it\n"});
   const Json json = Json::parse(run("'models/m*.glb' hinge.glb --json").out);
   EXPECT_EQ(json["command"], "audit");
-  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["schema"], 2);
   EXPECT_EQ(json["passed"], Json());
   ASSERT_EQ(json["files"].size(), 3U);
   EXPECT_EQ(json["files"][1]["input"]["name"], "models/m10.glb");
@@ -519,7 +532,7 @@ TEST_F(AuditCli, exit_code_of_several_is_that_of_the_worst) {
   EXPECT_EQ(beyond.err.find("chronormal audit: hinge.glb: the worst error is 90 degrees, beyond the tolerance of 1"),
             0U)
       << beyond.err;
-  expect_words(beyond.out, {"beyond 1\n"});
+  expect_words(beyond.out, {"beyond the limits\n"});
   EXPECT_EQ(run("still.glb hinge.glb").exit_code, 0);
   EXPECT_EQ(run("hinge.glb broken.glb still.glb --tolerance 1").exit_code, 3);
   const ProcessResult missing = run("hinge.glb missing.glb broken.glb --tolerance 1 --json");

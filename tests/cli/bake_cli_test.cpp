@@ -258,11 +258,12 @@ TEST_F(BakeCli, a_result_that_is_better_in_one_respect_and_worse_in_another_is_t
     if (grown("mean_degrees") > -0.01 || grown("worst_degrees") < 0.1) continue;
     ++mixed;
     EXPECT_EQ(audit["worse"], true);
-    expect_words(result.err, {"by audit the result is better than the input on average (normals are off by " +
-                              figure("mean_degrees_after") + " degrees, before by " + figure("mean_degrees_before") +
-                              "), but worse where a normal is farthest off (by " + figure("worst_degrees_after") +
-                              " degrees, before by " + figure("worst_degrees_before") +
-                              "); this counts targets alone as well, which --animations-only gives up\n"});
+    expect_words(result.err,
+                 {"by audit the result is better than the input on average (normals are off by " +
+                      figure("mean_degrees_after") + " degrees, before by " + figure("mean_degrees_before") + ")",
+                  ", but worse where a normal is farthest off (by " + figure("worst_degrees_after") +
+                      " degrees, before by " + figure("worst_degrees_before") +
+                      "); this counts targets alone as well, which --animations-only gives up\n"});
     // The tables of viewers say which poses they are about.
     const std::string both = "in what the file plays, and for each target alone:",
                       tracks = "in what the file plays (targets alone, which --animations-only gives up, are";

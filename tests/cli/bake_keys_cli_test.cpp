@@ -39,7 +39,7 @@ TEST_F(BakeKeysCommand, report_counts_keys_and_what_they_save) {
   // The mark is that of harmless, so that everything that reads it knows what it is.
   const Json audited = Json::parse(
       run_shell(std::string(kProgram) + " audit bend.glb --json --for three --tolerance 2.01", folder_.path()).out);
-  EXPECT_LE(audited["hosts"][0]["worst_degrees"], 2.01) << audited;
+  EXPECT_LE(audited["viewers"][0]["worst_degrees"], 2.01) << audited;
 }
 
 TEST_F(BakeKeysCommand, a_collapse_is_beyond_what_was_asked_for) {

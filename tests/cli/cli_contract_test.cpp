@@ -262,6 +262,7 @@ const std::map<std::string, std::string> kUses = {
     {"--tolerance", "a.obj b.obj --tolerance 1"},
     {"--truth", "a.obj b.obj a.obj --truth 2"},
     {"--weighting", "a.obj b.obj --weighting angle"},
+    {"--tears", "shaded.glb --tears 9"},
     {"--weights", "--base a.obj b.obj --weights 0.5"},
     {"--world", "face.glb --world"},
 };
@@ -348,7 +349,7 @@ TEST_F(Cli, colours_are_for_terminals) {
   const ProcessResult piped = with("", audit), forced = with("CLICOLOR_FORCE=1", audit);
   EXPECT_EQ((piped.out + piped.err).find('\033'), std::string::npos);
   EXPECT_NE(forced.out.find("\033[1mFaults:\033[0m\n"), std::string::npos) << forced.out;
-  EXPECT_NE(forced.out.find("worst \033[1;31m90.00\033[0m degrees"), std::string::npos) << forced.out;
+  EXPECT_NE(forced.out.find("by \033[1;31m90.00\033[0m at worst"), std::string::npos) << forced.out;
   EXPECT_TRUE(forced.err.starts_with("\033[1;31mchronormal audit:\033[0m the worst")) << forced.err;
   EXPECT_EQ(with("CLICOLOR_FORCE=1 NO_COLOR=1", audit).out, piped.out);
   EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " --json").out, with("", audit + " --json").out);

@@ -58,7 +58,7 @@ TEST_F(ReportCli, table_says_what_was_written_and_where_the_worst_places_are) {
   const Json audit = Json::parse(
       run_shell(std::string(kProgram) + " audit hinge.glb --for all,gltfpack,quantize,meshopt --json", folder_.path())
           .out);
-  for (const char* field : {"worst_degrees", "worst_at", "subjects", "hosts", "findings"})
+  for (const char* field : {"worst_degrees", "worst_at", "subjects", "viewers", "findings"})
     EXPECT_EQ(file.json["audit"][field], audit[field]) << field;
   const Json plan = Json::parse(run_shell(std::string(kProgram) + " bake hinge.glb --plan --json", folder_.path()).out);
   EXPECT_EQ(file.json["plan"]["meshes"], plan["meshes"]);

@@ -234,7 +234,7 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
     options.rule = rule;
     options.samples = 5;
     options.weld = false;
-    const std::string whole = audit_json("m", audit(motion, {}, options).value(), 1);
+    const std::string whole = audit_json("m", audit(motion, {}, options).value(), {1});
     for (const std::size_t count : {1U, 2U, 3U, 5U, 8U}) {
       Meeting meeting(count);
       std::vector<Part> parts(count);

@@ -13,7 +13,7 @@ const select = (label, options, value, onChoose) => {
 };
 
 const hostTitle = (report, name) =>
-  name === 'specification' ? 'glTF to the letter' : report.audit?.hosts?.find((host) => host.name === name)?.title ?? name;
+  name === 'specification' ? 'glTF to the letter' : report.audit?.viewers?.find((host) => host.name === name)?.title ?? name;
 
 /** What a host shows, in the label above the picture. */
 export const shownBy = (report, player) => {
@@ -101,10 +101,10 @@ export function weightSliders(player) {
 
 /** What each host shows of the file, the whole audit in a row. */
 export function hostTable({ audit }) {
-  if (!audit?.hosts?.length) return null;
+  if (!audit?.viewers?.length) return null;
   const row = (title, { worst_degrees: worst, percentile_99_9_degrees: most, mean_degrees: mean }) =>
     ({ cells: [title, degreesText(mean), degreesText(most), degreesText(worst)] });
-  const rows = [row('glTF to the letter', audit), ...audit.hosts.map((host) => row(host.title, host))];
+  const rows = [row('glTF to the letter', audit), ...audit.viewers.map((host) => row(host.title, host))];
   return panel('What hosts show', false, table('Errors in each host', ['host', 'mean ', '99.9 % below ', 'worst '], rows));
 }
 

@@ -25,7 +25,7 @@ enum class Remedy {
 };
 
 // A normal that is off by more is worth a line: a fault, or what was asked for.
-double limit_of(const Audited& input) { return std::min(kAuditFault, input.tolerance.value_or(kAuditFault)); }
+double limit_of(const Audited& input) { return std::min(kAuditFault, input.limits.degrees.value_or(kAuditFault)); }
 
 bool is_wrong(const AuditSubject& subject, double limit) { return !subject.error.is_within(limit); }
 
@@ -171,7 +171,7 @@ std::string advice(const Audited& input) {
 
 std::string verdict(const Audited& input) {
   if (input.audit.subjects.empty()) return "nothing moves";
-  if (input.tolerance) return formatted("{} {:g}", input.passed() ? "within" : "beyond", *input.tolerance);
+  if (input.limits.any()) return input.passed() ? "within the limits" : "beyond the limits";
   switch (remedy_of(input)) {
     case Remedy::kNone:
       return "right";

@@ -35,7 +35,7 @@ AuditedFile::AuditedFile(const Audited& audited)
       error(audited.audit.error),
       faults(count_fault_lines(audited.audit)),
       verdict(cli::verdict(audited)),
-      json(audit_object(audited.name(), audited.audit, audited.tolerance)) {}
+      json(audit_object(audited.name(), audited.audit, audited.limits)) {}
 
 AuditedFile::AuditedFile(std::string file, const Error& why)
     : name(std::move(file)), verdict("not judged"), json({{"input", {{"name", name}}}, {"error", why.text()}}) {}
@@ -59,16 +59,17 @@ std::string audit_files_text(const std::vector<AuditedFile>& files) {
   return headline(files) + '\n' + table.text() + "\nchronormal audit FILE says where, and what to do about it\n";
 }
 
-std::string audit_files_json(std::vector<AuditedFile> files, std::optional<double> tolerance) {
-  Json json = json_of_command("audit");
-  json["tolerance_degrees"] = or_null(tolerance);
+std::string audit_files_json(std::vector<AuditedFile> files, const AuditLimits& limits) {
+  Json json = json_of_command("audit", kAuditSchema);
+  json["tolerance_degrees"] = or_null(limits.degrees);
+  json["tolerance_torn_edges"] = or_null(limits.torn_edges);
   const bool passed = std::all_of(files.begin(), files.end(), [](const AuditedFile& file) {
     return file.json.contains("passed") && file.json["passed"] == true;
   });
   const bool any_judged = std::any_of(files.begin(), files.end(), [](const AuditedFile& file) {
     return file.error && file.error->judged + file.error->faint > 0;
   });
-  json["passed"] = tolerance ? Json(passed && any_judged) : Json();
+  json["passed"] = limits.any() ? Json(passed && any_judged) : Json();
   json["files"] = Json::array();
   for (AuditedFile& file : files) json["files"].push_back(std::move(file.json));
   return json_text(json);

@@ -29,7 +29,7 @@ struct AuditedFile {
 [[nodiscard]] std::string audit_files_text(const std::vector<AuditedFile>& files);
 
 /// One JSON object: "files" has one for each, and "passed" says whether all of them did.
-[[nodiscard]] std::string audit_files_json(std::vector<AuditedFile> files, std::optional<double> tolerance);
+[[nodiscard]] std::string audit_files_json(std::vector<AuditedFile> files, const AuditLimits& limits);
 
 }  // namespace chronormal::cli
 

@@ -27,11 +27,25 @@ constexpr double kSeen = 0.005;                     // degrees: what two decimal
 constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the pairs
 constexpr double kDisplaced = 1e-5;                 // a share of the size that is worth a word
 
-std::string tolerance_words(const Audited& input) {
-  const std::vector<HostAudit>& hosts = input.audit.hosts;
-  if (hosts.empty()) return formatted("{} {:g} degrees", input.passed() ? "within" : "beyond", *input.tolerance);
-  const auto within = std::count_if(hosts.begin(), hosts.end(), [&](const HostAudit& h) { return input.passed(h); });
-  return formatted("within {:g} degrees in {} of {}", *input.tolerance, within, counted(hosts.size(), "host", "hosts"));
+// "within 1 degree and 0 torn edges", in how many viewers.
+std::string limits_words(const Audited& input) {
+  std::string limits;
+  if (input.limits.degrees) limits = formatted("{:g} {}", *input.limits.degrees, *input.limits.degrees == 1 ? "degree" : "degrees");
+  if (input.limits.torn_edges)
+    limits += (limits.empty() ? "" : " and ") + counted(*input.limits.torn_edges, "torn edge", "torn edges");
+  const std::vector<HostAudit>& viewers = input.audit.hosts;
+  if (viewers.empty()) return formatted("{} {}", input.passed() ? "within" : "beyond", limits);
+  const auto within =
+      std::count_if(viewers.begin(), viewers.end(), [&](const HostAudit& viewer) { return input.passed(viewer); });
+  return formatted("within {} in {} of {}", limits, within, counted(viewers.size(), "viewer", "viewers"));
+}
+
+// Torn edges at one sample, on average: "-" where nobody counted them.
+std::string torn(const MotionError& error) {
+  if (error.samples == 0) return "-";
+  const double edges = error.torn_edges();
+  if (edges >= 10 || edges == std::floor(edges)) return grouped(static_cast<std::size_t>(std::lround(edges)));
+  return formatted("{:.2g}", edges);
 }
 
 // Which normals are right, where these are others than usual.
@@ -48,14 +62,16 @@ std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
   std::string text = heading(printable(input.name())) + ": ";
   if (audit.subjects.empty()) return text + "nothing to judge: no target and no animation moves stored normals\n";
-  text += formatted("worst {} degrees, mean {}, 99 % {}, 99.9 % {}", judged_degrees(audit.error.worst),
-                    degrees(audit.error.mean()), degrees(audit.error.percentile(kMost)),
-                    degrees(audit.error.percentile(kNearlyAll)));
-  if (input.tolerance) text += ", " + tolerance_words(input);
-  text += '\n';
+  text += formatted("wrong by {} degrees on average, by {} at worst", degrees(audit.error.mean()),
+                    judged_degrees(audit.error.worst));
+  if (audit.error.samples > 0)
+    text += audit.error.most_torn == 0 ? ", no torn edges" : formatted(", {} torn edges on average", torn(audit.error));
+  if (input.limits.any()) text += ": " + limits_words(input);
+  text += formatted("\n  99 % of the normals are within {} degrees, 99.9 % within {}\n",
+                    degrees(audit.error.percentile(kMost)), degrees(audit.error.percentile(kNearlyAll)));
   if (audit.worst) text += "  the worst is at " + worst_label(input) + '\n';
   const char* source =
-      audit.stored ? "the stored normals" : "normals that a host computes at keyframes, where none are stored";
+      audit.stored ? "the stored normals" : "normals that a viewer computes at keyframes, where none are stored";
   if (audit.rule == AuditRule::kFlat) source = "the faces";
   text += formatted("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
                     pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
@@ -75,7 +91,7 @@ std::string headline(const Audited& input) {
         "the "
         "first is at\n  {}; nobody knows what is right there, and no --tolerance allows it\n",
         grouped(audit.error.cancelled), cancelled_label(input));
-  if (audit.error.faint_worst > input.tolerance.value_or(kAuditFault))
+  if (audit.error.faint_worst > input.limits.degrees.value_or(kAuditFault))
     text += formatted("  {} of these have one all the same, and are off by up to {} degrees: --tolerance counts them\n",
                       grouped(audit.error.faint), degrees(audit.error.faint_worst));
   if (audit.error.unlit > 0)
@@ -92,10 +108,11 @@ std::string subject_table(const Audited& input) {
   Table table;
   table.add_column("motion", "", Align::kLeft);
   table.add_column("worst", "degrees", Align::kRight);
-  table.add_column("mean", "degrees", Align::kRight);
+  table.add_column("average", "degrees", Align::kRight);
   table.add_column("99 %", "degrees", Align::kRight);
   table.add_column("99.9 %", "degrees", Align::kRight);
   table.add_column("at keys", "degrees", Align::kRight);
+  if (input.audit.error.samples > 0) table.add_column("torn", "edges", Align::kRight);
   table.add_column("worst at", "vertex", Align::kRight);
   table.add_column("", "", Align::kLeft);
   table.add_column("vertices", "that move", Align::kRight);
@@ -103,12 +120,18 @@ std::string subject_table(const Audited& input) {
   for (const std::size_t s : indices_of_largest(errors, kMostAuditRows)) {
     const AuditSubject& subject = subjects[s];
     const bool some = subject.error.worst > 0;
-    table.add_row({subject_words(input, subject), judged_degrees(subject.error.worst), degrees(subject.error.mean()),
-                   degrees(subject.error.percentile(kMost)), degrees(subject.error.percentile(kNearlyAll)),
-                   degrees(subject.at_keys.worst), some ? formatted("{}", subject.error.worst_at.vertex) : "-",
-                   some ? moment_words(subject, subject.error.worst_at.at) : "", grouped(subject.vertices),
-                   subject.segments > 1 ? formatted("{} x {}", grouped(subject.segments), subject.samples)
-                                        : formatted("{}", subject.samples)});
+    std::vector<std::string> cells = {subject_words(input, subject),
+                                      judged_degrees(subject.error.worst),
+                                      degrees(subject.error.mean()),
+                                      degrees(subject.error.percentile(kMost)),
+                                      degrees(subject.error.percentile(kNearlyAll)),
+                                      degrees(subject.at_keys.worst)};
+    if (input.audit.error.samples > 0) cells.push_back(torn(subject.error));
+    cells.insert(cells.end(), {some ? formatted("{}", subject.error.worst_at.vertex) : "-",
+                               some ? moment_words(subject, subject.error.worst_at.at) : "", grouped(subject.vertices),
+                               subject.segments > 1 ? formatted("{} x {}", grouped(subject.segments), subject.samples)
+                                                    : formatted("{}", subject.samples)});
+    table.add_row(std::move(cells));
   }
   std::string text = table.text();
   if (subjects.size() > kMostAuditRows)
@@ -117,27 +140,29 @@ std::string subject_table(const Audited& input) {
   return text;
 }
 
-// Prints a row of errors for each host. The first row is a host that follows the specification; the tables that come
-// after this one are about that host alone.
-std::string host_table(const Audited& input) {
+// Prints a row of errors for each viewer. The first row is one that follows the specification; the tables that come
+// after this one are about that one alone.
+std::string viewer_table(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.hosts.empty()) return "";
   Table table;
-  table.add_column("host", "", Align::kLeft);
-  for (const char* const title : {"mean", "99 %", "99.9 %", "worst"}) table.add_column(title, "degrees", Align::kRight);
+  table.add_column("viewer", "", Align::kLeft);
+  for (const char* const title : {"average", "99 %", "99.9 %", "worst"})
+    table.add_column(title, "degrees", Align::kRight);
+  table.add_column("torn", "edges", Align::kRight);
   table.add_column("unlit", "pairs", Align::kRight);
   table.add_column("displaced", "% of size", Align::kRight);
   table.add_column("", "", Align::kLeft);
   const auto add_row = [&](std::string_view title, const MotionError& error, const std::string& displaced,
                            const std::string& note) {
     table.add_row({std::string(title), degrees(error.mean()), degrees(error.percentile(kMost)),
-                   degrees(error.percentile(kNearlyAll)), judged_degrees(error.worst), grouped(error.unlit), displaced,
-                   note});
+                   degrees(error.percentile(kNearlyAll)), judged_degrees(error.worst), torn(error),
+                   grouped(error.unlit), displaced, note});
   };
   add_row("(specification)", audit.error, "-", "");
   for (const HostAudit& found : audit.hosts) {
     std::string note = found.beyond > 0 ? "too many targets" : "";
-    if (note.empty() && !input.passed(found)) note = "beyond the tolerance";
+    if (note.empty() && !input.passed(found)) note = "beyond the limits";
     add_row(found.host.title, found.error,
             found.displaced > kDisplaced ? formatted("{:.2g}", 100 * found.displaced) : "-", note);
   }
@@ -236,7 +261,7 @@ std::string faint_label(const Audited& input) {
 std::string audit_text(const Audited& input) {
   std::string text = headline(input);
   if (!input.audit.subjects.empty())
-    text += host_table(input) + '\n' + subject_table(input) + '\n' + histogram(input.audit.error);
+    text += viewer_table(input) + '\n' + subject_table(input) + '\n' + histogram(input.audit.error);
   return with_headings(text + offset_lines(input) + fault_lines(input) + note_lines(input) + advice(input));
 }
 

@@ -14,16 +14,16 @@ namespace chronormal::cli {
 struct Audited {
   Input opened;
   Audit audit;
-  std::optional<double> tolerance;  ///< degrees; nothing: none was asked for
-  std::string bake;                 ///< the inputs as words of a command line; empty: bake takes none such
+  AuditLimits limits;
+  std::string bake;  ///< the inputs as words of a command line; empty: bake takes none such
 
   [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
   /// The glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
-  [[nodiscard]] bool passed(const HostAudit& host) const { return !tolerance || host.is_within(*tolerance); }
-  /// Whether the tolerance is kept: in every host that was named, or by the rule where none was. A file in which
-  /// nothing moves keeps it.
-  [[nodiscard]] bool passed() const { return !tolerance || audit.is_within(*tolerance); }
+  [[nodiscard]] bool passed(const HostAudit& host) const { return limits.allow(host); }
+  /// Whether the limits are kept: in every viewer that was named, or by the rule where none was. A file in which nothing
+  /// moves keeps them.
+  [[nodiscard]] bool passed() const { return limits.allow(audit); }
 };
 
 /// The verdict first, tables of the motions and of the errors, what was found, and what to do. Long tables are cut.

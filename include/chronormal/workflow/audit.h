@@ -82,6 +82,8 @@ inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< of a segment
 struct AuditOptions {
   std::optional<AuditRule> rule = {};       ///< nothing: kGltf for glTF, kNlerp for sequences
   std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, or fewer in long tracks (about 210 in all)
+  /// glTF: of longer tracks every second, third or later segment is judged, so that about so many are. 0: all are.
+  std::size_t most_segments = 0;
   std::string animation = {};  ///< glTF: this one alone, by name or index; empty: the targets and all of them
   /// Of the right normals: that of the program which the file comes from. Nothing: of each mesh, and of a sequence, the
   /// one that its stored base normals follow clearly, or else area.
@@ -209,6 +211,8 @@ struct HostAudit {
 
   /// Whether the host shows the file, and every pair as MotionError::passes() has it.
   [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.passes(degrees); }
+  /// Whether no more edges are torn than these at any sample.
+  [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept { return error.most_torn <= most_torn; }
 };
 
 struct Audit {
@@ -244,6 +248,25 @@ struct Audit {
     if (hosts.empty()) return error.passes(degrees);
     return std::all_of(hosts.begin(), hosts.end(),
                        [degrees](const HostAudit& host) { return host.is_within(degrees); });
+  }
+  /// Whether no more edges are torn than these at any sample, in any host that was named, or by the rule where none was.
+  [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept {
+    if (hosts.empty()) return error.most_torn <= most_torn;
+    return std::all_of(hosts.begin(), hosts.end(),
+                       [most_torn](const HostAudit& host) { return host.is_whole(most_torn); });
+  }
+};
+
+/// What an audit may find at most; what is empty allows anything.
+struct AuditLimits {
+  std::optional<double> degrees = {};          ///< of the worst error
+  std::optional<std::size_t> torn_edges = {};  ///< at one sample
+
+  [[nodiscard]] bool any() const noexcept { return degrees || torn_edges; }
+  /// Whether an audit, or one of its hosts, keeps to them.
+  template <class Found>
+  [[nodiscard]] bool allow(const Found& found) const noexcept {
+    return (!degrees || found.is_within(*degrees)) && (!torn_edges || found.is_whole(*torn_edges));
   }
 };
 

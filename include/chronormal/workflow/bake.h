@@ -107,6 +107,12 @@ struct ShownErrors {
   double worst = 0;
   /// Pairs of an edge and a pose at which errors jump by more than 10, 20 and 40 degrees.
   std::array<std::size_t, 3> tears{};
+  std::size_t poses = 0;
+
+  /// The edges that are torn by more than 10 degrees, on average over the poses.
+  [[nodiscard]] double torn_edges() const noexcept {
+    return poses > 0 ? static_cast<double>(tears[0]) / static_cast<double>(poses) : 0;
+  }
 };
 
 /// The errors that a viewer shows of a mesh before and after a bake, seen through the skins of the nodes that carry it.

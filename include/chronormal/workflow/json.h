@@ -24,7 +24,7 @@ namespace chronormal {
 [[nodiscard]] std::string inspect_json(const Inspected& input);
 
 /// input is the name of what was audited. tolerance: degrees, which `passed` is about; nothing: none was asked for.
-[[nodiscard]] std::string audit_json(const std::string& input, const Audit& audit, std::optional<double> tolerance);
+[[nodiscard]] std::string audit_json(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
 struct NamedComparison {
   std::string name;

@@ -87,7 +87,17 @@ struct MotionError {
   /// nobody knows what is right.
   std::size_t cancelled = 0;
   AuditPlace cancelled_at;  ///< the first of them; means nothing where there are none
+  /// Edges over which errors jump by more than 10, 20 and 40 degrees: a picture shows a fold there that the surface does
+  /// not have. They are those of faces, and the seams between copies of a point, each counted once at every sample.
+  std::array<std::size_t, 3> torn{};
+  std::size_t samples = 0;    ///< at which they were counted; 0: nobody counted them, as in sequences
+  std::size_t most_torn = 0;  ///< beyond 10 degrees, at one sample
+  AuditPlace most_torn_at;    ///< the first sample with so many: mesh, segment and moment
 
+  /// The edges that are torn by more than 10 degrees, on average over the samples.
+  [[nodiscard]] double torn_edges() const noexcept {
+    return samples > 0 ? static_cast<double>(torn[0]) / static_cast<double>(samples) : 0;
+  }
   [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
   [[nodiscard]] double rms() const noexcept {
     return judged > 0 ? std::sqrt(sum_of_squares / static_cast<double>(judged)) : 0;
@@ -125,12 +135,12 @@ struct SkinningError {
 };
 
 /// In which respects what an audit found after a change is worse than what it found before: more pairs that cannot be
-/// lit, or a worst or mean error that grew by more than what the rounding of float32 may turn. With the two exchanged, in
-/// which respects it is better.
+/// lit, a worst or mean error that grew by more than what the rounding of float32 may turn, or more torn edges. With the
+/// two exchanged, in which respects it is better.
 struct WorseRespects {
-  bool unlit = false, mean = false, worst = false;
+  bool unlit = false, mean = false, worst = false, torn = false;
 
-  [[nodiscard]] bool any() const noexcept { return unlit || mean || worst; }
+  [[nodiscard]] bool any() const noexcept { return unlit || mean || worst || torn; }
 };
 [[nodiscard]] WorseRespects find_worse(const MotionError& after, const MotionError& before) noexcept;
 /// Whether it is worse in any respect.

@@ -13,6 +13,7 @@
 #include "workflow/errors/error_rows.h"
 #include "workflow/errors/shards.h"
 #include "workflow/sample/task_checksums.h"
+#include "workflow/shading/surface_edges.h"
 
 namespace chronormal {
 namespace {
@@ -104,7 +105,9 @@ WorseRespects find_worse(const MotionError& after, const MotionError& before) no
   // A mean may also grow because fewer pairs are judged, after deltas that were nothing but rounding are gone.
   const bool is_farther =
       after.mean() > before.mean() + kMean && after.sum > before.sum + kMean * static_cast<double>(after.judged);
-  return {after.unlit > before.unlit, is_farther, after.worst > before.worst + kWorst};
+  // Of a hundred edges one may be torn by rounding where it was next to that.
+  const bool is_torn = after.samples > 0 && before.samples > 0 && after.torn_edges() > 1.01 * before.torn_edges() + 0.5;
+  return {after.unlit > before.unlit, is_farther, after.worst > before.worst + kWorst, is_torn};
 }
 
 std::size_t FineBins::operator[](std::size_t number) const noexcept {
@@ -183,6 +186,12 @@ void MotionError::add(const MotionError& other) {
   }
   if (cancelled == 0) cancelled_at = other.cancelled_at;
   cancelled += other.cancelled;
+  for (std::size_t k = 0; k < torn.size(); ++k) torn[k] += other.torn[k];
+  samples += other.samples;
+  if (other.most_torn > most_torn) {
+    most_torn = other.most_torn;
+    most_torn_at = other.most_torn_at;
+  }
 }
 
 double MotionError::percentile(double share) const noexcept {
@@ -213,6 +222,25 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
   constexpr double kStraight = 1e-9;  // near 0 and 180 degrees the arc is a line, or none
   if (sine < kStraight) return to_float(unit(lerp(u0, u1, t)));
   return to_float((portable::sin((1 - t) * angle) / sine) * u0 + (portable::sin(t * angle) / sine) * u1);
+}
+
+void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error) {
+  constexpr std::size_t kEdgeBlock = 4096;
+  const Vec3f none;
+  const auto difference_at = [&](std::uint32_t vertex) {
+    const std::uint32_t output = part.output_of(vertex);
+    return output < differences.size() ? &differences[output].x : &none.x;
+  };
+  const auto count_edge = [&](std::size_t e, TearCounts& counts) {
+    const auto [a, b] = part.edges()[e];
+    counts.add(difference_at(a), difference_at(b), 1);
+  };
+  const TearCounts found = parallel_fold<TearCounts>(part.edges().size(), kEdgeBlock, count_edge,
+                                                     [](TearCounts& to, const TearCounts& from) { to.add(from); });
+  error.torn = found.beyond;
+  error.samples = 1;
+  error.most_torn = found.beyond[0];
+  error.most_torn_at = at;
 }
 
 std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments, std::size_t fewest) noexcept {

@@ -24,6 +24,7 @@
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/mesh_skin.h"
 #include "workflow/shading/rig_poses.h"
+#include "workflow/shading/surface_edges.h"
 #include "workflow/truth/author_truth.h"
 
 namespace chronormal {
@@ -35,6 +36,7 @@ struct MeshAudit {
   const AuditOptions& options;
   const GltfShading& shading;
   const AuthorTruth& truth;
+  std::span<const SurfaceEdge> edges;
   AuditRule rule;
   std::function<void()> progress;
   ErrorTable* errors;  // nullptr: none are kept
@@ -126,8 +128,10 @@ Result<std::optional<GltfShading>> shading_of_author(const AuditOptions& options
 using Involved = std::vector<std::size_t>;
 
 JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
-  return judged_part(mesh.shading, mesh.truth, moving_outputs(mesh.shading, mesh.truth, involved, mesh.rule),
-                     mesh.rule);
+  JudgedPart part =
+      judged_part(mesh.shading, mesh.truth, moving_outputs(mesh.shading, mesh.truth, involved, mesh.rule), mesh.rule);
+  if (mesh.rule != AuditRule::kFlat) part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());  // facets have no folds between them
+  return part;
 }
 
 // The weights of the targets that are involved in a subject: those of the specification, and those that each host
@@ -184,7 +188,10 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
   };
   const bool are_watched = static_cast<bool>(mesh.watch);
   // Nothing is read here, so that there can be no error.
-  (void)measure(source, part, mesh.rule, mesh.progress, subject, {mesh.errors, index, are_watched}, judge_hosts);
+  KeptErrors kept{mesh.errors, index, are_watched};
+  if (subject.kind == AuditSubject::Kind::kTrack && mesh.options.most_segments > 0)
+    kept.step = block_count(std::max<std::size_t>(1, subject.segments), mesh.options.most_segments);
+  (void)measure(source, part, mesh.rule, mesh.progress, subject, kept, judge_hosts);
   subject.skinning = skinning.all();
   return Measured{std::move(subject), hosts.take()};
 }
@@ -571,15 +578,12 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     std::map<std::size_t, Error> unread;
     std::optional<MeshSkin> standing;
     if (options.skins && !only) standing = standing_skin(document, shading, unread);
-    const MeshAudit mesh{document,
-                         options,
-                         shading,
-                         truth,
-                         result.rule,
-                         progress,
-                         options.keep_errors ? &table : nullptr,
-                         watch,
-                         standing ? &*standing : nullptr,
+    const std::vector<SurfaceEdge> edges = surface_edges(shading);
+    const MeshAudit mesh{document, options,
+                         shading,  truth,
+                         edges,    result.rule,
+                         progress, options.keep_errors ? &table : nullptr,
+                         watch,    standing ? &*standing : nullptr,
                          unread};
     const bool are_targets_judged = !only && !(shading.mark && shading.mark->sequence);
     const std::size_t first = result.subjects.size();

@@ -80,6 +80,17 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
   if (sums_ != nullptr) places_ = std::move(vertex);
 }
 
+void JudgedPart::set_edges(std::span<const std::array<std::uint32_t, 2>> edges, std::size_t vertex_count) {
+  const auto none = static_cast<std::uint32_t>(outputs_.size());
+  output_of_.assign(vertex_count, none);
+  for (std::uint32_t i = 0; i < none; ++i) output_of_[outputs_[i].vertex] = i;
+  edges_ = edges;
+  if (2 * outputs_.size() > vertex_count) return;  // a list of its own would take more memory than time
+  for (const auto& [a, b] : edges)
+    if (output_of_[a] != none || output_of_[b] != none) own_edges_.push_back({a, b});
+  if (own_edges_.empty()) edges_ = {};
+}
+
 void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) const {
   result.faces.resize(keeps_faces_ ? face_offsets_.size() - 1 : 0);
   result.elements.resize(elements_.size());

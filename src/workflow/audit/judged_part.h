@@ -2,6 +2,7 @@
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_JUDGED_PART_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_JUDGED_PART_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -67,6 +68,14 @@ class JudgedPart {
   [[nodiscard]] std::span<const std::uint32_t> corners_of(std::size_t face) const noexcept {
     return std::span(face_vertices_).subspan(face_offsets_[face], face_offsets_[face + 1] - face_offsets_[face]);
   }
+  /// Pairs of neighbours, as vertices of the mesh, among them all that have an output; and which output a vertex has, or
+  /// one behind all of them.
+  [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const noexcept {
+    return own_edges_.empty() ? edges_ : own_edges_;
+  }
+  [[nodiscard]] std::uint32_t output_of(std::uint32_t vertex) const noexcept { return output_of_[vertex]; }
+  /// Takes the edges of a mesh of so many vertices, which must outlive this. Every vertex must have one output at most.
+  void set_edges(std::span<const std::array<std::uint32_t, 2>> edges, std::size_t vertex_count);
   [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }
   /// Where a vertex of the mesh is in vertices(); of parts with sums, and vertices that they need.
   [[nodiscard]] std::uint32_t place_of(std::uint32_t vertex) const noexcept { return places_[vertex]; }
@@ -96,6 +105,9 @@ class JudgedPart {
   std::vector<std::uint32_t> places_;  // of the vertices of the mesh, in vertices_
   bool keeps_faces_;  // or each element computes the normals of its faces: no memory, and little time for small ones
   std::vector<JudgedOutput> outputs_;
+  std::span<const std::array<std::uint32_t, 2>> edges_;
+  std::vector<std::array<std::uint32_t, 2>> own_edges_;  // those of a small part
+  std::vector<std::uint32_t> output_of_;
 };
 
 }  // namespace chronormal::inline internal

@@ -120,14 +120,14 @@ struct PlacedPart {
 /// near enough for a scale.)
 template <class Source>
 [[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, IndexRange segments,
-                                                                  PlacedPart& placed) {
+                                                                  PlacedPart& placed, std::size_t step = 1) {
   std::vector<double> largest(placed.part.elements().size(), 0.0);
   const auto normals_at = [&](std::size_t s, double t) {
     placed.place(source, s, t);
     return placed.normals.elements;
   };
   source.forget();
-  for (std::size_t s = segments.first; s < segments.end(); ++s) {
+  for (std::size_t s = segments.first; s < segments.end(); s += step) {
     if (const Status status = source.enter(s); !status) return status.error();
     const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5);
     placed.place(source, s, 1);
@@ -185,6 +185,19 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
     if (counts[bin] > 0) result.counts.add(bin, counts[bin]);
 }
 
+/// What is shown less what is right, as unit vectors: the other side where nothing can be lit, NaN where a pair is not
+/// judged.
+[[nodiscard]] inline Vec3f difference(double judged, const Vec3d& shown, const Vec3d& right) noexcept {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  if (judged == kNotJudged || right == Vec3d{}) return {kNan, kNan, kNan};
+  const Vec3d u = unit(right);
+  return to_float(judged == kNotLit ? -2.0 * u : unit(shown) - u);
+}
+
+/// Counts the torn edges of a part, of which these are the differences between what is shown and what is right: unit
+/// vectors of outputs, NaN where none is judged.
+void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error);
+
 /// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows. each,
 /// where it is not empty, gets that of the i-th in degrees, NaN where none is judged.
 template <class Source, class Shown>
@@ -192,6 +205,8 @@ template <class Source, class Shown>
                                    std::span<const double> largest, std::size_t segment, double t, const Shown& shown,
                                    std::span<float> each = {}) {
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
+  const bool has_edges = !placed.part.edges().empty();
+  std::vector<Vec3f> differences(has_edges ? outputs.size() : 0);
   std::vector<MotionError> of_blocks(block_count(outputs.size(), kRange));
   // A face without area is not drawn, whatever its normal.
   const auto is_drawn = [&](const JudgedOutput& output, const Vec3d& normal) {
@@ -214,16 +229,19 @@ template <class Source, class Shown>
                      : !is_finite(is_shown[k]) || (may_be_lit && is_shown[k] == Vec3d{}) ? kNotLit
                      : !has_normal || !may_be_lit                                        ? kNotJudged
                                                                                          : 0;
-        if (of_some[k] < 0)
+        if (of_some[k] == kNotJudged)
           is_shown[k] = is_right[k] = {};
         else
           is_right[k] = source.right(output, normal);
+        if (of_some[k] == kNotLit) is_shown[k] = {};
       }
       std::array<double, is_shown.size()> angles;
       angles_of_pairs(std::span(is_shown).first(count), std::span(is_right).first(count),
                       std::span(angles).first(count));
-      for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t k = 0; k < count; ++k) {
+        if (has_edges) differences[from + k] = difference(of_some[k], is_shown[k], is_right[k]);
         if (of_some[k] == 0) of_some[k] = angles[k];
+      }
     }
     add_errors(
         outputs.subspan(first, end - first), [&](const JudgedOutput&, std::size_t i) { return degrees[i]; },
@@ -246,6 +264,7 @@ template <class Source, class Shown>
   });
   MotionError all;
   for (const MotionError& of_block : of_blocks) all.add(of_block);
+  if (has_edges) count_torn(placed.part, differences, source.at(segment, t, outputs.front()), all);
   return all;
 }
 
@@ -259,6 +278,7 @@ struct KeptErrors {
   /// Is told of the errors of each segment, known or measured, while the segment is held; may be empty.
   std::function<Status(SegmentErrors& found, bool is_known)> tell_segment = {};
   const Peers* peers = nullptr;  ///< that measure the other shares; nullptr: nobody is known to
+  std::size_t step = 1;          ///< from one segment that is measured to the next
 
   /// The segments that this process looks at to find what follows from all of them.
   [[nodiscard]] IndexRange looked_at(std::size_t all) const noexcept {
@@ -305,7 +325,8 @@ template <class Source, class EachSample>
                              const std::function<void()>& progress, AuditSubject& subject, const KeptErrors& kept,
                              const EachSample& each_sample) {
   PlacedPart placed(part);
-  Result<std::vector<double>> all_largest = largest_control_normals(source, kept.looked_at(subject.segments), placed);
+  Result<std::vector<double>> all_largest =
+      largest_control_normals(source, kept.looked_at(subject.segments), placed, kept.step);
   if (!all_largest) return all_largest.error();
   if (kept.peers != nullptr) kept.peers->maximize(all_largest.value());
   const std::vector<double>& largest = all_largest.value();
@@ -318,7 +339,7 @@ template <class Source, class EachSample>
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
   const Result<IndexRange> rest = add_known(kept, subject);
   if (!rest) return rest.error();
-  for (std::size_t s = rest.value().first; s < rest.value().end(); ++s) {
+  for (std::size_t s = rest.value().first; s < rest.value().end(); s += kept.step) {
     if (Status status = source.enter(s); !status) return status;
     SegmentErrors found{s, {}, {}};
     if constexpr (Source::kNeedsEnds) {

@@ -112,13 +112,13 @@ Vec3d through_frame(const Vec3d& v, int bits) noexcept {
       Vec3d{2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]), 1 - 2 * (q[0] * q[0] + q[1] * q[1])});
 }
 
-// The unit normal that a host keeps of a vector of any length. In so many bits nothing is rounded but to float32.
+// The unit normal that a host keeps of a vector of any length. In so many bits nothing is rounded but to float32; a frame
+// turns vectors whose length is not 1 all the same.
 Vec3f kept_direction(const Host& host, const Vec3f& v) noexcept {
   constexpr int kAllBits = 32;
   const Vec3d vector = to_double(v);
-  if (host.bits >= kAllBits) return to_float(unit(vector));
-  return to_float(host.by_frame ? through_frame(vector, host.bits)
-                                : through_unsigned_octahedral(unit(vector), host.bits));
+  if (host.by_frame) return to_float(through_frame(vector, std::min(host.bits, kAllBits - 1)));
+  return to_float(host.bits >= kAllBits ? unit(vector) : through_unsigned_octahedral(unit(vector), host.bits));
 }
 
 Error no_such_host(std::string_view name) {

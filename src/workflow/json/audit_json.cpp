@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kKinds[] = {"unlit",      "missing_normals", "wrong_at_keys", "wrong_between", "wrong_together",
                                   "wrong_pose", "stale_tangents",  "stale_keys",    "unknown_rule",  "flat_primitive",
                                   "skin",       "unread_skin",     "baked",         "emptied",       "baked_keyframes",
-                                  "beyond_host"};
+                                  "beyond_viewer"};
 
 Json place_json(const AuditPlace& place, const char* moment) {
   Json json;
@@ -25,6 +25,16 @@ Json place_json(const AuditPlace& place, const char* moment) {
 
 const char* moment_of(const AuditSubject& subject) { return audit_moment_name(subject.kind); }
 
+// On average over samples, beyond 10, 20 and 40 degrees; and the most at one sample.
+void add_torn(const MotionError& error, Json& json) {
+  if (error.samples == 0) return;
+  Json average = Json::array();
+  for (const std::size_t torn : error.torn)
+    average.push_back(static_cast<double>(torn) / static_cast<double>(error.samples));
+  json["torn_edges"] = std::move(average);
+  json["most_torn_edges"] = error.most_torn;
+}
+
 void add_error(const MotionError& error, Json& json) {
   json["worst_degrees"] = error.worst;
   json["mean_degrees"] = error.mean();
@@ -37,6 +47,7 @@ void add_error(const MotionError& error, Json& json) {
   json["faint_worst_degrees"] = error.faint_worst;
   json["cancelled"] = error.cancelled;
   json["unlit"] = error.unlit;
+  add_torn(error, json);
 }
 
 Json histogram_json(const MotionError& error) {
@@ -95,7 +106,7 @@ Json finding_json(const AuditFinding& finding) {
           {"node", or_null(finding.node)},
           {"expression", or_null(finding.expression)},
           {"count", finding.count},
-          {"host", finding.host ? Json(finding.host->name) : Json()},
+          {"viewer", finding.host ? Json(finding.host->name) : Json()},
           {"reason", finding.reason ? Json(finding.reason->text()) : Json()},
           {"worst_degrees", finding.is_fault() || finding.kind == AuditFinding::Kind::kSkinned ||
                                     finding.kind == AuditFinding::Kind::kUnknownRule
@@ -106,7 +117,7 @@ Json finding_json(const AuditFinding& finding) {
                            : Json()}};
 }
 
-Json host_json(const Audit& audit, std::optional<double> tolerance, const HostAudit& found) {
+Json viewer_json(const Audit& audit, const AuditLimits& limits, const HostAudit& found) {
   constexpr const char* kNormals[] = {"sum", "unit", "clamped"};
   constexpr const char* kTracks[] = {"specified", "splines_resampled", "all_resampled", "splines_without_duration",
                                      "splines_misread"};
@@ -118,7 +129,7 @@ Json host_json(const Audit& audit, std::optional<double> tolerance, const HostAu
                {"skins", kSkins[static_cast<std::size_t>(found.host.skins)]},
                {"most_targets", found.host.most_targets > 0 ? Json(found.host.most_targets) : Json()},
                {"source", found.host.source},
-               {"passed", tolerance ? Json(found.is_within(*tolerance)) : Json()}};
+               {"passed", limits.any() ? Json(limits.allow(found)) : Json()}};
   add_error(found.error, json);
   json["worst_subject"] = or_null(found.worst);
   json["worst_at"] = found.worst ? place_json(found.error.worst_at, moment_of(audit.subjects[*found.worst])) : Json();
@@ -129,15 +140,16 @@ Json host_json(const Audit& audit, std::optional<double> tolerance, const HostAu
 
 }  // namespace
 
-Json internal::audit_object(const std::string& input, const Audit& audit, std::optional<double> tolerance) {
+Json internal::audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits) {
   Json json;
   json["input"] = {{"name", input}};
   json["rule"] = audit_rule_name(audit.rule);
   if (audit.path != PathKind::kLinear) put_path(json, audit.path, audit.bend);
   json["weighting"] = audit.weighting ? Json(weighting_name(*audit.weighting)) : Json();
   json["stored_normals"] = audit.stored;
-  json["tolerance_degrees"] = or_null(tolerance);
-  json["passed"] = tolerance ? Json(audit.is_within(*tolerance)) : Json();
+  json["tolerance_degrees"] = or_null(limits.degrees);
+  json["tolerance_torn_edges"] = or_null(limits.torn_edges);
+  json["passed"] = limits.any() ? Json(limits.allow(audit)) : Json();
   add_error(audit.error, json);
   json["worst_subject"] = or_null(audit.worst);
   json["worst_at"] = audit.worst ? place_json(audit.error.worst_at, moment_of(audit.subjects[*audit.worst])) : Json();
@@ -145,8 +157,8 @@ Json internal::audit_object(const std::string& input, const Audit& audit, std::o
   json["still"] = audit.still;
   json["subjects"] = Json::array();
   for (const AuditSubject& subject : audit.subjects) json["subjects"].push_back(subject_json(subject));
-  json["hosts"] = Json::array();
-  for (const HostAudit& found : audit.hosts) json["hosts"].push_back(host_json(audit, tolerance, found));
+  json["viewers"] = Json::array();
+  for (const HostAudit& found : audit.hosts) json["viewers"].push_back(viewer_json(audit, limits, found));
   json["authored_offsets"] = Json::array();
   for (const AuthoredOffset& offset : audit.offsets) json["authored_offsets"].push_back(offset_json(offset));
   json["findings"] = Json::array();
@@ -154,10 +166,10 @@ Json internal::audit_object(const std::string& input, const Audit& audit, std::o
   return json;
 }
 
-std::string audit_json(const std::string& input, const Audit& audit, std::optional<double> tolerance) {
-  Json json = json_of_command("audit");
-  json.update(audit_object(input, audit, tolerance));
-  if (tolerance && !audit.is_judged()) json["passed"] = false;  // of one input, and not of one among others
+std::string audit_json(const std::string& input, const Audit& audit, const AuditLimits& limits) {
+  Json json = json_of_command("audit", kAuditSchema);
+  json.update(audit_object(input, audit, limits));
+  if (limits.any() && !audit.is_judged()) json["passed"] = false;  // of one input, and not of one among others
   return json_text(json);
 }
 

@@ -10,8 +10,11 @@
 
 namespace chronormal::inline internal {
 
+/// The number of the JSON objects of audits. 2: `viewers` for hosts; torn edges.
+inline constexpr int kAuditSchema = 2;
+
 /// All that was found in one input; without the fields that every command begins with.
-[[nodiscard]] Json audit_object(const std::string& input, const Audit& audit, std::optional<double> tolerance);
+[[nodiscard]] Json audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
 }  // namespace chronormal::inline internal
 

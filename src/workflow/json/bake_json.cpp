@@ -1,4 +1,5 @@
 // Writes the result of a bake as JSON.
+#include <algorithm>
 #include <array>
 
 #include "chronormal/normals/weighting.h"
@@ -19,9 +20,14 @@ Json common_json(const BakeReport& report) {
 }
 
 Json audit_json(const MotionError& before, const MotionError& after) {
-  return {{"worst_degrees_before", before.worst}, {"worst_degrees_after", after.worst},
-          {"mean_degrees_before", before.mean()}, {"mean_degrees_after", after.mean()},
-          {"unlit_before", before.unlit},         {"unlit_after", after.unlit},
+  return {{"worst_degrees_before", before.worst},
+          {"worst_degrees_after", after.worst},
+          {"mean_degrees_before", before.mean()},
+          {"mean_degrees_after", after.mean()},
+          {"unlit_before", before.unlit},
+          {"unlit_after", after.unlit},
+          {"torn_edges_before", before.torn_edges()},
+          {"torn_edges_after", after.torn_edges()},
           {"worse", is_worse(after, before)}};
 }
 
@@ -29,10 +35,13 @@ Json audit_json(const MotionError& before, const MotionError& after) {
 constexpr std::array<const char*, 3> kPoses = {"file", "alone", "posed"};
 
 Json shown_json(const ShownErrors& errors) {
+  Json torn = Json::array();  // on average over poses, beyond 10, 20 and 40 degrees
+  for (const std::size_t tears : errors.tears)
+    torn.push_back(errors.poses > 0 ? static_cast<double>(tears) / static_cast<double>(errors.poses) : 0);
   return {{"mean_degrees", errors.mean},
           {"most_degrees", errors.most},
           {"worst_degrees", errors.worst},
-          {"torn_edges", errors.tears}};
+          {"torn_edges", std::move(torn)}};
 }
 
 Json viewers_json(const std::vector<HostChange>& changes) {
@@ -102,6 +111,13 @@ Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
 void add_audit(const BakeReport& report, Json& json) {
   if (!report.audit) return;
   json["audit"] = audit_json(report.audit->before.error, report.audit->after.error);
+  const std::vector<HostAudit>&before = report.audit->before.hosts, &after = report.audit->after.hosts;
+  json["audit"]["viewers"] = Json::array();
+  for (std::size_t h = 0; h < std::min(before.size(), after.size()); ++h) {
+    Json viewer = {{"viewer", before[h].host.name}};
+    viewer.update(audit_json(before[h].error, after[h].error));
+    json["audit"]["viewers"].push_back(std::move(viewer));
+  }
 }
 
 }  // namespace

@@ -489,7 +489,7 @@ Result<MergedParts> merge_parts(std::span<const Part> parts) {
   const Result<NamedAudit> all = merge_audits(std::move(read.value().audits));
   if (!all) return all.error();
   const auto& [name, audit, tolerance] = all.value();
-  return MergedParts{audit_json(name, audit, tolerance),
+  return MergedParts{audit_json(name, audit, {tolerance}),
                      !tolerance || (audit.is_judged() && audit.is_within(*tolerance))};
 }
 

@@ -112,7 +112,7 @@ void plan(const GltfDocument& document, const ReportOptions& options, Report& re
 
 Json head_of(const Report& report) {
   const auto object = [](const std::string& text) { return Json::parse(text); };
-  Json audit = object(audit_json(report.input, report.audit, std::nullopt));
+  Json audit = object(audit_json(report.input, report.audit, {}));
   Json head = {{"schema", 2}, {"program", "chronormal " + audit["chronormal"].get<std::string>()}};
   head["input"] = report.input;
   head["audit"] = std::move(audit);

@@ -27,6 +27,7 @@ std::vector<SurfaceEdge> surface_edges(const GltfShading& shading) {
   }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  edges.shrink_to_fit();  // to half
   return edges;
 }
 

@@ -170,7 +170,7 @@ TEST(InputStream, commands_give_the_bytes_that_they_give_of_a_motion_in_memory) 
   audit_options.keep_errors = true;
   const Audit in_memory = audit(whole, {}, audit_options).value();
   const Audit as_stream = audit(stream, {}, audit_options).value();
-  EXPECT_EQ(audit_json("x", as_stream, 1), audit_json("x", in_memory, 1));
+  EXPECT_EQ(audit_json("x", as_stream, {1}), audit_json("x", in_memory, {1}));
   EXPECT_EQ(as_stream.errors[0].degrees.size(), in_memory.errors[0].degrees.size());
   const Inspection inspection = inspect(stream).value(), of_whole = inspect(whole);
   EXPECT_EQ(inspection.doubled.count, of_whole.doubled.count);
@@ -270,8 +270,8 @@ TEST(InputStream, curved_paths_are_compared_as_in_memory_and_audited_with_at_mos
     AuditOptions options;
     options.path = PathKind::kCatmullRom;
     options.rule = rule;
-    EXPECT_EQ(audit_json("x", audit(stream, {}, options).value(), 1),
-              audit_json("x", audit(whole, {}, options).value(), 1));
+    EXPECT_EQ(audit_json("x", audit(stream, {}, options).value(), {1}),
+              audit_json("x", audit(whole, {}, options).value(), {1}));
     EXPECT_LE(most_held, 5U);  // a comparison takes several small segments at once
     EXPECT_EQ(audit(whole, {}, options).value().bend, bend_of(whole));
   }

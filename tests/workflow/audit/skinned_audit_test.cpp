@@ -485,7 +485,7 @@ TEST(SkinnedAudit, skin_that_cannot_be_read_is_told_with_its_place_and_left_out)
   EXPECT_EQ(note->count, 1U);
   EXPECT_FALSE(note->is_fault());
   EXPECT_EQ(note->reason->place, "a.gltf, /skins/0/joints/1");
-  const Json json = Json::parse(audit_json("a.gltf", result, std::nullopt));
+  const Json json = Json::parse(audit_json("a.gltf", result, {}));
   EXPECT_EQ(json["findings"].back()["kind"], "unread_skin");
   EXPECT_EQ(json["findings"].back()["reason"], note->reason->text());
   EXPECT_TRUE(json["subjects"][0]["skinning_worst_degrees"].is_null());

@@ -162,7 +162,7 @@ TEST(BakeLarge, memory_of_exact_is_below_twice_the_file_where_all_of_it_morphs) 
   RecordProperty("per_cent_of_file", std::to_string(100 * run.peak_growth / size));
 }
 
-TEST(BakeLarge, an_audit_takes_memory_below_four_times_the_file) {
+TEST(BakeLarge, an_audit_takes_memory_below_four_and_a_half_times_the_file) {
   if (test::is_sanitized()) GTEST_SKIP() << "sanitizers take memory of their own";
   const TemporaryFolder folder;
   const std::string path = write_grid(folder, kSide);
@@ -178,7 +178,7 @@ TEST(BakeLarge, an_audit_takes_memory_below_four_times_the_file) {
   const test::ChildRun run = test::run_in_child(60, audit_it);
   ASSERT_TRUE(run.finished) << run.text;
   EXPECT_EQ(run.text, "5 subjects");
-  EXPECT_LT(run.peak_growth, 4 * std::filesystem::file_size(path));
+  EXPECT_LT(2 * run.peak_growth, 9 * std::filesystem::file_size(path));
   RecordProperty("per_cent_of_file", std::to_string(100 * run.peak_growth / std::filesystem::file_size(path)));
 }
 

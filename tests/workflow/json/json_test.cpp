@@ -30,7 +30,7 @@ TEST(ResultJson, is_the_text_that_the_program_prints) {
   Input input = twist();
   const Motion& motion = *input.motion().value();
   const Audit found = audit(motion, *input.normals().value(), {}).value();
-  EXPECT_EQ(audit_json(input.name(), found, std::nullopt), printed("audit"));
+  EXPECT_EQ(audit_json(input.name(), found, {}), printed("audit"));
   const Comparison comparison = compare(motion, {.schemes = {"linear"}, .progress = {}}).value();
   EXPECT_EQ(compare_json({{input.name(), comparison}}, false, false), printed("compare --schemes linear --no-times"));
   EXPECT_EQ(inspect_json(inspect_input(twist(), "").value()), printed("inspect"));
@@ -40,20 +40,20 @@ TEST(ResultJson, passes_only_within_the_tolerance) {
   Audit found;
   found.error.worst = 2;
   found.error.judged = 1;
-  EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, 2))["passed"], true);
-  EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, 1))["passed"], false);
-  EXPECT_TRUE(nlohmann::json::parse(audit_json("a", found, std::nullopt))["passed"].is_null());
+  EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {2}))["passed"], true);
+  EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], false);
+  EXPECT_TRUE(nlohmann::json::parse(audit_json("a", found, {}))["passed"].is_null());
   found.hosts.resize(2);  // what counts is then what each of them shows
-  EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, 1))["passed"], true);
+  EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], true);
   found.hosts[1].beyond = 1;
-  EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, 1))["passed"], false);
+  EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], false);
 }
 
 TEST(ResultJson, is_safe_to_print_and_valid_for_any_name) {
   Audit found;
   found.error.sum = std::numeric_limits<double>::quiet_NaN();
   found.error.judged = 1;
-  const std::string text = audit_json("\x1b[31m\xff\xe2\x80\xae", found, std::nullopt);
+  const std::string text = audit_json("\x1b[31m\xff\xe2\x80\xae", found, {});
   EXPECT_EQ(text.find('\x1b'), std::string::npos);
   EXPECT_EQ(text.find("\xe2\x80\xae"), std::string::npos) << "it turns the direction of writing";
   const auto json = nlohmann::json::parse(text);

@@ -127,7 +127,7 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
         AuditOptions options;
         options.rule = rule;
         options.path = path;
-        const std::string whole = audit_json("walk", audit(motion, stored, options).value(), 1);
+        const std::string whole = audit_json("walk", audit(motion, stored, options).value(), {1});
         for (const std::size_t count : {2U, 5U, 9U})
           EXPECT_EQ(merged(audit_parts(motion, stored, options, count)), whole);
       }
@@ -175,7 +175,7 @@ TEST(KnownSegments, an_audit_that_goes_on_gives_the_bytes_of_one_run) {
         AuditOptions options;
         options.path = path;
         options.rule = rule;
-        const std::string whole = audit_json("walk", audit(motion, {}, options).value(), 1);
+        const std::string whole = audit_json("walk", audit(motion, {}, options).value(), {1});
         std::vector<std::string> kept;
         AuditOptions first = options, second = options;
         first.keep = [&](const SegmentErrors& segment) -> Status {
@@ -190,7 +190,7 @@ TEST(KnownSegments, an_audit_that_goes_on_gives_the_bytes_of_one_run) {
           ++measured;
           return Success{};
         };
-        EXPECT_EQ(audit_json("walk", audit(motion, {}, second).value(), 1), whole);
+        EXPECT_EQ(audit_json("walk", audit(motion, {}, second).value(), {1}), whole);
         EXPECT_EQ(measured + most, 8U);
       }
     }
@@ -282,7 +282,7 @@ TEST(MergeParts, merged_values_are_those_of_one_run_and_of_the_kind_that_was_ask
             compare_json({{"walk", compare(motion, {}).value()}}, false, false));
   const Result<Audit> all = merge_audit_parts(audited);
   ASSERT_TRUE(all.ok());
-  EXPECT_EQ(audit_json("walk", all.value(), 1), audit_json("walk", audit(motion, {}, {}).value(), 1));
+  EXPECT_EQ(audit_json("walk", all.value(), {1}), audit_json("walk", audit(motion, {}, {}).value(), {1}));
   EXPECT_EQ(merge_compare_parts(audited).error().code, ErrorCode::kUsage);
   EXPECT_EQ(merge_audit_parts(compared).error().code, ErrorCode::kUsage);
   EXPECT_EQ(merge_audit_parts(std::vector<Part>{audited[0]}).error().code, ErrorCode::kUsage);

@@ -166,7 +166,7 @@ TEST(Report, numbers_of_a_gltf_file_follow_from_the_report_alone) {
     EXPECT_FLOAT_EQ(*std::max_element(worst.begin(), worst.end()),
                     static_cast<float>(found.value().audit.subjects[3].error.worst));
     EXPECT_TRUE(file.json["plan"].is_null());
-    EXPECT_EQ(file.json["audit"]["hosts"].size(), kHosts.size());
+    EXPECT_EQ(file.json["audit"]["viewers"].size(), kHosts.size());
   }
 }
 

@@ -396,7 +396,11 @@ Candidate low_rank_candidate(const Making& making, Candidate own) {
       low_rank_form(making.rights, making.weights, making.judge.vertices(), making.source.shading.element_of_vertex,
                     result.own, {making.most_extras / for_each, making.tolerance, making.keeps_across, refits_own});
   const std::size_t extras = form.extras.size();
-  std::vector<Share> shares = shares_of(making.rights, std::move(form.extras), making.lengths);
+  // What goes along N turns normals by more than a right angle where deltas are added up, and wrongly elsewhere.
+  const bool keeps_along = std::none_of(making.viewers.begin(), making.viewers.end(),
+                                        [](const Host& viewer) { return viewer.normals == NormalRule::kUnit; });
+  std::vector<Share> shares = shares_of(making.rights, std::move(form.extras), making.lengths,
+                                        {making.keeps_across && making.lengths == Lengths::kShort, keeps_along});
   ExtraDrivers& drivers = result.drivers;
   drivers.curves = std::move(form.curves);
   drivers.rest = std::move(form.rest);

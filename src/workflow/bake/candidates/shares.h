@@ -20,9 +20,15 @@ struct Share {
   VertexVectors vectors;
 };
 
+/// What short shares are like.
+struct ShortShares {
+  bool are_units = false;   ///< N + E is as long as N, but for what goes along N: viewers that keep directions keep it
+  bool keep_along = false;  ///< and what goes along N stays
+};
+
 /// Makes targets of these lengths that add up to the given ones: one for each, or two of unit length.
 [[nodiscard]] std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras,
-                                           Lengths lengths);
+                                           Lengths lengths, const ShortShares& how);
 
 /// Replaces the weights of so many extra targets, (poses, extras), by those of shares.
 void take_shares(std::span<const Share> shares, std::size_t extras, std::vector<double>& values);

@@ -22,7 +22,7 @@ constexpr std::size_t kStridePadding = 16;  // floats: the widest vector
 // The vector in a right direction that a sum comes to by what is added to it across the normal N; where that would be far
 // off, the right normal itself.
 Vec3d reached_across(const Vec3d& base, const Vec3d& sum, const Vec3d& right) {
-  constexpr double kLeastAlong = 0.15;
+  constexpr double kLeastAlong = 0.2;
   const Vec3d u = unit(right);
   const double of_sum = dot(base, sum), of_right = dot(base, u);
   return of_sum > kLeastAlong && of_right > kLeastAlong ? (of_sum / of_right) * u : right;

@@ -187,6 +187,7 @@ std::vector<std::uint32_t> numbers_up_to(std::size_t count) {
 ShownErrors JudgedErrors::errors() const {
   ShownErrors result = spread.errors();
   result.tears = tears.beyond;
+  result.poses = poses;
   return result;
 }
 
@@ -284,6 +285,7 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Host& viewer, const V
     const PoseWeights weights(some);
     const SkinsInPoses skins(some);
     differences.poses = poses;
+    result.poses += poses;
     differences.planes.resize(3 * count * poses);
     const auto measure_vertex = [&](std::size_t at, ErrorSpread& spread) {
       thread_local Sums sums;

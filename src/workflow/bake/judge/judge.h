@@ -36,10 +36,12 @@ inline constexpr double kHarmless = 0.02;
 struct JudgedErrors {
   ErrorSpread spread;
   TearCounts tears;
+  std::size_t poses = 0;
 
   void add(const JudgedErrors& other) {
     spread.add(other.spread);
     tears.add(other.tears);
+    poses += other.poses;
   }
   [[nodiscard]] ShownErrors errors() const;
 };
