@@ -88,17 +88,17 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
             "chronormal audit: the worst error is 90 degrees, beyond the tolerance of 89.9: "
             "vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n");
   expect_words(text_of("hinge.glb --tolerance 90.1"), {": within 90.1 degrees\n"});
-  // Three edges are torn at one moment, in viewers too.
-  EXPECT_EQ(run("hinge.glb --tears 3").exit_code, 0);
-  const ProcessResult torn = run("hinge.glb --tears 2 --tolerance 91");
+  // Four edges are torn at one moment, in viewers too.
+  EXPECT_EQ(run("hinge.glb --tears 4").exit_code, 0);
+  const ProcessResult torn = run("hinge.glb --tears 3 --tolerance 91");
   EXPECT_EQ(torn.exit_code, 4);
-  EXPECT_EQ(torn.err, "chronormal audit: at one moment 3 edges are torn, beyond the limit of 2\n");
-  expect_words(torn.out, {": beyond 91 degrees and 2 torn edges\n"});
-  const ProcessResult in_viewer = run("hinge.glb --tears 2 --for three --json");
+  EXPECT_EQ(torn.err, "chronormal audit: at one moment 4 edges are torn, beyond the limit of 3\n");
+  expect_words(torn.out, {": beyond 91 degrees and 3 torn edges\n"});
+  const ProcessResult in_viewer = run("hinge.glb --tears 3 --for three --json");
   EXPECT_EQ(in_viewer.exit_code, 4);
   const Json torn_json = Json::parse(in_viewer.out);
-  EXPECT_EQ(torn_json["tolerance_torn_edges"], 2);
-  EXPECT_EQ(torn_json["viewers"][0]["most_torn_edges"], 3);
+  EXPECT_EQ(torn_json["tolerance_torn_edges"], 3);
+  EXPECT_EQ(torn_json["viewers"][0]["most_torn_edges"], 4);
   EXPECT_EQ(torn_json["viewers"][0]["passed"], false);
   const ProcessResult json = run("hinge.glb --tolerance 1 --json");
   EXPECT_EQ(json.exit_code, 4);
