@@ -71,6 +71,7 @@ std::string words_of(const InputOptions& input, PathKind path) {
   if (input.from > 0) words += formatted(" --from {}", input.from);
   if (input.to) words += formatted(" --to {}", *input.to);
   if (input.every != 1) words += formatted(" --every {}", input.every);
+  if (input.loop) words += " --loop";
   if (path != PathKind::kLinear) words += formatted(" --path {}", path_name(path));
   return words;
 }
@@ -137,7 +138,7 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   wanted.stream = true;
   wanted.velocities = options.path.needs_velocities();
   wanted.ends_of_whole = options.path.is_curved();
-  Result<Input> opened = open_input(std::move(wanted), progress);
+  Result<Input> opened = open_input("audit", std::move(wanted), progress);
   if (!opened) return opened.error();
   Input& input = opened.value();
   const GltfDocument* const document = input.document();

@@ -247,7 +247,7 @@ Result<Input> open_whole(const BakeArguments& options, Progress& progress) {
   wanted.velocities = options.path.needs_velocities();
   wanted.ends_of_whole = options.path.is_curved();
   wanted.shading = KeepShading::kAll;
-  return open_input(std::move(wanted), progress);
+  return open_input("bake", std::move(wanted), progress);
 }
 
 Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& input, Progress& progress) {
@@ -377,7 +377,7 @@ Result<int> run(BakeArguments options) {
   wanted.ends_of_whole = options.path.is_curved();
   wanted.stream = true;
   if (options.crease_angle == 180) wanted.shading = KeepShading::kRead;
-  Result<Input> input = open_input(std::move(wanted), progress);
+  Result<Input> input = open_input("bake", std::move(wanted), progress);
   if (!input) return input.error();
   return input.value().document() != nullptr ? run_gltf(options, how.value(), input.value(), progress)
                                              : run_sequence(options, how.value(), input.value(), progress);

@@ -48,7 +48,7 @@ Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, cons
   options.animation = input.animation;
   const std::string option = arguments.active ? "--active" : "--blend";
 
-  Result<Input> opened = open_input(input, progress);
+  Result<Input> opened = open_input("compare", input, progress);
   if (!opened) return opened.error();
   if (opened.value().document() != nullptr && !elements_given) {
     if (input.world)

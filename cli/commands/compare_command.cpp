@@ -210,7 +210,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
     wanted.stream = true;
     wanted.velocities = options.path.needs_velocities();
     wanted.ends_of_whole = options.path.is_curved();
-    Result<Input> input = open_input(wanted, progress);
+    Result<Input> input = open_input("compare", wanted, progress);
     Result<Comparison> comparison =
         input ? compare_one(input.value(), options, progress, resumed) : Result<Comparison>(input.error());
     if (!comparison) {

@@ -19,7 +19,7 @@ Result<NamedTruthComparison> compare_input_with_truth(const InputOptions& input,
   if (!wanted) return wanted.error();
   InputOptions kept = input;
   kept.velocities = true;
-  Result<Input> opened = open_input(kept, progress);
+  Result<Input> opened = open_input("compare", kept, progress);
   if (!opened) return opened.error();
   const Result<const Motion*> motion = opened.value().motion();
   if (!motion) return motion.error();

@@ -40,7 +40,7 @@ Result<int> run(const ConvertArguments& options) {
   wanted.allow_mesh = true;
   wanted.stream = true;
   wanted.velocities = options.common.output.ends_with(".npz");  // the only format that they are written to
-  Result<Input> input = open_input(std::move(wanted), progress);
+  Result<Input> input = open_input("convert", std::move(wanted), progress);
   if (!input) return input.error();
   const Result<MotionStream*> motion = input.value().stream();
   if (!motion) return motion.error();

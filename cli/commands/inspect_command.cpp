@@ -22,7 +22,7 @@ Result<Inspected> open_and_inspect(const InputOptions& options, Progress& progre
   InputOptions wanted = options;
   wanted.allow_mesh = true;
   wanted.stream = true;
-  Result<Input> input = open_input(std::move(wanted), progress);
+  Result<Input> input = open_input("inspect", std::move(wanted), progress);
   if (!input) return input.error();
   Result<Inspected> result =
       inspect_input(std::move(input).value(), options.animation, progress.callback("inspecting"));

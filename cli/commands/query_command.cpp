@@ -83,7 +83,7 @@ Result<int> run(const QueryArguments& options) {
   if (const Status distinct = check_distinct({{"OUT", output}}, read); !distinct) return distinct.error();
 
   Progress progress(options.common.quiet);
-  Result<Input> input = open_input(options.input, progress);
+  Result<Input> input = open_input("query", options.input, progress);
   if (!input) return input.error();
   const Result<const Motion*> motion = input.value().motion();
   if (!motion) return motion.error();

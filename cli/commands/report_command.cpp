@@ -93,7 +93,7 @@ Result<int> run(const ReportArguments& options) {
   }
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
-  Result<Input> input = open_input(std::move(wanted), progress);
+  Result<Input> input = open_input("report", std::move(wanted), progress);
   if (!input) return input.error();
   if (const Status known = check_hosts(how.value().hosts, input.value()); !known) return known.error();
   const Result<Report> found = report(input.value(), how.value());

@@ -209,7 +209,7 @@ Result<int> run(const SampleArguments& options) {
   wanted.velocities = options.path.needs_velocities();
   wanted.ends_of_whole = options.path.is_curved();
   if (!options.hard_edges.empty()) wanted.shading = KeepShading::kFirst;
-  Result<Input> input = open_input(std::move(wanted), progress);
+  Result<Input> input = open_input("sample", std::move(wanted), progress);
   if (!input) return input.error();
   const Result<MotionStream*> read = input.value().stream();
   if (!read) return read.error();

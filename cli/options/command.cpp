@@ -186,7 +186,8 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
   std::vector<Option> table = {
       {"INPUT", &input.files,
        "one motion: .obj or .ply keyframes in order, a quoted pattern of their names, or\n"
-       "their folder (sorted by number); a mesh and a .pc2, .mdd, .npy or Maya cache;\n"
+       "their folder (sorted by number, and at times that the numbers give); a mesh and a .pc2, .mdd, .npy or Maya "
+       "cache;\n"
        "or one .gltf, .glb, .vrm, .npz or .md2 file; - stands for one file on standard input"},
       {"--base FILE",
        &input.base,
@@ -215,7 +216,10 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
        &input.to,
        "the last keyframe of a sequence that counts (default: the last there is)",
        {.check = check_whole(0)}},
-      {"--every N", &input.every, "take every Nth keyframe of a sequence (default 1)", {.check = check_whole(1)}}};
+      {"--every N", &input.every, "take every Nth keyframe of a sequence (default 1)", {.check = check_whole(1)}},
+      {"--loop", &input.loop, "let the first of these keyframes follow the last one again, as in a loop"},
+      {"--strict", &input.strict,
+       "refuse a file that can be read but for a part of it, which is passed over otherwise"}};
   for (const RefusedOption& option : refused)
     std::erase_if(table,
                   [&](const Option& one) { return one.spelling.substr(0, one.spelling.find(' ')) == option.name; });
@@ -244,12 +248,18 @@ Result<ElementOptions> ElementArguments::options() const {
   return ElementOptions{found.value(), !no_weld, crease_angle};
 }
 
-Result<Input> open_input(InputOptions options, Progress& progress) {
+Result<Input> open_input(const char* command, InputOptions options, Progress& progress) {
   if (has_ranks() && std::find(options.files.begin(), options.files.end(), "-") != options.files.end())
     return misuse("-", "only one rank of MPI has the standard input: name a file");
   options.progress = watching_ranks(progress.callback("reading"));
   Result<Input> input = chronormal::open_input(options);
   progress.clear();
+  if (!input) return input;
+  constexpr std::size_t kMostSaid = 8;
+  const std::vector<std::string> notes = input.value().notes();
+  for (std::size_t i = 0; i < std::min(notes.size(), kMostSaid); ++i) say(command, notes[i], Tone::kWarning);
+  if (notes.size() > kMostSaid)
+    say(command, formatted("and {} more of this kind", notes.size() - kMostSaid), Tone::kWarning);
   return input;
 }
 

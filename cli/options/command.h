@@ -39,8 +39,9 @@ struct CommonOptions {
 /// refers to input.
 [[nodiscard]] std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused = {});
 
-/// Opens the input that the options name, with a progress bar.
-[[nodiscard]] Result<Input> open_input(InputOptions options, Progress& progress);
+/// Opens the input that the options name, with a progress bar, and says in the name of the command what a person should
+/// know of how it was read (Input::notes()).
+[[nodiscard]] Result<Input> open_input(const char* command, InputOptions options, Progress& progress);
 
 /// The options that choose which normals: --elements, --crease, --no-weld.
 struct ElementArguments {

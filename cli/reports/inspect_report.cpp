@@ -61,11 +61,20 @@ std::string headline(const Inspected& input) {
 
 std::string fact(const char* what, const std::string& value) { return formatted("  {:<10}  {}\n", what, value); }
 
+// "5, numbered 0 to 0.2 in steps of 0.05, which are seconds"
+std::string series_words(const FileSeries& series) {
+  std::string words = formatted("{}, numbered {:.10g} to {:.10g} in steps of {:.6g}", grouped(series.count),
+                                series.first, series.last, series.least_step);
+  if (!series.is_even()) words += formatted(" to {:.6g}", series.most_step);
+  return words + (series.are_seconds ? ", which are seconds" : "");
+}
+
 std::string facts_of(const Inspected& input) {
   const Inspection& found = *input.inspection;
   const Surface& surface = found.surface;
   std::string text;
   const auto add = [&text](const char* what, const std::string& value) { text += fact(what, value); };
+  if (const std::optional<FileSeries>& series = input.opened.series()) add("files", series_words(*series));
   add("faces", face_words(found));
   add("surface",
       formatted("{}, {}; {} open", counted(surface.pieces, "piece", "pieces"), counted(surface.edges, "edge", "edges"),

@@ -29,7 +29,7 @@ const CALL = {
 };
 
 // What is read, and how.
-const READ = { allowExternal: FLAG, maxExpansion: NUMBER, fps: NUMBER, from: NUMBER, to: NUMBER, every: NUMBER };
+const READ = { allowExternal: FLAG, maxExpansion: NUMBER, fps: NUMBER, from: NUMBER, to: NUMBER, every: NUMBER, loop: FLAG, strict: FLAG };
 const MESHES = { base: TEXT, animation: NAME };
 
 const OPTIONS = {

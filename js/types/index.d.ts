@@ -40,6 +40,8 @@ export interface ReadOptions extends CallOptions {
   from?: number;
   to?: number;
   every?: number;
+  loop?: boolean;
+  strict?: boolean;
 }
 
 /** Which motion of a file is meant. */

@@ -487,6 +487,10 @@ export interface InspectedGltf {
 /** What has faces has all of this; a glTF file without any has `input`, `gltf` and `trouble`. */
 export interface InspectReport extends Head<'inspect', 1> {
   input: { name: string; vertices: number; faces: number; keyframes: number; segments: number };
+  /** The numbers in the names of the files of a sequence, where these tell them apart. */
+  files?: { count: number; first: number; last: number; least_step: number; most_step: number; are_seconds: boolean };
+  /** What a person should know of how the input was read, in sentences. */
+  notes: string[];
   kind?: 'mesh' | 'targets' | 'sequence';
   time?: { first: number; last: number } | null;
   box?: { low: number[]; high: number[]; diagonal: number };

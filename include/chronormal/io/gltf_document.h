@@ -138,6 +138,7 @@ struct GltfOptions {
   /// The most memory that the arrays of one primitive may take: a small file can ask for much.
   std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
   std::size_t max_expansion = Expansion::kUsual;  ///< io/expansion.h
+  bool strict = false;                            ///< refuse what GltfDocument::notes() would tell
   /// Where buffers and images come from, by their path below the folder of the asset; empty: the file system.
   FileResolver resolve = {};
 };
@@ -175,6 +176,9 @@ class GltfDocument {
   [[nodiscard]] AffineTransform world_transform(std::size_t node) const noexcept;
   /// Extensions that the file uses, as it names them.
   [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
+  /// What is wrong with parts of the file that nobody needs for the others, in the order of the file: these parts are
+  /// passed over. Also extensions that the file requires, and that change nothing of a mesh, but where it is shown.
+  [[nodiscard]] const std::vector<Error>& notes() const noexcept;
   /// How much the document may ask for, by its size and that of the files that hold its buffers.
   [[nodiscard]] Expansion expansion() const;
 

@@ -2,7 +2,8 @@
 ///
 ///     walk_0.obj walk_1.obj         several meshes: the keyframes of a sequence, in the order given
 ///     'walk_*.obj'  walk/           a pattern with * ? [..], or %d (where no file has that very name), or a folder
-///                                   of meshes of one format; sorted by number, so that walk_2 stands before walk_10
+///                                   of meshes of one format; sorted by number, so that walk_2 stands before walk_10,
+///                                   and at times that these numbers give (docs/cli.md)
 ///     body.obj walk.pc2             a mesh and a point cache: .pc2, .mdd, .npy, .mc, .mcx, or a Maya .xml
 ///     body.obj cache.xml#bodyShape  the same, with the channel of a Maya cache
 ///     walk.npz                      a whole motion: .npz or .md2
@@ -70,6 +71,10 @@ struct InputOptions {
   std::size_t from = 0;
   std::optional<std::size_t> to = {};
   std::size_t every = 1;
+  /// The last of these keyframes is followed by the first one again, after the mean time between two of them.
+  bool loop = false;
+  /// What could be read but for a part of it is refused, with the first of the notes that Input::notes() would have.
+  bool strict = false;
   /// The first and the last of these keyframes get end_velocities (motion/motion.h) from up to three keyframes of the
   /// sequence beyond them, so that curves are those of the whole sequence. These keyframes are read for it.
   bool ends_of_whole = false;
@@ -81,7 +86,7 @@ struct InputOptions {
   /// Keyframes that take no more bytes together than this stay in memory once they have been read.
   std::size_t kept_bytes = MotionStream::kUsuallyKept;
 
-  [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1; }
+  [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1 || loop; }
 };
 
 /// Whether the options go together, before anything is opened. Errors: kUsage, with the option as the place.
@@ -101,6 +106,17 @@ struct StoredNormals {
   bool has_more = false;  ///< with KeepShading::kRead: other keyframes may store some, which were left in files
 };
 
+/// The numbers in the names of the files of a sequence, where one number tells these names apart and grows from each
+/// file to the next.
+struct FileSeries {
+  std::size_t count = 0;
+  double first = 0, last = 0;            ///< numbers
+  double least_step = 0, most_step = 0;  ///< between two neighbours
+  bool are_seconds = false;              ///< a number has a fraction: all of them are times
+
+  [[nodiscard]] bool is_even() const noexcept { return most_step - least_step <= 1e-6 * most_step; }
+};
+
 /// An input that was opened: a glTF document, or else a motion or a mesh.
 class Input {
  public:
@@ -118,6 +134,12 @@ class Input {
 
   /// The glTF file that the input is; nullptr where it is none. It lives as long as the input.
   [[nodiscard]] const GltfDocument* document() const noexcept;
+
+  /// What a person should know of the way in which the input was read, in whole sentences: that listed files were
+  /// sorted, that parts of a file were passed over. Of a document, what is known so far.
+  [[nodiscard]] std::vector<std::string> notes() const;
+  /// The numbers of the files of a sequence; nothing where their names do not tell them.
+  [[nodiscard]] const std::optional<FileSeries>& series() const noexcept;
 
   /// What moves: of a document what the options chose (and read now, when it is asked for the first time); with
   /// allow_mesh it may be a mesh that does not, one keyframe without a segment. Else it is valid (motion/motion.h). All

@@ -16,6 +16,7 @@
 #ifndef CHRONORMAL_MOTION_MOTION_H_
 #define CHRONORMAL_MOTION_MOTION_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -82,6 +83,9 @@ struct Motion {
   /// are. Empty: all are one.
   std::vector<std::uint32_t> body_of_vertex = {};
   MotionKind kind = MotionKind::kSequence;
+  /// The point that positions count from, the same at all keyframes: (0, 0, 0) but where a file has coordinates far
+  /// from the origin in more digits than float32 keeps. Writers of positions add it. Normals do not depend on it.
+  std::array<double, 3> origin = {};
 
   /// Returns a view of one segment. Precondition: the motion is valid (validate()) and i < segments.size().
   [[nodiscard]] Segment segment(std::size_t i) const noexcept;

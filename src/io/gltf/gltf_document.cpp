@@ -59,6 +59,8 @@ const std::vector<GltfNode>& GltfDocument::nodes() const noexcept { return state
 const std::vector<GltfAnimation>& GltfDocument::animations() const noexcept { return state_->model.animations; }
 const std::vector<std::string>& GltfDocument::extensions() const noexcept { return state_->model.extensions; }
 
+const std::vector<Error>& GltfDocument::notes() const noexcept { return state_->model.notes; }
+
 Expansion GltfDocument::expansion() const { return state_->bytes.expansion(); }
 
 AffineTransform GltfDocument::world_transform(std::size_t node) const noexcept {

@@ -23,6 +23,7 @@
 #include "io/gltf/gltf_motion.h"
 #include "io/input/formats.h"
 #include "io/input/input_files.h"
+#include "io/input/numbering.h"
 #include "io/input/sequence.h"
 #include "io/input/targets.h"
 
@@ -40,9 +41,10 @@ Error not_animated(const std::string& input) {
 
 // The error for a choice of keyframes in an input that is no sequence.
 Error chooses_nothing(const InputOptions& options) {
-  return misuse(options.from > 0 ? "--from"
-                : options.to     ? "--to"
-                                 : "--every",
+  return misuse(options.from > 0     ? "--from"
+                : options.to         ? "--to"
+                : options.every != 1 ? "--every"
+                                     : "--loop",
                 "it chooses among the keyframes of a sequence, which this is not");
 }
 
@@ -111,9 +113,10 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   for (const std::size_t k : frames.value()) {
     // The ends may follow from keyframes that are chosen and from others.
     Motion::Keyframe& keyframe = motion.keyframes[k];
-    kept.push_back(options.ends_of_whole ? keyframe : std::move(keyframe));
+    kept.push_back(options.ends_of_whole || options.loop ? keyframe : std::move(keyframe));
   }
   const std::vector<double> times = times_of(motion);
+  if (options.loop) kept.back().time = closing_time(times, frames.value());
   std::swap(motion.keyframes, kept);
   motion.connect_as_sequence();
   const auto positions = [&kept](std::size_t k) -> Result<std::vector<float>> { return kept[k].positions; };
@@ -323,11 +326,15 @@ Result<ReadMotion> read_several(const InputOptions& options) {
       return misuse(input, "the file is a whole motion: give it alone");
   }
   if (!options.animation.empty()) return not_animated(inputs.front());
-  const Result<std::vector<std::string>> files = find_frames(options);
+  std::vector<std::string> notes;
+  const Result<std::vector<std::string>> files = find_frames(options, &notes);
   if (!files) return files.error();
-  if (files.value().size() > 1 || !options.allow_mesh)
-    return options.stream && !options.resolve ? stream_sequence(files.value(), options)
-                                              : read_sequence(files.value(), options);
+  if (files.value().size() > 1 || !options.allow_mesh) {
+    Result<ReadMotion> read = options.stream && !options.resolve ? stream_sequence(files.value(), options)
+                                                                 : read_sequence(files.value(), options);
+    if (read) read.value().notes.insert(read.value().notes.begin(), notes.begin(), notes.end());
+    return read;
+  }
   const Result<FileBytes> file = FileBytes::open(files.value().front(), options.resolve);
   if (!file) return file.error();
   return read_still_mesh(file.value().bytes(), files.value().front(), options);
@@ -401,6 +408,13 @@ const GltfDocument* Input::document() const noexcept {
   return state_->opened.document ? &*state_->opened.document : nullptr;
 }
 std::span<const std::uint32_t> Input::group_of_face() const noexcept { return state_->opened.read.group_of_face; }
+std::vector<std::string> Input::notes() const {
+  std::vector<std::string> notes = state_->opened.read.notes;
+  if (document() != nullptr)
+    for (const Error& note : document()->notes()) notes.push_back(note.text());
+  return notes;
+}
+const std::optional<FileSeries>& Input::series() const noexcept { return state_->opened.read.series; }
 const std::string& Input::shaded_by() const noexcept { return state_->opened.read.shaded_by; }
 std::span<const GltfPart> Input::parts() const noexcept { return state_->parts; }
 double Input::curve_error() const noexcept { return state_->curve_error; }
@@ -478,11 +492,15 @@ Result<Input> open_input(const InputOptions& options) {
     return input;
   }
   if (!options.base.empty()) return keep(path_name(options.base), read_targets(options));
-  if (options.files.size() > 1 || !may_be_whole(options.files.front(), options))
-    return keep(name_of_files(options.files), read_several(options));
+  if (options.files.size() > 1 || !may_be_whole(options.files.front(), options)) {
+    std::vector<std::string> files = options.files;
+    (void)sort_listed(files);  // as find_frames() does
+    return keep(name_of_files(files), read_several(options));
+  }
 
   Result<Opened> opened = open_whole(options.files.front(), options);
   if (!opened) return opened.error();
+  if (!opened.value().document) return keep(name_of_files(options.files), std::move(opened.value().read));
   state->name = name_of_files(options.files);
   state->opened = std::move(opened).value();
   state->expansion = Expansion(options.max_expansion, state->opened.read.bytes_read);

@@ -87,7 +87,13 @@ bool stands_before(const std::string& a, const std::string& b) {
   return a < b;
 }
 
-Result<std::vector<std::string>> find_input_files(const InputOptions& options, const FolderLister& list_folder) {
+Status sort_by_number(const std::string& /*input*/, std::vector<std::string>& files) {
+  std::sort(files.begin(), files.end(), stands_before);
+  return Success{};
+}
+
+Result<std::vector<std::string>> find_input_files(const InputOptions& options, const FolderLister& list_folder,
+                                                  const FileSorter& sort) {
   if (options.resolve) return options.files;
   std::vector<std::string> files;
   bool has_stdin = false;
@@ -114,7 +120,7 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
                                                           : list_folder(input);
     if (!found) return found.error();
     if (found.value().empty() && is_missing) return Error{ErrorCode::kFailed, input, std::string(kNoneMatches)};
-    std::sort(found.value().begin(), found.value().end(), stands_before);
+    if (const Status sorted = sort(input, found.value()); !sorted) return sorted.error();
     std::move(found.value().begin(), found.value().end(), std::back_inserter(files));
   }
   return files;
@@ -169,16 +175,59 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
   std::vector<std::size_t> frames;
   for (std::size_t k = options.from; k <= last; k += std::min(options.every, count)) frames.push_back(k);
   if (frames.size() < 2 && options.chooses_frames())
-    return misuse(options.every > 1 ? "--every"
-                  : options.to      ? "--to"
-                                    : "--from",
+    return misuse(options.every > 1                   ? "--every"
+                  : options.to                        ? "--to"
+                  : options.loop && options.from == 0 ? "--loop"
+                                                      : "--from",
                   "a motion needs two keyframes or more, and so few are left: " + range);
+  if (options.loop) frames.push_back(frames.front());
   return frames;
 }
+
+double closing_time(std::span<const double> times, std::span<const std::size_t> frames) {
+  const std::size_t count = frames.size() - 1;  // of different keyframes
+  const double first = times[frames[0]], last = times[frames[count - 1]];
+  return last + (last - first) / static_cast<double>(count - 1);
+}
+
+namespace {
+
+// Gives both ends of a loop the velocities of the curve that goes round.
+Status set_loop_velocities(const InputOptions& options, std::size_t count,
+                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
+  const Result<std::vector<std::size_t>> frames = choose_frames(count, options);
+  if (!frames) return frames.error();
+  const std::size_t round = chosen.keyframes.size() - 1;
+  const double period = chosen.keyframes.back().time - chosen.keyframes.front().time;
+  constexpr std::size_t kBeside = 3;  // keyframes on each side, which is as many as velocities depend on
+  std::vector<double> times;
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i <= 2 * kBeside; ++i) {
+    const std::size_t rounds = kBeside, at = i + rounds * round - kBeside;  // counted from as many rounds before
+    times.push_back(chosen.keyframes[at % round].time +
+                    (static_cast<double>(at / round) - static_cast<double>(rounds)) * period);
+    which.push_back(frames.value()[at % round]);
+  }
+  const VelocityShares shares = velocity_shares(times, kBeside);
+  std::vector<std::vector<float>> positions;
+  for (std::size_t i = 0; i < shares.share.size(); ++i) {
+    Result<std::vector<float>> found = read(which[shares.first + i]);
+    if (!found) return found.error();
+    positions.push_back(std::move(found).value());
+  }
+  const std::vector<float> velocities =
+      velocities_of(shares, std::vector<std::span<const float>>(positions.begin(), positions.end()));
+  chosen.keyframes.front().end_velocities = velocities;
+  chosen.keyframes.back().end_velocities = velocities;
+  return Success{};
+}
+
+}  // namespace
 
 Status set_end_velocities(const InputOptions& options, std::span<const double> times,
                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   if (!options.ends_of_whole || !options.chooses_frames()) return Success{};
+  if (options.loop) return set_loop_velocities(options, times.size(), read, chosen);
   // Only the keyframes count that the same step chooses from the whole sequence.
   const std::size_t start = options.from % options.every, first = options.from / options.every;
   std::vector<double> of_whole, of_part;

@@ -22,21 +22,30 @@ struct ReadMotion {
   std::optional<MotionStream> stream = {};  ///< of the motion, or in place of it where keyframes are still in files
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
-  std::string shaded_by;         ///< as Input has it
-  std::uint64_t bytes_read = 0;  ///< of all files
+  std::string shaded_by;                  ///< as Input has it
+  std::uint64_t bytes_read = 0;           ///< of all files
+  std::vector<std::string> notes = {};    ///< as Input has them
+  std::optional<FileSeries> series = {};  ///< as Input has it
 };
 
 /// Which files of a folder count, in any order.
 using FolderLister = std::function<Result<std::vector<std::string>>(const std::string& folder)>;
 
-/// The files that the options stand for, in order, as io/input.h describes them; folders are asked of list_folder. Does
-/// not open them. Errors: kFailed where nothing of that name exists or nothing matches a pattern; kUsage for "-" twice;
-/// those of list_folder. The place is the input.
-[[nodiscard]] Result<std::vector<std::string>> find_input_files(const InputOptions& options,
-                                                                const FolderLister& list_folder);
-
 /// Whether path a stands before b where runs of digits count as numbers of any size; ties are broken by plain order.
 [[nodiscard]] bool stands_before(const std::string& a, const std::string& b);
+
+/// Sorts the files of the folder or pattern `input`.
+using FileSorter = std::function<Status(const std::string& input, std::vector<std::string>& files)>;
+/// Sorts them by stands_before().
+[[nodiscard]] Status sort_by_number(const std::string& input, std::vector<std::string>& files);
+
+/// The files that the options stand for, in order, as io/input.h describes them; folders are asked of list_folder, and
+/// what is found in folders and by patterns is sorted by `sort`. Does
+/// not open them. Errors: kFailed where nothing of that name exists or nothing matches a pattern; kUsage for "-" twice;
+/// those of list_folder and sort. The place is the input.
+[[nodiscard]] Result<std::vector<std::string>> find_input_files(const InputOptions& options,
+                                                                const FolderLister& list_folder,
+                                                                const FileSorter& sort = sort_by_number);
 
 /// The last part of a path; "<stdin>" for "-".
 [[nodiscard]] std::string file_name_of(const std::string& path);
@@ -49,9 +58,13 @@ using FolderLister = std::function<Result<std::vector<std::string>>(const std::s
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
 
-/// The keyframes that the options choose among so many. Errors: kUsage with the option as the place, where there are
-/// fewer than two.
+/// The keyframes that the options choose among so many; of a loop, the first of them comes again at the end. Errors:
+/// kUsage with the option as the place, where there are fewer than two.
 [[nodiscard]] Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOptions& options);
+
+/// The time at which a loop comes back to the first of these keyframes, which is the last one, too. times are those of
+/// all keyframes of the sequence.
+[[nodiscard]] double closing_time(std::span<const double> times, std::span<const std::size_t> frames);
 
 /// Gives the ends of the keyframes that were chosen their end_velocities, where options.ends_of_whole asks for them and
 /// the velocities depend on keyframes beyond these ends. Of every N-th keyframe these are every N-th, too.

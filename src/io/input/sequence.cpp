@@ -15,6 +15,7 @@
 #include "chronormal/motion/motion.h"
 #include "io/bytes/file.h"
 #include "io/input/formats.h"
+#include "io/input/numbering.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/obj_faces.h"
 #include "motion/outline.h"
@@ -114,8 +115,13 @@ std::optional<std::uint64_t> bytes_of(const std::vector<std::string>& files, con
 
 }  // namespace
 
-Result<std::vector<std::string>> find_frames(const InputOptions& options) {
-  return find_input_files(options, list_folder);
+Result<std::vector<std::string>> find_frames(const InputOptions& options, std::vector<std::string>* notes) {
+  Result<std::vector<std::string>> files = find_input_files(options, list_folder, sort_as_sequence);
+  if (!files || files.value() != options.files || !sort_listed(files.value())) return files;
+  if (notes != nullptr)
+    notes->push_back("the files were listed in the order of their letters, and are read in that of their numbers: " +
+                     file_name_of(files.value().front()) + " to " + file_name_of(files.value().back()));
+  return files;
 }
 
 namespace {
@@ -135,9 +141,28 @@ Result<std::vector<std::size_t>> choose_files(const std::vector<std::string>& fi
 
 namespace {
 
-Status set_ends(const std::vector<std::string>& files, const InputOptions& options, Motion& motion) {
-  std::vector<double> times;
-  for (std::size_t k = 0; k < files.size(); ++k) times.push_back(static_cast<double>(k) / options.frames_per_second);
+// The times of all files in seconds. Notes where they are not evenly spaced.
+Result<std::vector<double>> find_times(const std::vector<std::string>& files, const InputOptions& options,
+                                       ReadMotion& read) {
+  FileTimes found = times_of_files(files);
+  read.series = found.series;
+  if (found.series && found.series->are_seconds) {
+    if (options.frames_per_second != 1)
+      return Error{ErrorCode::kUsage, "--fps",
+                   "the names of the files are times in seconds (" + file_name_of(files.front()) + " to " +
+                       file_name_of(files.back()) + "): leave it out"};
+    return std::move(found.times);
+  }
+  if (found.series && !found.series->is_even())
+    read.notes.push_back("the numbers of the files (" + file_name_of(files.front()) + " to " +
+                         file_name_of(files.back()) +
+                         ") are not evenly spaced: each keyframe is at its own number, counted from the first one");
+  for (double& time : found.times) time /= options.frames_per_second;
+  return std::move(found.times);
+}
+
+Status set_ends(const std::vector<std::string>& files, const InputOptions& options, const std::vector<double>& times,
+                Motion& motion) {
   const auto positions = [&](std::size_t k) {
     const std::string place = frame_place(k, file_name_of(files[k]));
     return read_frame(options, files[k], place, nullptr, nullptr, motion.topology, "the others").positions;
@@ -151,6 +176,8 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   const Result<std::vector<std::size_t>> frames = choose_files(files, options);
   if (!frames) return frames.error();
   ReadMotion read;
+  const Result<std::vector<double>> times = find_times(files, options, read);
+  if (!times) return times.error();
   Motion& motion = read.motion;
   const std::size_t total = frames.value().size();
   motion.keyframes.reserve(total);
@@ -158,7 +185,8 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   const auto place = [&](std::size_t i) { return frame_place(frames.value()[i], file_name_of(file_of(i))); };
   const auto keep = [&](std::vector<float> positions, std::vector<float> velocities) {
     const std::size_t i = motion.keyframes.size();
-    const double time = static_cast<double>(frames.value()[i]) / options.frames_per_second;
+    const bool closes = options.loop && i + 1 == total;
+    const double time = closes ? closing_time(times.value(), frames.value()) : times.value()[frames.value()[i]];
     motion.keyframes.push_back({std::move(positions), time, file_name_of(file_of(i)), std::move(velocities)});
     if (options.progress) options.progress(i + 1, total);
   };
@@ -197,7 +225,7 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
     }
   }
   motion.connect_as_sequence();
-  if (Status status = set_ends(files, options, motion); !status) return status.error();
+  if (Status status = set_ends(files, options, times.value(), motion); !status) return status.error();
   if (Status status = validate(motion); !status) return status.error();
   return read;
 }
@@ -209,13 +237,15 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   const std::optional<std::uint64_t> bytes = bytes_of(files, frames);
   if (!bytes || *bytes <= options.kept_bytes) return read_sequence(files, options);
 
+  ReadMotion read;
+  const Result<std::vector<double>> times = find_times(files, options, read);
+  if (!times) return times.error();
   Motion outline;
-  for (const std::size_t k : frames)
-    outline.keyframes.push_back({{}, static_cast<double>(k) / options.frames_per_second, file_name_of(files[k])});
+  for (const std::size_t k : frames) outline.keyframes.push_back({{}, times.value()[k], file_name_of(files[k])});
+  if (options.loop) outline.keyframes.back().time = closing_time(times.value(), frames);
   outline.connect_as_sequence();
   const std::string& first_path = files[frames[0]];
   const std::string place = frame_place(frames[0], outline.keyframes[0].name);
-  ReadMotion read;
   Result<FileBytes> first_file = open_frame(options, first_path, place);
   if (!first_file) return first_file.error();
   Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), first_path, place, read);
@@ -227,7 +257,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   outline.topology = std::move(first.value().topology);
   std::vector<float>& positions = outline.keyframes[0].positions;
   positions = std::move(first.value().positions);
-  if (Status status = set_ends(files, options, outline); !status) return status.error();
+  if (Status status = set_ends(files, options, times.value(), outline); !status) return status.error();
   Status valid = validate_positions(outline, 0, positions);
   if (valid) valid = validate_outline(outline);
   if (!valid) return valid.error();

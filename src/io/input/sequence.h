@@ -10,15 +10,19 @@
 
 namespace chronormal::inline internal {
 
-/// The files that the options stand for; of a folder all meshes. Does not open them.
-/// Errors: those of find_input_files(); kInvalidInput for a folder without meshes, or with files of two formats.
-[[nodiscard]] Result<std::vector<std::string>> find_frames(const InputOptions& options);
+/// The files that the options stand for; of a folder all meshes. Does not open them. `notes` gets a sentence where
+/// listed files were sorted.
+/// Errors: those of find_input_files(), and of sort_as_sequence() (io/input/numbering.h); kInvalidInput for a folder
+/// without meshes, or with files of two formats.
+[[nodiscard]] Result<std::vector<std::string>> find_frames(const InputOptions& options,
+                                                           std::vector<std::string>* notes = nullptr);
 
 /// Reads those of these files that the options choose as keyframes; each takes the name of its file. Beside the first
 /// file, no more files are open at a time than there are threads, and one topology is kept. The result is valid
 /// (motion/motion.h).
 ///
-/// Errors: those of opening and of the readers, with the frame in the place ("frame 3 (walk_3.obj), line 17");
+/// The names of the files give the times (times_of_files() of io/input/numbering.h). Errors: kUsage for a frame rate where
+/// names are times in seconds; those of opening and of the readers, with the frame in the place ("frame 3 (walk_3.obj), line 17");
 /// kInvalidInput for fewer than two files, and where vertex count or faces differ from those of frame 0.
 [[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
 

@@ -168,6 +168,11 @@ std::string inspect_json(const Inspected& input) {
                    {"faces", has_faces ? input.inspection->faces : 0},
                    {"keyframes", has_faces ? input.inspection->keyframes : 0},
                    {"segments", input.segments.size()}};
+  if (const std::optional<FileSeries>& series = input.opened.series())
+    json["files"] = {{"count", series->count},         {"first", series->first},
+                     {"last", series->last},           {"least_step", series->least_step},
+                     {"most_step", series->most_step}, {"are_seconds", series->are_seconds}};
+  json["notes"] = input.opened.notes();
   if (has_faces) add_inspection(input, json);
   if (input.gltf) json["gltf"] = gltf_json(*input.gltf);
   json["trouble"] = Json::array();

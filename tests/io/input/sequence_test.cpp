@@ -53,23 +53,69 @@ Result<Motion> read(const Names& inputs, double frames_per_second = 1) {
 
 TEST(FindFrames, folder_and_pattern_are_sorted_by_number) {
   const TemporaryFolder folder;
-  for (const char* const name : {"f_10.obj", "f_2.obj", "f_1.OBJ", "f_02.obj", "f_99999999999999999999.obj", "e.obj",
-                                 "f_100000000000000000000.obj", "f_2b.obj", "notes.txt", ".hidden.obj"})
+  for (const char* const name : {"f_10.obj", "f_2.obj", "f_1.OBJ", "f_03.obj", "f_99999999999999999999.obj",
+                                 "f_100000000000000000000.obj", "notes.txt", ".hidden.obj"})
     folder.write(name, "");
-  const Names expected = {"e.obj",
-                          "f_1.OBJ",
-                          "f_02.obj",
-                          "f_2.obj",
-                          "f_2b.obj",
-                          "f_10.obj",
-                          "f_99999999999999999999.obj",
-                          "f_100000000000000000000.obj"};
+  const Names expected = {
+      "f_1.OBJ", "f_2.obj", "f_03.obj", "f_10.obj", "f_99999999999999999999.obj", "f_100000000000000000000.obj"};
   EXPECT_EQ(names_of(find_frames(test::files(Names{folder.path()}))), expected);
   EXPECT_EQ(names_of(find_frames(test::files(Names{folder.path() + "/"}))), expected);
   EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "f_[0-9]*.obj"}))),
-            (Names{"f_02.obj", "f_2.obj", "f_2b.obj", "f_10.obj", "f_99999999999999999999.obj",
-                   "f_100000000000000000000.obj"}));
+            (Names{"f_2.obj", "f_03.obj", "f_10.obj", "f_99999999999999999999.obj", "f_100000000000000000000.obj"}));
   EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "f_?.obj"}))), (Names{"f_2.obj"}));
+}
+
+TEST(FindFrames, folder_and_pattern_of_several_sequences_are_errors_that_list_them) {
+  const TemporaryFolder folder;
+  for (const char* const name : {"walk_1.obj", "walk_2.obj", "run_1.obj", "run_2.obj", "run_3.obj"})
+    folder.write(name, "");
+  for (const std::string& input : {folder.path(), folder / "*.obj"}) {
+    const Error error = error_of(find_frames(test::files(Names{input})));
+    EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
+    EXPECT_EQ(error.place, input);
+    EXPECT_NE(error.message.find("run_1.obj ... run_3.obj (3 files), walk_1.obj ... walk_2.obj (2 files)"),
+              std::string::npos)
+        << error.message;
+  }
+  EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "walk_*.obj", folder / "run_*.obj"}))).size(), 5U);
+}
+
+TEST(FindFrames, files_that_a_shell_lists_are_sorted_with_a_note) {
+  const TemporaryFolder folder;
+  Names listed;
+  for (const int k : {0, 1, 10, 11, 2}) listed.push_back(folder.write("f" + std::to_string(k) + ".obj", obj(k)));
+  Result<Input> input = open_input(test::files(listed));
+  ASSERT_TRUE(input.ok()) << input.error().text();
+  EXPECT_EQ(input.value().name(), "f0.obj ... f11.obj");
+  ASSERT_EQ(input.value().notes().size(), 2U);
+  EXPECT_NE(input.value().notes()[0].find("in that of their numbers"), std::string::npos) << input.value().notes()[0];
+  EXPECT_NE(input.value().notes()[1].find("not evenly spaced"), std::string::npos) << input.value().notes()[1];
+  std::vector<double> times, heights;
+  for (const Motion::Keyframe& keyframe : input.value().motion().value()->keyframes) {
+    times.push_back(keyframe.time);
+    heights.push_back(keyframe.positions[2]);
+  }
+  EXPECT_EQ(times, (std::vector<double>{0, 1, 2, 10, 11}));
+  EXPECT_EQ(heights, times);
+}
+
+TEST(ReadSequence, fractions_in_names_are_seconds_and_refuse_a_frame_rate) {
+  const TemporaryFolder folder;
+  for (const char* const time : {"0", "0.05", "0.1", "0.15", "0.2"})
+    folder.write(std::string("t_") + time + ".obj", obj(0));
+  for (const bool stream : {false, true}) {
+    InputOptions options = test::files({folder.path()});
+    options.stream = stream;
+    options.kept_bytes = 0;
+    Result<Input> input = open_input(options);
+    ASSERT_TRUE(input.ok()) << input.error().text();
+    EXPECT_EQ(input.value().key_times().value(), (std::vector<double>{0, 0.05, 0.1, 0.15, 0.2}));
+    EXPECT_EQ(input.value().series()->last, 0.2);
+    options.frames_per_second = 24;
+    const Error error = error_of(open_input(options));
+    EXPECT_EQ(error.code, ErrorCode::kUsage);
+    EXPECT_EQ(error.place, "--fps");
+  }
 }
 
 TEST(FindFrames, listed_files_keep_their_order_and_may_come_twice) {
@@ -157,7 +203,7 @@ TEST(ReadSequence, frames_become_keyframes_with_names_and_times) {
   EXPECT_EQ(motion.value().segments.size(), 2U);
   EXPECT_EQ(motion.value().keyframes[2].name, "w_10.obj");
   EXPECT_EQ(motion.value().keyframes[2].positions[2], 10.0F);
-  EXPECT_EQ(motion.value().keyframes[2].time, 0.5);
+  EXPECT_EQ(motion.value().keyframes[2].time, 2.25);  // files are missing: 10 is 9 frames after 1
   EXPECT_EQ(steps, (Names{"1/3", "2/3", "3/3"}));
   EXPECT_TRUE(validate(motion.value()).ok());
 }

@@ -153,6 +153,7 @@ struct Model {
   std::vector<std::vector<TrackSource>> track_sources;  ///< beside animations[a].tracks
   std::vector<NodeChannels> node_channels;              ///< beside animations
   std::vector<std::string> extensions;
+  std::vector<Error> notes;  ///< what is wrong with parts that nobody needs for the others
 };
 
 /// Where a node stands in its parent, as the file has it. O(log nodes).
