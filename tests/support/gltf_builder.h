@@ -190,11 +190,12 @@ class GltfBuilder {
   }
 };
 
-/// A document and the bytes that it reads from.
+/// A document and the bytes that it reads from. It is read strictly, unless options say otherwise: what is only a note
+/// otherwise (gltf_notes_test.cpp) is an error here.
 class GltfFixture {
  public:
   explicit GltfFixture(std::string bytes, const std::optional<std::string>& folder = std::nullopt,
-                       const GltfOptions& options = {})
+                       const GltfOptions& options = GltfOptions{.strict = true})
       : bytes_(std::move(bytes)), document_(GltfDocument::read(bytes_, "a.gltf", folder, options)) {}
   explicit GltfFixture(const GltfBuilder& builder) : GltfFixture(builder.glb()) {}
   GltfFixture(const GltfFixture&) = delete;

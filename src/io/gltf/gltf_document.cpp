@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -155,6 +156,45 @@ void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
   }
 }
 
+// Drops the tracks whose numbers cannot be read, with a note for each array that is at fault. Arrays without bytes of
+// their own are left to those who ask for keys.
+void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
+  std::map<std::pair<std::size_t, bool>, bool> known;  // by the accessor, and whether it has times
+  const auto can_read = [&](std::size_t accessor, bool has_times) {
+    const auto [found, is_new] = known.try_emplace({accessor, has_times}, true);
+    if (!is_new || !model.accessors[accessor].view) return found->second;
+    const auto read = has_times ? bytes.times(accessor) : bytes.floats(accessor);
+    found->second = read.ok();
+    if (!read) model.notes.push_back(read.error());
+    return found->second;
+  };
+  const auto can_read_all = [&](const gltf::TrackSource& source) {
+    bool all = true;
+    for (const gltf::ElementSource& element : source.elements)
+      all = can_read(element.input, true) && can_read(element.output, false) && all;
+    return source.elements.empty() ? can_read(source.input, true) && can_read(source.output, false) : all;
+  };
+  for (std::size_t a = 0; a < model.animations.size(); ++a) {
+    std::vector<GltfTrack>& tracks = model.animations[a].tracks;
+    std::vector<gltf::TrackSource>& sources = model.track_sources[a];
+    std::vector<std::size_t> now(tracks.size());
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < tracks.size(); ++t) {
+      if (!can_read_all(sources[t])) continue;
+      now[t] = kept;
+      // A track with the same keys was read as well as this one.
+      tracks[t].same_keys_as = now[tracks[t].same_keys_as];
+      if (kept != t) {
+        tracks[kept] = std::move(tracks[t]);
+        sources[kept] = std::move(sources[t]);
+      }
+      ++kept;
+    }
+    tracks.resize(kept);
+    sources.resize(kept);
+  }
+}
+
 }  // namespace
 
 Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::string& name,
@@ -172,9 +212,10 @@ Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::strin
     chunks = found.value();
   }
   origin.bin = chunks.bin;
-  Result<gltf::Model> model = gltf::parse_model(chunks.json, name, chunks.json_offset, bytes.size());
+  Result<gltf::Model> model = gltf::parse_model(chunks.json, name, chunks.json_offset, bytes.size(), options.strict);
   if (!model) return model.error();
   auto state = std::make_unique<State>(chunks, std::move(model).value(), std::move(origin), options.most_bytes);
+  if (!options.strict) drop_unreadable(state->bytes, state->model);
   count_keys(state->bytes, state->model);
   return GltfDocument(std::move(state));
 }

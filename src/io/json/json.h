@@ -45,6 +45,10 @@ class JsonComplaint {
   void add(const std::string& pointer, std::string message) {
     if (!first_) first_ = invalid_input(place(pointer), std::move(message));
   }
+  /// Complains of what was found before.
+  void add(Error error) {
+    if (!first_) first_ = std::move(error);
+  }
   [[nodiscard]] std::string place(const std::string& pointer) const;
   [[nodiscard]] const std::optional<Error>& first() const noexcept { return first_; }
   /// The same, after which there is none.

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -170,7 +171,8 @@ TEST_F(GltfUris, errors_say_what_is_wrong_with_them) {
     EXPECT_EQ(read(uri, false), "a.gltf, /buffers/0/uri: " + message);
   };
   expect_error("", "the URI names no file");
-  expect_error("own%zz.bin", "the URI names no file");
+  expect_error("own%zz.bin", "there is no file " + asset_ + "/own%zz.bin");
+  expect_error("own%00.bin", "the URI names no file");
   expect_error("http://localhost/own.bin", "only files beside the asset can be read, not other schemes");
   expect_error(asset_ + "/own.bin", "the URI is an absolute path; --allow-external reads it");
   expect_error("up/secret.bin", "the URI leads out of the folder of the asset; --allow-external reads it");
@@ -185,6 +187,24 @@ TEST_F(GltfUris, errors_say_what_is_wrong_with_them) {
   expect_error("data:text/plain;base64," + good,
                "the data URI of a buffer must begin with data:application/octet-stream;base64, or "
                "data:application/gltf-buffer;base64,");
+}
+
+TEST_F(GltfUris, names_that_a_person_would_call_the_same_are_found) {
+  const auto write = [&](const std::string& name) {
+    std::ofstream(asset_ + "/" + name, std::ios::binary) << builder_.buffer;
+  };
+  // A percent sign that encodes nothing, and a name that stands in the URI as it is.
+  write("example 10%.bin");
+  EXPECT_EQ(read("example 10%.bin", false), "");
+  write("fifty%20percent.bin");
+  EXPECT_EQ(read("fifty%20percent.bin", false), "");
+  // A letter with its mark as one character in the URI and as two in the file, and the other way round.
+  write("cafe\u0301.bin");
+  EXPECT_EQ(read("caf\u00E9.bin", false), "");
+  EXPECT_EQ(read("caf%C3%A9.bin", false), "");
+  write("\u1EBF\uAC01.bin");
+  EXPECT_EQ(read("e\u0302\u0301\u1100\u1161\u11A8.bin", false), "");
+  EXPECT_NE(read("cafe.bin", false), "");
 }
 
 }  // namespace

@@ -133,7 +133,8 @@ Result<std::string> Bytes::decompress(std::size_t view_index, const Compression&
   if (!whole) return whole.error();
   const std::string_view source = whole.value().substr(compression.offset, compression.length);
   const auto* const bytes = reinterpret_cast<const unsigned char*>(source.data());
-  const std::string pointer = pointer_to("bufferViews", view_index) + "/extensions/EXT_meshopt_compression";
+  const std::string pointer = pointer_to("bufferViews", view_index) + "/extensions/" +
+                              (compression.is_khr ? "KHR_meshopt_compression" : "EXT_meshopt_compression");
   if (Status status = expansion().check(compression.count * compression.stride, place(pointer)); !status)
     return status.error();
   std::string result(compression.count * compression.stride, '\0');
@@ -148,7 +149,13 @@ Result<std::string> Bytes::decompress(std::size_t view_index, const Compression&
     }
     return -1;
   };
-  if (decode() != 0) return invalid_input(place(pointer), "the compressed bytes are broken");
+  if (decode() != 0) {
+    return invalid_input(place(pointer), compression.is_khr
+                                             ? "these bytes are broken, or compressed by a version of the codec that "
+                                               "cannot be decoded here: compress the file with EXT_meshopt_compression "
+                                               "(gltfpack -c), or leave it uncompressed"
+                                             : "the compressed bytes are broken");
+  }
   switch (compression.filter) {
     case Compression::Filter::kNone:
       break;

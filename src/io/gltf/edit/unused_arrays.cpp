@@ -215,6 +215,11 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
   };
   const Result<Json> source = parse(before), edited = parse(after);
   if (!source || !edited || !has_known_extensions_only(edited.value())) return {};
+  // Nobody knows what arrays that could not be read refer to.
+  const auto has_fault = [](const auto& array) { return array.fault.has_value(); };
+  if (std::any_of(model.accessors.begin(), model.accessors.end(), has_fault) ||
+      std::any_of(model.views.begin(), model.views.end(), has_fault))
+    return {};
   const std::size_t count = model.accessors.size();
   const References was(source.value(), count), is(edited.value(), count);
 

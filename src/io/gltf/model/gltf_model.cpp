@@ -16,11 +16,13 @@ namespace {
 
 constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // what a JSON number holds exactly
 
-constexpr std::array<std::string_view, 4> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
-                                                         "KHR_draco_mesh_compression", "KHR_animation_pointer"};
-// Extensions of these families say how a surface looks, not where it is.
-constexpr std::array<std::string_view, 4> kHarmlessFamilies = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
-                                                               "KHR_lights_punctual"};
+constexpr std::array<std::string_view, 5> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
+                                                         "KHR_meshopt_compression", "KHR_draco_mesh_compression",
+                                                         "KHR_animation_pointer"};
+// Extensions of these families say how a surface looks and what it means, not where it is.
+constexpr std::array<std::string_view, 9> kHarmlessFamilies = {
+    "KHR_materials_",  "KHR_texture_",  "EXT_texture_",          "KHR_lights_punctual", "EXT_mesh_features",
+    "EXT_structural_", "EXT_instance_", "CESIUM_primitive_outl", "EXT_mesh_manifold"};
 
 bool is_acceptable(std::string_view extension) {
   return std::find(kUnderstood.begin(), kUnderstood.end(), extension) != kUnderstood.end() ||
@@ -66,14 +68,28 @@ Result<Model> Parser::parse(const nlohmann::json& document) {
   const JsonView root(document, "", complaint_);
   if (root.is_object()) {
     parse_asset(root);
+    check_required(root);
     for_each_item(root, "buffers", [&](const JsonView& item) { parse_buffer(item); });
-    for_each_item(root, "bufferViews", [&](const JsonView& item) { parse_view(item); });
-    for_each_item(root, "accessors", [&](const JsonView& item) { parse_accessor(item); });
+    for_each_item(root, "bufferViews", [&](const JsonView& item) {
+      BufferView view;
+      std::optional<Error> fault = fault_of([&] { parse_view(item, view); });
+      if (fault) view = {};
+      view.fault = std::move(fault);
+      model_.views.push_back(std::move(view));
+    });
+    for_each_item(root, "accessors", [&](const JsonView& item) {
+      Accessor accessor;
+      std::optional<Error> fault = fault_of([&] { parse_accessor(item, accessor); });
+      if (fault) accessor = {};
+      accessor.fault = std::move(fault);
+      model_.accessors.push_back(std::move(accessor));
+    });
     for_each_item(root, "meshes", [&](const JsonView& item) { parse_mesh(item); });
     check_nodes(root);
     parse_skins();
     for_each_item(root, "animations", [&](const JsonView& item) { parse_animation(item); });
     parse_expressions(document);
+    note_faults();
   }
   if (complaint_.first()) return *complaint_.first();
   return std::move(model_);
@@ -90,14 +106,49 @@ void Parser::parse_asset(const JsonView& root) {
     for (std::size_t i = 0; i < used->size(); ++i) model_.extensions.push_back(used->item(i).as_text());
   }
   quantized_ = std::find(model_.extensions.begin(), model_.extensions.end(), kUnderstood[0]) != model_.extensions.end();
-  if (const std::optional<JsonView> required = root.array("extensionsRequired")) {
-    for (std::size_t i = 0; i < required->size(); ++i) {
-      const std::string extension = required->item(i).as_text();
-      if (!is_acceptable(extension))
-        required->item(i).complain(std::string("the file requires the extension ").append(extension) +
-                                   ", which cannot be read");
-    }
+}
+
+void Parser::check_required(const JsonView& root) {
+  const std::optional<JsonView> required = root.array("extensionsRequired");
+  if (!required) return;
+  // Extensions of what is read may change it: a primitive, its mesh, and whatever holds bytes.
+  const auto is_extended = [](const nlohmann::json& value, const std::string& extension) {
+    if (!value.is_object()) return false;
+    const auto found = value.find("extensions");
+    return found != value.end() && found->is_object() && found->contains(extension);
+  };
+  const auto is_in = [&](const nlohmann::json& value, const char* list, const std::string& extension) {
+    const auto items = value.is_object() ? value.find(list) : value.end();
+    return value.is_object() && items != value.end() && items->is_array() &&
+           std::any_of(items->begin(), items->end(), [&](const auto& item) { return is_extended(item, extension); });
+  };
+  const auto is_in_each = [&](const char* lists, const char* list, const std::string& extension) {
+    const auto items = document_->find(lists);
+    return items != document_->end() && items->is_array() &&
+           std::any_of(items->begin(), items->end(), [&](const auto& item) { return is_in(item, list, extension); });
+  };
+  for (std::size_t i = 0; i < required->size(); ++i) {
+    const std::string extension = required->item(i).as_text();
+    if (is_acceptable(extension)) continue;
+    const bool changes = is_in(*document_, "buffers", extension) || is_in(*document_, "bufferViews", extension) ||
+                         is_in(*document_, "accessors", extension) || is_in(*document_, "meshes", extension) ||
+                         is_in_each("meshes", "primitives", extension) ||
+                         is_in_each("animations", "samplers", extension);
+    const std::string message = std::string("the file requires the extension ").append(extension);
+    if (changes)
+      required->item(i).complain(message + ", which cannot be read");
+    else
+      note(required->item(i), message + ", which is not read, and moves no vertex of a mesh");
   }
+}
+
+void Parser::note_faults() {
+  if (complaint_.first()) return;
+  const auto note_fault = [&](const std::optional<Error>& fault) {
+    if (fault) (void)understands([&] { complaint_.add(*fault); });
+  };
+  for (const BufferView& view : model_.views) note_fault(view.fault);
+  for (const Accessor& accessor : model_.accessors) note_fault(accessor.fault);
 }
 
 void Parser::parse_buffer(const JsonView& item) {
@@ -108,8 +159,7 @@ void Parser::parse_buffer(const JsonView& item) {
   model_.buffers.push_back(std::move(buffer));
 }
 
-void Parser::parse_view(const JsonView& item) {
-  BufferView view;
+void Parser::parse_view(const JsonView& item, BufferView& view) {
   view.buffer = item.required_index("buffer", model_.buffers.size(), "buffers").value_or(0);
   view.offset = item.count("byteOffset", kMostBytes, 0);
   view.length = item.required_count("byteLength", kMostBytes);
@@ -123,10 +173,13 @@ void Parser::parse_view(const JsonView& item) {
     return item.complain("the view ends at byte " + std::to_string(view.offset + view.length) + ", but buffer " +
                          std::to_string(view.buffer) + " has " + std::to_string(available));
   if (const std::optional<JsonView> extensions = item.object("extensions")) {
-    if (const std::optional<JsonView> meshopt = extensions->object("EXT_meshopt_compression"))
+    for (const char* const name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+      const std::optional<JsonView> meshopt = extensions->object(name);
+      if (!meshopt || view.compression) continue;
       view.compression = parse_compression(*meshopt, view);
+      if (view.compression) view.compression->is_khr = name[0] == 'K';
+    }
   }
-  model_.views.push_back(view);
 }
 
 std::optional<Compression> Parser::parse_compression(const JsonView& item, const BufferView& view) {
@@ -184,8 +237,7 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
   return result;
 }
 
-void Parser::parse_accessor(const JsonView& item) {
-  Accessor accessor;
+void Parser::parse_accessor(const JsonView& item, Accessor& accessor) {
   accessor.view = item.find_index("bufferView", model_.views.size(), "buffer views");
   accessor.offset = item.count("byteOffset", kMostBytes, 0);
   accessor.count = item.required_count("count", kMostBytes);
@@ -205,7 +257,6 @@ void Parser::parse_accessor(const JsonView& item) {
   if (accessor.normalized && (accessor.component == Component::kFloat || accessor.component == Component::kUint32))
     item.complain("normalized", "only integers of 8 and 16 bits can be normalised");
   if (const std::optional<JsonView> sparse = item.object("sparse")) parse_sparse(*sparse, accessor);
-  model_.accessors.push_back(accessor);
 }
 
 void Parser::parse_sparse(const JsonView& item, Accessor& accessor) {
@@ -242,7 +293,8 @@ void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
   }
   if (const auto mesh = item.find_index("mesh", kMostNodes, "meshes")) node.mesh = static_cast<std::uint32_t>(*mesh);
   node.weights = parse_weights(item);
-  parse_transform(item, index);
+  if (std::optional<Error> fault = fault_of([&] { parse_transform(item, index); }))
+    misplaced_.emplace_back(static_cast<std::uint32_t>(index), std::move(*fault));
   if (const auto extras = value.find("extras"); extras != value.end() && extras->is_object()) {
     if (const auto mark = extras->find("chronormal"); mark != extras->end())
       marked_["nodes"][std::to_string(index)]["extras"]["chronormal"] = *mark;
@@ -307,6 +359,34 @@ void Parser::check_nodes(const JsonView& root) {
   }
   if (!complaint_.first()) connect_nodes();
   if (!complaint_.first() && !marked_.empty()) read_marks_of_nodes();
+  if (misplaced_.empty() || complaint_.first()) return;
+  const std::vector<bool> places = nodes_that_place_meshes();
+  for (auto& [index, fault] : misplaced_) {
+    if (places[index])
+      complaint_.add(std::move(fault));
+    else
+      (void)understands([&] { complaint_.add(std::move(fault)); });
+  }
+}
+
+std::vector<bool> Parser::nodes_that_place_meshes() const {
+  std::vector<bool> places(model_.nodes.size(), false);
+  const auto add = [&](std::size_t node) {
+    for (std::optional<std::uint32_t> at = static_cast<std::uint32_t>(node); at && !places[*at];
+         at = model_.nodes[*at].parent)
+      places[*at] = true;
+  };
+  for (std::size_t i = 0; i < model_.nodes.size(); ++i)
+    if (model_.nodes[i].mesh) add(i);
+  const auto skins = document_->find("skins");
+  if (skins == document_->end() || !skins->is_array()) return places;
+  for (const nlohmann::json& skin : *skins) {
+    const auto joints = skin.is_object() ? skin.find("joints") : skin.end();
+    if (!skin.is_object() || joints == skin.end() || !joints->is_array()) continue;
+    for (const nlohmann::json& joint : *joints)
+      if (joint.is_number_unsigned() && joint.get<std::size_t>() < places.size()) add(joint.get<std::size_t>());
+  }
+  return places;
 }
 
 void Parser::connect_nodes() {
@@ -378,8 +458,9 @@ std::string primitive_pointer(std::size_t mesh, std::size_t primitive) {
   return pointer.append(std::to_string(mesh)).append("/primitives/").append(std::to_string(primitive));
 }
 
-Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset, std::size_t file_bytes) {
-  Parser parser(name, file_bytes);
+Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset, std::size_t file_bytes,
+                          bool is_strict) {
+  Parser parser(name, file_bytes, is_strict);
   const auto take_node = [&](std::size_t index, const nlohmann::json& item) { parser.parse_node(index, item); };
   const Result<nlohmann::json> document = parse_json(json, name, offset, {"nodes", take_node});
   if (!document) return document.error();

@@ -40,6 +40,8 @@ struct Compression {
 
   std::size_t buffer = 0, offset = 0, length = 0;  ///< of the compressed bytes
   std::size_t stride = 0, count = 0;               ///< of the elements
+  /// By KHR_meshopt_compression, whose bytes may be of a later version than can be decoded.
+  bool is_khr = false;
   Mode mode = Mode::kAttributes;
   Filter filter = Filter::kNone;
 };
@@ -48,6 +50,7 @@ struct BufferView {
   std::size_t buffer = 0, offset = 0, length = 0;
   std::optional<std::size_t> stride;
   std::optional<Compression> compression;
+  std::optional<Error> fault = {};  ///< why it cannot be read: an error for those alone who need it
 };
 
 struct Sparse {
@@ -64,6 +67,7 @@ struct Accessor {
   std::size_t components = 1;  ///< numbers in an element: 1 for SCALAR, 3 for VEC3
   bool is_matrix = false, normalized = false;
   std::optional<Sparse> sparse;
+  std::optional<Error> fault = {};  ///< as that of a buffer view
 
   [[nodiscard]] std::size_t element_size() const noexcept { return components * component_size(component); }
 };
@@ -165,10 +169,11 @@ struct Model {
 [[nodiscard]] std::string primitive_pointer(std::size_t mesh, std::size_t primitive);
 
 /// Takes a document apart: JSON that begins at byte `offset` of the file. file_bytes: the size of the file, which
-/// bounds how many elements an accessor without a buffer view may have. Errors: kInvalidInput, with name and JSON
+/// bounds how many elements an accessor without a buffer view may have. What is wrong with parts that the others do not need
+/// is a note of the model, and an error where is_strict. Errors: kInvalidInput, with name and JSON
 /// pointer as the place, or name and byte for what is no JSON.
 [[nodiscard]] Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset,
-                                        std::size_t file_bytes);
+                                        std::size_t file_bytes, bool is_strict);
 
 }  // namespace chronormal::inline internal::gltf
 

@@ -69,16 +69,13 @@ Parser::Driven Parser::pointed_to(const JsonView& target) {
   return driven;
 }
 
-void Parser::parse_animation(const JsonView& item) {
-  GltfAnimation animation;
-  std::vector<TrackSource> sources;
+void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std::vector<TrackSource>& sources) {
   std::set<std::string> known;
   std::map<std::size_t, std::vector<LoneWeight>> lone;  // of each node
-  animation.name = item.text("name");
   const std::optional<JsonView> channels = item.array("channels"), samplers = item.array("samplers");
   if (!channels || !samplers) return item.complain("an animation has channels and samplers");
   animation.channel_count = channels->size();
-  for (std::size_t c = 0; c < channels->size() && !complaint_.first(); ++c) {
+  const auto read = [&](std::size_t c) {
     const JsonView channel = channels->item(c);
     if (!channel.is_object()) return;
     const std::optional<JsonView> target = channel.object("target");
@@ -88,22 +85,32 @@ void Parser::parse_animation(const JsonView& item) {
     if (path == "weights" && target->has("node")) {
       if (const auto node = target->find_index("node", model_.nodes.size(), "nodes")) driven.nodes.push_back(*node);
     }
-    if (driven.nodes.empty()) continue;
+    if (driven.nodes.empty()) return;
+    const std::string weights = path == "pointer" ? pointer_of(*target) : node_weights(driven.nodes.front());
+    if (known.contains(weights)) return target->complain("the animation has two channels for these weights");
     for (const std::size_t node : driven.nodes) {
       if (driven.target)
         lone[node].push_back({c, *driven.target});
       else
         parse_track(item, c, node, animation, sources);
     }
-    const std::string weights = path == "pointer" ? pointer_of(*target) : node_weights(driven.nodes.front());
-    if (!known.insert(weights).second) target->complain("the animation has two channels for these weights");
-  }
+    if (!complaint_.first()) known.insert(weights);
+  };
+  for (std::size_t c = 0; c < channels->size() && !complaint_.first(); ++c) (void)understands([&] { read(c); });
   for (auto& [node, weights] : lone) {
-    if (complaint_.first()) return;
     std::stable_sort(weights.begin(), weights.end(),
                      [](const LoneWeight& a, const LoneWeight& b) { return a.target < b.target; });
-    assemble_track(item, node, weights, animation, sources);
+    (void)understands([&] { assemble_track(item, node, weights, animation, sources); });
   }
+}
+
+void Parser::parse_animation(const JsonView& item) {
+  GltfAnimation animation;
+  std::vector<TrackSource> sources;
+  animation.name = item.text("name");
+  if (complaint_.first()) return;
+  const bool has_channels = understands([&] { parse_channels(item, animation, sources); });
+  if (complaint_.first()) return;
   // The same numbers mean the same weights only by the same interpolation, for as many targets.
   std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
   for (std::size_t t = 0; t < sources.size(); ++t) {
@@ -122,7 +129,7 @@ void Parser::parse_animation(const JsonView& item) {
   model_.animations.push_back(std::move(animation));
   model_.track_sources.push_back(std::move(sources));
   NodeChannels& moving = model_.node_channels.emplace_back();
-  if (complaint_.first() || model_.skins.empty()) return;
+  if (!has_channels || model_.skins.empty()) return;
   moving.fault = fault_of([&] { parse_node_channels(item, moving.channels); });
 }
 

@@ -40,6 +40,8 @@ void Parser::parse_mesh(const JsonView& item) {
     if (primitive.is_object()) parse_primitive(primitive, mesh, sources);
   }
   if (complaint_.first()) return;
+  fill_targets(*primitives, mesh, sources);
+  if (complaint_.first()) return;
 
   mesh.weights = parse_weights(item);
   if (!mesh.weights.empty()) check_weights(item.pointer(), mesh.weights, mesh.target_count);
@@ -98,13 +100,26 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
 
   parse_targets(item, primitive, source);
   if (complaint_.first()) return;
-  if (!source.targets.empty()) source.influence_fault = fault_of([&] { parse_influences(item, source); });
-  if (!sources.empty() && primitive.targets.size() != mesh.target_count)
-    item.complain("targets", "the primitive has " + number(primitive.targets.size()) +
-                                 " targets, but the first of its mesh has " + number(mesh.target_count));
-  mesh.target_count = primitive.targets.size();
+  mesh.target_count = std::max(mesh.target_count, primitive.targets.size());
   mesh.primitives.push_back(std::move(primitive));
   sources.push_back(std::move(source));
+}
+
+void Parser::fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vector<PrimitiveSource>& sources) {
+  if (mesh.target_count == 0) return;
+  for (std::size_t p = 0; p < sources.size() && !complaint_.first(); ++p) {
+    const JsonView item = primitives.item(p);
+    const std::size_t own = sources[p].targets.size();
+    if (own < mesh.target_count) {
+      (void)understands([&] {
+        item.complain("targets", "the primitive has " + number(own) + " targets, but another one of its mesh has " +
+                                     number(mesh.target_count) + ": those that it lacks move nothing of it");
+      });
+      sources[p].targets.resize(mesh.target_count);
+      mesh.primitives[p].targets.resize(mesh.target_count);
+    }
+    sources[p].influence_fault = fault_of([&] { parse_influences(item, sources[p]); });
+  }
 }
 
 std::optional<Draco> Parser::parse_draco(const JsonView& item, const JsonView& attributes) {
@@ -112,7 +127,9 @@ std::optional<Draco> Parser::parse_draco(const JsonView& item, const JsonView& a
   const std::optional<JsonView> found = extensions ? extensions->object("KHR_draco_mesh_compression") : std::nullopt;
   if (!found) return std::nullopt;
   Draco draco;
-  draco.view = found->required_index("bufferView", model_.views.size(), "buffer views").value_or(0);
+  const std::optional<std::size_t> view = found->required_index("bufferView", model_.views.size(), "buffer views");
+  if (view) (void)view_of(*view);
+  draco.view = view.value_or(0);
   const std::optional<JsonView> ids = found->object("attributes");
   if (!ids) {
     found->complain("attributes", "a compressed primitive has attributes");
@@ -133,8 +150,8 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
   for (std::size_t k = 0; targets && k < targets->size() && !complaint_.first(); ++k) {
     const JsonView target = targets->item(k);
     if (!target.is_object()) return;
-    if (target.size() == 0) return target.complain("a target moves at least one attribute");
-    if (!source.base.position) {  // nothing of it is read
+    if (target.size() == 0) note(target, "a target moves at least one attribute: this one moves nothing");
+    if (target.size() == 0 || !source.base.position) {  // nothing of it is read
       source.targets.emplace_back();
       primitive.targets.emplace_back();
       continue;
@@ -220,6 +237,7 @@ std::optional<std::size_t> Parser::parse_use(const JsonView& object, const char*
 void Parser::check_use(const JsonView& object, const char* key, std::size_t index, Use use, bool compressed) {
   using enum Component;
   const Accessor& accessor = model_.accessors[index];
+  if (accessor.fault) return complaint_.add(*accessor.fault);
   const auto complain = [&](std::string message) {
     object.complain(key, "accessor " + number(index) + " " + std::move(message));
   };
@@ -282,7 +300,8 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
 
 void Parser::check_inside_view(const JsonView& object, const char* key, std::size_t index, Use use) {
   const Accessor& accessor = model_.accessors[index];
-  const BufferView& view = model_.views[*accessor.view];
+  const BufferView& view = view_of(*accessor.view);
+  if (complaint_.first()) return;
   const auto complain = [&](std::string message) {
     object.complain(key, "accessor " + number(index) + " " + std::move(message));
   };
@@ -309,7 +328,8 @@ void Parser::check_sparse(const JsonView& object, const char* key, std::size_t i
   const Sparse& sparse = *accessor.sparse;
   const auto check = [&](std::size_t view_index, std::size_t offset, std::size_t size, Component component,
                          const char* what) {
-    const BufferView& view = model_.views[view_index];
+    const BufferView& view = view_of(view_index);
+    if (complaint_.first()) return;
     check_unstrided(object, key, view, "a sparse accessor");
     const std::size_t alignment = component_size(component);
     if ((view.offset + offset) % alignment != 0)
@@ -322,6 +342,12 @@ void Parser::check_sparse(const JsonView& object, const char* key, std::size_t i
   check(sparse.indices_view, sparse.indices_offset, component_size(sparse.indices_component), sparse.indices_component,
         "indices");
   check(sparse.values_view, sparse.values_offset, accessor.element_size(), accessor.component, "values");
+}
+
+const BufferView& Parser::view_of(std::size_t index) {
+  const BufferView& view = model_.views[index];
+  if (view.fault) complaint_.add(*view.fault);
+  return view;
 }
 
 void Parser::check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what) {

@@ -18,7 +18,8 @@ namespace chronormal::inline internal::gltf {
 
 class Parser {
  public:
-  Parser(const std::string& name, std::size_t file_bytes) : complaint_(name), file_bytes_(file_bytes) {}
+  Parser(const std::string& name, std::size_t file_bytes, bool is_strict)
+      : complaint_(name), file_bytes_(file_bytes), is_strict_(is_strict) {}
 
   /// Parses a node, which may come before all else.
   void parse_node(std::size_t index, const nlohmann::json& value);
@@ -52,6 +53,21 @@ class Parser {
     return complaint_.take();
   }
 
+  /// Parses a part that is passed over where it cannot be understood, with a note of why. Returns whether it was
+  /// understood.
+  template <class Parse>
+  bool understands(const Parse& parse) {
+    if (complaint_.first()) return false;
+    parse();
+    if (!complaint_.first()) return true;
+    if (!is_strict_) model_.notes.push_back(*complaint_.take());
+    return false;
+  }
+  /// Tells of a part that is passed over.
+  void note(const JsonView& item, std::string message) {
+    (void)understands([&] { item.complain(std::move(message)); });
+  }
+
   template <class Parse>
   void for_each_item(const JsonView& root, const char* key, const Parse& parse) {
     const std::optional<JsonView> items = root.array(key);
@@ -61,10 +77,17 @@ class Parser {
   }
 
   void parse_asset(const JsonView& root);
+  /// Finds where the file uses extensions that it requires and that are not known, and notes those that do not change
+  /// what is read.
+  void check_required(const JsonView& root);
+  /// Notes what is wrong with buffer views and accessors that nothing has asked for.
+  void note_faults();
+  /// Whether a node, or a node below, carries a mesh, or a skin is hung on it.
+  [[nodiscard]] std::vector<bool> nodes_that_place_meshes() const;
   void parse_buffer(const JsonView& item);
-  void parse_view(const JsonView& item);
+  void parse_view(const JsonView& item, BufferView& view);
   std::optional<Compression> parse_compression(const JsonView& item, const BufferView& view);
-  void parse_accessor(const JsonView& item);
+  void parse_accessor(const JsonView& item, Accessor& accessor);
   void parse_sparse(const JsonView& item, Accessor& accessor);
   void parse_transform(const JsonView& item, std::size_t index);
   void check_nodes(const JsonView& root);
@@ -79,6 +102,8 @@ class Parser {
   void parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<PrimitiveSource>& sources);
   std::optional<Draco> parse_draco(const JsonView& item, const JsonView& attributes);
   void parse_targets(const JsonView& item, GltfPrimitive& primitive, PrimitiveSource& source);
+  /// Gives primitives that have fewer targets than others of their mesh targets that move nothing.
+  void fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vector<PrimitiveSource>& sources);
   /// Joints and weights of vertices: JOINTS_n and WEIGHTS_n.
   void parse_influences(const JsonView& item, PrimitiveSource& source);
   void parse_skins();
@@ -88,9 +113,13 @@ class Parser {
   void check_use(const JsonView& object, const char* key, std::size_t index, Use use, bool compressed);
   void check_inside_view(const JsonView& object, const char* key, std::size_t index, Use use);
   void check_sparse(const JsonView& object, const char* key, std::size_t index);
+  /// The buffer view of an accessor. It complains where that cannot be read.
+  const BufferView& view_of(std::size_t index);
   void check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what);
 
   void parse_animation(const JsonView& item);
+  /// The channels that drive weights. Those that cannot be understood are passed over.
+  void parse_channels(const JsonView& item, GltfAnimation& animation, std::vector<TrackSource>& sources);
   /// What a channel drives: all weights of some nodes, or one of them; no nodes where it is something else.
   struct Driven {
     std::vector<std::size_t> nodes = {};
@@ -118,9 +147,11 @@ class Parser {
   const nlohmann::json* document_ = nullptr;
   JsonComplaint complaint_;
   std::size_t file_bytes_;
+  bool is_strict_;
   bool quantized_ = false;
   Model model_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> children_;  // parent and child
+  std::vector<std::pair<std::uint32_t, Error>> misplaced_;         // nodes whose place cannot be read
   nlohmann::json marked_;                                          // extras.chronormal of nodes, each at its pointer
 };
 

@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "io/gltf/model/unicode_forms.h"
+
 namespace chronormal::inline internal {
 namespace {
 
@@ -55,13 +57,14 @@ int hexadecimal(char c) {
 std::optional<std::string> decode_percent(std::string_view uri) {
   std::string path;
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] != '%') {
+    // Exporters that encode nothing leave a percent sign as it is.
+    const bool is_code =
+        uri[i] == '%' && uri.size() - i >= 3 && hexadecimal(uri[i + 1]) >= 0 && hexadecimal(uri[i + 2]) >= 0;
+    if (!is_code) {
       path += uri[i];
       continue;
     }
-    if (uri.size() - i < 3) return std::nullopt;
     const int high = hexadecimal(uri[i + 1]), low = hexadecimal(uri[i + 2]);
-    if (high < 0 || low < 0) return std::nullopt;
     path += static_cast<char>(16 * high + low);
     i += 2;
   }
@@ -85,6 +88,17 @@ Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place)
   if (!relative || relative->empty()) return invalid_input(place, "the URI names no file");
   if (has_scheme(uri)) return invalid_input(place, "only files beside the asset can be read, not other schemes");
   return fs::path(*relative);
+}
+
+// The file of a path, or where there is none, the one that a person means by it: as the URI has it, without decoding, or in
+// the same folder, of the same name in another form of Unicode.
+fs::path existing(const fs::path& path, const fs::path& literal) {
+  std::error_code code;
+  if (fs::exists(path, code)) return path;
+  if (fs::exists(literal, code)) return literal;
+  for (fs::directory_iterator entry(path.parent_path(), code), end; !code && entry != end; entry.increment(code))
+    if (are_same_text(entry->path().filename().string(), path.filename().string())) return entry->path();
+  return path;
 }
 
 }  // namespace
@@ -124,7 +138,7 @@ Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<s
     return invalid_input(place, "the URI is an absolute path; --allow-external reads it");
 
   const fs::path base = folder && !folder->empty() ? fs::path(*folder) : fs::path(".");
-  const fs::path path = base / path_in_uri;
+  const fs::path path = existing(base / path_in_uri, base / fs::path(uri));
   std::error_code code;
   const fs::path real_base = fs::canonical(base, code);
   const fs::path real = code ? fs::path() : fs::weakly_canonical(path, code);
