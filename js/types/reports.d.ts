@@ -410,6 +410,7 @@ export interface Surface {
   seam_edges: FoundFaces;
   doubled_faces: FoundFaces;
   back_to_back: FoundFaces;
+  concave_faces: FoundFaces;
   repeating_faces: FoundFaces;
   unreferenced_vertices: FoundVertices;
   doubled_vertices: FoundVertices;

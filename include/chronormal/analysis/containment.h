@@ -19,7 +19,8 @@
 /// Closed     Every edge must be passed as often one way as the other by the faces that have it: then w is a whole
 ///            number everywhere. Surfaces may go through themselves, and have several pieces. Edges are between points
 ///            of the surface (normals/normal_groups.h), so that seams of a file do not open it. A face of more than
-///            three corners is the fan of triangles around its first one.
+///            three corners is the triangles that it is cut into at the given
+///            positions: a fan around its first one, or ears where that does not cover it.
 /// Moments    What happens within a moment of 2^-47 of a segment is reported by its sum where it cannot be told apart:
 ///            a point that touches an edge from outside has no crossing, and one that goes through it has one. At the
 ///            very moment of touching, the tie may be decided either way, so that w may differ from its value right

@@ -63,6 +63,7 @@ struct Inspection {
   Found doubled;                         ///< vertices that are at the place of a lower one in all keyframes
   Found doubled_at_start;                ///< in keyframe 0; never fewer
   Surface surface;
+  Found cut;  ///< faces that a fan around the first corner does not cover in keyframe 0, so that ears are cut off
   std::vector<SegmentInspection> segments;
 
   Places no_area;           ///< keyframes: no area at all

@@ -14,6 +14,7 @@
 #include "chronormal/core/parallel.h"
 #include "core/text.h"
 #include "motion/segment_end.h"
+#include "motion/triangles.h"
 
 namespace chronormal {
 namespace {
@@ -65,7 +66,12 @@ struct Triangles {
   std::vector<std::uint32_t> faces;
 };
 
-Triangles triangles_of(const Topology& topology, const Points& points) {
+Triangles triangles_of(const Topology& topology, const Points& points, VectorView<const float> positions) {
+  std::vector<float> places;  // of polygons that have to be cut
+  for (std::size_t v = 0; v < positions.count && !topology.all_triangles(); ++v) {
+    const Vec3f place = positions[v];
+    places.insert(places.end(), {place.x, place.y, place.z});
+  }
   std::vector<std::uint32_t> first_vertex(points.count);
   for (std::size_t v = topology.vertex_count(); v-- > 0;)
     first_vertex[points.point_of_vertex[v]] = static_cast<std::uint32_t>(v);
@@ -73,8 +79,8 @@ Triangles triangles_of(const Topology& topology, const Points& points) {
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
     const auto face = topology.face(f);
     const auto vertex = [&](std::size_t c) { return first_vertex[points.point_of_vertex[face[c]]]; };
-    for (std::size_t c = 2; c < face.size(); ++c) {
-      const std::uint32_t u = vertex(0), v = vertex(c - 1), w = vertex(c);
+    for (const auto& [a, b, c] : triangles_of_face(face, places)) {
+      const std::uint32_t u = vertex(a), v = vertex(b), w = vertex(c);
       if (u == v || v == w || w == u) continue;
       triangles.corners.insert(triangles.corners.end(), {u, v, w});
       triangles.faces.push_back(static_cast<std::uint32_t>(f));
@@ -310,7 +316,7 @@ Result<Containment> Containment::make(const Topology& topology, const Points& po
                  " passed more often one way than the other by faces that are wound inconsistently";
     return invalid_input("face " + std::to_string(faults.first_face), std::move(message));
   }
-  const Triangles triangles = triangles_of(topology, points);
+  const Triangles triangles = triangles_of(topology, points, positions);
   BoxTree tree = build_box_tree(positions, triangles.corners);
   std::vector<std::uint32_t> corners, faces;
   for (const std::uint32_t i : tree.order) {

@@ -23,6 +23,7 @@
 #include "core/blocks.h"
 #include "core/portable_math.h"
 #include "motion/segment_end.h"
+#include "motion/triangles.h"
 #include "normals/curves/curve_count.h"
 #include "normals/groups/weld.h"
 
@@ -320,6 +321,14 @@ Result<Inspection> inspect(MotionStream& stream,
   result.doubled_at_start = find_copies(welded.value().at_start);
   result.surface = survey(topology, welded.value().always);
 
+  if (!topology.all_triangles()) {
+    if (const Status held = stream.hold(0, 0); !held) return held.error();
+    for (std::size_t face = 0; face < topology.face_count(); ++face) {
+      if (is_fan(topology.face(face), motion.keyframes[0].positions)) continue;
+      if (result.cut.count++ == 0) result.cut.first = face;
+    }
+  }
+
   // The first segment at a keyframe judges it; one without a segment is judged as if it stood still.
   const std::size_t segment_count = motion.segments.size();
   std::vector<std::optional<std::size_t>> judge(result.keyframes);
@@ -401,6 +410,9 @@ Result<Inspection> inspect(MotionStream& stream,
   result.low = to_double(box.low);
   result.high = to_double(box.high);
   result.diagonal = length(result.high - result.low);
+  const Vec3d origin = {motion.origin[0], motion.origin[1], motion.origin[2]};
+  result.low = result.low + origin;
+  result.high = result.high + origin;
 
   // In order, so that what is first does not depend on the threads.
   for (std::size_t k = 0; k < keyframes.size(); ++k) {

@@ -113,6 +113,8 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
   troubles.on_surface("repeating_face", surface.repeating_faces,
                       have(faces(surface.repeating_faces.count), surface.repeating_faces.count) + " a point twice",
                       "a triangle has no area then; a larger face counts with both corners in a normal per vertex");
+  troubles.on_surface("concave_face", found.cut, counted(found.cut.count, "face is", "faces are") + " not convex",
+                      "where triangles are needed, as in glTF, ears are cut off, so that they cover it once");
   std::string meaning = "a normal per vertex breaks there, unless such vertices are taken as one point";
   if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
     meaning =

@@ -68,6 +68,7 @@ void add_inspection(const Inspected& input, Json& json) {
                      {"seam_edges", found_json(surface.seam_edges, "first_face")},
                      {"doubled_faces", found_json(surface.doubled_faces, "first_face")},
                      {"back_to_back", found_json(surface.back_to_back, "first_face")},
+                     {"concave_faces", found_json(found.cut, "first_face")},
                      {"repeating_faces", found_json(surface.repeating_faces, "first_face")},
                      {"unreferenced_vertices", found_json(surface.unreferenced, "first_vertex")},
                      {"doubled_vertices", found_json(found.doubled, "first_vertex")},
@@ -172,7 +173,6 @@ std::string inspect_json(const Inspected& input) {
     json["files"] = {{"count", series->count},         {"first", series->first},
                      {"last", series->last},           {"least_step", series->least_step},
                      {"most_step", series->most_step}, {"are_seconds", series->are_seconds}};
-  json["notes"] = input.opened.notes();
   if (has_faces) add_inspection(input, json);
   if (input.gltf) json["gltf"] = gltf_json(*input.gltf);
   json["trouble"] = Json::array();
@@ -182,6 +182,7 @@ std::string inspect_json(const Inspected& input) {
                                {"what", trouble.what},
                                {"where", trouble.where.empty() ? Json() : Json(trouble.where)},
                                {"meaning", trouble.meaning}});
+  json["notes"] = input.opened.notes();
   return json_text(json);
 }
 

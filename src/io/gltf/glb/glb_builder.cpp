@@ -19,23 +19,6 @@ constexpr std::size_t kTriangles = 0, kFirstArray = 1;
 
 }  // namespace
 
-std::vector<std::uint32_t> fan_triangles(const Topology& topology, std::span<const std::uint32_t> vertex_of_corner) {
-  std::vector<std::uint32_t> triangles;
-  if (topology.all_triangles()) {
-    triangles.assign(vertex_of_corner.begin(), vertex_of_corner.end());
-    return triangles;
-  }
-  std::size_t first = 0;
-  for (std::size_t f = 0; f < topology.face_count(); ++f) {
-    const std::size_t corners = topology.face(f).size();
-    for (std::size_t c = 2; c < corners; ++c)
-      triangles.insert(triangles.end(),
-                       {vertex_of_corner[first], vertex_of_corner[first + c - 1], vertex_of_corner[first + c]});
-    first += corners;
-  }
-  return triangles;
-}
-
 GlbBuilder::Take GlbBuilder::gather_in(std::string& file) {
   return [&file](std::string_view bytes, std::size_t file_size) -> Status {
     file.reserve(file_size);

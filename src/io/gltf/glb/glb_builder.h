@@ -29,11 +29,6 @@
 
 namespace chronormal::inline internal {
 
-/// The triangles of polygons, each as a fan around its first corner. vertex_of_corner has a vertex for each corner of
-/// the topology.
-[[nodiscard]] std::vector<std::uint32_t> fan_triangles(const Topology& topology,
-                                                       std::span<const std::uint32_t> vertex_of_corner);
-
 /// "chronormal 0.2.0": what files say that made them.
 [[nodiscard]] std::string_view generator_name() noexcept;
 

@@ -9,6 +9,7 @@
 #include "chronormal/normals/normal_groups.h"
 #include "core/vector_area.h"
 #include "io/gltf/glb/glb_builder.h"
+#include "motion/triangles.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -44,7 +45,7 @@ Result<std::string> write_glb_targets(const Motion& motion, bool weld) {
   GlbBuilder builder;
   const std::vector<float>& base = motion.keyframes[0].positions;
   const std::size_t triangles =
-      builder.set_triangles(fan_triangles(motion.topology, motion.topology.corners()), base.size() / 3);
+      builder.set_triangles(cut_polygons(motion.topology, base, motion.topology.corners()), base.size() / 3);
   const Json attributes = {{"POSITION", builder.add_vectors(base, {true, true})},
                            {"NORMAL", builder.add_vectors(base_normals(motion, weld), {false, true})}};
   Json targets = Json::array(), names = Json::array(), weights = Json::array();
@@ -60,7 +61,9 @@ Result<std::string> write_glb_targets(const Motion& motion, bool weld) {
   Json& document = builder.document();
   document["scene"] = 0;
   document["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
-  document["nodes"] = Json::array({{{"mesh", 0}}});
+  Json node = {{"mesh", 0}};
+  if (motion.origin != std::array<double, 3>{}) node["translation"] = motion.origin;
+  document["nodes"] = Json::array({std::move(node)});
   document["meshes"] = Json::array({{{"name", motion.keyframes[0].name},
                                      {"primitives", Json::array({primitive})},
                                      {"weights", weights},

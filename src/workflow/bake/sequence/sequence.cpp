@@ -26,6 +26,7 @@
 #include "io/bytes/output_file.h"
 #include "io/bytes/spool.h"
 #include "io/gltf/glb/glb_builder.h"
+#include "motion/triangles.h"
 #include "workflow/bake/sequence/curved_sequence.h"
 #include "workflow/bake/sequence/fewest_keys.h"
 #include "workflow/bake/sequence/harmless_sequence.h"
@@ -93,8 +94,8 @@ Result<HarmlessElements> without_limits(Result<std::vector<SequenceElement>> ele
   return HarmlessElements{std::move(elements).value(), 0};
 }
 
-// How many polygons a fan does not fit: one of its triangles looks the other way.
-std::size_t count_not_convex(const Topology& topology, const std::vector<float>& positions) {
+// Counts the polygons of which some triangles look the other way: those that cross themselves.
+std::size_t count_crossing(const Topology& topology, const std::vector<float>& positions) {
   const auto at = [&](std::uint32_t v) {
     return to_double(VectorView<const float>::packed(positions.data(), topology.vertex_count())[v]);
   };
@@ -103,8 +104,8 @@ std::size_t count_not_convex(const Topology& topology, const std::vector<float>&
     const auto face = topology.face(f);
     std::vector<Vec3d> triangles;
     Vec3d normal;
-    for (std::size_t c = 2; c < face.size(); ++c) {
-      triangles.push_back(cross(at(face[c - 1]) - at(face[0]), at(face[c]) - at(face[0])));
+    for (const auto& [a, b, c] : triangles_of_face(face, positions)) {
+      triangles.push_back(cross(at(face[b]) - at(face[a]), at(face[c]) - at(face[a])));
       normal = normal + triangles.back();
     }
     const bool turns =
@@ -436,13 +437,16 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   std::vector<SequenceElement>& elements = found.value().elements;
   SequenceTargets targets{are_units ? BakeEncoding::kHarmless : encoding, false, normals.keys(), {}};
   SequenceFile file(motion.topology, groups.value(), normals.base(), elements, options, std::move(spool));
+  file.set_origin(motion.origin);
   if (is_exact) {
     if (Status status = write_exact(normals, elements, step, targets, file); !status) return status.error();
   }
   report_elements(elements, encoding, report);
   report.largest_error = largest_bound(normals);
-  if (const std::size_t bent = count_not_convex(motion.topology, normals.base()); bent > 0)
-    report.warnings.push_back(std::to_string(bent) + " polygons are not convex: their triangles overlap in the file");
+  if (const std::size_t crossing = count_crossing(motion.topology, normals.base()); crossing > 0)
+    report.warnings.push_back(std::to_string(crossing) +
+                              (crossing == 1 ? " polygon crosses itself: its" : " polygons cross themselves: their") +
+                              " triangles overlap in the file");
   report.keyframes = normals.keys();
   report.vertices = file.vertex_count();
   if (is_curved) {

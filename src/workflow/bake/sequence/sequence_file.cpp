@@ -1,5 +1,6 @@
 // Puts a sequence into a GLB file: targets, tracks of weights, and marks in extras.
 #include "workflow/bake/sequence/sequence_file.h"
+#include "motion/triangles.h"
 
 #include <algorithm>
 #include <iterator>
@@ -177,7 +178,7 @@ SequenceFile::SequenceFile(const Topology& topology, const NormalGroups& groups,
 }
 
 void SequenceFile::begin(std::span<const float> base, std::span<const SequenceElement> elements) {
-  triangles_ = builder_.set_triangles(fan_triangles(*topology_, vertices_.of_corner), vertices_.size());
+  triangles_ = builder_.set_triangles(cut_polygons(*topology_, base, vertices_.of_corner), vertices_.size());
   base_positions_ = builder_.add_vectors(vertices_.positions(base, room_), {true, true});
   const std::span<const float> normals =
       fill_vectors(elements.size(), rounded_, [elements](std::size_t e) { return to_float(elements[e].normal); });
@@ -282,6 +283,7 @@ Result<std::size_t> SequenceFile::finish(const SequenceTrack& track, std::string
   document["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
   const Json mark = gltf::bake_mark_json(bake_mark);
   Json node = {{"mesh", 0}};
+  if (origin_ != std::array<double, 3>{}) node["translation"] = origin_;
   if (!bake_mark.extras.empty()) node["extras"] = {{"chronormal", mark}};
   document["nodes"] = Json::array({std::move(node)});
   Json primitive = {{"attributes", attributes}, {"indices", triangles_}, {"targets", std::move(targets)}};

@@ -2,6 +2,7 @@
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_FILE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_FILE_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -72,6 +73,9 @@ class SequenceFile {
   SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
                std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool);
 
+  /// Makes the node stand at the origin from which positions count.
+  void set_origin(const std::array<double, 3>& origin) { origin_ = origin; }
+
   /// Begins again with other elements, as if nothing had been added.
   void restart(std::span<const float> base, std::span<const SequenceElement> elements);
 
@@ -101,6 +105,7 @@ class SequenceFile {
                                            const GlbBuilder::Take& take);
 
  private:
+  std::array<double, 3> origin_ = {};
   struct Target {
     std::string name;
     std::size_t positions = 0, normals = 0;  // accessors
