@@ -47,7 +47,9 @@ struct EdgeUse {
   bool is_forward = false;                        // the face goes from near to far
 };
 
-void survey_edges(const Topology& topology, const Points& points, Surface& surface) {
+// is_copy says of each face whether a lower one has the same vertices, wound the same way: an edge that only these two
+// have is open, and they are not wound against each other.
+void survey_edges(const Topology& topology, const Points& points, const std::vector<bool>& is_copy, Surface& surface) {
   Buckets<EdgeUse> uses(points.count, [&](auto put) {
     for (std::size_t f = 0; f < topology.face_count(); ++f) {
       const auto face = topology.face(f);
@@ -66,7 +68,7 @@ void survey_edges(const Topology& topology, const Points& points, Surface& surfa
     std::sort(begin, end, [](const EdgeUse& a, const EdgeUse& b) {
       return std::tie(a.far, a.face, a.is_forward) < std::tie(b.far, b.face, b.is_forward);
     });
-    for_each_group(begin, end, same_edge, [&surface](auto first, auto last) {
+    for_each_group(begin, end, same_edge, [&](auto first, auto last) {
       ++surface.edges;
       std::size_t faces = 0;  // a face with a point twice may go along an edge more than once
       for (auto use = first; use != last; ++use) faces += use == first || use->face != (use - 1)->face ? 1U : 0U;
@@ -74,7 +76,7 @@ void survey_edges(const Topology& topology, const Points& points, Surface& surfa
       if (faces > 2) surface.non_manifold_edges.add(first->face);
       if (faces != 2 || last - first != 2) return;
       const EdgeUse &a = *first, &b = *(first + 1);
-      if (a.is_forward == b.is_forward) surface.turned_edges.add(a.face);
+      if (a.is_forward == b.is_forward && !is_copy[b.face]) surface.turned_edges.add(a.face);
       if (a.near_vertex != b.near_vertex || a.far_vertex != b.far_vertex) surface.seam_edges.add(a.face);
     });
   }
@@ -98,7 +100,7 @@ bool make_canonical(std::span<std::uint32_t> outline) {
   return false;
 }
 
-void survey_faces(const Topology& topology, const Points& points, Surface& surface) {
+void survey_faces(const Topology& topology, const Points& points, std::vector<bool>& is_copy, Surface& surface) {
   // The outline of every face, as make_canonical() has it; `starts` is where that of a face begins.
   std::vector<std::uint32_t> corners;
   corners.reserve(topology.corner_count());
@@ -144,7 +146,9 @@ void survey_faces(const Topology& topology, const Points& points, Surface& surfa
       std::array<std::size_t, 2> seen{};  // by the way they are wound
       for (auto f = first; f != last; ++f) {
         std::size_t& alike = seen[starts_low[*f] ? 1 : 0];
-        if (alike++ > 0) surface.doubled_faces.add(*f);
+        if (alike++ == 0) continue;
+        surface.doubled_faces.add(*f);
+        is_copy[*f] = true;
       }
       if (const std::size_t pairs = std::min(seen[0], seen[1]); pairs > 0) surface.back_to_back.add(*first, pairs);
     });
@@ -194,9 +198,15 @@ Found find_copies(const Points& points) {
 Surface survey(const Topology& topology, const Points& points) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
   Surface surface;
+  std::vector<bool> is_copy(topology.face_count());
   // Each writes members of its own.
-  constexpr std::array kSurveys = {survey_edges, survey_faces, survey_pieces};
-  parallel_for(kSurveys.size(), [&](std::size_t i) { kSurveys[i](topology, points, surface); });
+  parallel_for(2, [&](std::size_t i) {
+    if (i == 0)
+      survey_faces(topology, points, is_copy, surface);
+    else
+      survey_pieces(topology, points, surface);
+  });
+  survey_edges(topology, points, is_copy, surface);
   return surface;
 }
 

@@ -72,6 +72,14 @@ TEST(Surface, third_face_at_an_edge_makes_it_non_manifold) {
   EXPECT_EQ(surface.turned_edges.count, 0U);  // a question for two faces
 }
 
+TEST(Surface, a_sheet_that_is_there_twice_is_doubled_and_not_wound_against_itself) {
+  const Surface surface = survey_triangles(4, {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3});
+  EXPECT_EQ(surface.doubled_faces, (Found{2, 2}));
+  EXPECT_EQ(surface.turned_edges.count, 0U);
+  // A face that meets another one the wrong way is, though one of them is there twice.
+  EXPECT_EQ(survey_triangles(4, {0, 1, 2, 0, 1, 3}).turned_edges.count, 1U);
+}
+
 TEST(Surface, doubled_faces_are_told_from_those_back_to_back) {
   // 1 and 3 are face 0 again, 2 is its other side; 4 repeats a vertex and takes no part.
   const Surface surface = survey_triangles(4, {0, 1, 2, 1, 2, 0, 0, 2, 1, 2, 0, 1, 0, 0, 1, 1, 2, 3});
