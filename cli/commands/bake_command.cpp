@@ -18,6 +18,7 @@
 #include "cli/reports/bake_report.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
+#include "cli/terminal/process.h"
 #include "core/text.h"
 
 namespace chronormal::cli {
@@ -145,6 +146,13 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
                                                  const GltfDocument* author, const AuditBefore& audit_before) {
   std::optional<BeforeAndAfter> result;
   if (options.no_audit || is_stream(options.common.output)) return result;
+  // Whoever ends the audit has the file.
+  struct Stands {
+    Stands() { say_at_end("chronormal: the output stands; only its audit was ended (--no-audit leaves it out)\n"); }
+    Stands(const Stands&) = delete;
+    Stands& operator=(const Stands&) = delete;
+    ~Stands() { say_at_end(nullptr); }
+  } stands;
   AuditOptions audited;
   audited.weld = how.weld;
   audited.weighting = how.weighting;

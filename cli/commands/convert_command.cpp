@@ -6,6 +6,8 @@
 #include "chronormal/io/output.h"
 #include "cli/options/command.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/print.h"
+#include "core/text.h"
 
 namespace chronormal::cli {
 namespace {
@@ -44,9 +46,17 @@ Result<int> run(const ConvertArguments& options) {
   if (!input) return input.error();
   const Result<MotionStream*> motion = input.value().stream();
   if (!motion) return motion.error();
+  const std::string& output = options.common.output;
+  const bool is_float = output.ends_with(".pc2") || output.ends_with(".mdd");
+  if (is_float && motion.value()->motion().origin != std::array<double, 3>{})
+    say("convert", "the positions are far from the origin, and this format keeps them as float32, which loses digits",
+        Tone::kWarning);
   const Status written = write_motion(*motion.value(), options.common.output, options.common.force,
                                       input.value().expansion(), !options.no_weld);
   if (!written) return written.error();
+  const Motion& of_input = motion.value()->motion();
+  say_written(options.common, formatted("{} of {}", counted(of_input.keyframes.size(), "keyframe", "keyframes"),
+                                        counted(of_input.topology.vertex_count(), "vertex", "vertices")));
   return kExitDone;
 }
 

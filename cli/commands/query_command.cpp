@@ -104,6 +104,9 @@ Result<int> run(const QueryArguments& options) {
               : print_to(output, options.json ? query_json(name, answer.value()) : query_text(name, answer.value()),
                          options.common.force);
   if (!written) return written.error();
+  std::size_t rows = 0;
+  for (const QueryTable& table : answer.value().tables) rows += table.rows();
+  say_written(options.common, formatted("{} of the answer", counted(rows, "row", "rows")));
   return kExitDone;
 }
 

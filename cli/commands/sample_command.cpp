@@ -240,6 +240,7 @@ Result<int> run(const SampleArguments& options) {
         formatted("{} of {} normals of {} are (0, 0, 0): there is no area to give them one", written.value().zeros,
                   written.value().normals, options.elements.kind()),
         Tone::kWarning);
+  say_written(options.common, counted(written.value().normals, "normal", "normals"));
   return kExitDone;
 }
 

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/output.h"
 #include "cli/ranks/ranks.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
+#include "cli/terminal/text.h"
 #include "core/charconv.h"
 
 namespace chronormal::cli {
@@ -261,6 +263,10 @@ Result<Input> open_input(const char* command, InputOptions options, Progress& pr
   if (notes.size() > kMostSaid)
     say(command, formatted("and {} more of this kind", notes.size() - kMostSaid), Tone::kWarning);
   return input;
+}
+
+void say_written(const CommonOptions& common, const std::string& what) {
+  if (!common.quiet && !is_stream(common.output)) say_text(formatted("-> {}: {}\n", printable(common.output), what));
 }
 
 Error misuse(std::string place, std::string message) {

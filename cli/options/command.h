@@ -43,6 +43,9 @@ struct CommonOptions {
 /// know of how it was read (Input::notes()).
 [[nodiscard]] Result<Input> open_input(const char* command, InputOptions options, Progress& progress);
 
+/// Says what was written to a file, unless --quiet: "-> walk.npz: 5 keyframes".
+void say_written(const CommonOptions& common, const std::string& what);
+
 /// The options that choose which normals: --elements, --crease, --no-weld.
 struct ElementArguments {
   std::string usual;  ///< the kind where none was asked for

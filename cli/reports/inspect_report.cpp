@@ -271,7 +271,10 @@ std::string inspect_text(const Inspected& input) {
   if (input.gltf) text += track_table(*input.gltf);
 
   const std::vector<Trouble> troubles = find_trouble(input);
-  if (troubles.empty()) return text + "\nnothing that will trouble you\n";
+  const std::vector<std::string> notes = input.opened.notes();
+  if (!notes.empty()) text += '\n' + heading("How it was read:") + '\n';
+  for (const std::string& note : notes) text += "  " + printable(note) + '\n';
+  if (troubles.empty()) return text + (notes.empty() ? "\nnothing that will trouble you\n" : "");
   text += '\n' + heading("What will trouble you:") + '\n';
   for (const Trouble& trouble : troubles) {
     text += "  " + trouble.what;

@@ -227,6 +227,8 @@ class ReadMotion : public ZeroedObject {
                     {py::ssize_t(motion().keyframes.size()), py::ssize_t(motion().topology.vertex_count()), 3});
   }
 
+  [[nodiscard]] std::array<double, 3> origin() const { return motion().origin; }
+
   // (F, k) where all faces have as many corners, or else (offsets, corners).
   [[nodiscard]] py::object faces() const {
     const Topology& topology = motion().topology;
@@ -345,6 +347,9 @@ void add_files(py::module_& module) {
   refuse_to_be_pickled(motion);
   motion.def(py::init<const py::dict&>())
       .def_property_readonly("positions", &ReadMotion::positions, "(T, V, 3) float32; the same array each time.")
+      .def_property_readonly("origin", &ReadMotion::origin,
+                             "[x, y, z] from which positions count: 0, but where a file has more digits than float32 "
+                             "far from the origin.")
       .def_property_readonly(
           "faces", &ReadMotion::faces,
           "(F, k) uint32 where all faces have k corners, else (offsets, corners); curves() takes both.")

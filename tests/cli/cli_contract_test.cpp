@@ -218,6 +218,7 @@ const std::map<std::string, std::string> kUses = {
     {"audit --weights", "face.glb --weights -1:1"},
     {"--json", "a.obj b.obj --json"},
     {"--length", "a.obj b.obj --length area"},
+    {"--loop", "a.obj b.obj --loop"},
     {"--max-bytes", "face.glb --max-bytes 100000"},
     {"--max-expansion", "a.obj b.obj --max-expansion 5"},
     {"--max-targets", "face.glb --max-targets 9"},
@@ -233,6 +234,7 @@ const std::map<std::string, std::string> kUses = {
     {"merge --force", "part.json --force"},
     {"merge --output", "part.json"},
     {"merge --quiet", "part.json --quiet"},
+    {"--strict", "a.obj b.obj --strict"},
     {"query --direction", "facing a.obj b.obj --direction 0,0,1"},
     {"query --eye", "facing a.obj b.obj --eye 1,2,3"},
     {"query --points", "contain closed.obj moved.obj --points points.npy"},
@@ -414,10 +416,14 @@ TEST_F(Cli, a_name_that_is_too_long_stands_above_its_row) {
 TEST_F(Cli, what_an_error_quotes_from_a_file_is_safe_to_print) {
   const std::string gltf =
       R"({"asset":{"version":"2.0"},"extensionsUsed":["E"],"extensionsRequired":["\u001b[31mE\n"]})";
-  const ProcessResult result = run("inspect -", gltf);
-  EXPECT_EQ(result.exit_code, 3);
-  EXPECT_NE(result.err.find("\\x1b[31mE"), std::string::npos) << result.err;
-  EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
+  // An extension that nothing uses is an error for --strict alone, and a note otherwise.
+  for (const bool strict : {true, false}) {
+    const ProcessResult result = run(strict ? "inspect --strict -" : "inspect -", gltf);
+    EXPECT_EQ(result.exit_code, strict ? 3 : 0);
+    EXPECT_NE(result.err.find("\\x1b[31mE"), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
+    EXPECT_EQ(result.out.find('\x1b'), std::string::npos);
+  }
 }
 
 TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {

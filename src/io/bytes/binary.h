@@ -50,14 +50,16 @@ void append(std::string& text, T value, std::endian order) {
 }
 
 /// Reads count coordinates of the type Real, float or double, from the bytes at `at`, rounded to float32. Returns how
-/// many were read: fewer than count where the next one has a coordinate_fault().
+/// many were read: fewer than count where the next one has a coordinate_fault(). The origin is taken away before they are
+/// rounded; the first of them is coordinate `first` of a list (V, 3).
 template <class Real>
-[[nodiscard]] std::size_t load_coordinates(const char* at, std::size_t count, std::endian order,
-                                           float* result) noexcept {
+[[nodiscard]] std::size_t load_coordinates(const char* at, std::size_t count, std::endian order, float* result,
+                                           const std::array<double, 3>& origin = {}, std::size_t first = 0) noexcept {
+  const bool is_far = origin != std::array<double, 3>{};
   for (std::size_t i = 0; i < count; ++i) {
     const Real value = load<Real>(at + i * sizeof(Real), order);
     if (coordinate_fault(double{value}) != nullptr) return i;
-    result[i] = static_cast<float>(value);
+    result[i] = is_far ? static_cast<float>(double{value} - origin[(first + i) % 3]) : static_cast<float>(value);
   }
   return count;
 }

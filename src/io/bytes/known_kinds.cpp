@@ -46,6 +46,10 @@ constexpr std::array kKnownKinds = std::to_array<KnownKind>({
     {"BLENDER"sv, "a file of Blender"},
     {"PXR-USDC"sv, "a USD file"},
     {"#usda "sv, "a USD file"},
+    {"Ogawa"sv, "an Alembic file"},
+    {"\x89HDF\r\n\x1A\n"sv, "an HDF5 file (older Alembic, among others)"},
+    {"# vtk DataFile"sv, "a file of VTK"},
+    {"<VTKFile"sv, "a file of VTK"},
     {"solid "sv, "an STL file"},
     {"\x7F"
      "ELF"sv,
@@ -80,7 +84,24 @@ bool begins_with(std::string_view bytes, std::string_view begin) noexcept {
   return bytes.size() >= begin.size() && std::equal(begin.begin(), begin.end(), bytes.begin(), is_like);
 }
 
+// Whether text in UTF-16 begins here without a byte order mark: every second byte of its first letters is zero.
+bool is_plain_utf16(std::string_view bytes) noexcept {
+  constexpr std::size_t kLetters = 8;
+  if (bytes.size() < 2 * kLetters) return false;
+  const auto has_text_at = [&](std::size_t first) {
+    for (std::size_t i = 0; i < kLetters; ++i) {
+      const char letter = bytes[2 * i + first], other = bytes[2 * i + 1 - first];
+      const bool is_text = (letter >= ' ' && letter <= '~') || letter == '\t' || letter == '\r' || letter == '\n';
+      if (!is_text || other != '\0') return false;
+    }
+    return true;
+  };
+  return has_text_at(0) || has_text_at(1);
+}
+
 const KnownKind* find_kind(std::string_view bytes) noexcept {
+  static constexpr KnownKind kPlainUtf16 = {"", "text in UTF-16"};
+  if (is_plain_utf16(bytes)) return &kPlainUtf16;
   std::string_view text = bytes;  // markup may stand after a byte order mark, and after blank lines
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));

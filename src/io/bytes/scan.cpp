@@ -74,6 +74,24 @@ NumberFault parse_float(std::string_view word, float& value) noexcept {
   return spelt ? NumberFault::kNotFinite : NumberFault::kTooLarge;
 }
 
+NumberFault parse_double(std::string_view word, double& value, double& last_digit) {
+  float rounded = 0;
+  const NumberFault fault = parse_float(word, rounded);
+  if (fault != NumberFault::kNone) return fault;
+  word = without_plus(word);
+  value = double{rounded};  // of a number that is too small for a double
+  double wide = 0;
+  if (from_chars(word.data(), word.data() + word.size(), wide).ec == std::errc{}) value = wide;
+  const std::size_t power = std::min(word.find_first_of("eE"), word.size()), point = word.substr(0, power).find('.');
+  std::int64_t exponent = 0;
+  if (power < word.size()) (void)parse_integer(word.substr(power + 1), exponent);
+  if (point != std::string_view::npos) exponent -= static_cast<std::int64_t>(power - point - 1);
+  const std::string power_of_ten = "1e" + std::to_string(exponent);
+  last_digit = 0;
+  (void)from_chars(power_of_ten.data(), power_of_ten.data() + power_of_ten.size(), last_digit);
+  return NumberFault::kNone;
+}
+
 // With an integer w of at most 53 bits and p up to 22, w / 10^p and w 10^p are correctly rounded doubles (Clinger
 // 1990). Rounded again to float, such a double gives the right result, unless it lies in the middle between two floats:
 // it may have been rounded to that middle.

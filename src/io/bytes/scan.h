@@ -68,6 +68,9 @@ enum class NumberFault { kNone, kNotANumber, kNotFinite, kTooLarge };
 /// Reads the whole word as a float32, rounded to nearest; too small a number becomes a denormal or 0.
 [[nodiscard]] NumberFault parse_float(std::string_view word, float& value) noexcept;
 
+/// Reads the whole word as a double that a float32 can stand for; last_digit gets the unit of its last decimal digit.
+[[nodiscard]] NumberFault parse_double(std::string_view word, double& value, double& last_digit);
+
 /// Takes the next word off a line where it is a number in plain digits that two exact operations can convert. The float
 /// is that of parse_float(), in less time. Otherwise the line stays as it is.
 [[nodiscard]] bool take_plain_float(std::string_view& line, float& value) noexcept;

@@ -11,7 +11,8 @@ Status decode_coordinates(const CacheLayout& layout, const std::string& name, st
                           std::string_view bytes, std::span<float> result) {
   const bool is_double = layout.item_size == sizeof(double);
   const std::size_t read =
-      is_double ? binary::load_coordinates<double>(bytes.data(), result.size(), layout.order, result.data())
+      is_double ? binary::load_coordinates<double>(bytes.data(), result.size(), layout.order, result.data(),
+                                                   layout.origin, first)
                 : binary::load_coordinates<float>(bytes.data(), result.size(), layout.order, result.data());
   if (read == result.size()) return Success{};
   const std::size_t at = first + read;
@@ -43,6 +44,7 @@ Status read_sample(const CacheLayout& layout, const PositionedFile& file, const 
 Result<PositionCache> read_all_samples(const CacheLayout& layout, std::string_view file, const std::string& name) {
   PositionCache cache;
   cache.vertex_count = layout.vertex_count;
+  cache.origin = layout.origin;
   cache.samples.resize(layout.times.size());
   for (std::size_t k = 0; k < cache.samples.size(); ++k) {
     PositionCache::Sample& sample = cache.samples[k];

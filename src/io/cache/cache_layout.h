@@ -32,6 +32,7 @@ struct CacheLayout {
   std::uint64_t begin = 0;
   std::size_t item_size = sizeof(float);  ///< 4 or 8
   std::endian order = std::endian::little;
+  Origin origin = {};      ///< that positions are to count from; of float64 alone
   std::string array = {};  ///< the name of the array in NumPy: errors then name an element, and not a byte
 
   [[nodiscard]] std::size_t coordinates() const noexcept { return 3 * vertex_count; }

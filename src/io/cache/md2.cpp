@@ -39,9 +39,8 @@ class Md2Reader {
     motion.keyframes.resize(frames_.count);
     for (std::size_t k = 0; k < frames_.count; ++k) {
       if (Status status = read_frame(k, motion.keyframes[k]); !status) return status.error();
-      motion.keyframes[k].time = static_cast<double>(k) / frames_per_second;
     }
-    motion.connect_as_sequence();
+    set_times(frames_per_second, motion);
     if (Status status = validate(motion); !status)
       return invalid_input(name_ + ", " + status.error().place, status.error().message);
     return motion;
@@ -121,6 +120,40 @@ class Md2Reader {
       keyframe.positions[i] = static_cast<float>(value);
     }
     return Success{};
+  }
+
+  // Frames of one clip follow each other. A model of several clips is an animation, in which each clip begins at the time
+  // at which the one before ends: two keyframes at one time, and no segment between them.
+  static void set_times(double frames_per_second, Motion& motion) {
+    std::size_t clips = 1;
+    double frame = 0;
+    for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+      const bool begins = k > 0 && begins_clip(motion.keyframes[k - 1].name, motion.keyframes[k].name);
+      clips += begins ? 1 : 0;
+      frame += k == 0 || begins ? 0 : 1;
+      motion.keyframes[k].time = frame / frames_per_second;
+    }
+    const bool are_clips = clips > 1 && frame > 0;  // some have two frames
+    for (std::size_t k = 0; k < motion.keyframes.size() && !are_clips; ++k)
+      motion.keyframes[k].time = static_cast<double>(k) / frames_per_second;
+    motion.connect(are_clips ? MotionKind::kAnimation : MotionKind::kSequence);
+  }
+
+  // Whether a frame begins another clip: run1 after stand02, and death201 after death106. Names without numbers tell
+  // nothing.
+  static bool begins_clip(const std::string& before, const std::string& name) {
+    const auto digits_at = [](const std::string& text) {
+      const std::size_t last = text.find_last_not_of("0123456789");
+      return last == std::string::npos ? 0 : last + 1;
+    };
+    const std::size_t at = digits_at(name), at_before = digits_at(before);
+    if (at == name.size() || at_before == before.size()) return false;
+    if (name.compare(0, at, before, 0, at_before) != 0) return true;
+    // A name of MD2 has 16 characters.
+    constexpr std::size_t kMostDigits = 15;
+    if (name.size() - at > kMostDigits || before.size() - at_before > kMostDigits) return false;
+    const unsigned long long number = std::stoull(name.substr(at)), last = std::stoull(before.substr(at_before));
+    return number <= last || (number != last + 1 && number % 100 <= 1);
   }
 
   std::string_view bytes_;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -52,19 +53,39 @@ CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string
   return layout;
 }
 
+// Finds the origin that positions are to count from, by the first sample of an array with data; (0, 0, 0) where they have
+// no more digits than float32.
+Origin origin_of(const Array& array) {
+  const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
+  const std::size_t least = array.is_fortran ? samples * vertices * 3 : vertices * 3;
+  if (array.data.size() / array.item_size < least) return {};
+  std::vector<double> first(3 * vertices);
+  bool has_more_digits = false;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    first[i] = array.real(array.is_fortran ? samples * (i / 3 + vertices * (i % 3)) : i);
+    if (binary::coordinate_fault(first[i]) != nullptr) return {};
+    has_more_digits = has_more_digits || loses_digits(first[i], 0);
+  }
+  return has_more_digits ? far_origin(std::span<const double>(first)) : Origin{};
+}
+
 // Reads the samples of an array (T, V, 3), in the file of this name.
-Result<PositionCache> read_positions(const Array& array, const std::string& name, const std::string& what) {
+Result<PositionCache> read_positions(const Array& array, const std::string& name, const std::string& what,
+                                     bool may_be_far = true) {
   const std::string place = name + ", " + what;
   if (Status status = check_positions(array, place, what); !status) return status.error();
+  const Origin origin = may_be_far ? origin_of(array) : Origin{};
   if (!array.is_fortran) {
     CacheLayout layout = layout_of(array, 0, what);
     layout.begin = 0;
+    layout.origin = origin;
     return read_all_samples(layout, array.data, name);
   }
   const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
   PositionCache cache;
   cache.vertex_count = vertices;
   cache.samples.resize(samples);
+  cache.origin = origin;
   for (std::size_t k = 0; k < samples; ++k) {
     std::vector<float>& positions = cache.samples[k].positions;
     positions.resize(3 * vertices);
@@ -72,28 +93,72 @@ Result<PositionCache> read_positions(const Array& array, const std::string& name
       const double value = array.real(k + samples * (i / 3 + vertices * (i % 3)));
       if (const char* const fault = binary::coordinate_fault(value); fault != nullptr)
         return invalid_input(element_place(place, {k, i / 3, i % 3}), fault);
-      positions[i] = static_cast<float>(value);
+      positions[i] = static_cast<float>(value - origin[i % 3]);
     }
   }
   return cache;
 }
 
+// VTK and PyVista put the number of corners before the corners of each face.
+constexpr const char* kPadded =
+    "the faces are padded: each begins with its number of corners, as VTK and PyVista have them. Write the corners "
+    "alone: "
+    "faces.reshape(-1, 4)[:, 1:] of triangles";
+
+// Whether rows of so many numbers begin with the number of the others. Polygons around a vertex of that number do, too,
+// but have it once, and share no edge on the far side.
+bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
+  if (width < 4 || rows.size() < 2 * width) return false;
+  const auto count = static_cast<std::uint32_t>(width - 1);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  bool is_fan = true;
+  for (std::size_t row = 0; row < rows.size(); row += width) {
+    if (rows[row] != count) return false;
+    for (std::size_t c = 1; c < width; ++c) {
+      const std::uint32_t a = rows[row + c], b = rows[row + c + 1 < row + width ? row + c + 1 : row + 1];
+      is_fan = is_fan && a != count;
+      if (c + 1 < width) is_fan = edges.emplace(std::min(a, b), std::max(a, b)).second && is_fan;
+    }
+  }
+  return !is_fan;
+}
+
+// The same of one long list, in which each face begins with its number of corners.
+bool is_padded_list(const Array& array) {
+  if (array.kind == Kind::kFloat || array.shape.size() != 1) return false;
+  const std::size_t size = array.element_count();
+  std::size_t at = 0;
+  while (at < size) {
+    const std::uint64_t corners = array.vertex(at);
+    if (corners < 3 || corners >= size - at) return false;
+    at += corners + 1;
+  }
+  return size > 0;
+}
+
 Result<Topology> read_faces(const Array& array, std::size_t vertex_count, const std::string& place) {
+  if (is_padded_list(array)) return invalid_input(place, kPadded);
   if (array.kind == Kind::kFloat || array.shape.size() != 2 || array.shape[1] < 3 || array.element_count() == 0)
     return invalid_input(place, "faces must be (faces, 3) of integers, but are " + array.text());
   constexpr std::uint64_t kMostCorners = std::numeric_limits<std::uint32_t>::max();
   if (array.element_count() > kMostCorners) return invalid_input(place, "the mesh has more than 4,294,967,295 corners");
   const auto faces = static_cast<std::size_t>(array.shape[0]), corners = static_cast<std::size_t>(array.shape[1]);
   std::vector<std::uint32_t> indices(faces * corners);
+  std::optional<std::size_t> wrong;
+  bool counts_corners = corners > 3;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     const std::size_t f = i / corners, c = i % corners;
     const std::uint64_t vertex = array.vertex(array.is_fortran ? f + faces * c : i);
-    if (vertex >= vertex_count)
-      return invalid_input(element_place(place, {f, c}),
-                           "the face names a vertex that is not there: vertices are counted from 0 to " +
-                               std::to_string(vertex_count - 1));
+    if (c == 0) counts_corners = counts_corners && vertex == corners - 1;
+    if (vertex >= vertex_count && !wrong) wrong = i;
     indices[i] = static_cast<std::uint32_t>(vertex);
   }
+  if (wrong)
+    return invalid_input(element_place(place, {*wrong / corners, *wrong % corners}),
+                         counts_corners ? std::string(kPadded)
+                                        : "the face names a vertex that is not there: vertices are counted from 0 to " +
+                                              std::to_string(vertex_count - 1));
+  if (are_padded(indices, corners)) return invalid_input(place, kPadded);
   if (corners == 3) return Topology::triangles(vertex_count, std::move(indices));
   std::vector<std::uint32_t> offsets(faces + 1);
   for (std::size_t f = 0; f <= faces; ++f) offsets[f] = static_cast<std::uint32_t>(f * corners);
@@ -116,7 +181,7 @@ Status read_times(const Array& array, PositionCache& cache, const std::string& p
 
 // Takes velocities per second, in an array of the shape of the positions.
 Status take_velocities(const Array& array, const std::string& name, Motion& motion) {
-  Result<PositionCache> read = read_positions(array, name, "velocities");
+  Result<PositionCache> read = read_positions(array, name, "velocities", false);
   if (!read) return read.error();
   std::vector<PositionCache::Sample>& samples = read.value().samples;
   if (samples.size() != motion.keyframes.size() || read.value().vertex_count != motion.topology.vertex_count())
@@ -184,8 +249,12 @@ class Archive {
     if (Status status = check_positions(found.value(), place(array), std::string(array)); !status)
       return status.error();
     if (found.value().is_fortran) return std::optional<CacheLayout>();
-    return std::optional(
-        layout_of(found.value(), static_cast<std::uint64_t>(start.value().data() - bytes_.data()), std::string(array)));
+    CacheLayout layout =
+        layout_of(found.value(), static_cast<std::uint64_t>(start.value().data() - bytes_.data()), std::string(array));
+    Array with_data = found.value();
+    with_data.data = layout.begin <= bytes_.size() ? bytes_.substr(static_cast<std::size_t>(layout.begin)) : "";
+    layout.origin = origin_of(with_data);
+    return std::optional(std::move(layout));
   }
 
  private:
@@ -241,6 +310,7 @@ Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, 
   if (layout != nullptr && *layout) {
     cache.value().vertex_count = (*layout)->vertex_count;
     cache.value().samples.resize((*layout)->times.size());
+    cache.value().origin = (*layout)->origin;
   } else {
     const Result<Array> positions = archive.read("positions");
     if (!positions) return positions.error();
@@ -383,23 +453,37 @@ Status write_npz(MotionStream& stream, OutputFile& file) {
     whole.push_back({"velocities", velocities.bytes()});
   }
   NpzOutput npz(file);
+  const bool is_far = motion.origin != Origin{};
   const std::size_t positions =
-      npz.add_growing("positions", {motion.keyframes.size(), motion.topology.vertex_count(), 3});
+      npz.add_growing("positions", {motion.keyframes.size(), motion.topology.vertex_count(), 3}, is_far);
   for (const NpzMember& member : whole) npz.add(member);
   if (Status status = npz.begin(); !status) return status;
-  const Status written =
-      each_keyframe(stream, kNpzOrder, [&](std::string_view row) { return npz.append(positions, row); });
+  Status written = Success{};
+  if (!is_far)
+    written = each_keyframe(stream, kNpzOrder, [&](std::string_view row) { return npz.append(positions, row); });
+  for (std::size_t k = 0; is_far && written && k < motion.keyframes.size(); ++k) {
+    written = stream.hold(k, k);
+    if (written) written = npz.append(positions, placed_bytes(motion.keyframes[k].positions, motion.origin));
+  }
   return written ? npz.finish() : written;
+}
+
+std::string placed_bytes(std::span<const float> positions, const Origin& origin) {
+  std::string bytes;
+  bytes.reserve(sizeof(double) * positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    binary::append(bytes, double{positions[i]} + origin[i % 3], kNpzOrder);
+  return bytes;
 }
 
 void NpzOutput::add(const NpzMember& member) {
   members_.push_back({std::string(member.name) + ".npy", std::string(member.npy), member.npy.size()});
 }
 
-std::size_t NpzOutput::add_growing(std::string_view name, const std::vector<std::uint64_t>& shape) {
-  std::uint64_t size = sizeof(float);
+std::size_t NpzOutput::add_growing(std::string_view name, const std::vector<std::uint64_t>& shape, bool is_double) {
+  std::uint64_t size = is_double ? sizeof(double) : sizeof(float);
   for (const std::uint64_t length : shape) size *= length;
-  std::string header = npy::write_header("<f4", shape);
+  std::string header = npy::write_header(is_double ? "<f8" : "<f4", shape);
   size += header.size();
   members_.push_back({std::string(name) + ".npy", std::move(header), size});
   return members_.size() - 1;

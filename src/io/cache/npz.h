@@ -106,6 +106,9 @@ struct NpzMember {
 /// Writes a .npz file of arrays, stored.
 [[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
 
+/// The bytes of positions (V, 3) as float64, to which their origin was added.
+[[nodiscard]] std::string placed_bytes(std::span<const float> positions, const Origin& origin);
+
 /// A .npz file of stored arrays, of which some grow while it is written, all of them at the same time.
 ///
 ///     NpzOutput npz(file);
@@ -119,8 +122,9 @@ class NpzOutput {
 
   /// Adds an array that is whole.
   void add(const NpzMember& member);
-  /// Adds an array of float32 in C order that grows, and returns its number for append().
-  [[nodiscard]] std::size_t add_growing(std::string_view name, const std::vector<std::uint64_t>& shape);
+  /// Adds an array of float32, or of float64, in C order that grows, and returns its number for append().
+  [[nodiscard]] std::size_t add_growing(std::string_view name, const std::vector<std::uint64_t>& shape,
+                                        bool is_double = false);
 
   /// Writes the headers and the arrays that are whole; call it once all arrays are added.
   [[nodiscard]] Status begin();

@@ -30,6 +30,7 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
 
   Motion motion;
   motion.topology = std::move(faces);
+  motion.origin = cache.origin;
   motion.keyframes.reserve(cache.samples.size());
   for (PositionCache::Sample& sample : cache.samples)
     motion.keyframes.push_back({std::move(sample.positions), sample.time, cache_name});
@@ -59,7 +60,14 @@ Status each_keyframe(MotionStream& stream, std::endian order,
     const std::vector<float>& positions = motion.keyframes[k].positions;
     if (positions.size() != 3 * motion.topology.vertex_count())
       return Error{ErrorCode::kUsage, "", "a keyframe has another number of coordinates than the vertices need"};
-    if (Status status = each(binary::bytes_of(positions, order, storage)); !status) return status;
+    if (motion.origin == Origin{}) {
+      if (Status status = each(binary::bytes_of(positions, order, storage)); !status) return status;
+      continue;
+    }
+    std::vector<float> placed(positions.size());
+    for (std::size_t i = 0; i < placed.size(); ++i)
+      placed[i] = static_cast<float>(double{positions[i]} + motion.origin[i % 3]);
+    if (Status status = each(binary::bytes_of(placed, order, storage)); !status) return status;
   }
   return Success{};
 }

@@ -23,6 +23,7 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
 #include "chronormal/motion/topology.h"
+#include "io/mesh/far_origin.h"
 
 namespace chronormal::inline internal {
 
@@ -36,6 +37,7 @@ struct PositionCache {
 
   std::size_t vertex_count = 0;
   std::vector<Sample> samples;
+  Origin origin = {};  ///< that positions count from
 };
 
 /// What a cache reader may need to know; most formats need little of it.
@@ -61,7 +63,8 @@ struct CacheOptions {
 /// neighbours. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
-/// Calls each() with the coordinates of one keyframe after the other, as bytes of float32. Errors: those of the stream
+/// Calls each() with the coordinates of one keyframe after the other, as bytes of float32, to which the origin of the
+/// motion was added. Errors: those of the stream
 /// and of each().
 [[nodiscard]] Status each_keyframe(MotionStream& stream, std::endian order,
                                    const std::function<Status(std::string_view bytes)>& each);

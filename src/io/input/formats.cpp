@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "chronormal/io/gltf_document.h"
+#include "io/bytes/extension.h"
 #include "io/bytes/known_kinds.h"
 #include "io/bytes/scan.h"
 #include "io/cache/maya_cache.h"
@@ -51,8 +53,12 @@ bool is_gltf(std::string_view first_bytes) { return GltfDocument::recognises(fir
 bool is_zip(std::string_view first_bytes) { return first_bytes.starts_with("PK\3\4"); }
 bool is_md2(std::string_view first_bytes) { return first_bytes.starts_with("IDP2"); }
 
-std::string write_binary_ply(const Topology& topology, VectorView<const float> positions) {
-  return write_ply(topology, positions, PlyEncoding::kBinaryLittleEndian);
+std::string write_binary_ply(const Topology& topology, VectorView<const float> positions, const Origin& origin) {
+  return write_ply(topology, positions, PlyEncoding::kBinaryLittleEndian, origin);
+}
+
+std::string write_plain_obj(const Topology& topology, VectorView<const float> positions, const Origin& origin) {
+  return write_obj(topology, positions, origin);
 }
 
 // No count of it is larger than the file.
@@ -68,7 +74,7 @@ constexpr std::array<Format, 11> kFormats = {{
      .recognises = is_obj,
      .read_mesh = read_obj,
      .read_shaded_mesh = read_obj_shading,
-     .write_mesh = write_obj},
+     .write_mesh = write_plain_obj},
     {.name = "ply",
      .holds = Holds::kMesh,
      .extensions = kPly,
@@ -132,6 +138,34 @@ std::string unknown_format(std::string_view bytes, std::string_view what) {
   return kind.empty() ? "neither the name nor the content tells " + std::string(what) : "this is " + std::string(kind);
 }
 
+std::string way_in(std::string_view file_name, std::string_view bytes) {
+  struct Foreign {
+    std::string_view kind;  // as known_kind() has it
+    std::array<std::string_view, 4> extensions;
+    std::string_view way;
+  };
+  static constexpr std::string_view kSection = " (docs/formats.md#from-fbx-alembic-and-openusd)";
+  static constexpr auto kForeign = std::to_array<Foreign>({
+      {"an FBX file", {".fbx"}, "convert it to glTF, by Blender or fbx2gltf"},
+      {"an Alembic file", {".abc"}, "write OBJ and PC2 or MDD from it"},
+      {"a USD file", {".usd", ".usda", ".usdc", ".usdz"}, "write OBJ and PC2 or MDD from it"},
+      {"a file of Blender", {".blend"}, "export glTF, or OBJ and PC2"},
+      {"a file of VTK", {".vtp", ".vtu", ".vtk"}, "write PLY or OBJ from it, or .npz with positions and faces"},
+  });
+  if (find_format(file_name) != nullptr) return "";
+  const std::string extension = lower_extension(file_name);
+  const std::string_view kind = known_kind(bytes);
+  for (const Foreign& foreign : kForeign) {
+    const bool has_extension = !extension.empty() && std::find(foreign.extensions.begin(), foreign.extensions.end(),
+                                                               extension) != foreign.extensions.end();
+    if (kind != foreign.kind && !has_extension) continue;
+    return "this is " + std::string(foreign.kind) + ", which is not read: " + std::string(foreign.way) +
+           std::string(kSection) + ". Formats that are read are " +
+           extensions_of({Holds::kGltf, Holds::kMotion, Holds::kMesh, Holds::kCache, Holds::kTarget});
+  }
+  return "";
+}
+
 std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last) {
   std::vector<Extension> found;
   for (const Format& format : kFormats) {
@@ -149,14 +183,16 @@ std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view l
 Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name, const std::string& place,
                             WantedOfMesh wanted) {
   const Format* const format = find_format(file_name, bytes);
+  if (std::string way = way_in(file_name, bytes); !way.empty()) return invalid_input(place, std::move(way));
   if (format == nullptr || format->holds != Holds::kMesh)
     return invalid_input(place, (format == nullptr ? unknown_format(bytes, "the format")
                                                    : "this is no mesh, by its name or its content") +
                                     "; a mesh is " + extensions_of({Holds::kMesh}, " or "));
   if (const Status is_other = check_kind(bytes, place, format->name); !is_other) return is_other.error();
-  if (wanted.velocities && format->read_moving_mesh != nullptr) return format->read_moving_mesh(bytes, place);
-  return (wanted.shading && format->read_shaded_mesh != nullptr ? format->read_shaded_mesh : format->read_mesh)(bytes,
-                                                                                                                place);
+  if (wanted.velocities && format->read_moving_mesh != nullptr)
+    return format->read_moving_mesh(bytes, place, wanted.origin);
+  return (wanted.shading && format->read_shaded_mesh != nullptr ? format->read_shaded_mesh : format->read_mesh)(
+      bytes, place, wanted.origin);
 }
 
 }  // namespace chronormal::inline internal

@@ -40,11 +40,14 @@ struct Format {
 
   // The reader that goes with what the format holds; the others are nullptr, and so is that of glTF, of targets and of
   // Maya's descriptions, which need more than bytes. name is for messages. Errors: kInvalidInput, always with a place.
-  Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name) = nullptr;
+  // Positions count from the origin (io/mesh/far_origin.h).
+  Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name, const Origin& origin) = nullptr;
   /// The same with smoothing groups and normals; nullptr where the format is read without them.
-  Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name) = nullptr;
+  Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name,
+                                        const Origin& origin) = nullptr;
   /// The same with velocities; nullptr where the format has none.
-  Result<MeshFrame> (*read_moving_mesh)(std::string_view bytes, const std::string& name) = nullptr;
+  Result<MeshFrame> (*read_moving_mesh)(std::string_view bytes, const std::string& name,
+                                        const Origin& origin) = nullptr;
   Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second,
                                 std::size_t max_expansion) = nullptr;
   /// This function reads the same motion, but leaves the positions of keyframes in the file. It is nullptr for a format
@@ -59,7 +62,8 @@ struct Format {
                                      const CacheOptions& options) = nullptr;
 
   // What writes it; nullptr where nothing does.
-  std::string (*write_mesh)(const Topology& topology, VectorView<const float> positions) = nullptr;
+  std::string (*write_mesh)(const Topology& topology, VectorView<const float> positions,
+                            const Origin& origin) = nullptr;
   Status (*write_motion)(MotionStream& stream, OutputFile& file) = nullptr;
 };
 
@@ -77,6 +81,10 @@ struct Format {
 /// bytes are of a known kind: how messages begin about a file that has no format.
 [[nodiscard]] std::string unknown_format(std::string_view bytes, std::string_view what);
 
+/// What to do about a file of a format that is not read here and that other programs turn into one that is, by its name or
+/// its first bytes: "this is an FBX file, which is not read: ..."; empty where it is none of these.
+[[nodiscard]] std::string way_in(std::string_view file_name, std::string_view bytes);
+
 /// ".obj, .ply": the extensions of all formats that hold one of these, for messages; the last after `last`.
 [[nodiscard]] std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last = ", ");
 
@@ -84,6 +92,7 @@ struct Format {
 struct WantedOfMesh {
   bool shading = false;
   bool velocities = false;
+  Origin origin = {};  ///< that positions are to count from
 };
 
 /// Reads a mesh in the format that it has, with what is wanted and the format has; place is for messages, and begins

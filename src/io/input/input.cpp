@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <numeric>
@@ -15,6 +16,7 @@
 #include <utility>
 
 #include "chronormal/io/builtin_morphs.h"
+#include "core/portable_math.h"
 #include "io/bytes/file.h"
 #include "io/bytes/known_kinds.h"
 #include "io/bytes/positioned_file.h"
@@ -106,9 +108,17 @@ std::vector<double> times_of(const Motion& motion) {
 // Keeps the chosen keyframes of a motion that was read whole.
 Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (!options.chooses_frames()) return Success{};
-  if (motion.kind != MotionKind::kSequence || motion.segments.empty()) return chooses_nothing(options);
+  if (motion.kind == MotionKind::kTargets || motion.segments.empty()) return chooses_nothing(options);
   const Result<std::vector<std::size_t>> frames = choose_frames(motion.keyframes.size(), options);
   if (!frames) return frames.error();
+  // Of several clips, a part with jumps stays one, and a part without them is a sequence like any other.
+  const std::size_t last = options.to.value_or(motion.keyframes.size() - 1);
+  bool jumps = false;
+  for (std::size_t k = options.from + 1; k <= last && motion.kind == MotionKind::kAnimation; ++k)
+    jumps = jumps || motion.keyframes[k - 1].time == motion.keyframes[k].time;
+  if (jumps && (options.every != 1 || options.loop))
+    return misuse(options.loop ? "--loop" : "--every",
+                  "the motion jumps there from one clip to the next: choose the keyframes of one by --from and --to");
   std::vector<Motion::Keyframe> kept;
   for (const std::size_t k : frames.value()) {
     // The ends may follow from keyframes that are chosen and from others.
@@ -118,7 +128,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   const std::vector<double> times = times_of(motion);
   if (options.loop) kept.back().time = closing_time(times, frames.value());
   std::swap(motion.keyframes, kept);
-  motion.connect_as_sequence();
+  motion.connect(jumps ? MotionKind::kAnimation : MotionKind::kSequence);
+  if (motion.segments.empty()) return misuse("--to", "the motion jumps between these keyframes, and nothing moves");
   const auto positions = [&kept](std::size_t k) -> Result<std::vector<float>> { return kept[k].positions; };
   return set_end_velocities(options, times, positions, motion);
 }
@@ -154,7 +165,7 @@ Result<MotionStream> stream_samples(const InputOptions& options, Motion outline,
 
 // The cache of a layout, without positions.
 Result<PositionCache> outline_of(const CacheLayout& layout) {
-  PositionCache cache{layout.vertex_count, {}};
+  PositionCache cache{layout.vertex_count, {}, layout.origin};
   for (const double time : layout.times) cache.samples.push_back({time, {}});
   return cache;
 }
@@ -175,6 +186,88 @@ std::optional<FoundSamples> find_samples(const CacheInput& input, const CacheOpt
   Result<CacheLayout> layout = input.format->find_layout(start, file->size(), file_name_of(input.path), cache_options);
   if (!layout) return std::nullopt;
   return FoundSamples{std::move(*file), std::move(layout).value()};
+}
+
+// Notes where positions that were float32 in their file have lost digits: these are the first of them.
+void note_if_far(const Origin& origin, std::span<const float> first, ReadMotion& read) {
+  if (origin != Origin{} || far_origin(first) == Origin{}) return;
+  if (std::string note = note_of_lost_digits(first); !note.empty()) read.notes.push_back(std::move(note));
+}
+
+// Says that a cache has the vertices of a mesh in another order, or is of another mesh; empty where nothing tells that.
+// Motion keeps the lengths of edges, or changes them smoothly. Between vertices in a wrong order, they are those of any
+// two points, which are much longer in all but the smallest meshes. There the coordinates tell, each axis by itself: where
+// they are those of the mesh in another order, so are the vertices.
+std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh, const std::vector<float>& first) {
+  constexpr double kTolerance = 1e-4, kFarther = 2, kSpread = 0.15;
+  constexpr std::size_t kFewCoordinates = 1 << 20;  // are sorted in no time
+  const std::size_t vertices = faces.vertex_count();
+  double size = 0, moved = 0, radius_of_mesh = 0, radius = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = mesh[axis], high = low, sum_of_mesh = 0, sum = 0;
+    for (std::size_t v = 0; v < vertices; ++v) {
+      const double a{mesh[3 * v + axis]}, b{first[3 * v + axis]};
+      low = std::min(low, a);
+      high = std::max(high, a);
+      moved = std::max(moved, std::fabs(a - b));
+      sum_of_mesh += a;
+      sum += b;
+    }
+    size = std::max(size, high - low);
+    for (std::size_t v = 0; v < vertices; ++v) {
+      const double a = double{mesh[3 * v + axis]} - sum_of_mesh / static_cast<double>(vertices),
+                   b = double{first[3 * v + axis]} - sum / static_cast<double>(vertices);
+      radius_of_mesh += a * a;
+      radius += b * b;
+    }
+  }
+  if (!(size > 0) || moved <= kTolerance * size || !(radius > 0)) return "";
+  std::vector<double> ratios;
+  double sum_of_mesh = 0, sum = 0;
+  for (std::size_t f = 0; f < faces.face_count(); ++f) {
+    const auto face = faces.face(f);
+    for (std::size_t c = 0; c < face.size(); ++c) {
+      const std::size_t a = face[c], b = face[c + 1 < face.size() ? c + 1 : 0];
+      const auto length = [&](const std::vector<float>& of) {
+        const double x = double{of[3 * a]} - double{of[3 * b]}, y = double{of[3 * a + 1]} - double{of[3 * b + 1]},
+                     z = double{of[3 * a + 2]} - double{of[3 * b + 2]};
+        return std::sqrt(x * x + y * y + z * z);
+      };
+      const double in_mesh = length(mesh), in_cache = length(first);
+      sum_of_mesh += in_mesh;
+      sum += in_cache;
+      if (in_mesh > 0 && in_cache > 0) ratios.push_back(portable::log(in_cache / in_mesh));
+    }
+  }
+  const auto median = [](std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  if (ratios.empty() || !(sum_of_mesh > 0) || !(radius_of_mesh > 0)) return "";
+  const double usual = median(ratios);
+  for (double& ratio : ratios) ratio = std::fabs(ratio - usual);
+  const double spread = median(ratios);
+  if (spread <= kSpread) return "";
+  bool is_shuffled = 3 * vertices <= kFewCoordinates;
+  for (std::size_t axis = 0; axis < 3 && is_shuffled; ++axis) {
+    std::vector<float> a, b;
+    for (std::size_t v = 0; v < vertices; ++v) {
+      a.push_back(mesh[3 * v + axis]);
+      b.push_back(first[3 * v + axis]);
+    }
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    for (std::size_t v = 0; v < vertices; ++v)
+      is_shuffled = is_shuffled && std::fabs(double{a[v]} - double{b[v]}) <= kTolerance * size;
+  }
+  if (is_shuffled)
+    return "the cache is not of this mesh: it has the same vertices in another order, so that faces join the wrong "
+           "ones";
+  const double farther = sum / std::sqrt(radius) / (sum_of_mesh / std::sqrt(radius_of_mesh));
+  if (farther < kFarther && farther > 1 / kFarther) return "";
+  return "the cache is hardly of this mesh, or has its vertices in another order: in its first frame edges are " +
+         std::to_string(farther).substr(0, 4) + " times as long, for its size, as in the mesh";
 }
 
 Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::string& mesh_input,
@@ -198,12 +291,25 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   std::optional<FoundSamples> samples = find_samples(input, cache_options, options);
   Result<PositionCache> cache = samples ? outline_of(samples->layout) : read_cache(input, cache_options, options);
   if (!cache) return cache.error();
+  const Origin of_mesh_origin = read.motion.origin, of_cache_origin = cache.value().origin;
   // The files of a cache have no fewer bytes than its positions.
   read.bytes_read += sizeof(float) * 3 * std::uint64_t{cache.value().vertex_count} * cache.value().samples.size();
   if (options.progress) options.progress(2, 2);
   Result<Motion> motion =
       motion_from_cache(std::move(faces), std::move(cache).value(), file_name_of(mesh_path), file_name_of(input.path));
   if (!motion) return motion.error();
+  std::vector<float> first(mesh.value().positions.size());
+  if (samples) {
+    if (!read_sample(samples->layout, samples->file, file_name_of(input.path), 0, first))
+      first = mesh.value().positions;
+  } else {
+    first = motion.value().keyframes.front().positions;
+  }
+  note_if_far(of_cache_origin, first, read);
+  for (std::size_t i = 0; i < first.size(); ++i)
+    first[i] = static_cast<float>(double{first[i]} + of_cache_origin[i % 3] - of_mesh_origin[i % 3]);
+  if (std::string doubt = doubt_of_cache(motion.value().topology, mesh.value().positions, first); !doubt.empty())
+    read.notes.push_back(std::move(doubt));
   if (samples) {
     Result<MotionStream> stream = stream_samples(options, std::move(motion).value(), std::move(samples->file),
                                                  std::move(samples->layout), file_name_of(input.path));
@@ -246,9 +352,11 @@ Result<Opened> open_document(FileBytes file, const std::string& path, const Inpu
   if (path != "-") folder = std::filesystem::path(path).parent_path().string();
   Opened opened;
   opened.file_size = file.bytes().size();
-  Result<GltfDocument> document = GltfDocument::read(
-      std::move(file), file_name_of(path), folder,
-      {.allow_external = options.allow_external, .max_expansion = options.max_expansion, .resolve = options.resolve});
+  Result<GltfDocument> document = GltfDocument::read(std::move(file), file_name_of(path), folder,
+                                                     {.allow_external = options.allow_external,
+                                                      .max_expansion = options.max_expansion,
+                                                      .strict = options.strict,
+                                                      .resolve = options.resolve});
   if (!document) return document.error();
   opened.document = std::move(document).value();
   return opened;
@@ -267,10 +375,15 @@ Status read_whole_motion(const Format& format, std::string_view bytes, const std
       file ? format.read_outline(bytes, name, options.frames_per_second, options.max_expansion, layout)
            : format.read_motion(bytes, name, options.frames_per_second, options.max_expansion);
   if (!motion) return motion.error();
+  std::vector<float> first;
   if (!layout) {
     read.motion = std::move(motion).value();
+    note_if_far(read.motion.origin, read.motion.keyframes.front().positions, read);
     return keep_chosen(options, read.motion);
   }
+  // What is wrong with the first sample is found when it is read again.
+  first.resize(layout->coordinates());
+  if (read_sample(*layout, *file, name, 0, first)) note_if_far(layout->origin, first, read);
   Result<MotionStream> stream =
       stream_samples(options, std::move(motion).value(), std::move(*file), std::move(*layout), name);
   if (!stream) return stream.error();
@@ -283,6 +396,8 @@ Result<Opened> open_whole(const std::string& path, const InputOptions& options) 
   Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();
   const std::string_view bytes = file.value().bytes();
+  if (std::string way = way_in(file_name_of(path), bytes); !way.empty())
+    return invalid_input(file_name_of(path), std::move(way));
   const Format* const format = find_format(path, bytes);
   if (format != nullptr && format->holds == Holds::kGltf) return open_document(std::move(file).value(), path, options);
   if (!options.animation.empty()) return not_animated(path);

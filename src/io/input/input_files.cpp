@@ -16,6 +16,7 @@
 #include "io/bytes/file.h"
 #include "io/bytes/scan.h"
 #include "io/input/formats.h"
+#include "io/mesh/far_origin.h"
 #include "normals/curves/path_stream.h"
 
 namespace chronormal::inline internal {
@@ -149,8 +150,28 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
   // The normals of all keyframes count as far as every one so far had some.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool wanted = k == 0 ? options.shading != KeepShading::kNone : of_all && normals.size() == k;
-  Result<MeshFrame> mesh = read_mesh(bytes, file_name_of(path), place, {wanted, options.velocities});
-  if (!mesh || !wanted) return mesh;
+  WantedOfMesh of_mesh{wanted, options.velocities, read.motion.origin};
+  Result<MeshFrame> mesh = read_mesh(bytes, file_name_of(path), place, of_mesh);
+  if (!mesh) return mesh;
+  if (k == 0) {
+    const std::span<const float> positions = mesh.value().positions;
+    of_mesh.origin = far_origin(positions);
+    if (of_mesh.origin != Origin{}) {
+      Result<MeshFrame> shifted = read_mesh(bytes, file_name_of(path), place, of_mesh);
+      if (!shifted) return shifted;
+      if (shifted.value().has_more_digits) {
+        read.motion.origin = of_mesh.origin;
+        mesh = std::move(shifted);
+      } else if (std::string note = note_of_lost_digits(positions); !note.empty()) {
+        read.notes.push_back(std::move(note));
+      }
+    }
+  }
+  for (const std::string& note : mesh.value().notes) {
+    if (options.strict) return invalid_input(place, note);
+    read.notes.push_back(place + ": " + note);
+  }
+  if (!wanted) return mesh;
   if (k == 0) {
     const Format* const format = find_format(file_name_of(path), bytes);
     if (format != nullptr && format->read_shaded_mesh != nullptr) read.shaded_by = path == "-" ? "<stdin>" : path;

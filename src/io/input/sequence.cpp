@@ -70,11 +70,10 @@ struct ReadFrame {
   std::uint64_t bytes = 0;  // the size of its file, where it was not counted otherwise
 };
 
-// Reads a frame. `faces` are those of the first frame, where their text can be compared; `shaded` gets the normals of
+// Reads a frame; of_first has the faces and the origin of the first one. `faces` are those of the first frame, where their text can be compared; `shaded` gets the normals of
 // the frame, where they are wanted.
 ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
-                     const ObjFaces* faces, ReadMotion* shaded, const Topology& topology,
-                     const std::string& first_name) {
+                     const ObjFaces* faces, ReadMotion* shaded, const Motion& of_first, const std::string& first_name) {
   const Result<FileBytes> file = open_frame(options, path, place);
   if (!file) return {file.error(), {}};
   const std::string_view bytes = file.value().bytes();
@@ -85,10 +84,11 @@ ReadFrame read_frame(const InputOptions& options, const std::string& path, const
       if (std::optional<std::vector<float>> positions = faces->positions_of(bytes))
         return {std::move(*positions), {}, counted};
   }
-  Result<MeshFrame> mesh = shaded != nullptr ? read_next_mesh(options, bytes, path, place, *shaded)
-                                             : read_mesh(bytes, file_name_of(path), place, {false, options.velocities});
+  Result<MeshFrame> mesh =
+      shaded != nullptr ? read_next_mesh(options, bytes, path, place, *shaded)
+                        : read_mesh(bytes, file_name_of(path), place, {false, options.velocities, of_first.origin});
   if (!mesh) return {mesh.error(), {}};
-  if (const Status same = check_same_topology(topology, first_name, mesh.value().topology, place); !same)
+  if (const Status same = check_same_topology(of_first.topology, first_name, mesh.value().topology, place); !same)
     return {same.error(), {}};
   return {std::move(mesh.value().positions), std::move(mesh.value().velocities), counted};
 }
@@ -165,7 +165,7 @@ Status set_ends(const std::vector<std::string>& files, const InputOptions& optio
                 Motion& motion) {
   const auto positions = [&](std::size_t k) {
     const std::string place = frame_place(k, file_name_of(files[k]));
-    return read_frame(options, files[k], place, nullptr, nullptr, motion.topology, "the others").positions;
+    return read_frame(options, files[k], place, nullptr, nullptr, motion, "the others").positions;
   };
   return set_end_velocities(options, times, positions, motion);
 }
@@ -205,13 +205,15 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;
-  if (!keeps_normals) faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
+  // Text that is the same is compared with positions as they stand in the file.
+  if (!keeps_normals && motion.origin == Origin{})
+    faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
   while (motion.keyframes.size() < total) {
     const std::size_t begin = motion.keyframes.size(), count = std::min(at_once, total - begin);
     std::vector<ReadFrame> next(count);
     parallel_for(count, [&](std::size_t i) {
       next[i] = read_frame(options, file_of(begin + i), place(begin + i), faces ? &*faces : nullptr,
-                           keeps_normals ? &read : nullptr, motion.topology, frame_name(frames.value()[0]));
+                           keeps_normals ? &read : nullptr, motion, frame_name(frames.value()[0]));
     });
     for (ReadFrame& frame : next) {
       if (!frame.positions) return frame.positions.error();
@@ -255,6 +257,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   read.normals.has_more = options.shading == KeepShading::kRead && !read.normals.of_keyframes.empty();
   read.bytes_read = *bytes;
   outline.topology = std::move(first.value().topology);
+  outline.origin = read.motion.origin;
   std::vector<float>& positions = outline.keyframes[0].positions;
   positions = std::move(first.value().positions);
   if (Status status = set_ends(files, options, times.value(), outline); !status) return status.error();
@@ -268,13 +271,12 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
     std::optional<ObjFaces> faces;
   };
   const auto kept = std::make_shared<First>(First{std::move(first_file).value(), std::nullopt});
-  kept->faces = faces_of(first_path, kept->file.bytes(), positions);
+  if (outline.origin == Origin{}) kept->faces = faces_of(first_path, kept->file.bytes(), positions);
   const auto read_one = [files, frames, options, kept](const Motion& motion, std::size_t keyframe,
                                                        std::span<float> result) -> Status {
     const std::size_t k = frames[keyframe];
-    const ReadFrame frame =
-        read_frame(options, files[k], frame_place(k, motion.keyframes[keyframe].name),
-                   kept->faces ? &*kept->faces : nullptr, nullptr, motion.topology, frame_name(frames[0]));
+    const ReadFrame frame = read_frame(options, files[k], frame_place(k, motion.keyframes[keyframe].name),
+                                       kept->faces ? &*kept->faces : nullptr, nullptr, motion, frame_name(frames[0]));
     if (!frame.positions) return frame.positions.error();
     if (!frame.velocities.empty())
       return invalid_input(frame_place(k, motion.keyframes[keyframe].name),

@@ -70,7 +70,7 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
     const std::vector<float>& coordinates = motion.keyframes[k].positions;
     assert(coordinates.size() == 3 * motion.topology.vertex_count());
     const auto positions = VectorView<const float>::packed(coordinates.data(), motion.topology.vertex_count());
-    const std::string bytes = format.write_mesh(motion.topology, positions);
+    const std::string bytes = format.write_mesh(motion.topology, positions, motion.origin);
     // Keyframes take about as many bytes each: the first tells before anything is written.
     const std::uint64_t all = std::uint64_t{bytes.size()} * motion.keyframes.size();
     if (Status status = k == 0 ? expansion.check(all, pattern) : Success{}; !status) return status;

@@ -47,8 +47,9 @@ struct Shading {
   bool has_normals = false;                     // some corner has one
   std::map<std::string, std::uint32_t, std::less<>> groups;
   std::vector<std::uint32_t> group_of_face;
-  std::uint32_t group = 0;  // of the faces that follow
-  bool has_groups = false;  // there was an s
+  std::uint32_t group = 0;                               // of the faces that follow
+  bool has_groups = false;                               // there was an s
+  std::size_t unknown_normals = 0, nameless_groups = 0;  // corners, and s without a word
 
   [[nodiscard]] std::size_t normal_count() const { return normals.size() / 3; }
 };
@@ -56,8 +57,12 @@ struct Shading {
 class ObjReader {
  public:
   /// Passes over what is in Shading where shading is null.
-  ObjReader(std::string_view bytes, const std::string& name, Shading* shading)
-      : name_(name), lines_(bytes, bytes.find('\n') == std::string_view::npos ? '\r' : '\n'), shading_(shading) {}
+  ObjReader(std::string_view bytes, const std::string& name, const Origin& origin, Shading* shading)
+      : name_(name),
+        lines_(bytes, bytes.find('\n') == std::string_view::npos ? '\r' : '\n'),
+        origin_(origin),
+        is_far_(origin != Origin{}),
+        shading_(shading) {}
 
   Result<MeshFrame> read();
 
@@ -70,7 +75,8 @@ class ObjReader {
   [[nodiscard]] Status resolve(std::int64_t index, std::string_view word);
   [[nodiscard]] Status read_normal(std::string_view numbers);
   [[nodiscard]] Status read_group(std::string_view line);
-  [[nodiscard]] Status resolve_normal(std::string_view word);
+  void resolve_normal(std::string_view word);
+  [[nodiscard]] scan::NumberFault read_coordinate(std::string_view word, std::size_t axis, float& coordinate);
 
   [[nodiscard]] Error error(std::string message) const { return error_in_line(statement_line_, std::move(message)); }
   [[nodiscard]] Error error_in_line(std::size_t line, std::string message) const {
@@ -84,10 +90,6 @@ class ObjReader {
   [[nodiscard]] std::string unknown_vertex(std::int64_t index) const {
     return " names vertex " + std::to_string(index) + ", but the file has " + std::to_string(vertex_count()) +
            (vertex_count() == 1 ? " vertex" : " vertices");
-  }
-  [[nodiscard]] std::string unknown_normal(std::int64_t index) const {
-    return " names normal " + std::to_string(index) + ", but the file has " + std::to_string(shading_->normal_count()) +
-           (shading_->normal_count() == 1 ? " normal" : " normals");
   }
 
   const std::string& name_;
@@ -103,7 +105,10 @@ class ObjReader {
     std::size_t face = 0;
     std::size_t corner = 0;
   };
-  Largest largest_, largest_normal_;
+  Largest largest_;
+  Origin origin_;
+  bool is_far_, has_more_digits_ = false;
+  std::size_t dropped_faces_ = 0;
   Shading* shading_;
 };
 
@@ -118,14 +123,29 @@ Result<MeshFrame> ObjReader::read() {
     return error_in_line(last_line, "the file ends without a face (a line that begins with f)");
   if (largest_.index > static_cast<std::int64_t>(vertex_count()))
     return error_in_line(largest_.line, corner_name(largest_.face, largest_.corner) + unknown_vertex(largest_.index));
-  if (shading_ != nullptr && largest_normal_.index > static_cast<std::int64_t>(shading_->normal_count()))
-    return error_in_line(largest_normal_.line, corner_name(largest_normal_.face, largest_normal_.corner) +
-                                                   unknown_normal(largest_normal_.index));
 
   Result<Topology> topology = faces_.build(vertex_count());
   if (!topology) return error_in_line(last_line, topology.error().text());
   positions_.shrink_to_fit();
-  return MeshFrame{std::move(topology).value(), std::move(positions_)};
+  MeshFrame mesh{std::move(topology).value(), std::move(positions_)};
+  mesh.has_more_digits = has_more_digits_;
+  const auto note = [&](std::size_t count, const char* one, const char* several, const char* rest) {
+    if (count > 0) mesh.notes.push_back(std::to_string(count) + (count == 1 ? one : several) + rest);
+  };
+  note(dropped_faces_, " face has", " faces have", " fewer than three corners: left out");
+  if (shading_ == nullptr) return mesh;
+  // Normals may stand behind the faces that name them.
+  for (std::uint32_t& index : shading_->normal_of_corner) {
+    if (index > shading_->normal_count()) {
+      index = 0;
+      ++shading_->unknown_normals;
+    }
+    shading_->has_normals = shading_->has_normals || index > 0;
+  }
+  note(shading_->unknown_normals, " corner names a normal", " corners name normals",
+       " that the file does not have: taken as corners without one");
+  note(shading_->nameless_groups, " line has", " lines have", " an s without a smoothing group: taken as s off");
+  return mesh;
 }
 
 // The current line, and those that continue it.
@@ -168,14 +188,14 @@ bool is_over(std::string_view rest) { return std::all_of(rest.begin(), rest.end(
 Status ObjReader::read_vertex(std::string_view numbers) {
   std::array<float, 3> position{};
   std::string_view rest = numbers;
-  if (scan::take_plain_float(rest, position[0]) && scan::take_plain_float(rest, position[1]) &&
+  if (!is_far_ && scan::take_plain_float(rest, position[0]) && scan::take_plain_float(rest, position[1]) &&
       scan::take_plain_float(rest, position[2]) && is_over(rest)) {
     positions_.insert(positions_.end(), position.begin(), position.end());
     return Success{};
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string_view word = take_word(numbers);
-    const NumberFault fault = scan::parse_float(word, position[axis]);
+    const NumberFault fault = read_coordinate(word, axis, position[axis]);
     if (fault != NumberFault::kNone)
       return error(std::string(1, "xyz"[axis]) + " of vertex " + std::to_string(vertex_count()) + ": " +
                    scan::describe(fault, word));
@@ -189,6 +209,16 @@ Status ObjReader::read_vertex(std::string_view numbers) {
   }
   positions_.insert(positions_.end(), position.begin(), position.end());
   return Success{};
+}
+
+// Counts a coordinate from the origin.
+NumberFault ObjReader::read_coordinate(std::string_view word, std::size_t axis, float& coordinate) {
+  if (!is_far_) return scan::parse_float(word, coordinate);
+  double value = 0, last_digit = 0;
+  const NumberFault fault = scan::parse_double(word, value, last_digit);
+  has_more_digits_ = has_more_digits_ || loses_digits(value, last_digit);
+  coordinate = static_cast<float>(value - origin_[axis]);
+  return fault;
 }
 
 // Takes a corner that is a positive index in digits alone. Returns 0 where the next word is no such corner; the line
@@ -219,9 +249,13 @@ Status ObjReader::read_face(std::string_view corners) {
   for (std::string_view word = take_word(corners); !word.empty(); word = take_word(corners)) {
     if (Status status = read_corner(word); !status) return status;
   }
-  if (faces_.open_corners() < 3)
-    return error("face " + std::to_string(faces_.face_count()) + " has " + std::to_string(faces_.open_corners()) +
-                 " corners, but a face needs three or more");
+  if (faces_.open_corners() < 3) {
+    if (shading_ != nullptr)
+      shading_->normal_of_corner.resize(shading_->normal_of_corner.size() - faces_.open_corners());
+    faces_.drop_face();
+    ++dropped_faces_;
+    return Success{};
+  }
   faces_.end_face();
   if (shading_ != nullptr) shading_->group_of_face.push_back(shading_->group);
   return Success{};
@@ -248,9 +282,7 @@ Status ObjReader::read_corner(std::string_view word) {
     if (part == 1) normal = text;
     slash = next;
   }
-  if (shading_ != nullptr) {
-    if (Status status = resolve_normal(normal); !status) return status;
-  }
+  if (shading_ != nullptr) resolve_normal(normal);
   return resolve(index, word);
 }
 
@@ -282,11 +314,11 @@ Status ObjReader::read_normal(std::string_view numbers) {
 // Groups are told apart by their words; 01 is 1.
 Status ObjReader::read_group(std::string_view line) {
   const std::string_view word = take_word(line);
-  if (word.empty()) return error("a smoothing group is missing: a number, a name, or off");
   shading_->has_groups = true;
+  if (word.empty()) ++shading_->nameless_groups;
   std::int64_t number = 0;
   const bool is_number = scan::parse_integer(word, number) == NumberFault::kNone;
-  if (word == "off" || (is_number && number == 0)) {
+  if (word.empty() || word == "off" || (is_number && number == 0)) {
     shading_->group = 0;
     return Success{};
   }
@@ -296,32 +328,35 @@ Status ObjReader::read_group(std::string_view line) {
   return Success{};
 }
 
-// The normal of the corner that comes next; an empty word for none.
-Status ObjReader::resolve_normal(std::string_view word) {
+// The normal of the corner that comes next; an empty word for none. One that the file does not have, or not yet, is
+// found out at the end.
+void ObjReader::resolve_normal(std::string_view word) {
   std::int64_t index = 0;
   if (!word.empty()) {
+    constexpr auto kMost = std::int64_t{std::numeric_limits<std::uint32_t>::max()};
     const auto count = static_cast<std::int64_t>(shading_->normal_count());
-    if (scan::parse_integer(word, index) == NumberFault::kTooLarge ||
-        index > std::int64_t{std::numeric_limits<std::uint32_t>::max()})
-      return error(open_corner() + ": " + scan::quoted(word) + " is more normals than a mesh can have");
-    if (index == 0) return error(open_corner() + ": normals are counted from 1, not from 0");
-    if (index < -count) return error(open_corner() + unknown_normal(index) + " so far");
-    if (index > largest_normal_.index)
-      largest_normal_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
+    (void)scan::parse_integer(word, index);
     if (index < 0) index += count + 1;
-    shading_->has_normals = true;
+    const bool is_known = index > 0 && index < kMost;
+    if (!is_known) ++shading_->unknown_normals;
+    if (!is_known) index = 0;
   }
   shading_->normal_of_corner.push_back(static_cast<std::uint32_t>(index));
-  return Success{};
 }
 
-void append_vectors(std::string& text, std::string_view keyword, VectorView<const float> vectors) {
+void append_vectors(std::string& text, std::string_view keyword, VectorView<const float> vectors,
+                    const Origin& origin = {}) {
+  const bool is_far = origin != Origin{};
   for (std::size_t i = 0; i < vectors.count; ++i) {
     const Vec3f vector = vectors[i];
     text += keyword;
-    for (const float component : {vector.x, vector.y, vector.z}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float component = axis == 0 ? vector.x : axis == 1 ? vector.y : vector.z;
       text += ' ';
-      scan::append_number(text, component);
+      if (is_far)
+        scan::append_number(text, double{component} + origin[axis]);
+      else
+        scan::append_number(text, component);
     }
     text += '\n';
   }
@@ -346,15 +381,15 @@ void append_faces(std::string& text, const Topology& topology, std::span<const s
 
 }  // namespace
 
-Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name) {
+Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name, const Origin& origin) {
   if (Status text = scan::check_text(bytes, name); !text) return text.error();
-  return ObjReader(without_byte_order_mark(bytes), name, nullptr).read();
+  return ObjReader(without_byte_order_mark(bytes), name, origin, nullptr).read();
 }
 
-Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name) {
+Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name, const Origin& origin) {
   if (Status text = scan::check_text(bytes, name); !text) return text.error();
   Shading read;
-  Result<MeshFrame> mesh = ObjReader(without_byte_order_mark(bytes), name, &read).read();
+  Result<MeshFrame> mesh = ObjReader(without_byte_order_mark(bytes), name, origin, &read).read();
   if (!mesh) return mesh;
   MeshFrame& shading = mesh.value();
   if (read.has_groups) shading.group_of_face = std::move(read.group_of_face);
@@ -368,21 +403,21 @@ Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& na
   return mesh;
 }
 
-std::string write_obj(const Topology& topology, VectorView<const float> positions) {
+std::string write_obj(const Topology& topology, VectorView<const float> positions, const Origin& origin) {
   assert(positions.count == topology.vertex_count());
   std::string text;
   text.reserve(32 * positions.count + 8 * topology.corner_count());
-  append_vectors(text, "v", positions);
+  append_vectors(text, "v", positions, origin);
   append_faces(text, topology, {});
   return text;
 }
 
 std::string write_obj(const Topology& topology, VectorView<const float> positions, VectorView<const float> normals,
-                      std::span<const std::uint32_t> normal_of_corner) {
+                      std::span<const std::uint32_t> normal_of_corner, const Origin& origin) {
   assert(positions.count == topology.vertex_count() && normal_of_corner.size() == topology.corner_count());
   std::string text;
   text.reserve(32 * (positions.count + normals.count) + 16 * topology.corner_count());
-  append_vectors(text, "v", positions);
+  append_vectors(text, "v", positions, origin);
   append_vectors(text, "vn", normals);
   append_faces(text, topology, normal_of_corner);
   return text;

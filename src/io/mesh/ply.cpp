@@ -36,9 +36,7 @@ class AsciiSource {
         header_lines_(header.line_count) {}
 
   // The fewest bytes of a row: each value is a digit and a separator. The last row may have no line end.
-  [[nodiscard]] static std::size_t fewest_bytes(const Property& property) {
-    return property.role == Role::kIndices ? 2 * 4 : 2;
-  }
+  [[nodiscard]] static std::size_t fewest_bytes(const Property& /*property*/) { return 2; }
   [[nodiscard]] std::size_t bytes_left() const { return left_ - lines_.position() + 1; }
 
   [[nodiscard]] bool begin_row() {
@@ -68,6 +66,10 @@ class AsciiSource {
     const std::string_view word = take();
     return check(scan::parse_float(word, value), word);
   }
+  [[nodiscard]] bool coordinate(Scalar, double& value, double& last_digit) {
+    const std::string_view word = take();
+    return check(scan::parse_double(word, value, last_digit), word);
+  }
 
   [[nodiscard]] std::string place() const {
     return "line " + std::to_string(header_lines_ + std::max<std::size_t>(lines_.number(), 1));
@@ -75,7 +77,14 @@ class AsciiSource {
   [[nodiscard]] const std::string& message() const { return message_; }
 
  private:
-  std::string_view take() { return std::exchange(next_, scan::take_word(row_)); }
+  // A row may go on in the next line.
+  std::string_view take() {
+    while (next_.empty() && lines_.next()) {
+      row_ = lines_.line();
+      next_ = scan::take_word(row_);
+    }
+    return std::exchange(next_, scan::take_word(row_));
+  }
   bool check(scan::NumberFault fault, std::string_view word) {
     return fault == scan::NumberFault::kNone || fail(scan::describe(fault, word));
   }
@@ -100,9 +109,7 @@ class BinarySource {
         is_swapped_((header.encoding == PlyEncoding::kBinaryBigEndian) != (std::endian::native == std::endian::big)) {}
 
   [[nodiscard]] static std::size_t fewest_bytes(const Property& property) {
-    if (!property.is_list) return ply::byte_size(property.type);
-    return ply::byte_size(property.count_type) +
-           (property.role == Role::kIndices ? 3 * ply::byte_size(property.type) : 0);
+    return ply::byte_size(property.is_list ? property.count_type : property.type);
   }
   [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - position_; }
 
@@ -129,6 +136,20 @@ class BinarySource {
     if (!std::isfinite(real)) return fail("the coordinate is not a finite number", type);
     if (std::fabs(real) > std::numeric_limits<float>::max()) return fail("the coordinate is too large", type);
     value = static_cast<float>(real);
+    return true;
+  }
+
+  [[nodiscard]] bool coordinate(Scalar type, double& value, double& last_digit) {
+    std::int64_t whole = 0;
+    if (!load(type, whole, value)) return false;
+    if (ply::is_integer(type)) {
+      value = static_cast<double>(whole);
+      last_digit = 1;
+      return true;
+    }
+    if (!std::isfinite(value)) return fail("the coordinate is not a finite number", type);
+    if (std::fabs(value) > std::numeric_limits<float>::max()) return fail("the coordinate is too large", type);
+    last_digit = 0;  // a bit
     return true;
   }
 
@@ -197,17 +218,31 @@ class BinarySource {
 template <class Source>
 class BodyReader {
  public:
-  BodyReader(std::string_view bytes, const std::string& name, const Header& header, bool has_velocities)
-      : name_(name), header_(header), source_(bytes, header), has_velocities_(has_velocities) {}
+  BodyReader(std::string_view bytes, const std::string& name, const Header& header, bool has_velocities,
+             const Origin& origin)
+      : name_(name),
+        header_(header),
+        source_(bytes, header),
+        has_velocities_(has_velocities),
+        origin_(origin),
+        is_far_(origin != Origin{}) {}
 
   Result<MeshFrame> read() {
     if (Status status = check_counts(); !status) return status.error();
     for (std::size_t e = 0; e < header_.elements.size(); ++e) {
       if (Status status = read_element(e); !status) return status.error();
     }
+    if (faces_.face_count() == 0)
+      return invalid_input(name_ + ", " + source_.place(), "no face has three corners or more");
     Result<Topology> topology = faces_.build(vertex_count());
     if (!topology) return invalid_input(name_ + ", " + source_.place(), topology.error().text());
-    return MeshFrame{std::move(topology).value(), std::move(positions_), std::move(velocities_)};
+    MeshFrame mesh{std::move(topology).value(), std::move(positions_)};
+    mesh.velocities = std::move(velocities_);
+    mesh.has_more_digits = has_more_digits_;
+    if (dropped_faces_ > 0)
+      mesh.notes.push_back(std::to_string(dropped_faces_) + (dropped_faces_ == 1 ? " face has" : " faces have") +
+                           " fewer than three corners: left out");
+    return mesh;
   }
 
  private:
@@ -253,6 +288,8 @@ class BodyReader {
         case Role::kX:
         case Role::kY:
         case Role::kZ:
+          if (!read_coordinate(property, vertex[static_cast<std::size_t>(property.role)])) return false;
+          break;
         case Role::kVelocityX:
         case Role::kVelocityY:
         case Role::kVelocityZ:
@@ -273,6 +310,16 @@ class BodyReader {
     return true;
   }
 
+  // Counts a coordinate from the origin.
+  [[nodiscard]] bool read_coordinate(const Property& property, float& coordinate) {
+    if (!is_far_) return source_.coordinate(property.type, coordinate);
+    double value = 0, last_digit = 0;
+    if (!source_.coordinate(property.type, value, last_digit)) return false;
+    has_more_digits_ = has_more_digits_ || loses_digits(value, last_digit);
+    coordinate = static_cast<float>(value - origin_[static_cast<std::size_t>(property.role)]);
+    return true;
+  }
+
   [[nodiscard]] bool read_length(const Property& property, std::int64_t& length) {
     if (!source_.integer(property.count_type, length)) return false;
     return length >= 0 || fail("a list has the length " + std::to_string(length));
@@ -287,8 +334,6 @@ class BodyReader {
   [[nodiscard]] bool read_face(const Property& property) {
     std::int64_t corner_count = 0;
     if (!read_length(property, corner_count)) return false;
-    if (corner_count < 3)
-      return fail("the face has " + std::to_string(corner_count) + " corners, but a face needs three or more");
     for (std::int64_t c = 0; c < corner_count; ++c) {
       std::int64_t vertex = 0;
       if (!source_.integer(property.type, vertex)) return false;
@@ -297,6 +342,11 @@ class BodyReader {
                     std::to_string(vertex_count()) + (vertex_count() == 1 ? " vertex" : " vertices"));
       if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
         return fail("the mesh has more than 4,294,967,295 corners");
+    }
+    if (corner_count < 3) {
+      faces_.drop_face();
+      ++dropped_faces_;
+      return true;
     }
     faces_.end_face();
     return true;
@@ -316,17 +366,20 @@ class BodyReader {
   Source source_;
   std::string message_;  // of an error that is not the source's
   bool has_velocities_;
+  Origin origin_;
+  bool is_far_, has_more_digits_ = false;
+  std::size_t dropped_faces_ = 0;
   std::vector<float> positions_, velocities_;
   PolygonBuilder faces_;
 };
 
-Result<MeshFrame> read_body(std::string_view bytes, const std::string& name, const Header& header,
-                            bool has_velocities) {
+Result<MeshFrame> read_body(std::string_view bytes, const std::string& name, const Header& header, bool has_velocities,
+                            const Origin& origin) {
   if (header.encoding == PlyEncoding::kAscii) {
     if (Status text = scan::check_text(bytes, name); !text) return text.error();
-    return BodyReader<AsciiSource>(bytes, name, header, has_velocities).read();
+    return BodyReader<AsciiSource>(bytes, name, header, has_velocities, origin).read();
   }
-  return BodyReader<BinarySource>(bytes, name, header, has_velocities).read();
+  return BodyReader<BinarySource>(bytes, name, header, has_velocities, origin).read();
 }
 
 // The numbers of a file, one after the other, in one of the encodings.
@@ -362,26 +415,29 @@ class RowWriter {
 
 }  // namespace
 
-Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name) {
+Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name, const Origin& origin) {
   const Result<Header> header = ply::read_header(bytes, name);
   if (!header) return header.error();
-  return read_body(bytes, name, header.value(), false);
+  return read_body(bytes, name, header.value(), false, origin);
 }
 
-Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name) {
+Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name, const Origin& origin) {
   Result<Header> header = ply::read_header(bytes, name);
   if (!header) return header.error();
   const Result<bool> has_velocities = ply::assign_velocities(header.value(), name);
   if (!has_velocities) return has_velocities.error();
-  return read_body(bytes, name, header.value(), has_velocities.value());
+  return read_body(bytes, name, header.value(), has_velocities.value(), origin);
 }
 
-std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding) {
-  return write_ply(topology, positions, PlyProperties{}, encoding);
+std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding,
+                      const Origin& origin) {
+  return write_ply(topology, positions, PlyProperties{}, encoding, origin);
 }
 
 std::string write_ply(const Topology& topology, VectorView<const float> positions, const PlyProperties& properties,
-                      PlyEncoding encoding) {
+                      PlyEncoding encoding, const Origin& origin) {
+  const bool is_far = origin != Origin{};
+  const std::string coordinate_type = is_far ? "double" : "float";
   const bool has_vertex_normals = properties.of_vertices.count > 0, has_face_normals = properties.of_faces.count > 0;
   assert(positions.count == topology.vertex_count());
   assert(!has_vertex_normals || properties.of_vertices.count == topology.vertex_count());
@@ -403,17 +459,25 @@ std::string write_ply(const Topology& topology, VectorView<const float> position
 
   std::string bytes =
       std::string("ply\nformat ") + encoding_name + " 1.0\nelement vertex " + std::to_string(positions.count) +
-      "\nproperty float x\nproperty float y\nproperty float z" + (has_vertex_normals ? normal_properties : "") +
-      (has_vertex_quality ? quality_property : "") + "\nelement face " + std::to_string(topology.face_count()) +
-      "\nproperty list " + (is_short ? "uchar " : "uint ") + index_type + " vertex_indices" +
-      (has_face_normals ? normal_properties : "") + (has_face_quality ? quality_property : "") + "\nend_header\n";
+      "\nproperty " + coordinate_type + " x\nproperty " + coordinate_type + " y\nproperty " + coordinate_type + " z" +
+      (has_vertex_normals ? normal_properties : "") + (has_vertex_quality ? quality_property : "") + "\nelement face " +
+      std::to_string(topology.face_count()) + "\nproperty list " + (is_short ? "uchar " : "uint ") + index_type +
+      " vertex_indices" + (has_face_normals ? normal_properties : "") + (has_face_quality ? quality_property : "") +
+      "\nend_header\n";
   if (encoding != PlyEncoding::kAscii)
     bytes.reserve(bytes.size() + 12 * (positions.count + properties.of_vertices.count + properties.of_faces.count) +
                   4 * (topology.corner_count() + topology.face_count()));
 
   RowWriter row(bytes, encoding);
   for (std::size_t v = 0; v < positions.count; ++v) {
-    row.add(positions[v]);
+    if (is_far) {
+      const Vec3f position = positions[v];
+      row.add(double{position.x} + origin[0]);
+      row.add(double{position.y} + origin[1]);
+      row.add(double{position.z} + origin[2]);
+    } else {
+      row.add(positions[v]);
+    }
     if (has_vertex_normals) row.add(properties.of_vertices[v]);
     if (has_vertex_quality) row.add(properties.quality_of_vertices[v]);
     row.end_row();

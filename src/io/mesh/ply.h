@@ -17,7 +17,8 @@
 ///
 /// Elements other than vertex and face are passed over, but must be there. What follows the last element is left out.
 /// Header lines end in LF, CRLF or CR. Scalar types: char uchar short ushort int uint float double, and int8 uint8
-/// int16 uint16 int32 uint32 float32 float64. double is rounded to float32.
+/// int16 uint16 int32 uint32 float32 float64. double is rounded to float32, after
+/// the origin was taken away.
 ///
 /// Shapes     V = vertices; positions are (V, 3).
 /// Threads    pure.
@@ -42,20 +43,23 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 /// and row where they are known ("cube.ply, byte 310, face 17"): a header that breaks the grammar or declares something
 /// twice; no vertices, no x, y, z, or no faces with vertex_indices; triangle strips; counts for which there are too few
 /// bytes (refused before memory is taken); data that end early; coordinates that are no number, not finite or too large
-/// for float32; faces of fewer than 3 corners; indices of no vertex; in ascii, rows that are too short or too long.
+/// for float32; indices of no vertex; in ascii, a row that ends inside a line, with numbers behind it. Faces of fewer than 3
+/// corners are left out, with a note that counts them. In ascii, a row may go over several lines.
 /// A file cut off anywhere before its end is an error, with one exception: the last number of an ascii file may lose
 /// digits and still be a number.
 /// Cost: one pass; memory in proportion to the size of the file.
-[[nodiscard]] Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name);
+[[nodiscard]] Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name, const Origin& origin = {});
 
 /// The same with the velocities of vertices: vx, vy, vz or velocity_x, velocity_y, velocity_z, the first of these that
 /// the vertices have, of any scalar type. A file has all three of them or none. Errors: also kInvalidInput where it
 /// does not, where one is a list, and for velocities that are no number, not finite or too large for float32.
-[[nodiscard]] Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name);
+[[nodiscard]] Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name,
+                                                const Origin& origin = {});
 
-/// Writes a PLY file with float x, y, z and one list of indices for each face. In ascii, coordinates have the fewest
+/// Writes a PLY file with float x, y, z, or where there is an origin to be added double x, y, z, and one list of indices for each face. In ascii, coordinates have the fewest
 /// digits that read back as the same float32. positions must have as many elements as the topology has vertices.
-[[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding);
+[[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding,
+                                    const Origin& origin = {});
 
 /// What a file has beside positions and faces, each where it is not empty: normals, as properties float nx, ny, nz, and
 /// after them a number that programs can show in colours, as a property float quality.
@@ -67,7 +71,7 @@ struct PlyProperties {
 
 /// The same with these.
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions,
-                                    const PlyProperties& properties, PlyEncoding encoding);
+                                    const PlyProperties& properties, PlyEncoding encoding, const Origin& origin = {});
 
 }  // namespace chronormal::inline internal
 

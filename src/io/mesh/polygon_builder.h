@@ -32,6 +32,9 @@ class PolygonBuilder {
   /// Faces that were ended: the index of the face that is being built.
   [[nodiscard]] std::size_t face_count() const noexcept { return face_count_; }
 
+  /// Leaves out the face that is being built.
+  void drop_face() { corners_.resize(face_begin_); }
+
   void end_face() {
     if (open_corners() != 3 && offsets_.empty()) {
       for (std::size_t f = 0; f <= face_count_; ++f) offsets_.push_back(static_cast<std::uint32_t>(3 * f));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "chronormal/analysis/containment.h"
@@ -14,13 +15,34 @@ struct Passed {
   Crossing crossing;
 };
 
-// Where points are at a time of the motion, as float32 as its vertices.
-std::vector<float> places_at(const PointPaths& points, double share) {
+// Where points are at a time of the motion, counted from its origin, as float32 as its vertices.
+std::vector<float> places_at(const PointPaths& points, const std::array<double, 3>& origin, double share) {
   std::vector<float> places(points.from.size());
-  for (std::size_t i = 0; i < places.size(); ++i)
-    places[i] = static_cast<float>(
-        points.from[i] == points.to[i] ? points.from[i] : (1 - share) * points.from[i] + share * points.to[i]);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double from = points.from[i] - origin[i % 3], to = points.to[i] - origin[i % 3];
+    places[i] = static_cast<float>(points.from[i] == points.to[i] ? from : (1 - share) * from + share * to);
+  }
   return places;
+}
+
+// Whether the faces of a closed mesh look inwards: then it has a negative volume, far beyond rounding.
+bool is_inside_out(const Topology& topology, const std::vector<float>& positions) {
+  const auto place = [&](std::uint32_t vertex) {
+    const auto coordinate = [&](std::size_t axis) {
+      return double{positions[3 * std::size_t{vertex} + axis]} - double{positions[axis]};
+    };
+    return Vec3d{coordinate(0), coordinate(1), coordinate(2)};
+  };
+  double volume = 0, size = 0;
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    const auto face = topology.face(f);
+    for (std::size_t c = 2; c < face.size(); ++c) {
+      const double part = dot(place(face[0]), cross(place(face[c - 1]), place(face[c])));
+      volume += part;
+      size += std::fabs(part);
+    }
+  }
+  return volume < -1e-6 * size;
 }
 
 QueryAnswer answer_of(std::size_t segments, const std::vector<std::int32_t>& windings, const std::vector<Passed>& all) {
@@ -79,7 +101,7 @@ Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points
   for (std::size_t i = 0; i < parts.value().size(); ++i) {
     const SegmentPart& part = parts.value()[i];
     const Segment segment = motion.segment(part.segment);
-    const auto places = [&](double time) { return places_at(points, (time - first) / (last - first)); };
+    const auto places = [&](double time) { return places_at(points, motion.origin, (time - first) / (last - first)); };
     const std::vector<float> start = places(segment.start_time), end = places(segment.end_time);
     const auto from = VectorView<const float>::packed(start), to = VectorView<const float>::packed(end);
     if (i == 0) windings = containment.value().winding_numbers(segment, part.t0, from, to);
@@ -95,7 +117,14 @@ Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points
   }
   std::stable_sort(all.begin(), all.end(),
                    [](const Passed& a, const Passed& b) { return a.crossing.point < b.crossing.point; });
-  return answer_of(parts.value().size(), windings, all);
+  QueryAnswer answer = answer_of(parts.value().size(), windings, all);
+  const std::size_t at_start = motion.segments[parts.value().empty() ? 0 : parts.value().front().segment].from;
+  if (is_inside_out(motion.topology, motion.keyframes[at_start].positions))
+    answer.facts.push_back({"inside_out",
+                            "mesh is inside out: its faces look inwards, and so do all normals; what is called inward "
+                            "goes out of it",
+                            1});
+  return answer;
 }
 
 }  // namespace chronormal

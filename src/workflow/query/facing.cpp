@@ -113,8 +113,15 @@ QueryTable table_of(const char* name, const char* meaning, std::vector<QueryColu
 
 }  // namespace
 
-Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes, const QuerySpan& span,
+Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool silhouettes, const QuerySpan& span,
                                  const QueryProgress& progress) {
+  // An eye counts from the origin of the motion, as vertices do.
+  View view = placed;
+  const Vec3d origin = {motion.origin[0], motion.origin[1], motion.origin[2]};
+  if (view.is_eye) {
+    view.from = view.from - origin;
+    view.to = view.to - origin;
+  }
   const std::string option = view.is_eye ? "--eye" : "--direction";
   for (const Vec3d& v : {view.from, view.to}) {
     if (!is_finite(v) || max_abs(v) > std::numeric_limits<float>::max())

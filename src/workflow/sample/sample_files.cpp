@@ -105,12 +105,13 @@ class ArrayFile {
     const Result<std::string> faces = write_npy_faces(motion.topology);
     normals_ = npz_->add_growing("normals", shape);
     npz_->add({moments.weights.empty() ? "times" : "weights", when.bytes()});
-    positions_ = npz_->add_growing("positions", {moments.count(), motion.topology.vertex_count(), 3});
+    origin_ = motion.origin;
+    positions_ = npz_->add_growing("positions", {moments.count(), motion.topology.vertex_count(), 3}, is_far());
     if (faces) npz_->add({"faces", faces.value()});
     if (output.peers == nullptr || is_first) return npz_->begin();
     npz_->join();
     npz_->skip(normals_, before * outputs);
-    npz_->skip(positions_, before * motion.topology.vertex_count());
+    npz_->skip(positions_, (is_far() ? 2 : 1) * before * motion.topology.vertex_count());
     return Success{};
   }
 
@@ -125,7 +126,9 @@ class ArrayFile {
       return journal->append(WrittenRow::of(bytes, zeros).text());
     }
     const Status status = npz_->append(normals_, bytes_of(normals));
-    return status ? npz_->append(positions_, bytes_of(pose.positions)) : status;
+    if (!status) return status;
+    return is_far() ? npz_->append(positions_, placed_bytes(pose.positions, origin_))
+                    : npz_->append(positions_, bytes_of(pose.positions));
   }
 
   // Goes on behind bytes of a .npy file that have this checksum.
@@ -143,7 +146,7 @@ class ArrayFile {
   void add(const std::array<std::uint32_t, 2>& checksums, std::uint64_t normals, std::uint64_t positions) {
     if (!npz_) return;
     npz_->add_checksum(normals_, checksums[0], normals * 3 * sizeof(float));
-    npz_->add_checksum(positions_, checksums[1], positions * 3 * sizeof(float));
+    npz_->add_checksum(positions_, checksums[1], positions * 3 * (is_far() ? sizeof(double) : sizeof(float)));
   }
 
   // Ends what a process has written that is not the first.
@@ -156,6 +159,7 @@ class ArrayFile {
   }
 
  private:
+  [[nodiscard]] bool is_far() const { return origin_ != Origin{}; }
   [[nodiscard]] std::string_view bytes_of(const std::vector<float>& values) {
     return binary::bytes_of(values, std::endian::little, storage_);
   }
@@ -163,6 +167,7 @@ class ArrayFile {
   std::unique_ptr<OutputFile> file_;  // on the heap, where npz_ finds it
   std::optional<NpzOutput> npz_;
   std::size_t normals_ = 0, positions_ = 0;  // numbers of arrays in npz_
+  Origin origin_ = {};                       // of the positions
   std::optional<std::uint64_t> at_;          // where the next row goes in the .npy file of all peers
   std::uint32_t checksum_ = 0;               // of a .npy file that has no peers
   std::string storage_;
@@ -183,21 +188,23 @@ struct EmptyPartial {
 };
 
 // The mesh at one moment, as a file.
-std::string mesh_file(const Topology& topology, const NormalSampler& sampler, const Pose& pose,
+std::string mesh_file(const Motion& motion, const NormalSampler& sampler, const Pose& pose,
                       const std::vector<float>& normals, ElementKind kind, SampleFormat format) {
+  const Topology& topology = motion.topology;
+  const Origin& origin = motion.origin;
   if (format == SampleFormat::kPly) {
     PlyProperties properties;
     (kind == ElementKind::kFaces ? properties.of_faces : properties.of_vertices) = packed(normals);
-    return write_ply(topology, packed(pose.positions), properties, PlyEncoding::kBinaryLittleEndian);
+    return write_ply(topology, packed(pose.positions), properties, PlyEncoding::kBinaryLittleEndian, origin);
   }
   if (kind == ElementKind::kVertices)
-    return write_obj(topology, packed(pose.positions), packed(normals), topology.corners());
+    return write_obj(topology, packed(pose.positions), packed(normals), topology.corners(), origin);
   if (kind == ElementKind::kCorners)
-    return write_obj(topology, packed(pose.positions), packed(pose.normals), sampler.element_of_output());
+    return write_obj(topology, packed(pose.positions), packed(pose.normals), sampler.element_of_output(), origin);
   std::vector<std::uint32_t> face_of_corner;
   for (std::size_t f = 0; f < topology.face_count(); ++f)
     face_of_corner.insert(face_of_corner.end(), topology.face(f).size(), static_cast<std::uint32_t>(f));
-  return write_obj(topology, packed(pose.positions), packed(normals), face_of_corner);
+  return write_obj(topology, packed(pose.positions), packed(normals), face_of_corner, origin);
 }
 
 // Begins a file; of peers, the first begins it, and the others open what the first has begun.
@@ -362,7 +369,7 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
     if (arrays) {
       if (Status status = arrays->append(normals, pose.value(), zeros, journal); !status) return status.error();
     } else {
-      const std::string bytes = mesh_file(motion.topology, sampler, pose.value(), normals, kind, output.format);
+      const std::string bytes = mesh_file(motion, sampler, pose.value(), normals, kind, output.format);
       Result<OutputFile> file = OutputFile::create(names.value()[i], output.force);
       if (!file) return file.error();
       if (Status status = file.value().append(bytes); !status) return status.error();

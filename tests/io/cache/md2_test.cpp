@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "tests/support/cache_bytes.h"
 
@@ -29,6 +30,32 @@ TEST(ReadMd2, reads_frames_as_keyframes_and_turns_the_triangles_round) {
   EXPECT_EQ(motion.keyframes[1].name, "run");
   EXPECT_EQ(motion.keyframes[1].time, 0.1);
   EXPECT_EQ(motion.segments.size(), 1U);
+}
+
+TEST(ReadMd2, clips_are_apart) {
+  // Names of frames, and the segments that join them.
+  const auto segments_of = [](const std::vector<std::string>& names) {
+    const std::string small = test::small_md2(), head = small.substr(0, 80), frame = small.substr(80, 52);
+    std::string bytes = head;
+    bytes[40] = static_cast<char>(names.size());
+    for (const std::string& name : names) {
+      std::string own = frame;
+      std::string label = name;
+      label.resize(16, '\0');
+      bytes += own.replace(24, 16, label);
+    }
+    const Result<Motion> motion = read_md2(bytes, "imp.md2", 10);
+    std::string text;
+    if (!motion) return motion.error().text();
+    for (const auto& [from, to] : motion.value().segments) text += std::to_string(from) + std::to_string(to) + ' ';
+    return text + std::string(motion_kind_name(motion.value().kind));
+  };
+  EXPECT_EQ(segments_of({"stand01", "stand02", "run1", "run2", "run3"}), "01 23 34 animation");
+  EXPECT_EQ(segments_of({"death101", "death102", "death201", "death202"}), "01 23 animation");
+  EXPECT_EQ(segments_of({"stand01", "stand02", "stand03"}), "01 12 sequence");
+  EXPECT_EQ(segments_of({"frame1", "frame3", "frame5"}), "01 12 sequence");
+  EXPECT_EQ(segments_of({"a", "b", "c"}), "01 12 sequence");
+  EXPECT_EQ(segments_of({"pose1", "idle1", "idle2", "fire1"}), "12 animation");
 }
 
 TEST(ReadMd2, errors_say_where_and_what) {

@@ -70,7 +70,7 @@ class Readers : public ::testing::TestWithParam<std::string> {
   bool read_anything(const std::string& bytes) {
     ++case_count_;
     const test::CpuClock clock;
-    const Result<MeshFrame> result = reader().read_mesh(bytes, "frame 3 (a.mesh)");
+    const Result<MeshFrame> result = reader().read_mesh(bytes, "frame 3 (a.mesh)", {});
     EXPECT_LT(clock.seconds(), 1.0);
     if (!result) {
       EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
@@ -95,7 +95,7 @@ TEST_P(Readers, have_fixtures_that_they_read) {
   ASSERT_FALSE(reader_fixtures().empty()) << "give the reader " << reader().name << " fixtures in this file";
   for (const Fixture& fixture : reader_fixtures()) {
     SCOPED_TRACE(fixture.label);
-    const Result<MeshFrame> result = reader().read_mesh(fixture.bytes, "name");
+    const Result<MeshFrame> result = reader().read_mesh(fixture.bytes, "name", {});
     EXPECT_TRUE(result.ok()) << result.error().text();
     EXPECT_TRUE(reader().recognises(fixture.bytes) || fixture.label == "faces first");
   }

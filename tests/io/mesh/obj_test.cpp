@@ -158,8 +158,10 @@ TEST(ReadObj, bad_indices_are_errors_with_line_face_and_corner) {
             "walk.obj, line 4: corner 2 of face 0 names vertex -4, but the file has 3 vertices so far");
   EXPECT_EQ(error_of(three + "f 1 0 2\n"),
             "walk.obj, line 4: corner 1 of face 0: '0': vertices are counted from 1, not from 0");
-  EXPECT_EQ(error_of(three + "f 1 2\n"), "walk.obj, line 4: face 0 has 2 corners, but a face needs three or more");
-  EXPECT_EQ(error_of(three + "f\n"), "walk.obj, line 4: face 0 has 0 corners, but a face needs three or more");
+  // Faces of fewer than three corners are left out (below), and a file of no others has none.
+  EXPECT_EQ(error_of(three + "f 1 2\n"), "walk.obj, line 4: the file ends without a face (a line that begins with f)");
+  EXPECT_EQ(error_of(three + "f 1 5\nf 1 2 3\n"),
+            "walk.obj, line 4: corner 1 of face 0 names vertex 5, but the file has 3 vertices");
   EXPECT_EQ(error_of(three + "f 1 2 4294967298\n"),
             "walk.obj, line 4: corner 2 of face 0 names vertex 4294967298, but the file has 3 vertices");
   EXPECT_EQ(error_of(three + "f 1 2 99999999999999999999\n"),
@@ -212,6 +214,35 @@ std::string shading_error_of(const std::string& bytes) {
   return result.error().text();
 }
 
+TEST(ReadObj, faces_of_fewer_than_three_corners_are_left_out_and_counted) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1 2\nf 1//1 2//1 3//1\nf\nf 3 2 1\n";
+  const MeshFrame mesh = read_good(text);
+  EXPECT_EQ(mesh.topology, Topology::triangles(3, {0, 1, 2, 2, 1, 0}).value());
+  ASSERT_EQ(mesh.notes.size(), 1U);
+  EXPECT_EQ(mesh.notes[0], "2 faces have fewer than three corners: left out");
+  const MeshFrame shading = shading_of("f 1//1 2\n" + text + "s 1\nf 1 2\nf 2 1 3\n");
+  EXPECT_EQ(shading.normal_of_corner.size(), 27U);
+  EXPECT_EQ(shading.normal_of_corner[2], 1);
+  EXPECT_EQ(shading.group_of_face, (Corners{0, 0, 1}));
+}
+
+TEST(ReadObj, positions_count_from_the_origin_before_they_are_rounded) {
+  const std::string text =
+      "v 452312.123 5411873.456 101.5\nv 452313.001 5411873 101\nv 452312 5411874.009 1e2\nf 1 2 3\n";
+  const Result<MeshFrame> far = read_obj(text, "utm.obj", {452312, 5411873, 0});
+  ASSERT_TRUE(far.ok()) << far.error().text();
+  EXPECT_TRUE(far.value().has_more_digits);
+  EXPECT_NEAR(far.value().positions[0], 0.123, 1e-7);
+  EXPECT_NEAR(far.value().positions[7], 1.009, 1e-6);
+  EXPECT_EQ(far.value().positions[2], 101.5F);
+  // Digits that float32 keeps are no more digits.
+  EXPECT_FALSE(read_obj("v 1024.5 2048.25 4\nv 1024 2048 4\nv 1025 2049 4\nf 1 2 3\n", "a.obj", {1024, 2048, 4})
+                   .value()
+                   .has_more_digits);
+  EXPECT_FALSE(
+      read_obj("v 10.123456 0 0\nv 10.5 0 1\nv 10.25 1 0\nf 1 2 3\n", "a.obj", {10, 0, 0}).value().has_more_digits);
+}
+
 TEST(ReadObjShading, groups_are_numbered_as_the_file_names_them) {
   const MeshFrame shading = shading_of(
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ns 4\nf 1 2 3\nf 1 2 3\ns off\nf 1 2 3\ns fur # no dog\nf 1 2 3\ns 04\n"
@@ -240,25 +271,30 @@ TEST(ReadObjShading, is_empty_where_the_file_says_nothing) {
 
 TEST(ReadObjShading, bad_normals_are_errors_with_line_and_corner) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  EXPECT_EQ(shading_error_of(three + "vn 0 0 1\nf 1//1 2//2 3//1\nf 1 2 3\n"),
-            "walk.obj, line 5: corner 1 of face 0 names normal 2, but the file has 1 normal");
-  EXPECT_EQ(shading_error_of(three + "f 1 2 3//-1\nvn 0 0 1\n"),
-            "walk.obj, line 4: corner 2 of face 0 names normal -1, but the file has 0 normals so far");
-  EXPECT_EQ(shading_error_of(three + "vn 0 0 1\nf 1 2 3//0\n"),
-            "walk.obj, line 5: corner 2 of face 0: normals are counted from 1, not from 0");
   EXPECT_EQ(shading_error_of("vn 0 nan 1\n" + three), "walk.obj, line 1: y of normal 0: 'nan' is not a finite number");
   EXPECT_EQ(shading_error_of("vn 1 2 3\nvn 1 2\n"), "walk.obj, line 2: z of normal 1: a number is missing");
-  for (const char* const index : {"4294967296", "99999999999999999999"})
-    EXPECT_EQ(
-        shading_error_of(three + "f 1 2 3//" + index + "\n"),
-        std::string("walk.obj, line 4: corner 2 of face 0: '") + index + "' is more normals than a mesh can have");
-  EXPECT_EQ(shading_error_of(three + "f 1 2 3//4294967295\n"),
-            "walk.obj, line 4: corner 2 of face 0 names normal 4294967295, but the file has 0 normals");
-  EXPECT_EQ(shading_error_of(three + "s\nf 1 2 3\n"),
-            "walk.obj, line 4: a smoothing group is missing: a number, a name, or off");
   EXPECT_EQ(shading_error_of(three + "f 1 2 4\n"), error_of(three + "f 1 2 4\n"));
   // Who does not ask for them is not told.
   EXPECT_EQ(error_of(three + "vn 0 nan\ns\nf 1//0 2//99 3//99999999999999999999\n"), "no error");
+}
+
+// A normal that is not there is a corner without one: other programs show such files, and so positions and faces are read.
+TEST(ReadObjShading, normals_that_are_not_there_and_nameless_groups_are_counted) {
+  const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const auto notes_of = [&](const std::string& rest) { return shading_of(three + rest).notes; };
+  EXPECT_EQ(
+      notes_of("vn 0 0 1\nf 1//1 2//2 3//1\nf 1 2 3\n"),
+      (std::vector<std::string>{"1 corner names a normal that the file does not have: taken as corners without one"}));
+  for (const char* const corner :
+       {"3//-1", "3//0", "3//4294967296", "3//99999999999999999999", "3//4294967295", "3//-9999999999"}) {
+    const MeshFrame mesh = shading_of(three + "f 1 2 " + corner + "\nvn 0 0 1\n");
+    EXPECT_EQ(mesh.notes.size(), 1U) << corner;
+    EXPECT_TRUE(mesh.normal_of_corner.empty()) << corner;
+  }
+  EXPECT_TRUE(notes_of("f 1 2 3//1\nvn 0 0 1\n").empty());
+  const MeshFrame grouped = shading_of(three + "s 2\nf 1 2 3\ns\nf 1 2 3\n");
+  EXPECT_EQ(grouped.group_of_face, (Corners{1, 0}));
+  EXPECT_EQ(grouped.notes, (std::vector<std::string>{"1 line has an s without a smoothing group: taken as s off"}));
 }
 
 TEST(ReadObjShading, damaged_bytes_give_an_error_or_what_belongs_to_the_mesh) {

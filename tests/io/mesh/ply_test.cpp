@@ -263,19 +263,44 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
     return error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, what, by));
   };
   EXPECT_EQ(with("1 0 0", "1 nan 0"), "walk.ply, line 11, vertex 1: 'nan' is not a finite number");
-  EXPECT_EQ(with("1 0 0", "1 0"), "walk.ply, line 11, vertex 1: a number is missing");
+  // A row goes on in the next line, so that one number too few is found behind it.
+  EXPECT_EQ(with("1 0 0", "1 0"), "walk.ply, line 12, vertex 1: '1' is more than the header declares for a row");
   EXPECT_EQ(with("1 0 0", "1 0 0 0"), "walk.ply, line 11, vertex 1: '0' is more than the header declares for a row");
   EXPECT_EQ(with("1 0 0", "1 0 1e39"), "walk.ply, line 11, vertex 1: '1e39' is too large");
   EXPECT_EQ(with("3 0 1 2", "3 0 1 4"),
             "walk.ply, line 14, face 0: corner 2 names vertex 4, but the file has 4 vertices");
   EXPECT_EQ(with("3 0 1 2", "3 0 -1 2"),
             "walk.ply, line 14, face 0: corner 1 names vertex -1, but the file has 4 vertices");
-  EXPECT_EQ(with("4 0 1", "2 0 1"),
-            "walk.ply, line 15, face 1: the face has 2 corners, but a face needs three or more");
+  EXPECT_EQ(with("4 0 1", "2 0 1"), "walk.ply, line 15, face 1: '2' is more than the header declares for a row");
   EXPECT_EQ(with("4 0 1", "-4 0 1"), "walk.ply, line 15, face 1: a list has the length -4");
   EXPECT_EQ(with("3 0 1 2", "3 0 1.0 2"), "walk.ply, line 14, face 0: '1.0' is not a number");
   EXPECT_EQ(error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, "4 0 1 2 3\n", "          ")),
             "walk.ply, line 15, face 1: the file ends here, before this row");
+}
+
+TEST(ReadPly, ascii_rows_may_go_over_several_lines_and_faces_of_two_corners_are_left_out) {
+  const std::string header = test::ply_header("ascii", "4", "3");
+  const Result<MeshFrame> mesh =
+      read_ply(header + "0 0\n0\n1\n0\n0\n1 1 0\n0 1 0\n3 0\n1 2\n2 0 1\n4\n0 1 2 3\n", "walk.ply");
+  ASSERT_TRUE(mesh.ok()) << mesh.error().text();
+  EXPECT_EQ(mesh.value().positions, (std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}));
+  EXPECT_EQ(mesh.value().topology, Topology::polygons(4, {0, 3, 7}, {0, 1, 2, 0, 1, 2, 3}).value());
+  EXPECT_EQ(mesh.value().notes, (std::vector<std::string>{"1 face has fewer than three corners: left out"}));
+}
+
+TEST(ReadPly, double_positions_count_from_the_origin_before_they_are_rounded) {
+  const std::vector<float> places = {0.25F, 0, 0, 1, 0.125F, 0, 0, 1, 0.0625F};
+  const Topology triangle = Topology::triangles(3, {0, 1, 2}).value();
+  const Origin origin = {452312, 5411872, 0};
+  for (const PlyEncoding encoding :
+       {PlyEncoding::kAscii, PlyEncoding::kBinaryLittleEndian, PlyEncoding::kBinaryBigEndian}) {
+    const std::string bytes = write_ply(triangle, VectorView<const float>::packed(places.data(), 3), encoding, origin);
+    EXPECT_NE(bytes.find("property double x"), std::string::npos);
+    const Result<MeshFrame> mesh = read_ply(bytes, "utm.ply", origin);
+    ASSERT_TRUE(mesh.ok()) << mesh.error().text();
+    EXPECT_EQ(mesh.value().positions, places);
+    EXPECT_TRUE(mesh.value().has_more_digits);
+  }
 }
 
 TEST(ReadPly, bad_binary_values_are_errors_with_byte_element_and_index) {
@@ -291,8 +316,8 @@ TEST(ReadPly, bad_binary_values_are_errors_with_byte_element_and_index) {
             place(45) + ", face 0: corner 1 names vertex 3, but the file has 3 vertices");
   EXPECT_EQ(with(41, "\xFF\xFF\xFF\xFF"),
             place(45) + ", face 0: corner 1 names vertex -1, but the file has 3 vertices");
-  EXPECT_EQ(with(36, std::string("\0", 1)),
-            place(37) + ", face 0: the face has 0 corners, but a face needs three or more");
+  // The only face has no corners, so that it is left out.
+  EXPECT_EQ(with(36, std::string("\0", 1)), place(37) + ": no face has three corners or more");
   EXPECT_EQ(with(36, "\4"),
             place(49) + ", face 0: the file ends before the data that its header declares: 0 bytes are left");
 }

@@ -1,0 +1,38 @@
+#include "io/mesh/far_origin.h"
+
+#include "io/bytes/scan.h"
+
+namespace chronormal::inline internal {
+
+std::string note_of_lost_digits(std::span<const float> positions) {
+  constexpr double kMuch = 1e-4;  // of the extent
+  double extent = 0, step = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float low = positions[axis], high = low;
+    for (std::size_t i = axis; i < positions.size(); i += 3) {
+      low = std::min(low, positions[i]);
+      high = std::max(high, positions[i]);
+    }
+    extent = std::max(extent, double{high} - double{low});
+    const float farthest = std::max(std::fabs(low), std::fabs(high));
+    step = std::max(step, double{farthest} - double{std::nextafter(farthest, 0.0F)});
+  }
+  if (!(step > kMuch * extent)) return "";
+  std::string text = "the positions are float32, and so far from the origin that they have steps of ";
+  scan::append_number(text, static_cast<float>(step));
+  text += " in an extent of ";
+  scan::append_number(text, static_cast<float>(extent));
+  return text +
+         ": normals are those of the rounded positions. Move the mesh to the origin before it is written as float32";
+}
+
+std::string origin_text(const Origin& origin) {
+  std::string text;
+  for (const double coordinate : origin) {
+    text += text.empty() ? "(" : ", ";
+    scan::append_number(text, coordinate);
+  }
+  return text + ")";
+}
+
+}  // namespace chronormal::inline internal
