@@ -53,20 +53,31 @@ CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string
   return layout;
 }
 
-// Finds the origin that positions are to count from, by the first sample of an array with data; (0, 0, 0) where they have
-// no more digits than float32.
+// Finds the origin that positions are to count from, by the first sample of an array with data; (0, 0, 0) where no sample
+// has more digits than float32. Of an array that is too large to look at, the first, the middle and the last one tell.
 Origin origin_of(const Array& array) {
+  constexpr std::uint64_t kMostLooked = std::uint64_t{1} << 22;  // coordinates
   const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
-  const std::size_t least = array.is_fortran ? samples * vertices * 3 : vertices * 3;
-  if (array.data.size() / array.item_size < least) return {};
+  if (array.item_size != sizeof(double) || array.data.size() / array.item_size < array.element_count()) return {};
+  const auto coordinate = [&](std::size_t k, std::size_t i) {
+    return array.real(array.is_fortran ? k + samples * (i / 3 + vertices * (i % 3)) : k * 3 * vertices + i);
+  };
   std::vector<double> first(3 * vertices);
-  bool has_more_digits = false;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    first[i] = array.real(array.is_fortran ? samples * (i / 3 + vertices * (i % 3)) : i);
+    first[i] = coordinate(0, i);
     if (binary::coordinate_fault(first[i]) != nullptr) return {};
-    has_more_digits = has_more_digits || loses_digits(first[i], 0);
   }
-  return has_more_digits ? far_origin(std::span<const double>(first)) : Origin{};
+  const Origin origin = far_origin(std::span<const double>(first));
+  if (origin == Origin{}) return {};
+  const auto has_more_digits = [&](std::size_t k) {
+    for (std::size_t i = 0; i < first.size(); ++i)
+      if (loses_digits(coordinate(k, i), 0)) return true;
+    return false;
+  };
+  const std::size_t step = array.element_count() <= kMostLooked ? 1 : std::max<std::size_t>(samples / 2, 1);
+  for (std::size_t k = 0; k < samples; k += step)
+    if (has_more_digits(k)) return origin;
+  return has_more_digits(samples - 1) ? origin : Origin{};
 }
 
 // Reads the samples of an array (T, V, 3), in the file of this name.

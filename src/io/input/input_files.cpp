@@ -159,7 +159,16 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
     if (of_mesh.origin != Origin{}) {
       Result<MeshFrame> shifted = read_mesh(bytes, file_name_of(path), place, of_mesh);
       if (!shifted) return shifted;
-      if (shifted.value().has_more_digits) {
+      bool has_more_digits = shifted.value().has_more_digits;
+      if (!has_more_digits && !read.last_file.empty()) {
+        // What is wrong with the last file is found when it is read in its turn.
+        if (const Result<FileBytes> last = FileBytes::open(read.last_file, options.resolve)) {
+          const Result<MeshFrame> other =
+              read_mesh(last.value().bytes(), file_name_of(read.last_file), place, {false, false, of_mesh.origin});
+          has_more_digits = other && other.value().has_more_digits;
+        }
+      }
+      if (has_more_digits) {
         read.motion.origin = of_mesh.origin;
         mesh = std::move(shifted);
       } else if (std::string note = note_of_lost_digits(positions); !note.empty()) {

@@ -22,7 +22,9 @@ struct ReadMotion {
   std::optional<MotionStream> stream = {};  ///< of the motion, or in place of it where keyframes are still in files
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
-  std::string shaded_by;                  ///< as Input has it
+  std::string shaded_by;  ///< as Input has it
+  std::string last_file =
+      {};  ///< of a sequence: where the first file does not tell whether it has more digits than float32
   std::uint64_t bytes_read = 0;           ///< of all files
   std::vector<std::string> notes = {};    ///< as Input has them
   std::optional<FileSeries> series = {};  ///< as Input has it

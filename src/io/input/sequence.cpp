@@ -180,6 +180,8 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   if (!times) return times.error();
   Motion& motion = read.motion;
   const std::size_t total = frames.value().size();
+  const std::string& last_file = files[*std::max_element(frames.value().begin(), frames.value().end())];
+  if (last_file != "-") read.last_file = last_file;
   motion.keyframes.reserve(total);
   const auto file_of = [&](std::size_t i) -> const std::string& { return files[frames.value()[i]]; };
   const auto place = [&](std::size_t i) { return frame_place(frames.value()[i], file_name_of(file_of(i))); };
@@ -240,6 +242,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   if (!bytes || *bytes <= options.kept_bytes) return read_sequence(files, options);
 
   ReadMotion read;
+  read.last_file = files[*std::max_element(frames.begin(), frames.end())];
   const Result<std::vector<double>> times = find_times(files, options, read);
   if (!times) return times.error();
   Motion outline;

@@ -18,7 +18,8 @@ std::string note_of_lost_digits(std::span<const float> positions) {
     step = std::max(step, double{farthest} - double{std::nextafter(farthest, 0.0F)});
   }
   if (!(step > kMuch * extent)) return "";
-  std::string text = "the positions are float32, and so far from the origin that they have steps of ";
+  std::string text =
+      "the positions have no more digits than float32, and are so far from the origin that these have steps of ";
   scan::append_number(text, static_cast<float>(step));
   text += " in an extent of ";
   scan::append_number(text, static_cast<float>(extent));

@@ -45,7 +45,7 @@ template <class Real>
   return std::fabs(value - double{static_cast<float>(value)}) > last_digit / 2 * (1 + 1e-6);
 }
 
-/// Says of positions that were float32 in their file what rounding took away, where that is much for their extent; empty
+/// Says of positions that have no more digits than float32 what rounding to that took away before, where that is much for their extent; empty
 /// where it is not.
 [[nodiscard]] std::string note_of_lost_digits(std::span<const float> positions);
 

@@ -210,6 +210,28 @@ TEST(FarOrigin, what_float32_keeps_stays_as_it_is_and_what_it_has_lost_is_said) 
   EXPECT_NE(kept.value().motion().value()->origin[0], 0);
 }
 
+TEST(FarOrigin, a_later_keyframe_tells_that_there_are_more_digits) {
+  const TemporaryFolder folder;
+  const std::string faces = "f 1 2 3\n";
+  (void)folder.write("f_0.obj", "v 452312 5411873 0\nv 452313 5411873 0\nv 452312 5411874 0\n" + faces);
+  (void)folder.write("f_1.obj", "v 452312.1 5411873 0\nv 452313 5411873.01 0\nv 452312 5411874 0.7\n" + faces);
+  const std::string positions =
+      npy_of("<f8", {2, 3, 3},
+             std::vector<double>{452312, 5411873, 0, 452313, 5411873, 0, 452312, 5411874, 0, 452312.1, 5411873, 0,
+                                 452313, 5411873.01, 0, 452312, 5411874, 0.7});
+  const std::string npz =
+      folder.write("f.npz", npz_of(positions, npy_of("<u4", {1, 3}, std::vector<std::uint32_t>{0, 1, 2})));
+  for (const bool stream : {false, true})
+    for (const std::string& name : {folder / "f_*.obj", npz}) {
+      InputOptions options = test::files({name});
+      options.stream = stream;
+      options.kept_bytes = 0;
+      const Motion motion = test::read_motion(options).value();
+      ASSERT_NE(motion.origin, (std::array<double, 3>{})) << name;
+      EXPECT_NEAR(motion.keyframes[1].positions[0] + motion.origin[0], 452312.1, 1e-6);
+    }
+}
+
 TEST(Loops, come_back_to_the_first_keyframe) {
   const TemporaryFolder folder;
   for (int k = 0; k < 4; ++k) (void)folder.write("w_" + std::to_string(k) + ".obj", obj_of(sheet(3, k * k)));
