@@ -129,6 +129,13 @@ const std::vector<Case> kCases = {
      "/extensionsRequired/0"},
     {"KHR_node_visibility", [](GltfBuilder& f) { f.json["extensionsRequired"] = {"KHR_node_visibility"}; },
      "/extensionsRequired/0"},
+    {"an extension of points",
+     [](GltfBuilder& f) {
+       f.json["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"mode", 0}}}}});
+       f.json["meshes"][1]["primitives"][0]["extensions"]["KHR_gaussian_splatting"] = Json::object();
+       f.json["extensionsRequired"] = {"KHR_gaussian_splatting"};
+     },
+     "/extensionsRequired/0"},
     {"an extension that nobody has heard of",
      [](GltfBuilder& f) {
        f.json["extensionsRequired"] = {"FOO_bar"};

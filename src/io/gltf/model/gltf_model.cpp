@@ -20,9 +20,10 @@ constexpr std::array<std::string_view, 5> kUnderstood = {"KHR_mesh_quantization"
                                                          "KHR_meshopt_compression", "KHR_draco_mesh_compression",
                                                          "KHR_animation_pointer"};
 // Extensions of these families say how a surface looks and what it means, not where it is.
-constexpr std::array<std::string_view, 9> kHarmlessFamilies = {
-    "KHR_materials_",  "KHR_texture_",  "EXT_texture_",          "KHR_lights_punctual", "EXT_mesh_features",
-    "EXT_structural_", "EXT_instance_", "CESIUM_primitive_outl", "EXT_mesh_manifold"};
+constexpr std::array<std::string_view, 10> kHarmlessFamilies = {
+    "KHR_materials_",       "KHR_texture_",     "EXT_texture_",  "KHR_lights_punctual",
+    "EXT_mesh_features",    "EXT_structural_",  "EXT_instance_", "CESIUM_primitive_outline",
+    "EXT_feature_metadata", "EXT_mesh_manifold"};
 
 bool is_acceptable(std::string_view extension) {
   return std::find(kUnderstood.begin(), kUnderstood.end(), extension) != kUnderstood.end() ||
@@ -114,6 +115,9 @@ void Parser::check_required(const JsonView& root) {
   // Extensions of what is read may change it: a primitive, its mesh, and whatever holds bytes.
   const auto is_extended = [](const nlohmann::json& value, const std::string& extension) {
     if (!value.is_object()) return false;
+    // Points and lines are not read.
+    const auto mode = value.find("mode");
+    if (mode != value.end() && mode->is_number_unsigned() && mode->get<std::size_t>() < 4) return false;
     const auto found = value.find("extensions");
     return found != value.end() && found->is_object() && found->contains(extension);
   };
