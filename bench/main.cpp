@@ -71,7 +71,6 @@ Report measure(const SuiteOptions& options, const std::vector<Size>& sizes) {
       run_faces(suite, size);
       run_vertices(suite, size);
       if (!shuffled && size.elements <= kSchemesUpTo) run_schemes(suite, size);
-      if (!shuffled && size.elements <= kUsesUpTo) run_curved(suite, size);
       if (!shuffled && size.elements <= kBlendUpTo) run_blend(suite, size);
       if (!shuffled && size.elements <= kUsesUpTo) {
         run_uses(suite, size);

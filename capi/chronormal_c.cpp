@@ -137,6 +137,7 @@ struct chronormal_motion {
   const Motion* motion;
   SampleOptions options;
   NormalSampler sampler;
+  std::unique_ptr<Motion> pieces = {};  // of curves
 };
 
 const char* chronormal_version(void) { return CHRONORMAL_VERSION; }
@@ -303,14 +304,16 @@ chronormal_status chronormal_motion_follow(chronormal_motion* motion, const char
   if (motion == nullptr) return misuse("motion", "the pointer is NULL");
   if (path == nullptr) return misuse("path", "the pointer is NULL");
   return guarded([&] {
-    const Result<PathKind> kind = make_path(path);
-    if (!kind) return fail(Error{ErrorCode::kUsage, "path", kind.error().message});
-    SampleOptions options = motion->options;
-    options.path = kind.value();
-    Result<NormalSampler> sampler = NormalSampler::make(*motion->motion, options);
+    const Result<Path> wanted = make_path(path);
+    if (!wanted) return fail(Error{ErrorCode::kUsage, "path", wanted.error().message});
+    Result<CutMotion> cut = cut_into_segments(*motion->input.motion().value(), wanted.value());
+    if (!cut) return fail(cut.error());
+    auto pieces = std::make_unique<Motion>(std::move(cut).value().motion);
+    Result<NormalSampler> sampler = NormalSampler::make(*pieces, motion->options);
     if (!sampler) return fail(sampler.error());
-    motion->options = options;
     motion->sampler = std::move(sampler).value();
+    motion->motion = pieces.get();
+    motion->pieces = std::move(pieces);
     return CHRONORMAL_DONE;
   });
 }

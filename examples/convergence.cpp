@@ -182,7 +182,7 @@ AgainstMotion against_motion(const SmoothMotion& smooth, const Motion& sampled) 
 }
 
 /// The cubic of segment s on a curved path, from positions in double: those of keyframes in float32 would hide order 4.
-PolynomialSegment<3> curve_of(const SmoothMotion& smooth, std::size_t segments, std::size_t s, PathKind path) {
+CubicSegment curve_of(const SmoothMotion& smooth, std::size_t segments, std::size_t s, PathKind path) {
   std::vector<double> times;
   for (std::size_t k = 0; k <= segments; ++k) times.push_back(static_cast<double>(k) / static_cast<double>(segments));
   const auto velocities = [&](std::size_t key) {
@@ -202,7 +202,7 @@ PolynomialSegment<3> curve_of(const SmoothMotion& smooth, std::size_t segments, 
     for (std::size_t k = 0; k < velocity.share.size(); ++k) add(velocity.share[k], times[velocity.first + k]);
     return result;
   };
-  PolynomialSegment<3> curve{&smooth.topology, {}, times[s], times[s + 1]};
+  CubicSegment curve{{}, times[s], times[s + 1]};
   curve.control = {smooth.positions(times[s]), velocities(s), velocities(s + 1), smooth.positions(times[s + 1])};
   const double third = (times[s + 1] - times[s]) / 3;
   for (std::size_t v = 0; v < curve.control[0].size(); ++v) {
@@ -217,14 +217,16 @@ double curve_against_motion(const SmoothMotion& smooth, std::size_t segments, Pa
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t s = 0; s < segments; ++s) {
-    const std::vector<PolynomialNormals<3>> normals = all_path_normals(curve_of(smooth, segments, s, path));
+    const CubicSegment curve = curve_of(smooth, segments, s, path);
+    const auto normal = [](std::span<const std::uint32_t> face, const auto& at) {
+      return cross(at(face[1]) - at(face[0]), at(face[2]) - at(face[0]));
+    };
     for (int i = 0; i < kSamples; ++i) {
       const double t = i / (kSamples - 1.0);
       const std::vector<Vec3d> p = smooth.positions((static_cast<double>(s) + t) / static_cast<double>(segments));
-      for (std::size_t f = 0; f < normals.size(); ++f, ++count) {
-        const auto corners = smooth.topology.face(f);
-        const Vec3d truth = cross(p[corners[1]] - p[corners[0]], p[corners[2]] - p[corners[0]]);
-        sum += angle_between(unit_normal_at(normals[f], t).vector, truth);
+      for (std::size_t f = 0; f < smooth.topology.face_count(); ++f, ++count) {
+        const Vec3d shown = normal(smooth.topology.face(f), [&](std::uint32_t v) { return curve.position(v, t); });
+        sum += angle_between(shown, normal(smooth.topology.face(f), [&](std::uint32_t v) { return p[v]; }));
       }
     }
   }

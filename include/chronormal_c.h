@@ -133,7 +133,9 @@ typedef struct chronormal_motion chronormal_motion;
 CHRONORMAL_API chronormal_status chronormal_motion_read(const char* const* files, size_t file_count,
                                                         const chronormal_options* options, chronormal_motion** result);
 /* How vertices of a sequence move from now on, as `chronormal sample --path` has it: "linear" (at first), "catmull-rom",
- * on curves through the keyframes, or "hermite", with the velocities of the file. Usage where it has no such paths. */
+ * on curves through the keyframes, or "hermite", with the velocities of the file. Curves are cut into straight pieces,
+ * whose normals are within 0.01 degrees of those of the curve, or of the tolerance in "catmull-rom:0.1", and what the
+ * rounding of positions to float adds. Usage where it has no such paths. */
 CHRONORMAL_API chronormal_status chronormal_motion_follow(chronormal_motion* motion, const char* path);
 /* How many normals there are: faces, vertices or corners. */
 CHRONORMAL_API size_t chronormal_motion_size(const chronormal_motion* motion);

@@ -19,7 +19,6 @@ void run_meshes(Suite& suite);
 void run_schemes(Suite& suite, const Size& size);
 
 /// Normals of degree 6 of vertices on cubics, beside degree 2, double, and positions that move first.
-void run_curved(Suite& suite, const Size& size);
 
 /// Bounds of the largest errors of schemes, beside dense sampling.
 void run_certificates(Suite& suite, const Size& size);

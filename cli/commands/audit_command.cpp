@@ -33,7 +33,6 @@ struct AuditArguments {
   CommonOptions common;
   std::string rule;  // empty: what is usual for the input
   JudgeArguments judge;
-  PathArgument path;
   std::optional<std::string> poses;  // "random", or the file of the poses
   std::optional<std::string> weights;
   AuditLimits limits;
@@ -58,7 +57,7 @@ std::string shell_word(const std::string& word) {
 }
 
 // The words of a command line that name the input, the keyframes of it that count, and how vertices move between them.
-std::string words_of(const InputOptions& input, PathKind path) {
+std::string words_of(const InputOptions& input) {
   std::string words;
   constexpr std::size_t kMost = 4;
   for (std::size_t i = 0; i < input.files.size(); ++i) {
@@ -72,7 +71,7 @@ std::string words_of(const InputOptions& input, PathKind path) {
   if (input.to) words += formatted(" --to {}", *input.to);
   if (input.every != 1) words += formatted(" --every {}", input.every);
   if (input.loop) words += " --loop";
-  if (path != PathKind::kLinear) words += formatted(" --path {}", path_name(path));
+  if (input.is_curved()) words += formatted(" --path {}", input.path);
   return words;
 }
 
@@ -85,7 +84,6 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
             "what a host makes of stored normals between keyframes: gltf (default for\n"
             "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
           options.judge.table("judge what these viewers show of a glTF file"),
-          options.path.table("the right normals are those of this path"),
           {{"--tolerance DEG", &options.limits.degrees,
             "exit with code 4 if the worst error is larger, in any viewer of --for"},
            {"--tears N", &options.limits.torn_edges,
@@ -136,8 +134,6 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
   wanted.stream = true;
-  wanted.velocities = options.path.needs_velocities();
-  wanted.ends_of_whole = options.path.is_curved();
   Result<Input> opened = open_input("audit", std::move(wanted), progress);
   if (!opened) return opened.error();
   Input& input = opened.value();
@@ -151,7 +147,6 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
     return misuse("--tears", "torn edges are counted in glTF files; this input is none");
   if (document != nullptr && how.shard)
     return misuse(has_ranks() ? "mpirun" : "--shard", "it divides the segments of a sequence, and a glTF file is none");
-  if (const Status known = check_path("audit", input, how.path); !known) return known.error();
   if (resumed != nullptr) {
     if (const Status known = go_on(input, options, how, resumed->journal()); !known) return known.error();
   }
@@ -159,10 +154,10 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
   if (!found) return found.error();
   progress.clear();
-  warn_if_sparse("audit", found.value().path, keyframe_count(found.value()), found.value().bend);
+  if (options.input.is_curved()) found.value().cut = input.cut_path();
   const bool can_be_baked = document != nullptr || input.stream().value()->motion().kind != MotionKind::kTargets;
   return Audited{std::move(input), std::move(found).value(), options.limits,
-                 can_be_baked ? words_of(options.input, how.path) : ""};
+                 can_be_baked ? words_of(options.input) : ""};
 }
 
 Result<std::array<double, 2>> read_weights(const std::string& text) {
@@ -189,9 +184,6 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   if (const Status named = options.judge.read("audit", how.weighting, how.hosts); !named) return named.error();
   if (!how.hosts.empty() && how.rule && *how.rule != AuditRule::kGltf)
     return misuse("--for", "viewers go with the rule gltf, which they stand for");
-  const Result<PathKind> path = options.path.read();
-  if (!path) return path.error();
-  how.path = path.value();
   if (options.weights) {
     const Result<std::array<double, 2>> weights = read_weights(*options.weights);
     if (!weights) return weights.error();

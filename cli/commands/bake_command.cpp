@@ -41,8 +41,7 @@ struct BakeArguments {
   std::optional<std::size_t> most_targets;
   bool animations_only = false, plan = false;
   std::optional<std::string> drivers;  // where to write them beside the result
-  PathArgument path;
-  std::optional<std::string> poses;  // the file of the poses that a rig is made for
+  std::optional<std::string> poses;    // the file of the poses that a rig is made for
   bool json = false, no_audit = false, no_weld = false;
 };
 
@@ -74,9 +73,6 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     return misuse("--crease", "it must be an angle from 0 to 180 degrees");
   if (options.tolerance && !(*options.tolerance >= 0 && *options.tolerance <= 90))
     return misuse("--tolerance", "it must be an angle from 0 to 90 degrees");
-  const Result<PathKind> path = options.path.read();
-  if (!path) return path.error();
-  how.path = path.value();
   how.crease_angle = options.crease_angle;
   how.recompute_base = options.recompute_base;
   how.smooth = options.smooth;
@@ -199,8 +195,6 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   const GltfDocument& document = *input.document();
   if (options.input.frames_per_second != 1)
     return misuse("--fps", "the animations of a glTF file have times of their own");
-  if (how.path != PathKind::kLinear)
-    return misuse("--path", "the weights of a glTF file say how its vertices move: paths are of sequences");
   if (options.crease_angle != 180 && !options.smooth)
     return misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth");
   if (how.encoding.value_or(BakeEncoding::kSmallest) == BakeEncoding::kSmallest)
@@ -252,8 +246,6 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
 // Opens the input with the normals of all keyframes, which an audit judges.
 Result<Input> open_whole(const BakeArguments& options, Progress& progress) {
   InputOptions wanted = options.input;
-  wanted.velocities = options.path.needs_velocities();
-  wanted.ends_of_whole = options.path.is_curved();
   wanted.shading = KeepShading::kAll;
   return open_input("bake", std::move(wanted), progress);
 }
@@ -267,12 +259,6 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (options.drivers) return misuse("--drivers", "the animation of a sequence drives its extra targets");
   const bool adds_up = std::all_of(how.hosts.begin(), how.hosts.end(),
                                    [](const Host& host) { return host.normals == NormalRule::kSum; });
-  const bool is_curved = how.path != PathKind::kLinear;
-  if (is_curved && how.encoding.value_or(BakeEncoding::kEndpoint) != BakeEncoding::kEndpoint)
-    return misuse("--encode", "on curved paths n(t) has degree 6, which weights cannot carry: endpoint fits it");
-  if (is_curved && how.weighting.value_or(Weighting::kArea) != Weighting::kArea)
-    return misuse("--weighting", "on curved paths normals are weighted by area, and by nothing else");
-  if (is_curved) how.encoding = BakeEncoding::kEndpoint;
   if (!how.encoding && !options.hosts.empty() && options.hosts != "all" && !adds_up)
     how.encoding = BakeEncoding::kHarmless;
   if (how.encoding == BakeEncoding::kSmallest)
@@ -284,7 +270,6 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   const std::string extension = std::filesystem::path(output).extension().string();
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
     return misuse(output, "a sequence is written as .glb");
-  if (const Status status = check_path("bake", input, how.path); !status) return status.error();
   MotionStream& stream = *input.stream().value();
   const Motion& motion = stream.motion();
   if (motion.kind == MotionKind::kTargets)
@@ -300,18 +285,17 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   }
   how.progress = progress.callback("baking");
   how.expansion = input.expansion();
-  const Result<SequenceBake> baked = bake_sequence(stream, how, output, options.common.force);
+  Result<SequenceBake> baked = bake_sequence(stream, how, output, options.common.force);
   progress.clear();
   if (!baked) return baked.error();
+  if (options.input.is_curved()) baked.value().cut = input.cut_path();
   warn(baked.value().warnings);
-  warn_if_sparse("bake", how.path, baked.value().keyframes, baked.value().bend);
   BakeReport told{input.name(), output, std::nullopt, std::nullopt};
   // An audit judges the triangles of a file, whatever polygons they come from.
   if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
     std::optional<Input> whole;
     auto audited = audit_both(how, options, nullptr, [&](AuditOptions asked) -> Result<Audit> {
       asked.rule = AuditRule::kNlerp;
-      asked.path = how.path;
       if (!stored.has_more) return audit(stream, stored, asked);
       if (!whole) {
         Result<Input> again = open_whole(options, progress);
@@ -329,7 +313,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
       report(options, bake_text(baked.value(), encoding, told), bake_json(baked.value(), encoding, told));
   if (!reported) return reported.error();
   const SequenceBake& result = baked.value();
-  const bool is_stated = result.path != PathKind::kLinear || encoding == BakeEncoding::kEndpoint;
+  const bool is_stated = encoding == BakeEncoding::kEndpoint;
   const bool is_beyond_tolerance = options.tolerance && ((result.keys && result.keys->beyond > 0) ||
                                                          (is_stated && result.largest_error > *options.tolerance));
   return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
@@ -381,8 +365,6 @@ Result<int> run(BakeArguments options) {
   }
   if (const Status distinct = check_files(options); !distinct) return distinct.error();
   InputOptions wanted = options.input;
-  wanted.velocities = options.path.needs_velocities();
-  wanted.ends_of_whole = options.path.is_curved();
   wanted.stream = true;
   if (options.crease_angle == 180) wanted.shading = KeepShading::kRead;
   Result<Input> input = open_input("bake", std::move(wanted), progress);
@@ -448,7 +430,6 @@ Command bake_command() {
          "extra targets as the file says; FILE has the poses that they are made for, as JSON:\n"
          "[{\"smile\": 1, \"jaw\": 0.5}, ...] (default: such meshes get no extra targets)"},
         {"--plan", &options->plan, "of smallest: print what each candidate would come to, and write nothing"},
-        options->path.table("positions are exact then, by cubic weights, and normals fitted").front(),
         {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
         {"--tolerance DEG", &options->tolerance,
          "how far off normals may be at worst along the animations; with harmless and exact:\n"

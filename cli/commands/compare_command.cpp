@@ -42,7 +42,6 @@ struct CompareArguments {
   ResumeArgument resume;
   BlendArguments blend;
   TruthArguments truth;
-  PathArgument path;
 
   [[nodiscard]] std::size_t sample_count() const { return samples.value_or(21); }
 };
@@ -74,7 +73,7 @@ std::string option_of_schemes(const CompareArguments& options) {
   if (options.resume.asked) return "--resume";
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
-  if (options.path.name != "linear") return "--path";
+  if (options.input.is_curved()) return "--path";
   return options.each ? "--each" : "";
 }
 
@@ -112,7 +111,6 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
         &options.access,
         "random (default): each moment on its own; sequential: each from the one before",
         {.check = check_access}}},
-      options.path.table("every scheme is held against the exact normals of this path"),
       {{"--certify", &options.certify,
         "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
        {"--tolerance DEG", &options.tolerance,
@@ -144,12 +142,10 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
   compare_options.shard = has_ranks() ? own_shard() : options.shard.read().value();
-  compare_options.path = options.path.read().value();
   compare_options.expansion = input.expansion();
   const std::size_t segments =
       compare_options.shard.value_or(Shard{}).of(motion.value()->motion().segments.size()).count;
   compare_options.progress = watching_ranks(progress.callback("comparing", "segments", segments));
-  if (const Status status = check_path("compare", input, compare_options.path); !status) return status.error();
   if (resumed != nullptr) {
     if (input.document() != nullptr || motion.value()->motion().kind != MotionKind::kSequence)
       return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
@@ -164,10 +160,7 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
   }
   Result<Comparison> comparison = compare(*motion.value(), compare_options);
   progress.clear();
-  if (comparison) {
-    const Comparison& found = comparison.value();
-    warn_if_sparse("compare", found.path, found.segments + 1, found.bend);
-  }
+  if (comparison && options.input.is_curved()) comparison.value().cut = input.cut_path();
   return comparison;
 }
 
@@ -208,8 +201,6 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
   std::vector<NamedComparison> comparisons;
   for (InputOptions& wanted : inputs) {
     wanted.stream = true;
-    wanted.velocities = options.path.needs_velocities();
-    wanted.ends_of_whole = options.path.is_curved();
     Result<Input> input = open_input("compare", wanted, progress);
     Result<Comparison> comparison =
         input ? compare_one(input.value(), options, progress, resumed) : Result<Comparison>(input.error());
@@ -265,7 +256,7 @@ std::string option_of_samples(const CompareArguments& options) {
   if (options.errors) return "--errors";
   if (options.shard.text) return "--shard";
   if (options.resume.asked) return "--resume";
-  if (options.path.name != "linear") return "--path";
+  if (options.input.is_curved()) return "--path";
   return options.each ? "--each" : "";
 }
 
@@ -296,8 +287,6 @@ Result<int> run(const CompareArguments& options) {
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   }
   if (const auto elements = options.elements.options(); !elements) return elements.error();
-  const Result<PathKind> path = options.path.read();
-  if (!path) return path.error();
   if (const Status distinct = check_files(options); !distinct) return distinct.error();
   if (options.truth.every) return run_truth(options);
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))

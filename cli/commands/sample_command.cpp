@@ -24,7 +24,6 @@ struct SampleArguments {
   ElementArguments elements = {"vertices"};
   std::string weighting = "area";
   std::string length = "unit";
-  PathArgument path;
   std::string hard_edges;  // empty: by the crease angle
   std::string format;      // empty: by the extension
   ShardArgument shard;
@@ -58,7 +57,6 @@ std::vector<std::vector<Option>> tables(SampleArguments& options) {
        {"--length KIND", &options.length,
         "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
         "around a vertex (with --weighting area)"}},
-      options.path.table("normals are exact on all of them"),
       {{"--hard-edges KIND", &options.hard_edges,
         "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
         "file, by its smoothing groups (groups) or its own normals (normals)"},
@@ -83,8 +81,6 @@ Result<SampleOptions> sample_options(const SampleArguments& options) {
   const auto weighting = make_weighting(options.weighting);
   if (!weighting) return misuse("--weighting", weighting.error().message);
   if (options.length != "unit" && options.length != "area") return misuse("--length", "it must be unit or area");
-  const Result<PathKind> path = options.path.read();
-  if (!path) return path.error();
   const bool by_area = weighting.value() == Weighting::kArea;
   if (options.length == "area" && !by_area) return misuse("--length", "the area is a length of --weighting area alone");
   if (kind == ElementKind::kFaces && !by_area)
@@ -100,7 +96,7 @@ Result<SampleOptions> sample_options(const SampleArguments& options) {
       return misuse("--hard-edges", "a built-in morph stores no hard edges: give an OBJ or glTF file");
   }
   return SampleOptions{elements.value(), weighting.value(),
-                       options.length == "area" ? NormalLength::kArea : NormalLength::kUnit, path.value()};
+                       options.length == "area" ? NormalLength::kArea : NormalLength::kUnit};
 }
 
 Result<SampleFormat> format_of(const SampleArguments& options) {
@@ -206,20 +202,12 @@ Result<int> run(const SampleArguments& options) {
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
   wanted.stream = true;
-  wanted.velocities = options.path.needs_velocities();
-  wanted.ends_of_whole = options.path.is_curved();
   if (!options.hard_edges.empty()) wanted.shading = KeepShading::kFirst;
   Result<Input> input = open_input("sample", std::move(wanted), progress);
   if (!input) return input.error();
   const Result<MotionStream*> read = input.value().stream();
   if (!read) return read.error();
   const Motion& motion = read.value()->motion();
-  if (request.sample.path != PathKind::kLinear) {
-    if (const Status status = check_path("sample", input.value(), request.sample.path); !status) return status.error();
-    const Result<double> bend = bend_of(*read.value());
-    if (!bend) return bend.error();
-    warn_if_sparse("sample", request.sample.path, motion.keyframes.size(), bend.value());
-  }
   const Result<Moments> moments = moments_of(input.value(), request.asked);
   if (!moments) return moments.error();
   if (!options.common.quiet) announce(motion.topology, request.sample.elements.kind, moments.value().count());

@@ -13,28 +13,43 @@
 #include "cli/terminal/print.h"
 #include "cli/terminal/text.h"
 #include "core/charconv.h"
+#include "core/text.h"
 
 namespace chronormal::cli {
 namespace {
 
-// Wrong velocities give curves that look like any others, so that nothing but a comparison with positions finds them.
-Status warn_of_velocities(const std::string& command, MotionStream& stream) {
-  const Result<VelocityFit> found = velocity_fit(stream);
-  if (!found) return found.error();
-  const VelocityFit& fit = found.value();
-  if (fit.is_plausible()) return Success{};
+// Says what became of curves. Wrong velocities give curves that look like any others, so that nothing but a comparison
+// with positions finds them.
+void say_of_curves(const std::string& command, const CutPath& cut, std::size_t faces, bool is_quiet) {
+  const auto warn = [&](const std::string& message) { say(command, message, Tone::kWarning); };
+  if (!is_quiet)
+    say_text(
+        formatted("{} paths: {} cut into {}, whose normals are within {} degrees; coordinates are rounded by {:.1g}\n",
+                  path_name(cut.path.kind), counted(cut.segments, "segment", "segments"),
+                  counted(cut.pieces, "straight piece", "straight pieces"), cut.path.tolerance, cut.rounding));
+  if (cut.beyond > 0)
+    warn(formatted(
+        "{} of {} faces in segments are further off: they all but vanish between two keyframes, or would take "
+        "more pieces than --max-expansion allows",
+        grouped(cut.beyond), grouped(faces * cut.segments)));
+  if (cut.path.kind == PathKind::kCatmullRom && cut.segments == 1)
+    warn("two keyframes have no curve through them: vertices move straight between them, as on linear paths");
+  if (is_too_sparse(cut.bend))
+    warn(
+        formatted("the keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, "
+                  "and above {:.2f} nothing tells what happened between",
+                  up_to_hundredths(cut.bend), kTooSparse));
+  const VelocityFit& fit = cut.velocities;
+  if (fit.is_plausible()) return;
   const bool is_reversed = fit.direction < 0 && fit.length > 0;
-  say(command,
-      is_reversed
-          ? std::string(
-                "the velocities point against the way that vertices go from keyframe to keyframe: hermite paths "
-                "swing back and forth with them. Are they reversed, or keyframes too far apart?")
-          : formatted("at the velocities of the keyframes vertices would go {:.3g} times the way that they go from "
-                      "keyframe to keyframe: velocities count per second of the times of the keyframes, which files "
-                      "without times have one second apart (--fps)",
-                      fit.length),
-      Tone::kWarning);
-  return Success{};
+  warn(is_reversed
+           ? std::string(
+                 "the velocities point against the way that vertices go from keyframe to keyframe: hermite paths "
+                 "swing back and forth with them. Are they reversed, or keyframes too far apart?")
+           : formatted("at the velocities of the keyframes vertices would go {:.3g} times the way that they go from "
+                       "keyframe to keyframe: velocities count per second of the times of the keyframes, which files "
+                       "without times have one second apart (--fps)",
+                       fit.length));
 }
 
 std::string morph_names() {
@@ -116,54 +131,6 @@ Status check_ranks(const std::string& option) {
   return misuse(option, "mpirun divides one motion and adds up its shares: leave out one of the two");
 }
 
-std::vector<Option> PathArgument::table(const std::string& what) {
-  return {{"--path NAME", &name,
-           "how vertices move between the keyframes of a sequence: linear (default), straight;\n"
-           "catmull-rom, on curves through them; hermite, with the velocities of the file;\n" +
-               what}};
-}
-
-Result<PathKind> PathArgument::read() const {
-  Result<PathKind> path = make_path(name);
-  if (!path) return misuse("--path", path.error().message);
-  return path;
-}
-
-Status check_path(const std::string& command, Input& input, PathKind path) {
-  if (path == PathKind::kLinear) return Success{};
-  if (input.document() != nullptr)
-    return misuse("--path", "the weights of a glTF file say how its vertices move: paths are of sequences");
-  const Result<MotionStream*> stream = input.stream();
-  if (!stream) return stream.error();
-  if (const Status status = chronormal::check_path(stream.value()->motion(), path); !status)
-    return misuse("--path", status.error().message);
-  return path == PathKind::kHermite ? warn_of_velocities(command, *stream.value()) : Success{};
-}
-
-void warn_if_sparse(const std::string& command, PathKind path, std::size_t keyframes, double bend) {
-  if (path == PathKind::kCatmullRom && keyframes == 2)
-    say(command, "two keyframes have no curve through them: vertices move straight between them, as on linear paths",
-        Tone::kWarning);
-  if (!(path != PathKind::kLinear && is_too_sparse(bend))) return;
-  say(command,
-      formatted(
-          "the keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, and "
-          "above {:.2f} nothing tells what happened between",
-          up_to_hundredths(bend), kTooSparse),
-      Tone::kWarning);
-}
-
-std::size_t keyframe_count(const Audit& audit) noexcept {
-  return audit.subjects.empty() ? 3 : audit.subjects.front().segments + 1;
-}
-
-std::string path_words(PathKind path, std::size_t keyframes, double bend) {
-  std::string words = formatted("{} paths, which ", path_name(path));
-  if (keyframes > 2) return words + formatted("bend by {:.2f} of their length", up_to_hundredths(bend));
-  return words + (path == PathKind::kCatmullRom ? "are straight between two keyframes"
-                                                : "follow from two keyframes and their velocities");
-}
-
 Status check_hosts(const std::vector<Host>& hosts, const Input& input) {
   if (input.document() != nullptr || hosts.empty()) return Success{};
   return misuse("--for", "viewers are known for what they make of glTF files; this input is none");
@@ -182,6 +149,11 @@ std::vector<Option> CommonOptions::table(bool output_required) {
            {.required = output_required}},
           {"--force", &force, "overwrite OUT if it exists"},
           {"-q,--quiet", &quiet, "show no progress bar"}};
+}
+
+std::string check_path_name(const std::string& text) {
+  const Result<Path> path = make_path(text);
+  return path ? "" : path.error().message;
 }
 
 std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused) {
@@ -221,7 +193,14 @@ std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOp
       {"--every N", &input.every, "take every Nth keyframe of a sequence (default 1)", {.check = check_whole(1)}},
       {"--loop", &input.loop, "let the first of these keyframes follow the last one again, as in a loop"},
       {"--strict", &input.strict,
-       "refuse a file that can be read but for a part of it, which is passed over otherwise"}};
+       "refuse a file that can be read but for a part of it, which is passed over otherwise"},
+      {"--path NAME",
+       &input.path,
+       "how vertices move between the keyframes of a sequence: linear (default), straight;\n"
+       "catmull-rom, on curves through them; hermite, with the velocities of the file. Curves\n"
+       "are cut into straight pieces whose normals are within 0.01 degrees of the curve's, or\n"
+       "DEG of NAME:DEG, and a segment into --max-expansion of them at most",
+       {.check = check_path_name}}};
   for (const RefusedOption& option : refused)
     std::erase_if(table,
                   [&](const Option& one) { return one.spelling.substr(0, one.spelling.find(' ')) == option.name; });
@@ -262,6 +241,10 @@ Result<Input> open_input(const char* command, InputOptions options, Progress& pr
   for (std::size_t i = 0; i < std::min(notes.size(), kMostSaid); ++i) say(command, notes[i], Tone::kWarning);
   if (notes.size() > kMostSaid)
     say(command, formatted("and {} more of this kind", notes.size() - kMostSaid), Tone::kWarning);
+  if (!options.is_curved()) return input;
+  const Result<MotionStream*> pieces = input.value().stream();
+  if (!pieces) return pieces.error();
+  say_of_curves(command, input.value().cut_path(), pieces.value()->motion().topology.face_count(), progress.is_quiet());
   return input;
 }
 

@@ -11,7 +11,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/input.h"
-#include "chronormal/normals/paths.h"
+#include "chronormal/motion/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/hosts.h"
@@ -40,7 +40,7 @@ struct CommonOptions {
 [[nodiscard]] std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused = {});
 
 /// Opens the input that the options name, with a progress bar, and says in the name of the command what a person should
-/// know of how it was read (Input::notes()).
+/// know of how it was read (Input::notes()), and what became of curves, which are cut at once.
 [[nodiscard]] Result<Input> open_input(const char* command, InputOptions options, Progress& progress);
 
 /// Says what was written to a file, unless --quiet: "-> walk.npz: 5 keyframes".
@@ -89,28 +89,6 @@ struct ShardArgument {
 /// Errors: kUsage where there are several ranks and option, which divides no task, was given (an empty one was not),
 /// and where several copies that know nothing of each other would do the same work.
 [[nodiscard]] Status check_ranks(const std::string& option);
-
-/// The option --path: how vertices move between the keyframes of a sequence.
-struct PathArgument {
-  std::string name = "linear";
-
-  /// `what` ends the text of help.
-  [[nodiscard]] std::vector<Option> table(const std::string& what);
-  /// Errors: kUsage for a path that does not exist.
-  [[nodiscard]] Result<PathKind> read() const;
-  [[nodiscard]] bool is_curved() const { return name != path_name(PathKind::kLinear); }
-  /// Whether the input has to have velocities.
-  [[nodiscard]] bool needs_velocities() const { return name == path_name(PathKind::kHermite); }
-};
-/// Checks that an input has such paths (normals/paths.h), and warns where its velocities are not those of its motion.
-/// Errors: kUsage where it has no such paths; those of reading it.
-[[nodiscard]] Status check_path(const std::string& command, Input& input, PathKind path);
-/// Warns where the keyframes are too few or too far apart for curves through them.
-void warn_if_sparse(const std::string& command, PathKind path, std::size_t keyframes, double bend);
-/// The keyframes of a sequence that was audited on curved paths, or 3 where nothing moves and nothing was counted.
-[[nodiscard]] std::size_t keyframe_count(const Audit& audit) noexcept;
-/// What paths are, for reports: "catmull-rom paths, which bend by 0.12 of their length".
-[[nodiscard]] std::string path_words(PathKind path, std::size_t keyframes, double bend);
 
 /// Errors: kUsage where hosts are named and the input is no glTF file.
 [[nodiscard]] Status check_hosts(const std::vector<Host>& hosts, const Input& input);

@@ -456,11 +456,10 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
                           : "exact wherever there is a right normal: around some vertices the normals of faces cancel, "
                             "or no face\nhas an area\n";
   } else
-    text += formatted(
-        "{}: at most {} degrees from the right normals, {}\n",
-        encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),
-        encoding == BakeEncoding::kHarmless || bake.path != PathKind::kLinear ? "at 40 instants of each segment"
-                                                                              : "as far as can be proven");
+    text +=
+        formatted("{}: at most {} degrees from the right normals, {}\n",
+                  encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),
+                  encoding == BakeEncoding::kHarmless ? "at 40 instants of each segment" : "as far as can be proven");
   return text + lines_after(report);
 }
 

@@ -27,10 +27,7 @@ std::string headline(const NamedComparison& input) {
          (c.kind == ElementKind::kFaces
               ? std::string()
               : formatted("{} of {}\n", counted(c.elements, "different normal", "different normals"),
-                          element_kind_name(c.kind))) +
-         (c.path == PathKind::kLinear
-              ? std::string()
-              : formatted("held against the exact normals of {}\n", path_words(c.path, c.segments + 1, c.bend)));
+                          element_kind_name(c.kind)));
 }
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
@@ -193,7 +190,7 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
     text +=
         ",certified_lower_degrees,certified_upper_degrees,certified_segment,certified_element,certified_from,"
         "certified_to,unbounded";
-  const bool is_curved = inputs.front().comparison.path != PathKind::kLinear;
+  const bool is_curved = inputs.front().comparison.cut.has_value();
   if (is_curved) text += ",path,bend";
   text += '\n';
   for (const NamedComparison& input : inputs) {
@@ -214,7 +211,7 @@ std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_ti
         text += formatted(",{},{},{},{},{},{},{}", in_degrees(e.lower), in_degrees(e.upper), e.segment, e.element,
                           e.from, e.to, e.unbounded);
       }
-      if (is_curved) text += formatted(",{},{}", path_name(c.path), c.bend);
+      if (is_curved && c.cut) text += formatted(",{},{}", path_name(c.cut->path.kind), c.cut->bend);
       text += '\n';
     }
   }

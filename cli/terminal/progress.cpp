@@ -38,7 +38,7 @@ std::string pace_text(double share_done, double seconds, double share_left, std:
 }
 
 Progress::Progress(bool quiet)
-    : enabled_(!quiet && isatty(STDERR_FILENO) != 0 && !is_dumb_terminal()), start_(Clock::now()) {}
+    : is_quiet_(quiet), enabled_(!quiet && isatty(STDERR_FILENO) != 0 && !is_dumb_terminal()), start_(Clock::now()) {}
 
 std::function<void(std::size_t, std::size_t)> Progress::callback(std::string label, std::string things,
                                                                  std::size_t count) {

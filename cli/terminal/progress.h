@@ -27,6 +27,9 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress() { clear(); }
 
+  /// Whether it was made quiet: then nothing else is said either that is no warning.
+  [[nodiscard]] bool is_quiet() const noexcept { return is_quiet_; }
+
   /// A function for the library to tell how far it is. The Progress must outlive it. The rate is that of so many
   /// things of this name, whatever the library counts; with a count of 0 it is that of what the library counts, and
   /// there is none without a name.
@@ -48,7 +51,7 @@ class Progress {
 
   void show(Work& work, std::size_t done, std::size_t total);
 
-  bool enabled_;
+  bool is_quiet_, enabled_;
   bool visible_ = false;
   int last_percent_ = -1;
   Clock::time_point start_, shown_ = {};

@@ -13,6 +13,7 @@
 #include "chronormal/motion/blend_set.h"      // a base and targets, with any weights at once
 #include "chronormal/motion/motion.h"         // keyframes, the straight segments between them, and where a time lies
 #include "chronormal/motion/motion_stream.h"  // keyframes that are read when they are needed
+#include "chronormal/motion/paths.h"          // curves through keyframes, cut into straight pieces
 #include "chronormal/motion/topology.h"       // which vertices make which face
 
 #include "chronormal/normals/blend_normals.h"      // exact normals of blend shapes at any weights
@@ -20,14 +21,11 @@
 #include "chronormal/normals/curve_preparation.h"  // curves of normals, prepared a little at a time
 #include "chronormal/normals/element_blend.h"      // the normals of blend shapes for every face, vertex or corner
 #include "chronormal/normals/element_curves.h"     // the normals of a segment for every face, vertex or corner
-#include "chronormal/normals/element_paths.h"      // the normals of curved paths for every face, vertex or corner
 #include "chronormal/normals/elements.h"           // faces, vertices, corners, and who shares a normal
 #include "chronormal/normals/encodings.h"          // unit normals in four bytes: octahedral, 10-10-10-2
 #include "chronormal/normals/float_recompute.h"    // the fastest rival: in float32, without a promise
 #include "chronormal/normals/normal_curves.h"      // curves of normals: prepared once, evaluated at the speed of memory
 #include "chronormal/normals/normal_groups.h"      // which corners share a normal, and the sums of those that do
-#include "chronormal/normals/path_curves.h"        // normals of degree 6, prepared once, evaluated in float32
-#include "chronormal/normals/paths.h"              // vertices on curves: normals of degree 4 and 6
 #include "chronormal/normals/playback.h"           // curves of normals, played at equal steps
 #include "chronormal/normals/recompute.h"          // the rival: the cross product anew at every t
 #include "chronormal/normals/segment_normals.h"    // the cheaper of curves and recompute, by a model of their costs

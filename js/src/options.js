@@ -29,21 +29,21 @@ const CALL = {
 };
 
 // What is read, and how.
-const READ = { allowExternal: FLAG, maxExpansion: NUMBER, fps: NUMBER, from: NUMBER, to: NUMBER, every: NUMBER, loop: FLAG, strict: FLAG };
+const READ = { allowExternal: FLAG, maxExpansion: NUMBER, fps: NUMBER, from: NUMBER, to: NUMBER, every: NUMBER, loop: FLAG, strict: FLAG, path: TEXT };
 const MESHES = { base: TEXT, animation: NAME };
 
 const OPTIONS = {
   audit: {
-    ...READ, ...MESHES, rule: TEXT, weighting: TEXT, for: LIST, host: LIST, samples: NUMBER, poses: TEXT, weights: RANGE, path: TEXT,
+    ...READ, ...MESHES, rule: TEXT, weighting: TEXT, for: LIST, host: LIST, samples: NUMBER, poses: TEXT, weights: RANGE,
     tolerance: NUMBER, tears: NUMBER, noWeld: FLAG,
   },
   bake: {
     ...READ, for: LIST, encode: TEXT, weighting: TEXT, crease: NUMBER, recomputeBase: FLAG, smooth: FLAG, maxBytes: NUMBER,
-    maxTargets: NUMBER, animationsOnly: FLAG, poses: TEXT, plan: FLAG, path: TEXT, denseZeros: FLAG, tolerance: NUMBER, noWeld: FLAG, noAudit: FLAG,
+    maxTargets: NUMBER, animationsOnly: FLAG, poses: TEXT, plan: FLAG, denseZeros: FLAG, tolerance: NUMBER, noWeld: FLAG, noAudit: FLAG,
   },
   compare: {
     ...READ, ...MESHES, world: FLAG, schemes: LIST, samples: NUMBER, elements: TEXT, crease: NUMBER, noWeld: FLAG, access: TEXT,
-    path: TEXT, certify: FLAG, tolerance: NUMBER, blend: NUMBER, active: NUMBER, seed: NUMBER, truth: NUMBER, noTimes: FLAG,
+    certify: FLAG, tolerance: NUMBER, blend: NUMBER, active: NUMBER, seed: NUMBER, truth: NUMBER, noTimes: FLAG,
   },
   inspect: { ...READ, ...MESHES, world: FLAG },
 };

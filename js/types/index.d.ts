@@ -42,6 +42,11 @@ export interface ReadOptions extends CallOptions {
   every?: number;
   loop?: boolean;
   strict?: boolean;
+  /**
+   * How vertices move between the keyframes of a sequence, which is not glTF but .npz, for example: straight by default. Curves are cut into
+   * straight pieces whose normals are within 0.01 degrees of those of the curve, or within the tolerance that follows the name.
+   */
+  path?: PathName | `${'catmull-rom' | 'hermite'}:${number}`;
 }
 
 /** Which motion of a file is meant. */
@@ -63,8 +68,6 @@ export interface AuditOptions extends MotionOptions {
   poses?: string;
   /** The weights between which each target is judged alone: '0:1' by default. */
   weights?: `${number}:${number}`;
-  /** How vertices move between the keyframes of a sequence, which is not glTF but .npz, for example: straight by default. */
-  path?: PathName;
   tolerance?: number;
   /** The most edges of a glTF file that may be torn at a moment. */
   tears?: number;
@@ -86,7 +89,6 @@ export interface BakeOptions extends ReadOptions {
   poses?: string;
   /** Says what each form would come to, and makes no file. */
   plan?: boolean;
-  path?: PathName;
   denseZeros?: boolean;
   tolerance?: number;
   noWeld?: boolean;
@@ -105,7 +107,6 @@ export interface CompareOptions extends MotionOptions {
   crease?: number;
   noWeld?: boolean;
   access?: 'random' | 'sequential';
-  path?: PathName;
   certify?: boolean;
   tolerance?: number;
   blend?: number;

@@ -15,11 +15,12 @@ interface Head<Command extends string, Schema extends number> {
   schema: Schema;
 }
 
-/** The path of vertices that are not on straight lines. */
+/** Curves that were cut into straight pieces. */
 interface CurvedPath {
   path?: PathName;
   bend?: number;
   is_too_sparse?: boolean;
+  cut?: { tolerance_degrees: number; segments: number; pieces: number; faces_beyond: number; rounding: number };
 }
 
 // Of an audit.

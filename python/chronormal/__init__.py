@@ -21,11 +21,11 @@ import os as _os
 
 import numpy as _np
 
-from ._chronormal import Blend, Curves, Motion, Paths, __version__
+from ._chronormal import Blend, Curves, Motion, __version__
 from . import _chronormal
 
-__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "Paths", "audit", "bake", "blend", "certify", "collapse", "compare",
-           "cones", "contain", "curves", "errors", "facing", "inspect", "paths", "read", "shutter"]
+__all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "collapse", "compare",
+           "cones", "contain", "curves", "cut", "errors", "facing", "inspect", "read", "shutter"]
 
 
 def _vectors(array, place):
@@ -119,7 +119,7 @@ def _floats(array, place):
     return _np.ascontiguousarray(array, dtype=_np.float64)
 
 
-def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False, velocities=False):
+def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False, path="linear", velocities=False):
     """What to open, as the extension wants it."""
     if (source is None) == (sample is None):
         raise ValueError("source: give files or bytes, or the name of a built-in sample")
@@ -137,7 +137,7 @@ def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False
     return {"files": files, "bytes": data, "samples": [_text(sample, "sample")] if sample is not None else [],
             "base": _file(base, "base") if base is not None else b"", "fps": _float(fps, "fps"),
             "animation": _text(str(animation), "animation") if animation is not None else "", "world": bool(world),
-            "velocities": bool(velocities)}
+            "path": _text(path, "path"), "velocities": bool(velocities)}
 
 
 def _names(given):
@@ -161,19 +161,21 @@ def curves(p0, p1, faces, elements="vertices", crease=None, weighting="area", to
                   threads)
 
 
-def paths(positions, faces, times=None, path="catmull-rom", velocities=None, elements="vertices", crease=None, weld=True):
-    """Prepare the unit normals of a sequence whose vertices move on curves through its keyframes; return Paths.
+def cut(positions, faces, times=None, path="catmull-rom", velocities=None):
+    """Cut curves through keyframes into straight pieces; return positions (P, V, 3) and times (P,) of these keyframes.
 
     positions   (T, V, 3), the keyframes
+    faces       as for curves()
     times       (T,) seconds, ascending; None: 0, 1, 2 ...
-    path        "catmull-rom": velocities follow from the keyframes; "hermite": they are given; "linear": straight
+    path        "catmull-rom": velocities follow from the keyframes; "hermite": they are given; "linear": nothing is cut
     velocities  (T, V, 3) per second
-    faces, elements, crease, weld  as for curves(); vertices are one where they are at one point in all keyframes
+
+    Normals of the pieces are within 0.01 degrees of those of the curve, or "catmull-rom:0.1" of 0.1, and what rounding of
+    positions to float32 adds. A face that all but vanishes between two keyframes may be off by more.
     """
-    positions, offsets, corners, times = _keyframes(positions, faces, times)
     if velocities is not None:
         velocities = _vectors(velocities, "velocities")
-    return Paths(positions, offsets, corners, times, path, velocities, elements, crease, weld)
+    return _chronormal.cut(*_keyframes(positions, faces, times), _text(path, "path"), velocities)
 
 
 def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
@@ -193,24 +195,20 @@ def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
     return Blend(_vectors(base, "base"), targets, offsets, corners, elements, crease, weld)
 
 
-def certify(p0, p1, faces, scheme="linear", threads=0, velocities=None):
+def certify(p0, p1, faces, scheme="linear", threads=0):
     """Bound the largest error of a scheme over the whole of a segment, for each face; return a dict of arrays (F,).
 
     p0, p1, faces, threads  as for curves()
     scheme   a name that compare() knows
-    velocities  (2, V, 3), at p0 and at p1, in units of length per segment: vertices then move on the cubics through
-             them, and the errors are those against the normals there; None: on straight lines
     lower    degrees; the error is as large as that at the local time `at`
     upper    degrees; it is never larger, at no time from 0 to 1, rounding included; 180 where a normal vanishes on the way
     from, to  local times: the piece of the segment on which the upper bound is reached, if anywhere
     """
     offsets, corners = _polygons(faces)
-    if velocities is not None:
-        velocities = _vectors(velocities, "velocities")
-    return _chronormal.certify(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, scheme, threads, velocities)
+    return _chronormal.certify(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, scheme, threads)
 
 
-def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
+def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False, path="linear"):
     """Read a motion; return Motion, whose arrays curves() takes.
 
     source     a file, a pattern, a folder, a list of these, or the bytes of one file, of every format of the program
@@ -219,8 +217,10 @@ def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=
     fps        keyframes per second where a format has no times
     animation  of a glTF file, by name or index; None: its morph targets
     world      vertices of a glTF file are where its nodes put them
+    path       how vertices of a sequence move: "linear", "catmull-rom" or "hermite", as `--path` of the program. Curves are
+               cut into straight pieces: the keyframes of the motion are the ends of these, as cut() makes them
     """
-    return Motion(_source(source, sample, base, fps, animation, world, velocities=True))
+    return Motion(_source(source, sample, base, fps, animation, world, path, velocities=True))
 
 
 def inspect(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
@@ -234,10 +234,10 @@ def audit(source=None, *, rule=None, weighting=None, hosts=None, samples=None, t
 
     rule, weighting, hosts, samples, tolerance  as the options of the program; hosts may be a list
     source, sample, base, fps, animation        as for read()
-    path  how vertices of a sequence move: "linear", "catmull-rom" or "hermite", as `--path` of the program
+    path  as for read()
     """
-    opened = _source(source, sample, base, fps, animation, velocities=path == "hermite")
-    text, _ = _chronormal.audit(opened, rule or "", weighting or "", _names(hosts or ""), samples, tolerance, weld, False, path)
+    opened = _source(source, sample, base, fps, animation, path=path)
+    text, _ = _chronormal.audit(opened, rule or "", weighting or "", _names(hosts or ""), samples, tolerance, weld, False)
     return _json.loads(text)
 
 
@@ -250,13 +250,13 @@ def compare(source=None, *, schemes=(), samples=21, access="random", elements="f
     times      whether measured times are in it, which differ from run to run
     certify    whether to bound the largest error of each scheme at any time
     tolerance  degrees: certify, and find the cheapest scheme that is never off by more
-    path       as for audit(); the last row is then for the exact normals of the path
+    path       as for read()
     """
     if access not in ("random", "sequential"):
         raise ValueError("access: it must be random or sequential")
-    opened = _source(source, sample, base, fps, animation, world, velocities=path == "hermite")
+    opened = _source(source, sample, base, fps, animation, world, path)
     text, _ = _chronormal.compare(opened, list(schemes), samples, access == "sequential", elements, crease, weld, times,
-                                  False, certify, tolerance, path)
+                                  False, certify, tolerance)
     return _json.loads(text)
 
 
@@ -265,12 +265,12 @@ def bake(source=None, *, encode=None, hosts=None, weighting=None, tolerance=None
     """Write right normals into a glTF file, or make one of a sequence; return (glb, report).
 
     hosts   the viewers that it is made for; None: those that add up deltas, and none worse in the others
-    path    as for audit(); on curves positions are exact, by cubic weights, and normals are fitted
+    path    as for read()
     glb     bytes of a GLB
     report  the dict of `chronormal bake --json`, but for its audit: audit(glb) has that
     """
-    opened = _source(source, sample, None, fps, velocities=path == "hermite")
-    glb, text = _chronormal.bake(opened, encode or "", _names(hosts or ""), weighting or "", tolerance, smooth, recompute_base, path)
+    opened = _source(source, sample, None, fps, path=path)
+    glb, text = _chronormal.bake(opened, encode or "", _names(hosts or ""), weighting or "", tolerance, smooth, recompute_base)
     return glb, _json.loads(text)
 
 
@@ -300,16 +300,16 @@ def errors(source=None, *, scheme=None, samples=None, elements="vertices", rule=
 
     scheme  None: the errors of an audit, of the stored normals; or a name, such as "linear": those of a way to
             interpolate, for any elements
-    path    as for audit()
+    path    as for read()
     """
-    opened = _source(source, sample, base, fps, animation, velocities=path == "hermite")
+    opened = _source(source, sample, base, fps, animation, path=path)
     if scheme is None:
         if elements != "vertices":
             raise ValueError("elements: an audit judges vertices")
-        _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True, path)
+        _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True)
     else:
         _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
-                                        weld, False, True, False, None, path)
+                                        weld, False, True, False, None)
     return [ErrorTable(**table) for table in tables]
 
 

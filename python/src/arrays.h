@@ -151,7 +151,6 @@ inline void require_made(bool is_made) { require(is_made, "self", "it was never 
 void add_certificates(py::module_& module);
 void add_curves(py::module_& module);
 void add_files(py::module_& module);
-void add_paths(py::module_& module);
 void add_queries(py::module_& module);
 
 }  // namespace chronormal::python

@@ -26,6 +26,7 @@ InputOptions options_of(const py::dict& source) {
   options.animation = source["animation"].cast<std::string>();
   options.world = source["world"].cast<bool>();
   options.velocities = source["velocities"].cast<bool>();
+  options.path = source["path"].cast<std::string>();
   if (const py::object bytes = source["bytes"]; !bytes.is_none()) {
     const std::string_view view = bytes.cast<std::string_view>();  // of the object, which outlives the input
     options.files = {kBytes};
@@ -42,18 +43,9 @@ Opened open(const py::dict& source, bool allow_mesh, KeepShading shading) {
   options.allow_mesh = allow_mesh;
   options.shading = shading;
   if (const Status status = check_input(options); !status) raise(status.error());
-  return {without_gil([&] { return open_input(options); }), source["bytes"]};
-}
-
-// The path of a name, which must be linear for the weights of a glTF file. (The library checks other motions.)
-PathKind path_of(const std::string& name) {
-  Result<PathKind> path = make_path(name);
-  if (!path) refuse("path", path.error().message);
-  return path.value();
-}
-void require_paths(const Input& input, PathKind path) {
-  require(path == PathKind::kLinear || input.document() == nullptr, "path",
-          "the weights of a glTF file say how its vertices move: paths are of sequences");
+  Opened opened{without_gil([&] { return open_input(options); }), source["bytes"]};
+  if (options.is_curved()) (void)without_gil([&] { return opened.input.stream(); });  // refuses what has no such path
+  return opened;
 }
 
 py::list dicts_of(std::vector<ErrorTable> tables) {
@@ -78,9 +70,8 @@ py::list dicts_of(std::vector<ErrorTable> tables) {
 
 py::tuple audit_source(const py::dict& source, const std::string& rule, const std::string& weighting,
                        const std::string& hosts, std::optional<std::size_t> samples, std::optional<double> tolerance,
-                       bool weld, bool keep_errors, const std::string& path) {
+                       bool weld, bool keep_errors) {
   AuditOptions options;
-  options.path = path_of(path);
   if (!rule.empty()) options.rule = value_or_raise(make_audit_rule(rule));
   if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
   if (!hosts.empty()) options.hosts = value_or_raise(find_hosts(hosts));
@@ -90,7 +81,6 @@ py::tuple audit_source(const py::dict& source, const std::string& rule, const st
   options.keep_errors = keep_errors;
   Opened opened = open(source, false, KeepShading::kAll);
   Input& input = opened.input;
-  require_paths(input, options.path);
   options.animation = source["animation"].cast<std::string>();
   Audit found = without_gil([&]() -> Result<Audit> {
     if (input.document() != nullptr) return audit(*input.document(), options);
@@ -100,14 +90,14 @@ py::tuple audit_source(const py::dict& source, const std::string& rule, const st
     if (!normals) return normals.error();
     return audit(*motion.value(), *normals.value(), options);
   });
+  if (input.cut_path().path.is_curved()) found.cut = input.cut_path();
   return py::make_tuple(audit_json(input.name(), found, {tolerance}), dicts_of(std::move(found.errors)));
 }
 
 py::tuple compare_source(const py::dict& source, const std::vector<std::string>& schemes, std::size_t samples,
                          bool sequential, const std::string& elements, double crease, bool weld, bool with_times,
-                         bool keep_errors, bool certified, std::optional<double> tolerance, const std::string& path) {
+                         bool keep_errors, bool certified, std::optional<double> tolerance) {
   CompareOptions options;
-  options.path = path_of(path);
   options.schemes = schemes;
   options.samples = samples;
   options.access = sequential ? Access::kSequential : Access::kRandom;
@@ -118,12 +108,12 @@ py::tuple compare_source(const py::dict& source, const std::vector<std::string>&
   options.certify = certified;
   options.tolerance = tolerance;
   Opened opened = open(source, false, KeepShading::kNone);
-  require_paths(opened.input, options.path);
   NamedComparison found = without_gil([&]() -> Result<NamedComparison> {
     const Result<const Motion*> motion = opened.input.motion();
     if (!motion) return motion.error();
     Result<Comparison> comparison = compare(*motion.value(), options);
     if (!comparison) return comparison.error();
+    if (opened.input.cut_path().path.is_curved()) comparison.value().cut = opened.input.cut_path();
     return NamedComparison{opened.input.name(), std::move(comparison).value()};
   });
   std::vector<ErrorTable> tables = std::move(found.comparison.errors);
@@ -147,7 +137,7 @@ std::string bake_document(const Input& input, const BakeOptions& options, std::s
 
 std::string bake_sequence_of(Input& input, BakeOptions options, std::string& json) {
   std::string glb;
-  const SequenceBake baked = without_gil([&]() -> Result<SequenceBake> {
+  SequenceBake baked = without_gil([&]() -> Result<SequenceBake> {
     const Result<const Motion*> motion = input.motion();
     if (!motion) return motion.error();
     if (motion.value()->kind == MotionKind::kTargets)
@@ -163,16 +153,15 @@ std::string bake_sequence_of(Input& input, BakeOptions options, std::string& jso
     options.expansion = input.expansion();
     return bake_sequence(*motion.value(), options, glb);
   });
-  const BakeEncoding usual = options.path == PathKind::kLinear ? BakeEncoding::kExact : BakeEncoding::kEndpoint;
-  json = bake_json(baked, options.encoding.value_or(usual), {input.name(), kBytes, std::nullopt, std::nullopt});
+  if (input.cut_path().path.is_curved()) baked.cut = input.cut_path();
+  json = bake_json(baked, options.encoding.value_or(BakeEncoding::kExact),
+                   {input.name(), kBytes, std::nullopt, std::nullopt});
   return glb;
 }
 
 py::tuple bake_source(const py::dict& source, const std::string& encode, const std::string& hosts,
-                      const std::string& weighting, std::optional<double> tolerance, bool smooth, bool recompute_base,
-                      const std::string& path) {
+                      const std::string& weighting, std::optional<double> tolerance, bool smooth, bool recompute_base) {
   BakeOptions options;
-  options.path = path_of(path);
   if (!encode.empty()) {
     options.encoding = find_bake_encoding(encode);
     require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact, endpoint or keys");
@@ -184,7 +173,6 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
   options.smooth = smooth;
   options.recompute_base = recompute_base;
   Opened opened = open(source, false, KeepShading::kAll);
-  require_paths(opened.input, options.path);
   const bool is_document = opened.input.document() != nullptr;
   if (!is_document) {
     require(options.encoding != BakeEncoding::kHarmless && options.encoding != BakeEncoding::kSmallest, "encode",
@@ -268,10 +256,8 @@ class ReadMotion : public ZeroedObject {
   }
 
   py::array unit_normals(const std::optional<Array<double>>& times, const std::optional<Array<double>>& weights,
-                         const std::string& elements, double crease, const std::string& weighting, bool weld,
-                         const std::string& path) {
+                         const std::string& elements, double crease, const std::string& weighting, bool weld) {
     SampleOptions options;
-    options.path = path_of(path);
     options.elements.kind = value_or_raise(make_element_kind(elements));
     options.elements.crease_angle = crease;
     options.elements.weld = weld;
@@ -362,12 +348,11 @@ void add_files(py::module_& module) {
       .def_property_readonly("kind", &ReadMotion::kind, "\"sequence\", \"targets\", \"animation\" or \"mesh\".")
       .def("unit_normals", &ReadMotion::unit_normals, py::arg("times") = py::none(), py::arg("weights") = py::none(),
            py::arg("elements") = "vertices", py::arg("crease") = 180.0, py::arg("weighting") = "area",
-           py::arg("weld") = true, py::arg("path") = "linear",
+           py::arg("weld") = true,
            R"(Return the unit normals at chosen moments: (T, n, 3) float32, the bits of `chronormal sample`.
 
 times    (T,) seconds of a sequence or an animation
 weights  (T, K) of K targets
-path     of a sequence: "linear", "catmull-rom" or "hermite", with the velocities of the file
 A mesh that does not move takes neither.)")
       .def("__repr__", &ReadMotion::text);
 }

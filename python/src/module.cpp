@@ -16,6 +16,5 @@ PYBIND11_MODULE(_chronormal, module) {
   chronormal::python::add_certificates(module);
   chronormal::python::add_curves(module);
   chronormal::python::add_files(module);
-  chronormal::python::add_paths(module);
   chronormal::python::add_queries(module);
 }

@@ -95,6 +95,31 @@ py::dict ask_shutter(const Positions& positions, const Indices& offsets, const I
   return answer_of([&] { return query_shutter(motion, {start, end}); });
 }
 
+py::tuple cut(const Positions& positions, const Indices& offsets, const Indices& corners, const Array<double>& times,
+              const std::string& text, const std::optional<Positions>& velocities) {
+  const Result<Path> path = make_path(text);
+  if (!path) refuse("path", path.error().message);
+  Motion motion = motion_of(positions, offsets, corners, times);
+  if (velocities) {
+    const std::size_t size = 3 * motion.topology.vertex_count();
+    if (!(velocities->ndim() == 3 && velocities->size() == positions.size() &&
+          velocities->shape(0) == positions.shape(0) && velocities->shape(2) == 3))
+      refuse("velocities", "the shape is " + shape_text(*velocities) + " and must be " + shape_text(positions));
+    for (std::size_t k = 0; k < motion.keyframes.size(); ++k)
+      motion.keyframes[k].velocities.assign(velocities->data() + k * size, velocities->data() + (k + 1) * size);
+    if (const Status status = validate(motion); !status) raise(status.error());
+  }
+  const CutMotion pieces = without_gil([&] { return cut_into_segments(motion, path.value()); });
+  std::vector<float> all;
+  std::vector<double> at;
+  for (const Motion::Keyframe& keyframe : pieces.motion.keyframes) {
+    all.insert(all.end(), keyframe.positions.begin(), keyframe.positions.end());
+    at.push_back(keyframe.time);
+  }
+  const auto count = static_cast<py::ssize_t>(at.size());
+  return py::make_tuple(array_of(std::move(all), {count, positions.shape(1), 3}), array_of(std::move(at), {count}));
+}
+
 }  // namespace
 
 Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offsets,
@@ -115,6 +140,7 @@ Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offs
 }
 
 void add_queries(py::module_& module) {
+  module.def("cut", &cut);
   module.def("query_collapse", &ask_collapse);
   module.def("query_cones", &ask_cones);
   module.def("query_facing", &ask_facing);

@@ -28,8 +28,7 @@ def objects():
     """One of each class, by its name."""
     p0, p1, faces = sheet()
     deltas = np.stack([p1 - p0, p0])
-    return {"Curves": cn.curves(p0, p1, faces), "Blend": cn.blend(p0, deltas, faces),
-            "Paths": cn.paths(np.stack([p0, p1, p0]), faces), "Motion": cn.read(sample="twist")}
+    return {"Curves": cn.curves(p0, p1, faces), "Blend": cn.blend(p0, deltas, faces), "Motion": cn.read(sample="twist")}
 
 
 class Enough(Exception):
@@ -70,17 +69,17 @@ class SignalTest(unittest.TestCase):
 
     def test_calls_that_take_hours_end_with_a_signal(self):
         positions, faces = wavy(3, 30)
-        twist, paths, curves = cn.read(sample="twist"), cn.paths(positions, faces), cn.curves(positions[0], positions[1], faces)
+        twist, curves = cn.read(sample="twist"), cn.curves(positions[0], positions[1], faces)
         deltas = positions[1:] - positions[:1]
         glb, _ = cn.bake(sample="twist", encode="endpoint")
         many = np.linspace(0, 1, 2 * 10**5)
-        out = np.empty((len(many), len(paths), 3), np.float32)  # whose memory is touched row by row
+        out = np.empty((len(many), len(curves), 3), np.float32)  # whose memory is touched row by row
         for name, call in {
                 "audit": lambda: cn.audit(glb, samples=10**6, hosts="all"),
                 "compare": lambda: cn.compare(sample="eversion", samples=10**6),
                 "compare vertices": lambda: cn.compare(sample="eversion", samples=10**6, elements="vertices"),
                 "certificates": lambda: cn.compare(sample="eversion", samples=10**6, certify=True),
-                "a path": lambda: [paths.unit_normals(many, out=out) for _ in range(1000)],
+                "pieces": lambda: [cn.cut(positions, faces) for _ in range(10**6)],
                 "curves": lambda: [curves.unit_normals(many, out=out) for _ in range(1000)],
                 "a blend": lambda: [cn.blend(positions[0], deltas, faces) for _ in range(10**6)],
                 "a motion": lambda: twist.unit_normals(np.linspace(0, 1, 10**6), weighting="angle"),
@@ -91,19 +90,19 @@ class SignalTest(unittest.TestCase):
     def test_a_call_that_was_ended_at_any_moment_leaves_others_as_they_are(self):
         positions, faces = wavy(3, 60)
         twist = cn.read(sample="twist")
-        paths = cn.paths(positions, faces)
+        curves = cn.curves(*positions[:2], faces)
         calls = [lambda: cn.audit(sample="twist", samples=801), lambda: cn.compare(sample="twist", samples=101, certify=True),
                  lambda: cn.errors(sample="twist", scheme="linear", samples=200), lambda: cn.bake(sample="twist"),
                  lambda: cn.inspect(sample="twist"), lambda: cn.certify(*twist.positions, twist.faces, "slerp", threads=1),
-                 lambda: cn.curves(*positions[:2], faces, weighting="angle"), lambda: cn.paths(positions, faces),
-                 lambda: paths.unit_normals(np.linspace(0, 2, 100)), lambda: cn.collapse(positions, faces),
+                 lambda: cn.curves(*positions[:2], faces, weighting="angle"), lambda: cn.cut(positions, faces),
+                 lambda: curves.unit_normals(np.linspace(0, 1, 100)), lambda: cn.collapse(positions, faces),
                  lambda: cn.facing(positions, faces, eye=[0, 0, 9], silhouettes=True), lambda: cn.cones(positions, faces),
                  lambda: cn.shutter(positions, faces)]
         random = np.random.default_rng(SEED)
-        expected, report = paths.unit_normals(1.25), cn.audit(sample="twist")
+        expected, report = curves.unit_normals(0.25), cn.audit(sample="twist")
         ended = sum(self.is_ended(calls[random.integers(len(calls))], random.uniform(0.01, 0.3)) for _ in range(40))
         self.assertGreater(ended, 5)
-        np.testing.assert_array_equal(paths.unit_normals(1.25), expected)
+        np.testing.assert_array_equal(curves.unit_normals(0.25), expected)
         self.assertEqual(cn.audit(sample="twist"), report)
 
     def test_ctrl_c_ends_a_program(self):
@@ -121,13 +120,13 @@ class SignalTest(unittest.TestCase):
 
     def test_a_handler_may_compute_but_with_what_it_interrupts(self):
         positions, faces = wavy(2, 100)
-        paths, other = cn.paths(positions, faces), cn.paths(positions, faces)
+        curves, other = cn.curves(*positions, faces), cn.curves(*positions, faces)
         said = []
 
         def handler(*_):
             said.append(other.unit_normals(0.5))
             try:
-                paths.unit_normals(0.5)
+                curves.unit_normals(0.5)
             except ValueError as error:
                 said.append(str(error))
 
@@ -136,7 +135,7 @@ class SignalTest(unittest.TestCase):
         while len(said) < 2 and time.monotonic() < until:
             said.clear()
             signal.setitimer(signal.ITIMER_REAL, 0.001)
-            rows = paths.unit_normals(times, threads=1)
+            rows = curves.unit_normals(times, threads=1)
             # A fast machine is through before it looks for signals, and hears this one between two calls.
             times = np.full(min(2 * len(times), 10_000), 0.5)
         np.testing.assert_array_equal(said[0], rows[0])
@@ -147,9 +146,9 @@ class SignalTest(unittest.TestCase):
 class ForkTest(unittest.TestCase):
     def test_a_child_computes_while_other_threads_of_its_parent_do(self):
         positions, faces = wavy(3, 40)
-        made = [cn.curves(positions[0], positions[1], faces), cn.paths(positions, faces),
+        made = [cn.curves(positions[0], positions[1], faces),
                 cn.blend(positions[0], positions[1:] - positions[:1], faces)]
-        asked = [0.5, 0.5, [0.5, 0.25]]
+        asked = [0.5, [0.5, 0.25]]
 
         def results():
             found = [one.unit_normals(at, threads=0) for one, at in zip(made, asked)]
@@ -236,15 +235,14 @@ class ArgumentTest(unittest.TestCase):
                 cn.read(wrong)
 
     def test_arguments_that_are_none_are_refused_in_words(self):
-        curves, blend, paths, motion = objects().values()
+        curves, blend, motion = objects().values()
         p0, p1, faces = sheet()
         huge = 2**2000
         for call, kind, words in (
                 (lambda: curves.unit_normals(huge), ValueError, "t: it is too large"),
                 (lambda: curves.unit_normals(-huge), ValueError, "t: it is too large"),
                 (lambda: curves.errors(huge, p0), ValueError, "t: it is too large"),
-                (lambda: paths.unit_normals(huge), ValueError, "time: it is too large"),
-                (lambda: cn.paths([p0, p1], faces, times=[0, huge]), ValueError, "times: the type is object"),
+                (lambda: cn.cut([p0, p1], faces, times=[0, huge]), ValueError, "times: the type is object"),
                 (lambda: cn.contain([p0, p1], faces, [[huge, 0, 0]]), ValueError, "points: the type is object"),
                 (lambda: cn.read(sample=5), TypeError, "sample: it must be a string, not int"),
                 (lambda: cn.read(sample=["twist"]), TypeError, "sample: it must be a string, not list"),
@@ -260,23 +258,23 @@ class ArgumentTest(unittest.TestCase):
 
     def test_no_argument_of_any_kind_ends_in_words_of_the_machinery(self):
         p0, p1, faces = sheet()
-        curves, blend, paths, motion = objects().values()
+        curves, blend, motion = objects().values()
         pool = [None, True, -1, 5, 2**40, 2**2000, -2**2000, 0.5, float("nan"), float("inf"), "", "twist", "\ud800", "\udcff", "a\0b",
                 b"\xff", b"", [], [5], ["\udcff"], (), {}, object(), p0, np.zeros(0), np.array("x"), [[2**2000]], 1j, lambda: 0, range(3)]
         calls = [
             (cn.curves, (p0, p1, faces), ("elements", "crease", "weighting", "tolerance", "weld", "threads")),
-            (cn.paths, ([p0, p1], faces), ("times", "path", "velocities", "elements", "crease", "weld")),
+            (cn.cut, ([p0, p1], faces), ("times", "path", "velocities")),
             (cn.blend, (p0, [p1], faces), ("elements", "crease", "weld")),
-            (cn.certify, (p0, p1, faces), ("scheme", "threads", "velocities")),
-            (cn.read, (), ("source", "sample", "base", "fps", "animation")),
+            (cn.certify, (p0, p1, faces), ("scheme", "threads")),
+            (cn.read, (), ("source", "sample", "base", "fps", "animation", "path")),
             (cn.audit, (), ("source", "rule", "weighting", "hosts", "samples", "tolerance", "sample", "fps", "animation", "path")),
             (cn.compare, (), ("schemes", "samples", "access", "elements", "crease", "tolerance", "sample", "path")),
             (cn.bake, (), ("source", "encode", "hosts", "weighting", "tolerance", "sample", "fps", "path")),
             (cn.facing, ([p0, p1], faces), ("times", "direction", "eye", "eye_to", "start", "end")),
             (cn.contain, ([p0, p1], faces), ("points", "times", "start", "end")),
             (cn.cones, ([p0, p1], faces), ("meshlets", "times")),
-            (curves.unit_normals, (), ("t", "out", "threads")), (paths.unit_normals, (), ("time", "out", "threads")),
-            (blend.unit_normals, (), ("weights", "out", "threads")), (motion.unit_normals, (), ("times", "weights", "elements", "path")),
+            (curves.unit_normals, (), ("t", "out", "threads")),
+            (blend.unit_normals, (), ("weights", "out", "threads")), (motion.unit_normals, (), ("times", "weights", "elements")),
         ]
         random = np.random.default_rng(SEED)
         refused = 0
@@ -295,10 +293,10 @@ class ArgumentTest(unittest.TestCase):
 
 class MemoryTest(unittest.TestCase):
     def test_what_is_asked_may_lie_in_the_memory_that_is_written(self):
-        curves, blend, paths, _ = objects().values()
+        curves, blend, _ = objects().values()
         random = np.random.default_rng(SEED)
         for _ in range(200):
-            made = (curves, blend, paths)[random.integers(3)]
+            made = (curves, blend)[random.integers(2)]
             rows = int(random.integers(1, 9))
             asked = random.uniform(size=(rows, 2) if made is blend else rows)
             expected = made.unit_normals(asked)

@@ -24,8 +24,6 @@
 #include "chronormal/normals/curve_preparation.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/path_curves.h"
-#include "chronormal/normals/paths.h"
 #include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
 #include "chronormal/normals/segment_normals.h"
@@ -241,18 +239,9 @@ void add_files_and_blends_of_c(const Motion& motion, const Elements& elements, s
   }
 }
 
-// Ways that take curved paths, or blend differences of positions in float32.
+// Ways that blend differences of positions in float32.
 void add_other_ways(const Motion& motion, const NormalGroups* groups, std::vector<Kin>& all) {
   constexpr double kNotJudged = std::numeric_limits<double>::infinity();
-  Kin& curved = all.emplace_back(Kin{kNotJudged, {}});
-  const auto path = std::make_shared<PolynomialSegment<3>>(path_segment(motion, 0, PathKind::kCatmullRom));
-  for (const Threads threads : {Threads::kOne, Threads::kAll}) {
-    curved.ways.push_back({"curved paths", [=] {
-                             return one_by_one(
-                                 groups == nullptr ? PathCurves(*path, threads) : PathCurves(*path, *groups, threads),
-                                 threads);
-                           }});
-  }
   Motion targets = motion;
   targets.connect_as_targets();
   const auto set = std::make_shared<BlendSet>(blend_set_of(targets).value());

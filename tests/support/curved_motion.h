@@ -96,8 +96,10 @@ namespace chronormal::test {
     const auto edge = [&](std::size_t to, std::size_t c) {
       return positions[3 * std::size_t{face[to]} + c] - positions[3 * std::size_t{face[0]} + c];
     };
-    for (std::size_t c = 0; c < 3; ++c)
-      faces[f][c] = edge(1, (c + 1) % 3) * edge(2, (c + 2) % 3) - edge(1, (c + 2) % 3) * edge(2, (c + 1) % 3);
+    for (std::size_t k = 2; k < face.size(); ++k)
+      for (std::size_t c = 0; c < 3; ++c)
+        faces[f][c] +=
+            edge(k - 1, (c + 1) % 3) * edge(k, (c + 2) % 3) - edge(k - 1, (c + 2) % 3) * edge(k, (c + 1) % 3);
     for (const std::uint32_t v : face)
       for (std::size_t c = 0; c < 3; ++c) vertices[v][c] += faces[f][c];
   }

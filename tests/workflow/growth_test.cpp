@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "chronormal/motion/paths.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/path_curves.h"
 #include "chronormal/normals/recompute.h"
 #include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
@@ -43,16 +43,14 @@ void evaluate(Object&& object, double t) {
   object.unit_normals(t, VectorView<float>::packed(normals.data(), object.size()), Threads::kAll);
 }
 
-Way compare_on(PathKind path, bool certify) {
-  std::string name = certify ? "certificates on paths " : "compare on paths ";
-  return {name.append(path_name(path)), [path, certify](const Motion& motion) {
+Way compare_on(bool certify) {
+  return {certify ? "certificates" : "compare", [certify](const Motion& motion) {
             CompareOptions options;
             options.schemes = {"linear"};
             options.certify = certify;
             options.elements.kind = ElementKind::kVertices;
             options.elements.weld = false;
             options.samples = 3;
-            options.path = path;
             EXPECT_EQ(compare(motion, options).value().elements, motion.topology.vertex_count());
           }};
 }
@@ -78,8 +76,12 @@ std::vector<Way> ways() {
   all.push_back({"sums by area", [](const Motion& motion) {
                    (void)all_weighted_normals_at(motion.segment(0), vertices_of(motion), Weighting::kArea, 0.3);
                  }});
-  all.push_back({"curved paths", [](const Motion& motion) {
-                   evaluate(PathCurves(path_segment(motion, 0, PathKind::kCatmullRom), vertices_of(motion)), 0.3);
+  all.push_back({"cutting curves", [](const Motion& motion) {
+                   Motion sequence = motion;
+                   for (std::size_t k = 0; k < sequence.keyframes.size(); ++k)
+                     sequence.keyframes[k].time = static_cast<double>(k);
+                   sequence.connect_as_sequence();
+                   EXPECT_TRUE(cut_into_segments(sequence, {PathKind::kCatmullRom, 1}, 4).ok());
                  }});
   all.push_back({"weights", [](const Motion& motion) {
                    Motion targets = motion;
@@ -87,9 +89,7 @@ std::vector<Way> ways() {
                    NormalSampler sampler = NormalSampler::make(targets, {}).value();
                    (void)sampler.at_weights(std::vector<double>{0.3, 0.4}).value();
                  }});
-  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
-    for (const bool certify : {false, true}) all.push_back(compare_on(path, certify));
-  }
+  for (const bool certify : {false, true}) all.push_back(compare_on(certify));
   all.push_back({"baking a sequence", [](const Motion& motion) {
                    std::string glb;
                    EXPECT_TRUE(bake_sequence(motion, {}, glb));

@@ -57,7 +57,6 @@ std::string machine_part(const Results& results, const std::string& folder) {
        {"predicted", predicted_part(results, folder)},
        {"blend", blend_part(results, folder)},
        {"commands", commands_part(results, folder)},
-       {"curved", curved_part(results, folder)},
        {"uses", uses_part(results, folder)}});
   add_costs(part, results);
   add_aims(part, results, folder);

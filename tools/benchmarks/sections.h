@@ -25,8 +25,7 @@ void add_accuracy(Page& page, const Results& results);  ///< every path against 
 [[nodiscard]] std::string predicted_part(const Results& results, const std::string& folder);
 [[nodiscard]] std::string frames_part(const Results& results, const std::string& folder);
 
-/// The parts on curved paths, and on answers for whole intervals of time; both are empty where no run measured them.
-[[nodiscard]] std::string curved_part(const Results& results, const std::string& folder);
+/// The part on answers for whole intervals of time; it is empty where no run measured them.
 [[nodiscard]] std::string uses_part(const Results& results, const std::string& folder);
 
 /// The part on what commands of the program take; empty where no run measured them.

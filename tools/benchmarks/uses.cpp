@@ -1,4 +1,4 @@
-// Writes what curved paths cost, and what answers for whole intervals cost beside samples. A run that did not measure
+// Writes what answers for whole intervals cost beside samples. A run that did not measure
 // them gets no such parts.
 
 #include <fmt/core.h>
@@ -51,22 +51,6 @@ std::string table_of(const Results& results, const std::string& group, const std
 }
 
 }  // namespace
-
-std::string curved_part(const Results& results, const std::string& folder) {
-  const std::string group = "curved paths";
-  if (!results.knows(group)) return "";
-  Page part("benchmarks/curved.md.in", folder);
-  part.set("table", table_of(results, group, "ns per vertex"));
-  std::string times;
-  for (const Column& column : columns()) {
-    const Row* const six = row_of(results, group, column.size, "degree 6 to float3");
-    const Row* const two = row_of(results, group, column.size, "degree 2 to float3");
-    if (column.order != kGrid || six == nullptr || two == nullptr) continue;
-    times += fmt::format("{}{:.1f} at {}", times.empty() ? "" : ", ", six->ns / two->ns, spelt(column.size));
-  }
-  part.set("times", times);
-  return part.markdown();
-}
 
 std::string uses_part(const Results& results, const std::string& folder) {
   if (!results.knows("uses", "collapse") || !results.knows("cones") || !results.knows("certificates")) return "";

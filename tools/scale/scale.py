@@ -100,12 +100,9 @@ COMMANDS = {
     "`sample --times 11.5`": ["sample", "--times", "11.5", "--format", "npy"],
     "`sample --times keys` (24 times, 372 MB of normals)": ["sample", "--times", "keys", "--format", "npy"],
     "`sample --times keys --resume`": ["sample", "--times", "keys", "--format", "npy", "--resume"],
-    "`sample --times keys --path catmull-rom`": ["sample", "--times", "keys", "--format", "npy", "--path", "catmull-rom"],
     "`audit --samples 5`": ["audit", "--samples", "5"],
-    "`audit --samples 5 --path catmull-rom`": ["audit", "--samples", "5", "--path", "catmull-rom"],
     "`inspect`": ["inspect"],
     "`compare --schemes linear,quadratic --samples 3`": ["compare", "--schemes", "linear,quadratic", "--samples", "3"],
-    "the same with `--path catmull-rom`": ["compare", "--schemes", "linear,quadratic", "--samples", "3", "--path", "catmull-rom"],
 }
 
 

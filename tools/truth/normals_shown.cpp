@@ -53,14 +53,17 @@ int main(int argc, char** argv) {
     std::fwrite(of_vertices.data(), sizeof(float), of_vertices.size(), stdout);
   };
   const std::vector<std::string> times = split_at_commas(argv[3]);
+  std::vector<const Motion::Keyframe*> keys;
+  for (const Motion::Keyframe& keyframe : motion.keyframes) keys.push_back(&keyframe);
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
     const Segment segment = motion.segment(s);
     const std::vector<ControlNormals> normals = all_group_control_normals(segment, groups);
     for (const std::string& name : split_at_commas(argv[2])) {
-      if (const Result<PathKind> path = make_path(name); path && path.value() != PathKind::kLinear) {
-        const PathCurves curves(all_path_normals(path_segment(motion, s, path.value()), groups));
+      if (const Result<Path> path = make_path(name); path && path.value().is_curved()) {
+        const CubicSegment curve = cubic_segment(keys, s, path.value().kind);
         for (const std::string& t : times) {
-          (void)curves.unit_normals(std::atof(t.c_str()), elements);
+          const Motion::Keyframe pose{curve.positions(std::atof(t.c_str())), 0, {}};
+          (void)NormalRecompute(still_segment(motion.topology, pose), groups).unit_normals(0, elements);
           write();
         }
         continue;

@@ -25,7 +25,6 @@ void write_page(const std::string& folder, bool partial) {
   page.set("peers", peers_part(folder));
   page.set("golden", data == nullptr ? "" : golden_part(folder, data));
   measure_fits(page);
-  measure_curves(page);
   measure_transforms(page);
   page.write("weightings.md");
 }

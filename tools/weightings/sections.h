@@ -18,7 +18,6 @@ using namespace pages;
 /// Normals in files: the part of the page, empty where there is no data.
 [[nodiscard]] std::string golden_part(const std::string& folder, const std::filesystem::path& data);
 void measure_fits(Page& page);        ///< quadratics in place of weighted normals: error, bound, cost
-void measure_curves(Page& page);      ///< curved motion: exact, and cut into straight pieces
 void measure_transforms(Page& page);  ///< rigid and affine motion
 
 /// A motion of one mesh that stands still: the positions of a segment at t, as float32.

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "chronormal/core/polynomial.h"
-#include "chronormal/normals/paths.h"
+#include "chronormal/motion/paths.h"
 
 namespace chronormal::vtk {
 

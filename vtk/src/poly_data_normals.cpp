@@ -21,8 +21,6 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/path_curves.h"
-#include "chronormal/normals/paths.h"
 #include "core/rounding.h"
 #include "core/vector_area.h"
 #include "normals/groups/group_sum.h"
@@ -177,21 +175,6 @@ ControlNormals sum_of(std::vector<ControlNormals>& terms) {
   return sum.without_rounding();
 }
 
-PolynomialNormals<3> sum_of(std::vector<PolynomialNormals<3>>& terms) {
-  const auto values = [](const Vec3d& v) { return std::tie(v.x, v.y, v.z); };
-  std::sort(terms.begin(), terms.end(), [&](const PolynomialNormals<3>& a, const PolynomialNormals<3>& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
-                                        [&](const Vec3d& v, const Vec3d& w) { return values(v) < values(w); });
-  });
-  PolynomialNormals<3> result;
-  for (std::size_t k = 0; k < result.size(); ++k) {
-    VectorSum sum;
-    for (const PolynomialNormals<3>& term : terms) sum.add(term[k]);
-    result[k] = sum.without_rounding();
-  }
-  return result;
-}
-
 // Vectors in an array of VTK, in float or in double.
 struct Vectors {
   Vectors(std::size_t count, bool in_double)
@@ -230,13 +213,11 @@ struct Groups {
   std::vector<std::uint32_t> ends, faces;
 };
 
-// Controls are ControlNormals, or those of a curved path.
-template <class Controls>
-vtkSmartPointer<vtkDataArray> normals_of_groups(const Groups& groups, const std::vector<Controls>& of_faces, double t,
-                                                bool in_double) {
+vtkSmartPointer<vtkDataArray> normals_of_groups(const Groups& groups, const std::vector<ControlNormals>& of_faces,
+                                                double t, bool in_double) {
   const Vectors result(groups.size(), in_double);
   for_elements(groups.size(), [&](std::size_t e) {
-    thread_local std::vector<Controls> terms;
+    thread_local std::vector<ControlNormals> terms;
     terms.clear();
     for (const std::uint32_t f : groups.of(e)) terms.push_back(of_faces[f]);
     result.set(e, unit_normal_at(sum_of(terms), t).vector);
@@ -244,13 +225,15 @@ vtkSmartPointer<vtkDataArray> normals_of_groups(const Groups& groups, const std:
   return result.array;
 }
 
-// The normals of points and cells at t, as far as they are asked for. controls(topology) are those of the faces.
-template <class ControlsOf>
-MeshNormals normals_of(vtkPolyData* mesh, double t, bool points, bool cells, const ControlsOf& controls) {
-  const bool in_double = mesh->GetPoints() != nullptr && mesh->GetPoints()->GetDataType() == VTK_DOUBLE;
-  const Faces faces = find_faces(mesh);
+bool is_in_double(vtkPolyData* mesh) {
+  return mesh->GetPoints() != nullptr && mesh->GetPoints()->GetDataType() == VTK_DOUBLE;
+}
+
+// in_double says in what the result is.
+MeshNormals normals_of(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells, bool in_double) {
+  const Faces faces = find_faces(from);
   const Topology& topology = faces.topology;
-  const auto of_faces = controls(topology);
+  const std::vector<ControlNormals> of_faces = normals_of_faces(from, to, topology);
   MeshNormals result;
   if (points) {
     const Groups groups(topology.vertex_count(), [&](const auto& body) {
@@ -260,7 +243,7 @@ MeshNormals normals_of(vtkPolyData* mesh, double t, bool points, bool cells, con
     result.of_points = normals_of_groups(groups, of_faces, t, in_double);
   }
   if (cells) {
-    const Groups groups(size(mesh->GetNumberOfCells()), [&](const auto& body) {
+    const Groups groups(size(from->GetNumberOfCells()), [&](const auto& body) {
       for (std::size_t f = 0; f < faces.cells.size(); ++f) body(faces.cells[f], f);
     });
     result.of_cells = normals_of_groups(groups, of_faces, t, in_double);
@@ -285,14 +268,14 @@ Status check_motion(vtkPolyData* from, vtkPolyData* to) {
 }
 
 MeshNormals normals_between(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells) {
-  return normals_of(from, t, points, cells,
-                    [&](const Topology& topology) { return normals_of_faces(from, to, topology); });
+  return normals_of(from, to, t, points, cells, is_in_double(from));
 }
 
 MeshNormals normals_on_curves(vtkPolyData* mesh, const PointCurves& curves, double t, bool points, bool cells) {
-  return normals_of(mesh, t, points, cells, [&](const Topology& topology) {
-    return all_path_normals({&topology, curves, 0, 1});
-  });
+  vtkNew<vtkPolyData> placed;
+  placed->ShallowCopy(mesh);
+  placed->SetPoints(points_at(curves, t, VTK_DOUBLE));
+  return normals_of(placed, placed, 0, points, cells, is_in_double(mesh));
 }
 
 }  // namespace chronormal::vtk

@@ -34,7 +34,7 @@ struct MeshNormals {
 /// except for the lists of the faces of each element.
 /// Precondition: check_motion() found no error.
 [[nodiscard]] MeshNormals normals_between(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells);
-/// The same where the points of the mesh move on curves; all of it in double.
+/// The same where the points of the mesh move on curves: of the places where they are at t, in double.
 [[nodiscard]] MeshNormals normals_on_curves(vtkPolyData* mesh, const PointCurves& curves, double t, bool points,
                                             bool cells);
 

@@ -88,8 +88,6 @@ std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
 
 // Says what the user will get from `chronormal bake` on this file, as far as the audit can know it beforehand.
 std::string outcome(const Audited& input) {
-  if (input.document() == nullptr && input.audit.path != PathKind::kLinear)
-    return formatted("makes a glTF file of {} paths, and says how near its normals are", path_name(input.audit.path));
   if (input.document() == nullptr) return "makes a glTF file that is right at every instant";
   const std::vector<const AuditSubject*> wrong = wrong_subjects(input, false);
   const auto driven = static_cast<std::size_t>(std::count_if(

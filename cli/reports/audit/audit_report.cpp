@@ -75,9 +75,6 @@ std::string headline(const Audited& input) {
   if (audit.rule == AuditRule::kFlat) source = "the faces";
   text += formatted("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
                     pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
-  if (audit.path != PathKind::kLinear)
-    text +=
-        formatted("  the right normals are those of {}\n", path_words(audit.path, keyframe_count(audit), audit.bend));
   text += weighting_words(input);
   if (audit.still > 0)
     text += formatted("  {} nothing that could be judged\n",

@@ -18,14 +18,11 @@
 /// Rounding   is included: coefficients are taken as float32 has them, the ball has a proven bound of what evaluating
 ///            them in float32 adds, and control normals count as off by what their errors say. `polynomial` and
 ///            `recompute` have the bound that they promise, kExactTolerance.
-/// Curves     On curved paths (normals/paths.h) the normal has degree 6, and the rest is the same. Exact are then the
-///            normals of the control positions as PolynomialSegment has them in double.
 /// Collapses  Where n(t) vanishes inside the segment, or what the scheme normalises does, no bound below half a turn is
 ///            claimed: `upper` is pi, and [from, to] holds the place.
 /// Units      radians; local t.
 /// Threads    pure. Allocates a little, once for each call.
-/// Cost       some 10 pieces an element: 1.5 to 5 microseconds, on curved paths 5 to 10; schemes of slerps of slerps
-///            take 50 times as long.
+/// Cost       some 10 pieces an element: 1.5 to 5 microseconds; schemes of slerps of slerps take 50 times as long.
 /// Limits     Normals at random access: playback drifts, and is not covered. Bounds are of scheme and control normals
 ///            that are prepared from the same block.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFY_H_
@@ -41,7 +38,6 @@
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/paths.h"
 #include "chronormal/schemes/scheme.h"
 
 namespace chronormal {
@@ -78,37 +74,6 @@ void certify(const Scheme& scheme, const ElementBlock& block, std::span<ErrorBou
 
 /// The same for all faces of a segment and a scheme by its name. Errors: those of make_scheme().
 [[nodiscard]] Result<std::vector<ErrorBounds>> certify(std::string_view scheme, const Segment& segment,
-                                                       const CertifyOptions& options = {},
-                                                       Threads threads = Threads::kOne);
-
-/// How far each component of the control normals of an element on a curved path may be from the true one.
-using PathErrors = std::array<double, 7>;
-
-/// The exact normals of some elements on a curved path: the control normals, and how far they are off.
-struct PathTruth {
-  std::vector<PolynomialNormals<3>> normals;
-  std::vector<PathErrors> errors;
-};
-
-/// The normals of a range of faces, and what rounding does to them.
-[[nodiscard]] PathTruth path_truth(const PolynomialSegment<3>& path, IndexRange faces);
-/// The same for groups of the corners of these faces, of which of_faces must have all.
-[[nodiscard]] PathTruth path_truth(const NormalGroups& groups, const PathTruth& of_faces, IndexRange elements);
-
-/// Bounds the errors of a block against the normals of a curved path; the block is that of the straight one, from which
-/// schemes are prepared. `polynomial` and `recompute`, which are exact on the straight path, get bounds like the
-/// others. Preconditions: those of certify(); truth must have the elements of the block
-void certify(const Scheme& scheme, const ElementBlock& block, const PathTruth& truth, std::span<ErrorBounds> result,
-             const CertifyOptions& options = {}, std::span<const ControlErrors> errors = {});
-
-/// Bounds the errors of PathCurves (normals/path_curves.h) that are made of these control normals: kPathAngle, and what
-/// the errors of the normals add. result must have as many elements as truth
-void certify_path_curves(const PathTruth& truth, std::span<ErrorBounds> result);
-
-/// The errors of a scheme by its name, for all faces of a segment against the normals of its curved path. Errors: those
-/// of make_scheme().
-[[nodiscard]] Result<std::vector<ErrorBounds>> certify(std::string_view scheme, const Segment& segment,
-                                                       const PolynomialSegment<3>& path,
                                                        const CertifyOptions& options = {},
                                                        Threads threads = Threads::kOne);
 

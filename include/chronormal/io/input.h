@@ -36,6 +36,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
+#include "chronormal/motion/paths.h"
 
 namespace chronormal {
 
@@ -75,9 +76,10 @@ struct InputOptions {
   bool loop = false;
   /// What could be read but for a part of it is refused, with the first of the notes that Input::notes() would have.
   bool strict = false;
-  /// The first and the last of these keyframes get end_velocities (motion/motion.h) from up to three keyframes of the
-  /// sequence beyond them, so that curves are those of the whole sequence. These keyframes are read for it.
-  bool ends_of_whole = false;
+  /// How vertices move between these keyframes, as make_path() reads it. Curves are those of the whole sequence: up to
+  /// three keyframes beyond the first and the last one are read for them. They are cut into straight pieces
+  /// (motion/paths.h), of which a segment has max_expansion at the most, and the motion is that of the pieces.
+  std::string path = "linear";
   /// Leaves positions in the files until they are asked for: in mesh files, .pc2 and .mdd, and in .npy and .npz that
   /// are stored and in C order. A caller that sets it should ask for Input::stream(). Other inputs are read at once,
   /// and so are mesh files where the normals of all of them are kept. An error in a keyframe is found when the keyframe
@@ -87,6 +89,7 @@ struct InputOptions {
   std::size_t kept_bytes = MotionStream::kUsuallyKept;
 
   [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1 || loop; }
+  [[nodiscard]] bool is_curved() const noexcept { return path != path_name(PathKind::kLinear); }
 };
 
 /// Whether the options go together, before anything is opened. Errors: kUsage, with the option as the place.
@@ -145,12 +148,16 @@ class Input {
   /// allow_mesh it may be a mesh that does not, one keyframe without a segment. Else it is valid (motion/motion.h). All
   /// keyframes are in memory, as most callers want them; callers that need them one by one should ask for stream().
   /// Errors: of a document, those of GltfDocument; kUsage for an animation that is not there; kInvalidInput where
-  /// nothing moves, or keyframes would take more than 4 GiB; where keyframes were left in files, those of reading them.
+  /// nothing moves, or keyframes would take more than 4 GiB; where keyframes were left in files, those of reading them;
+  /// of curves, those of cut_into_segments().
   [[nodiscard]] Result<const Motion*> motion();
 
   /// The same motion as a stream, which reads keyframes when they are asked for and lives as long as the input. Errors:
   /// those of motion(), except those of reading keyframes.
   [[nodiscard]] Result<MotionStream*> stream();
+
+  /// What was cut, once motion() or stream() was asked for.
+  [[nodiscard]] const CutPath& cut_path() const noexcept;
 
   /// Returns keyframe k of the motion, from 0, in any order. It is valid until the next call that reads keyframes.
   /// Errors: those of motion(), and of reading the file.
@@ -162,7 +169,7 @@ class Input {
   [[nodiscard]] Result<std::vector<double>> key_times();
 
   /// The normals that the input stores, as far as the options keep them; of a document those of its base, in the space
-  /// of the meshes. Errors: those of motion().
+  /// of the meshes. Where curves are cut, those of keyframe 0 alone. Errors: those of motion().
   [[nodiscard]] Result<const StoredNormals*> normals();
   /// The smoothing group of each face, as the first keyframe has them (io/mesh/mesh_frame.h); empty where there are
   /// none.

@@ -61,7 +61,7 @@ struct Motion {
     std::string name;                    ///< for messages: the file that it came from, or empty
     std::vector<float> velocities = {};  ///< (V, 3) per second, of a sequence whose file has them; or empty
     /// (V, 3) per second, of an end of a part of a sequence: the velocities that curves through the whole sequence have
-    /// there (PathKind::kCatmullRom in normals/paths.h). Empty: they follow from the keyframes of the motion.
+    /// there (PathKind::kCatmullRom in motion/paths.h). Empty: they follow from the keyframes of the motion.
     std::vector<float> end_velocities = {};
     /// (V, 3), or empty where nothing was rounded: a vertex is at its position and its residual, added up. Files hold
     /// positions alone.

@@ -48,7 +48,7 @@
 #include "chronormal/io/poses_file.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
-#include "chronormal/normals/paths.h"
+#include "chronormal/motion/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/hosts.h"
@@ -97,11 +97,10 @@ struct AuditOptions {
   /// Without any, but with is_posed, kRandomPoses of each mesh that a program may set (docs/cli.md).
   bool is_posed = false;
   std::vector<RigPose> poses = {};
-  std::vector<Host> hosts = {};       ///< glTF, by the rule gltf: these are judged too
-  PathKind path = PathKind::kLinear;  ///< sequences: how vertices move between keyframes, as normals/paths.h has it
-  bool skins = true;                  ///< glTF: judges meshes in nodes with a skin as they are seen through it
-  bool weld = true;                   ///< vertices at one point throughout are one
-  bool keep_errors = false;           ///< every single one, in Audit::errors
+  std::vector<Host> hosts = {};  ///< glTF, by the rule gltf: these are judged too
+  bool skins = true;             ///< glTF: judges meshes in nodes with a skin as they are seen through it
+  bool weld = true;              ///< vertices at one point throughout are one
+  bool keep_errors = false;      ///< every single one, in Audit::errors
   /// For sequences: judges this share of the segments only, and keeps the errors of each of them in
   /// Audit::measured. Every shard finds out for itself what follows from the whole motion (which vertices move, how
   /// long a normal gets).
@@ -221,9 +220,8 @@ struct Audit {
   std::optional<Weighting> weighting = Weighting::kArea;
   /// Whether normals are stored for every keyframe; else a host computes them there.
   bool stored = true;
-  PathKind path = PathKind::kLinear;  ///< of a sequence
-  double bend = 0;                    ///< of a curved path: bend_of(), to hold against kTooSparse
-  std::array<double, 2> span = {};    ///< of a sequence: the times of its first and its last keyframe
+  std::array<double, 2> span = {};  ///< of a sequence: the times of its first and its last keyframe
+  std::optional<CutPath> cut = {};  ///< of curves, set by who has cut them: for reports
   std::vector<AuditSubject> subjects;
   /// Targets, tracks and expressions that move nothing, or nothing that can be judged: no subjects.
   std::size_t still = 0;
@@ -279,18 +277,18 @@ struct AuditLimits {
 /// track, and the pose in which the file opens, give them what the file says. A file in which nothing moves has no
 /// subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
-/// animation that is not there, curved paths, hosts with another rule than gltf, fewer than 2 samples, weights that are
+/// animation that is not there, hosts with another rule than gltf, fewer than 2 samples, weights that are
 /// not ascending, and errors to keep that take more than kMostErrorBytes; kInvalidInput for poses that fit no mesh.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
 /// then. Without stored normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what
-/// it would get in between. Residuals of positions count, but on curved paths (normals/paths.h) and for which weighting
-/// stored normals follow, which differences of a tenth of a degree tell. Errors: kUsage for the rule gltf, for hosts,
-/// and for fewer than 2 samples; those of check_path(); kInvalidInput for normals that do not fit. Precondition: the
+/// it would get in between. Residuals of positions count, but for which weighting stored normals
+/// follow, which differences of a tenth of a degree tell. Errors: kUsage for the rule gltf, for hosts,
+/// and for fewer than 2 samples; kInvalidInput for normals that do not fit. Precondition: the
 /// motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
-/// The same for a stream, of which two keyframes are held at a time, or four on curved paths. It is read twice; it is
+/// The same for a stream, of which two keyframes are held at a time. It is read twice; it is
 /// read once more up to where all vertices have moved, and once more up to where none coincide any more. Errors: also
 /// those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);

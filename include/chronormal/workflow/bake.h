@@ -35,7 +35,7 @@
 #include "chronormal/io/poses_file.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
-#include "chronormal/normals/paths.h"
+#include "chronormal/motion/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/hosts.h"
 
@@ -62,7 +62,7 @@ struct BakeOptions {
   double crease_angle = 180;  ///< degrees: hard edges of those, and of sequences
   /// Normals of keyframe 0 of a sequence, one for each corner, or empty. They say which edges are hard in place of the
   /// crease angle and, unless one is asked for, which weighting the right normals have. What they add to those is kept
-  /// throughout. (keys and curved paths take hard edges alone.)
+  /// throughout. (keys take hard edges alone.)
   VectorView<const float> normal_of_corner = {};
   bool weld = true;  ///< vertices at one point throughout are one, but for hard edges and the two sides of a sheet
   bool recompute_base = false;  ///< replace the base normals by those of the geometry; hard edges stay
@@ -88,10 +88,6 @@ struct BakeOptions {
   /// The poses that these meshes are made for, by the names of targets or in their order; a mesh
   /// of which they name no target, or none of its number, takes no part. None: random poses (docs/cli.md).
   std::vector<RigPose> poses = {};
-  /// How the vertices of a sequence move between keyframes. On curved paths positions are exact, by weights that are
-  /// cubic splines, and normals are fitted to the tolerance, with a stated error: only endpoint does that, with area
-  /// weights.
-  PathKind path = PathKind::kLinear;
   bool plan = false;  ///< of smallest: look at all forms, also where one is found to be the smallest
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -218,8 +214,6 @@ struct SequenceBake {
   std::size_t without_normals = 0;         ///< elements that have no area in the whole motion
   Weighting weighting = Weighting::kArea;  ///< of the right normals: that of the stored ones, or area
   bool has_offsets = false;  ///< stored normals of keyframe 0 differ from those by rotations, which are kept throughout
-  PathKind path = PathKind::kLinear;  ///< on which the vertices move
-  double bend = 0;                    ///< of a curved path: bend_of(), to hold against kTooSparse
   std::vector<std::string> warnings;
   /// The numbers that --encode keys reports.
   struct Keys {
@@ -230,6 +224,7 @@ struct SequenceBake {
     std::size_t beyond = 0;      ///< (normal, segment) pairs that no keys bring within the tolerance: they collapse
   };
   std::optional<Keys> keys = {};
+  std::optional<CutPath> cut = {};  ///< of curves, set by who has cut them: for reports
 };
 
 /// Makes an animated GLB of a sequence: keyframe 0 is the base, every later one a target with hat weights, and for
@@ -240,12 +235,11 @@ struct SequenceBake {
 /// The file holds float32 positions, and its normals are exact for these: residuals of a computed motion are left out.
 /// Polygons become fans of triangles, and keep the normals of polygons; where a fan does not fit in keyframe 0, a
 /// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage of keys for other weights than area
-/// or a tolerance below kLeastKeyTolerance, and of curved paths for another encoding than endpoint or other weights;
-/// those of check_path(). Precondition: the motion is valid and a sequence (segments k -> k + 1)
+/// or a tolerance below kLeastKeyTolerance. Precondition: the motion is valid and a sequence (segments k -> k + 1)
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 /// The same of a stream, into a file that is written as chronormal/io/output.h describes. The stream is read in several
-/// passes that hold two keyframes at a time, four on curved paths, and for keys as many as lie between two of these. The
+/// passes that hold two keyframes at a time, and for keys as many as lie between two of these. The
 /// arrays wait in a file without a name in the folder of path until the JSON in front of them is known. So what grows
 /// with the number of keyframes is that JSON, and the fits of a weighting. Where path is a stream or a device, the
 /// arrays wait in memory. Errors: also those of the stream and of write_output()

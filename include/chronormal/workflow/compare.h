@@ -33,7 +33,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
-#include "chronormal/normals/paths.h"
+#include "chronormal/motion/paths.h"
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/sample.h"
@@ -73,7 +73,6 @@ struct SchemeTally {
 struct ComparedSegment {
   std::size_t segment = 0;
   std::vector<SchemeTally> schemes;
-  double bent = 0, way = 0;  ///< of a curved path: what the keyframe at its end adds to the two sums of bend_of()
 };
 
 struct CompareOptions {
@@ -90,9 +89,6 @@ struct CompareOptions {
   std::optional<double> tolerance = {};
   /// Compares this share of the segments only, and keeps the results of each in Comparison::compared.
   std::optional<Shard> shard = {};
-  /// How the vertices of a sequence move. On curved paths every scheme is compared with the exact normals of these
-  /// curves, and one more row, "exact", is for PathCurves (normals/path_curves.h).
-  PathKind path = PathKind::kLinear;
   /// The results of the first segments of the share, where an earlier run has them: they are not computed again, and
   /// have no times.
   std::vector<ComparedSegment> known = {};
@@ -132,10 +128,9 @@ struct Comparison {
   MotionKind motion = MotionKind::kSequence;   ///< what the segments are
   std::vector<ErrorTable> errors = {};         ///< with keep_errors: one for each scheme that was asked for
   std::optional<double> tolerance = {};        ///< degrees, where it was given
-  PathKind path = PathKind::kLinear;           ///< whose exact normals all rows are compared with
-  double bend = 0;                             ///< of a curved path: bend_of(), to hold against kTooSparse
   std::optional<std::size_t> cheapest = {};    ///< of those judged: within the tolerance for certain; nothing: none is
   std::array<double, 2> span = {};             ///< the times of the first and the last keyframe
+  std::optional<CutPath> cut = {};             ///< of curves, set by who has cut them: for reports
   std::vector<ComparedSegment> compared = {};  ///< of a shard: one for each of its segments; the rows cover these alone
   TaskChecksums checksums = {};                ///< of a shard
 };
@@ -145,7 +140,7 @@ struct Comparison {
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
 ///            tolerance, certificates of sequential access, errors to keep that take more than kMostErrorBytes, single
 ///            errors of a shard or beside known segments, and known segments of another comparison; those of
-///            check_path() and of options.keep.
+///            options.keep.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and segment for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.

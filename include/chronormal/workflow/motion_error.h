@@ -152,7 +152,6 @@ struct WorseRespects {
 struct SegmentErrors {
   std::size_t segment = 0;
   MotionError error, at_keys;
-  double bent = 0, way = 0;  ///< of a curved path: what the keyframe at its end adds to the two sums of bend_of()
 };
 
 }  // namespace chronormal

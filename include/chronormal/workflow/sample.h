@@ -8,8 +8,7 @@
 ///
 /// Area-weighted normals are within 1e-6 rad of exact arithmetic, however thin, small or mixed in size the faces are:
 /// at times by curves of the segment or from its positions, whichever costs less for as many times as are asked for
-/// there (normals/segment_normals.h), areas themselves and a mesh that stands still from positions; on curved paths by
-/// the control normals of the curve, as PathCurves has them (normals/path_curves.h). At weights that
+/// there (normals/segment_normals.h), areas themselves and a mesh that stands still from positions. At weights that
 /// holds for positions before they are rounded to float32. Other weightings, which are no polynomials, are
 /// computed anew in double.
 ///
@@ -45,8 +44,6 @@
 #include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/elements.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/path_curves.h"
-#include "chronormal/normals/paths.h"
 #include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/peers.h"
@@ -63,7 +60,6 @@ struct SampleOptions {
   ElementOptions elements = {ElementKind::kVertices};
   Weighting weighting = Weighting::kArea;
   NormalLength length = NormalLength::kUnit;  ///< kArea for the weighting kArea only
-  PathKind path = PathKind::kLinear;          ///< of a sequence at times; normals are exact on either
 };
 
 /// Whether a pose can have these weights. Errors: kUsage for a motion that is not blend shapes; where there is not one
@@ -79,10 +75,9 @@ struct Pose {
 class NormalSampler {
  public:
   /// The motion must be valid or stand still, and outlive the sampler.
-  /// Errors: of make_groups(); kUsage for faces with another weighting than area, for the length kArea with one, and
-  /// for curved paths of a motion that is no sequence.
+  /// Errors: of make_groups(); kUsage for faces with another weighting than area, and for the length kArea with one.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
-  /// The same for a stream: a pose at a time reads the two keyframes around it (four on curved paths), and a pose of
+  /// The same for a stream: a pose at a time reads the two keyframes around it, and a pose of
   /// weights reads all keyframes. Errors: also those of the stream, here and for each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
@@ -114,8 +109,6 @@ class NormalSampler {
   [[nodiscard]] std::size_t element_count() const noexcept;
   // By area, and prepared for the next moment of the segment.
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, const LocalTime& t, double evaluations);
-  // On a curved path, whose keyframes are held. Refuses positions beyond float32.
-  [[nodiscard]] Result<Pose> pose_on_curve(std::size_t segment, double t);
   // Anew, and for this moment only.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, const LocalTime& t) const;
   // Makes them units, where the options ask for that.
@@ -130,8 +123,6 @@ class NormalSampler {
   SampleOptions options_;
   std::unique_ptr<const NormalGroups> groups_;     // but for faces; prepared normals refer to them
   std::optional<SegmentNormals> segment_normals_;  // of one segment
-  std::optional<PolynomialSegment<3>> curve_;      // of one segment, on curved paths
-  PathCurves path_curves_;                         // on that curve
   std::size_t segment_ = 0;                        // which
 };
 

@@ -10,7 +10,7 @@
 ///            it and its two neighbours, and at an end of the motion that of the cubic through the nearest four. Its
 ///            normals are exact on that path. "hermite": the same with the velocities of the keyframes, where they have
 ///            them.
-/// Bend       that of the kept keyframes, by bend_of() in normals/paths.h.
+/// Bend       that of the kept keyframes, by bend_of() in motion/paths.h.
 /// Source     docs/truth.md.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_H_
@@ -23,7 +23,7 @@
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/paths.h"
+#include "chronormal/motion/paths.h"
 #include "chronormal/workflow/sample.h"
 
 namespace chronormal {
@@ -57,7 +57,7 @@ struct TruthComparison {
 /// Errors     kUsage for a motion that is no sequence (targets and animations of weights are straight: there is no
 ///            other truth), fewer than two kept keyframes, and what compare() refuses in schemes and elements.
 /// Threads    uses all; the same on any number of them.
-/// Memory     the control normals of one segment: 72 bytes for each face and element, and of a curved one 168.
+/// Memory     the control normals of one segment: 72 bytes for each face and element, and the positions of those left out.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOptions& options);
 

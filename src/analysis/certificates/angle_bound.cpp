@@ -41,23 +41,17 @@ template <class T>
 T in_the_middle(const Bernstein<T, 2>& p) {
   return 0.25 * (p[0] + p[2]) + 0.5 * p[1];
 }
-template <class T>
-T in_the_middle(const Bernstein<T, 6>& p) {
-  return (1.0 / 64) * ((p[0] + p[6]) + 6.0 * (p[1] + p[5]) + 15.0 * (p[2] + p[4]) + 20.0 * p[3]);
-}
-
 }  // namespace
 
-template <std::size_t N>
-double largest_angle(const CurvePiece& curve, const NormalPiece<N>& normal) noexcept {
-  constexpr std::size_t kDegree = 3 + N;
+double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcept {
+  constexpr std::size_t kDegree = 3 + 2;
   const auto& [p, radius, middle, middle_radius, angle] = curve;
   const auto& [n, error] = normal;
   Bernstein<Vec3d, kDegree> cross_products{};
   Bernstein<double, kDegree> dot_products{};
   for (std::size_t i = 0; i < p.size(); ++i) {
     for (std::size_t j = 0; j < n.size(); ++j) {
-      const Vec3d shared = kShares<3, N>[i][j] * p[i];
+      const Vec3d shared = kShares<3, 2>[i][j] * p[i];
       cross_products[i + j] = cross_products[i + j] + cross(shared, n[j]);
       dot_products[i + j] += dot(shared, n[j]);
     }
@@ -109,8 +103,7 @@ double largest_angle(const CurvePiece& curve, const NormalPiece<N>& normal) noex
   return std::min(kHalfTurn, between * (1 + kRounding) + turned * (1 + kRounding));
 }
 
-template <std::size_t N>
-MiddleAngle middle_angle(const CurvePiece& curve, const NormalPiece<N>& normal) noexcept {
+MiddleAngle middle_angle(const CurvePiece& curve, const NormalPiece& normal) noexcept {
   const Vec3d n = in_the_middle(normal.n);
   const double error = in_the_middle(normal.error);
   const double p_length = std::sqrt(dot(curve.middle, curve.middle)), n_length = std::sqrt(dot(n, n));
@@ -119,23 +112,5 @@ MiddleAngle middle_angle(const CurvePiece& curve, const NormalPiece<N>& normal) 
                              arc_sine_bound(error / n_length + kRounding) + curve.angle;
   return {angle_between(curve.middle, n), std::min(kHalfTurn, uncertainty)};
 }
-
-double largest_turn(const NormalPiece<6>& normal) noexcept {
-  Bernstein<double, 12> square{};
-  double largest = 0;
-  for (std::size_t i = 0; i < normal.n.size(); ++i) {
-    largest = std::max(largest, dot(normal.n[i], normal.n[i]));
-    for (std::size_t j = 0; j < normal.n.size(); ++j)
-      square[i + j] += kShares<6, 6>[i][j] * dot(normal.n[i], normal.n[j]);
-  }
-  const double smallest = *std::min_element(square.begin(), square.end()) - kRounding * largest;
-  const double error = *std::max_element(normal.error.begin(), normal.error.end());
-  return smallest > error * error ? arc_sine_bound(error / std::sqrt(smallest) * (1 + kRounding)) : kHalfTurn;
-}
-
-template double largest_angle(const CurvePiece&, const NormalPiece<2>&) noexcept;
-template double largest_angle(const CurvePiece&, const NormalPiece<6>&) noexcept;
-template MiddleAngle middle_angle(const CurvePiece&, const NormalPiece<2>&) noexcept;
-template MiddleAngle middle_angle(const CurvePiece&, const NormalPiece<6>&) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,8 +1,7 @@
 /// The largest angle between two curves on one piece of a segment, by Bernstein coefficients.
 ///
-/// A scheme on a piece is a cubic p with a ball around it, and the normal a polynomial n of degree N that may be off by
-/// a little: a quadratic where vertices move straight, and of degree 6 on curved paths. Both S = p x n and D = p.n have
-/// degree N + 3, and tan(angle) = |S| / D. A quotient of polynomials lies between the quotients of
+/// A scheme on a piece is a cubic p with a ball around it, and the normal a quadratic n that may be off by a little.
+/// Both S = p x n and D = p.n have degree 5, and tan(angle) = |S| / D. A quotient of polynomials lies between the quotients of
 /// their Bernstein coefficients as long as those of the denominator are positive, so
 ///
 ///     D > 0:   angle <= atan sqrt(max_k (S.S)_k / (D^2)_k)
@@ -31,28 +30,21 @@ struct CurvePiece {
   double angle = 0;          ///< beside all that, a direction may be off by this, radians
 };
 
-/// The normal on a piece, and how long an error it may have. N is 2 or 6.
-template <std::size_t N>
+/// The normal on a piece, and how long an error it may have.
 struct NormalPiece {
-  Bernstein<Vec3d, N> n;
-  Bernstein<double, N> error;
+  Bernstein<Vec3d, 2> n;
+  Bernstein<double, 2> error;
 };
 
 /// An upper bound of the angle between what is shown and the true normal, at all t of the piece: pi where there is no
 /// better one.
-template <std::size_t N>
-[[nodiscard]] double largest_angle(const CurvePiece& curve, const NormalPiece<N>& normal) noexcept;
+[[nodiscard]] double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcept;
 
 /// The angle in the middle of the piece, and how far what is not known may turn it; pi where that is everything.
 struct MiddleAngle {
   double angle = 0, uncertainty = 0;
 };
-template <std::size_t N>
-[[nodiscard]] MiddleAngle middle_angle(const CurvePiece& curve, const NormalPiece<N>& normal) noexcept;
-
-/// An upper bound of the angle between n and what is computed from the same n up to its error; pi where the piece does
-/// not show that n is longer than that.
-[[nodiscard]] double largest_turn(const NormalPiece<6>& normal) noexcept;
+[[nodiscard]] MiddleAngle middle_angle(const CurvePiece& curve, const NormalPiece& normal) noexcept;
 
 }  // namespace chronormal::inline internal
 

@@ -14,7 +14,6 @@
 #include "analysis/certificates/scheme_curves.h"
 #include "chronormal/core/interruption.h"
 #include "chronormal/normals/normal_curves.h"
-#include "chronormal/normals/path_curves.h"
 #include "core/blocks.h"
 #include "schemes/fitted_curves.h"
 
@@ -28,17 +27,12 @@ constexpr double kPromisedShare = 0x1p-26;  // of a control normal: see face_con
 constexpr std::size_t kBlockSize = 1024;
 
 // n(t) over [0, 1] at a size of about 1, and what it may be off by.
-template <std::size_t N>
-struct NormalOf {
-  Bernstein<Vec3d, N> n;
-  Bernstein<double, N> error;
+struct Normal {
+  Bernstein<Vec3d, 2> n;
+  Bernstein<double, 2> error;
 
-  [[nodiscard]] NormalPiece<N> over(double a, double b) const {
-    return {restrict_to(n, a, b), restrict_to(error, a, b)};
-  }
+  [[nodiscard]] NormalPiece over(double a, double b) const { return {restrict_to(n, a, b), restrict_to(error, a, b)}; }
 };
-using Normal = NormalOf<2>;
-using PathNormal = NormalOf<6>;
 
 constexpr double kLongestOfThree = 1.7320509;  // a vector of three components, each up to 1
 constexpr double kCutting = 0x1p-46;           // what cutting a polynomial in double adds, of its largest coefficient
@@ -71,41 +65,6 @@ std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlEr
   return Normal{{n0, m, n1}, error};
 }
 
-// p(t) / t of a polynomial that is zero at t = 0, as one of the degree that it had.
-template <class T>
-Bernstein<T, 6> divided_by_time(const Bernstein<T, 6>& p) {
-  const auto quotient = [&](std::size_t k) { return 6.0 / static_cast<double>(k + 1) * p[k + 1]; };  // of degree 5
-  Bernstein<T, 6> result;
-  result[0] = quotient(0);
-  result[6] = quotient(5);
-  for (std::size_t k = 1; k < 6; ++k) {
-    const double share = static_cast<double>(k) / 6;
-    result[k] = share * quotient(k - 1) + (1 - share) * quotient(k);
-  }
-  return result;
-}
-
-// The same of degree 6.
-std::optional<PathNormal> without_zero_ends(const PolynomialNormals<3>& c, const PathErrors& errors) {
-  double largest = 0;
-  for (const Vec3d& v : c) largest = std::max(largest, max_abs(v));
-  if (largest == 0 && errors == PathErrors{}) return std::nullopt;
-  const double scale = scale_of(largest);
-  PathNormal normal;
-  for (std::size_t k = 0; k < c.size(); ++k) {
-    normal.n[k] = scale * c[k];
-    normal.error[k] = kLongestOfThree * scale * errors[k];
-  }
-  for (int end = 0; end < 2; ++end) {
-    while (normal.n[0] == Vec3d{} && normal.error[0] == 0)
-      normal = {divided_by_time(normal.n), divided_by_time(normal.error)};
-    std::reverse(normal.n.begin(), normal.n.end());
-    std::reverse(normal.error.begin(), normal.error.end());
-  }
-  for (std::size_t k = 0; k < c.size(); ++k) normal.error[k] += kCutting * max_abs(normal.n[k]);
-  return normal;
-}
-
 // The piece of which the bound is the largest comes first.
 struct Piece {
   double a, b;
@@ -115,15 +74,15 @@ struct Piece {
   friend bool operator<(const Piece& x, const Piece& y) { return x.upper < y.upper; }
 };
 
-template <class Curve, std::size_t N>
-ErrorBounds bounds_of(const Curve& curve, const NormalOf<N>& normal, const CertifyOptions& options, double enough,
+template <class Curve>
+ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOptions& options, double enough,
                       bool only_whether = false) {
   std::array<Piece, kMostPieces> pieces;
   std::size_t count = 0;
   ErrorBounds result;
   const auto add = [&](double a, double b) {
     const CurvePiece shown = curve.over(a, b);
-    const NormalPiece<N> exact = normal.over(a, b);
+    const NormalPiece exact = normal.over(a, b);
     const MiddleAngle middle = middle_angle(shown, exact);
     if (const double lower = middle.angle - middle.uncertainty; lower > result.lower) {
       result.lower = lower;
@@ -151,15 +110,14 @@ ErrorBounds bounds_of(const Curve& curve, const NormalOf<N>& normal, const Certi
 }
 
 // An arc that is run in warped time x = r t / ((1-r)(1-t) + r t) meets, at x, the normal of t(x), which is again a
-// polynomial of degree N but for a factor: control normal k has the weight r^(N-k) (1-r)^k.
+// quadratic but for a factor: control normal k has the weight r^(2-k) (1-r)^k.
 struct Warp {
   double share;
 
-  template <std::size_t N>
-  [[nodiscard]] NormalOf<N> normal(NormalOf<N> in_time) const {
-    for (std::size_t k = 0; k <= N; ++k) {
+  [[nodiscard]] Normal normal(Normal in_time) const {
+    for (std::size_t k = 0; k <= 2; ++k) {
       double weight = 1;
-      for (std::size_t i = 0; i < N; ++i) weight *= i < N - k ? share : 1 - share;
+      for (std::size_t i = 0; i < 2; ++i) weight *= i < 2 - k ? share : 1 - share;
       in_time.n[k] = weight * in_time.n[k];
       in_time.error[k] *= weight;
     }
@@ -169,25 +127,6 @@ struct Warp {
 };
 
 constexpr ErrorBounds kUnknown{0, std::numbers::pi, 0, 0, 1};
-
-// The bounds of what PathCurves computes of a normal: the piece on which it may turn most is halved until it turns less
-// than rounding in float32 does.
-ErrorBounds computed_bounds(const PathNormal& normal) {
-  constexpr double kLittle = 0x1p-30;  // radians
-  std::array<Piece, kMostPieces> pieces;
-  pieces[0] = {0, 1, largest_turn(normal.over(0, 1)), 0};
-  for (std::size_t count = 1;;) {
-    const Piece worst = pieces[0];
-    if (worst.upper <= kLittle || count >= kMostPieces || worst.b - worst.a <= kNarrowest)
-      return {0, std::min(std::numbers::pi, worst.upper + kPathAngle), 0, worst.a, worst.b};
-    std::pop_heap(pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count--));
-    const double middle = worst.a + (worst.b - worst.a) / 2;
-    for (const auto& [a, b] : {std::pair{worst.a, middle}, std::pair{middle, worst.b}}) {
-      pieces[count++] = {a, b, largest_turn(normal.over(a, b)), 0};
-      std::push_heap(pieces.begin(), pieces.begin() + static_cast<std::ptrdiff_t>(count));
-    }
-  }
-}
 
 // All elements of a block share these.
 class Certifier {
@@ -206,21 +145,8 @@ class Certifier {
     return of_fitted(i, *normal, options, enough);
   }
 
-  // The same against the normal of a curved path.
-  [[nodiscard]] ErrorBounds bounds_on_path(std::size_t i, const ControlNormals& normals, const ControlErrors& errors,
-                                           const PolynomialNormals<3>& truth, const PathErrors& truth_errors,
-                                           const CertifyOptions& options, double enough) const {
-    const std::optional<PathNormal> exact = without_zero_ends(truth, truth_errors);
-    if (!exact) return {0, 0, 0, 0, 1};
-    if (!is_exact_) return of_fitted(i, *exact, options, enough);
-    const std::optional<Normal> straight = without_zero_ends(normals, errors);
-    if (!straight) return kUnknown;
-    return bounds_of(CubicCurve(straight->n, kExactTolerance, straight->error), *exact, options, enough);
-  }
-
  private:
-  template <std::size_t N>
-  [[nodiscard]] ErrorBounds of_fitted(std::size_t i, const NormalOf<N>& normal, const CertifyOptions& options,
+  [[nodiscard]] ErrorBounds of_fitted(std::size_t i, const Normal& normal, const CertifyOptions& options,
                                       double enough) const {
     if (fitted_ == nullptr) return kUnknown;
     const ElementCoefficients c = coefficients_of(fitted_->coefficients, i);
@@ -241,8 +167,7 @@ class Certifier {
     }
   }
 
-  template <std::size_t N>
-  static ErrorBounds of_warped_arc(ElementCoefficients c, const NormalOf<N>& normal, const CertifyOptions& options,
+  static ErrorBounds of_warped_arc(ElementCoefficients c, const Normal& normal, const CertifyOptions& options,
                                    double enough) {
     const Warp warp{static_cast<double>(c[10])};
     if (!(warp.share > 0 && warp.share < 1)) return kUnknown;
@@ -259,48 +184,19 @@ ControlErrors promised_errors(const ControlNormals& c) {
   return {kPromisedShare * max_abs(c.n0), kPromisedShare * max_abs(c.m), kPromisedShare * max_abs(c.n1)};
 }
 
-// Bounds the errors of all elements by a function of the index, the errors of its control normals and of how large a
-// bound is enough.
-template <class Bounds>
-void certify_each(const ElementBlock& block, std::span<const ControlErrors> errors, const CertifyOptions& options,
-                  std::span<ErrorBounds> result, const Bounds& bounds) {
-  assert(result.size() == block.elements.count && block.normals.size() == block.elements.count);
-  assert(errors.empty() || errors.size() == result.size());
-  double enough = options.enough;
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    check_interruption();
-    result[i] = bounds(i, errors.empty() ? promised_errors(block.normals[i]) : errors[i], enough);
-    if (options.only_worst) enough = std::max(enough, result[i].lower);
-  }
-}
-
 }  // namespace
 
 void certify(const Scheme& scheme, const ElementBlock& block, std::span<ErrorBounds> result,
              const CertifyOptions& options, std::span<const ControlErrors> errors) {
+  assert(result.size() == block.elements.count && block.normals.size() == block.elements.count);
+  assert(errors.empty() || errors.size() == result.size());
   const Certifier certifier(scheme);
-  certify_each(block, errors, options, result, [&](std::size_t i, const ControlErrors& of_normals, double enough) {
-    return certifier.bounds(i, block.normals[i], of_normals, options, enough);
-  });
-}
-
-void certify(const Scheme& scheme, const ElementBlock& block, const PathTruth& truth, std::span<ErrorBounds> result,
-             const CertifyOptions& options, std::span<const ControlErrors> errors) {
-  assert(truth.normals.size() == result.size() && truth.errors.size() == result.size());
-  const Certifier certifier(scheme);
-  certify_each(block, errors, options, result, [&](std::size_t i, const ControlErrors& of_normals, double enough) {
-    return certifier.bounds_on_path(i, block.normals[i], of_normals, truth.normals[i], truth.errors[i], options,
-                                    enough);
-  });
-}
-
-void certify_path_curves(const PathTruth& truth, std::span<ErrorBounds> result) {
-  assert(truth.normals.size() == result.size() && truth.errors.size() == result.size());
+  double enough = options.enough;
   for (std::size_t i = 0; i < result.size(); ++i) {
     check_interruption();
-    result[i] = {0, 0, 0, 0, 1};
-    if (const std::optional<PathNormal> normal = without_zero_ends(truth.normals[i], truth.errors[i]))
-      result[i] = computed_bounds(*normal);
+    const ControlErrors of_normals = errors.empty() ? promised_errors(block.normals[i]) : errors[i];
+    result[i] = certifier.bounds(i, block.normals[i], of_normals, options, enough);
+    if (options.only_worst) enough = std::max(enough, result[i].lower);
   }
 }
 
@@ -310,19 +206,15 @@ double line_error(const ControlNormals& normals, double a, double b, const Vec3d
                   double enough) noexcept {
   const std::optional<Normal> normal = without_zero_ends(normals, promised_errors(normals));
   if (!normal) return 0;
-  const NormalPiece<2> piece = normal->over(a, b);
+  const NormalPiece piece = normal->over(a, b);
   return bounds_of(CubicCurve(from, kHostRounding, to, kHostRounding), Normal{piece.n, piece.error}, {}, enough, true)
       .upper;
 }
 
 }  // namespace internal
 
-namespace {
-
-// Bounds the errors of a scheme on all faces of a segment, block by block: bounds(scheme, block, result).
-template <class Bounds>
-Result<std::vector<ErrorBounds>> certify_blocks(std::string_view name, const Segment& segment, Threads threads,
-                                                const Bounds& bounds) {
+Result<std::vector<ErrorBounds>> certify(std::string_view name, const Segment& segment, const CertifyOptions& options,
+                                         Threads threads) {
   if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   std::vector<ErrorBounds> result(segment.topology->face_count());
   blocks_on(threads, result.size(), kBlockSize, [&](IndexRange faces) {
@@ -331,28 +223,9 @@ Result<std::vector<ErrorBounds>> certify_blocks(std::string_view name, const Seg
     const std::unique_ptr<Scheme> scheme = make_scheme(name).value();
     const ElementBlock block{&segment, faces, normals};
     scheme->prepare(block);
-    bounds(*scheme, block, std::span(result).subspan(faces.first, faces.count));
+    certify(*scheme, block, std::span(result).subspan(faces.first, faces.count), options);
   });
   return result;
-}
-
-}  // namespace
-
-Result<std::vector<ErrorBounds>> certify(std::string_view name, const Segment& segment, const CertifyOptions& options,
-                                         Threads threads) {
-  return certify_blocks(name, segment, threads,
-                        [&](const Scheme& scheme, const ElementBlock& block, std::span<ErrorBounds> result) {
-                          certify(scheme, block, result, options);
-                        });
-}
-
-Result<std::vector<ErrorBounds>> certify(std::string_view name, const Segment& segment,
-                                         const PolynomialSegment<3>& path, const CertifyOptions& options,
-                                         Threads threads) {
-  return certify_blocks(name, segment, threads,
-                        [&](const Scheme& scheme, const ElementBlock& block, std::span<ErrorBounds> result) {
-                          certify(scheme, block, path_truth(path, block.elements), result, options);
-                        });
 }
 
 }  // namespace chronormal

@@ -57,8 +57,8 @@ struct Opened {
   ReadMotion read;            // of the document not yet
 };
 
-// What messages and tables call a path, and what they call several.
-std::string path_name(const std::string& path) { return path == "-" ? "<stdin>" : path; }
+// What messages and tables call a file, and what they call several.
+std::string name_of_file(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
 std::string short_name(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
@@ -66,7 +66,8 @@ std::string short_name(std::string path) {
 }
 
 std::string name_of_files(const std::vector<std::string>& files) {
-  return files.size() == 1 ? path_name(files.front()) : short_name(files.front()) + " ... " + short_name(files.back());
+  return files.size() == 1 ? name_of_file(files.front())
+                           : short_name(files.front()) + " ... " + short_name(files.back());
 }
 
 // An input that is a point cache: its file, and the channel after "#".
@@ -123,7 +124,7 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   for (const std::size_t k : frames.value()) {
     // The ends may follow from keyframes that are chosen and from others.
     Motion::Keyframe& keyframe = motion.keyframes[k];
-    kept.push_back(options.ends_of_whole || options.loop ? keyframe : std::move(keyframe));
+    kept.push_back(options.is_curved() || options.loop ? keyframe : std::move(keyframe));
   }
   const std::vector<double> times = times_of(motion);
   if (options.loop) kept.back().time = closing_time(times, frames.value());
@@ -144,7 +145,7 @@ Result<MotionStream> stream_samples(const InputOptions& options, Motion outline,
     Result<std::vector<std::size_t>> chosen = choose_frames(frames.size(), options);
     if (!chosen) return chosen.error();
     InputOptions without_ends = options;
-    without_ends.ends_of_whole = false;
+    without_ends.path = path_name(PathKind::kLinear);
     const std::vector<double> times = times_of(outline);
     if (const Status status = keep_chosen(without_ends, outline); !status) return status.error();
     frames = std::move(chosen).value();
@@ -460,6 +461,7 @@ Result<ReadMotion> read_several(const InputOptions& options) {
 Status check_input(const InputOptions& options) {
   if (!(options.frames_per_second >= 1e-9 && options.frames_per_second <= 1e9))
     return misuse("--fps", "the frame rate must be a number from 1e-9 to 1e9");
+  if (const Result<Path> path = make_path(options.path); !path) return misuse("--path", path.error().message);
   if (!options.animation.empty() && (!options.base.empty() || options.files.empty()))
     return misuse("--animation", "it chooses among those of a glTF file: name one");
   if (!options.base.empty()) {
@@ -488,6 +490,10 @@ struct Input::State {
   Expansion expansion;       // of what is not a document
   GltfMotionOptions chosen;  // of the document
   bool allow_mesh = false;
+  Path path;
+  std::size_t most_pieces = kMostPieces, kept_bytes = 0;
+  std::optional<CutPath> cut;
+  std::optional<Error> cut_error;
   // Of the document, once it was asked for.
   bool has_motion = true, has_normals = true;
   std::vector<GltfPart> parts;
@@ -495,6 +501,7 @@ struct Input::State {
   std::vector<double> key_times;
 
   [[nodiscard]] Status read_motion();
+  [[nodiscard]] Status cut_motion();
 };
 
 Status Input::State::read_motion() {
@@ -509,6 +516,28 @@ Status Input::State::read_motion() {
   key_times = std::move(read.value().key_times);
   has_motion = true;
   return Success{};
+}
+
+// Puts the pieces of the motion in its place, once.
+Status Input::State::cut_motion() {
+  if (cut) return Success{};
+  if (cut_error) return *cut_error;
+  Status status = opened.document && path.is_curved()
+                      ? misuse("", "the weights of a glTF file say how its vertices move: paths are of sequences")
+                      : check_path(opened.read.stream->motion(), path.kind);
+  if (status) {
+    Result<CutStream> made = cut_into_segments(std::move(*opened.read.stream), path, most_pieces, kept_bytes);
+    if (made) {
+      cut = made.value().cut;
+      opened.read.stream = std::move(made.value().stream);
+      return Success{};
+    }
+    cut_error = made.error();
+  } else {
+    cut_error = status.error();
+  }
+  if (cut_error->place.empty()) cut_error->place = "--path";
+  return *cut_error;
 }
 
 Input::Input(std::unique_ptr<State> state) noexcept : state_(std::move(state)) {}
@@ -533,11 +562,16 @@ const std::optional<FileSeries>& Input::series() const noexcept { return state_-
 const std::string& Input::shaded_by() const noexcept { return state_->opened.read.shaded_by; }
 std::span<const GltfPart> Input::parts() const noexcept { return state_->parts; }
 double Input::curve_error() const noexcept { return state_->curve_error; }
+const CutPath& Input::cut_path() const noexcept {
+  static const CutPath kNone;
+  return state_->cut ? *state_->cut : kNone;
+}
 
 Result<MotionStream*> Input::stream() {
   if (const Status status = state_->read_motion(); !status) return status.error();
   ReadMotion& read = state_->opened.read;
   if (!read.stream) read.stream.emplace(read.motion);
+  if (const Status status = state_->cut_motion(); !status) return status.error();
   return &*read.stream;
 }
 
@@ -586,13 +620,20 @@ Result<const StoredNormals*> Input::normals() {
   return &normals;
 }
 
-Result<Input> open_input(const InputOptions& options) {
-  if (const Status status = check_input(options); !status) return status.error();
+Result<Input> open_input(const InputOptions& asked) {
+  if (const Status status = check_input(asked); !status) return status.error();
   auto state = std::make_unique<Input::State>();
+  state->path = make_path(asked.path).value();
+  state->most_pieces = asked.max_expansion;
+  state->kept_bytes = asked.kept_bytes;
+  InputOptions options = asked;
+  options.velocities = asked.velocities || state->path.kind == PathKind::kHermite;
   const auto keep = [&](std::string name, Result<ReadMotion> read) -> Result<Input> {
     if (!read) return read.error();
     state->name = std::move(name);
     state->opened.read = std::move(read).value();
+    StoredNormals& normals = state->opened.read.normals;
+    if (state->path.is_curved() && normals.of_keyframes.size() > 1) normals.of_keyframes.resize(1);
     state->expansion = Expansion(options.max_expansion, state->opened.read.bytes_read);
     return Input(std::move(state));
   };
@@ -606,7 +647,7 @@ Result<Input> open_input(const InputOptions& options) {
     input.value().state_->expansion = Expansion::unlimited();
     return input;
   }
-  if (!options.base.empty()) return keep(path_name(options.base), read_targets(options));
+  if (!options.base.empty()) return keep(name_of_file(options.base), read_targets(options));
   if (options.files.size() > 1 || !may_be_whole(options.files.front(), options)) {
     std::vector<std::string> files = options.files;
     (void)sort_listed(files);  // as find_frames() does

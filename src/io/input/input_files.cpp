@@ -12,12 +12,10 @@
 #include <system_error>
 #include <utility>
 
-#include "chronormal/normals/paths.h"
 #include "io/bytes/file.h"
 #include "io/bytes/scan.h"
 #include "io/input/formats.h"
 #include "io/mesh/far_origin.h"
-#include "normals/curves/path_stream.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -246,7 +244,7 @@ Status set_loop_velocities(const InputOptions& options, std::size_t count,
     positions.push_back(std::move(found).value());
   }
   const std::vector<float> velocities =
-      velocities_of(shares, std::vector<std::span<const float>>(positions.begin(), positions.end()));
+      shares.velocities(std::vector<std::span<const float>>(positions.begin(), positions.end()));
   chosen.keyframes.front().end_velocities = velocities;
   chosen.keyframes.back().end_velocities = velocities;
   return Success{};
@@ -256,7 +254,7 @@ Status set_loop_velocities(const InputOptions& options, std::size_t count,
 
 Status set_end_velocities(const InputOptions& options, std::span<const double> times,
                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
-  if (!options.ends_of_whole || !options.chooses_frames()) return Success{};
+  if (!options.is_curved() || !options.chooses_frames()) return Success{};
   if (options.loop) return set_loop_velocities(options, times.size(), read, chosen);
   // Only the keyframes count that the same step chooses from the whole sequence.
   const std::size_t start = options.from % options.every, first = options.from / options.every;
@@ -274,7 +272,7 @@ Status set_end_velocities(const InputOptions& options, std::span<const double> t
       positions.push_back(std::move(found).value());
     }
     chosen.keyframes[at].end_velocities =
-        velocities_of(whole, std::vector<std::span<const float>>(positions.begin(), positions.end()));
+        whole.velocities(std::vector<std::span<const float>>(positions.begin(), positions.end()));
   }
   return Success{};
 }

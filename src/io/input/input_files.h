@@ -68,8 +68,8 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 /// all keyframes of the sequence.
 [[nodiscard]] double closing_time(std::span<const double> times, std::span<const std::size_t> frames);
 
-/// Gives the ends of the keyframes that were chosen their end_velocities, where options.ends_of_whole asks for them and
-/// the velocities depend on keyframes beyond these ends. Of every N-th keyframe these are every N-th, too.
+/// Gives the ends of the keyframes that were chosen their end_velocities, where vertices move on curves and the
+/// velocities depend on keyframes beyond these ends. Of every N-th keyframe these are every N-th, too.
 /// times are those of all keyframes of the sequence, and read(k) gives the positions of one of them.
 [[nodiscard]] Status set_end_velocities(const InputOptions& options, std::span<const double> times,
                                         const std::function<Result<std::vector<float>>(std::size_t k)>& read,

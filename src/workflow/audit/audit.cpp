@@ -8,7 +8,6 @@
 
 #include "chronormal/normals/weighting.h"
 #include "core/portable_math.h"
-#include "normals/curves/path_stream.h"
 #include "workflow/audit/measure.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/errors/shards.h"
@@ -33,7 +32,7 @@ bool are_of_one(const Audit& a, const Audit& b) {
     return one.kind == other.kind && one.weighting == other.weighting && one.segments == other.segments &&
            one.samples == other.samples && one.vertices == other.vertices;
   };
-  return a.rule == b.rule && a.stored == b.stored && a.still == b.still && a.span == b.span && a.path == b.path &&
+  return a.rule == b.rule && a.stored == b.stored && a.still == b.still && a.span == b.span &&
          a.offsets.size() == b.offsets.size() &&
          std::equal(a.subjects.begin(), a.subjects.end(), b.subjects.begin(), b.subjects.end(), same_subject);
 }
@@ -59,13 +58,10 @@ Result<Audit> merge(std::vector<Audit> shards) {
   if (!complete) return complete.error();
   AuditSubject& subject = all.subjects.front();
   subject.error = subject.at_keys = all.error = {};
-  BendSums bend;
   for (const SegmentErrors& segment : measured) {
-    bend.add({segment.bent, segment.way});
     subject.error.add(segment.error);
     subject.at_keys.add(segment.at_keys);
   }
-  all.bend = bend.bend();
   all.worst = {};
   all.findings.clear();
   if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) all.findings.push_back(*fault);

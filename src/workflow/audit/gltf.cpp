@@ -520,8 +520,6 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
 Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditOptions& options,
                                       const AuditWatch& watch) {
   if (const Status status = check_samples(options); !status) return status.error();
-  if (options.path != PathKind::kLinear)
-    return Error{ErrorCode::kUsage, "", "the weights of a glTF file say how its vertices move; paths are of sequences"};
   if (!(options.weights[0] < options.weights[1] && std::isfinite(options.weights[1] - options.weights[0])))
     return Error{ErrorCode::kUsage, "", "targets are judged from a weight to a larger one"};
   if (const Status status = check_poses(options.poses, document); !status) return status.error();

@@ -13,7 +13,6 @@
 #include "core/portable_math.h"
 #include "io/bytes/checksum.h"
 #include "motion/segment_end.h"
-#include "normals/curves/path_stream.h"
 #include "workflow/audit/measure.h"
 #include "workflow/audit/measure_blocks.h"
 #include "workflow/audit/watched_audit.h"
@@ -34,20 +33,17 @@ class SequenceSource {
   static constexpr bool kNeedsEnds = true;
 
   SequenceSource(MotionStream& stream, const StoredNormals& normals, bool stored, const JudgedPart& part,
-                 AuditRule rule, PathKind path, std::vector<Vec3d> first, std::span<const std::size_t> segments)
+                 AuditRule rule, std::vector<Vec3d> first, std::span<const std::size_t> segments)
       : stream_(stream),
         motion_(stream.motion()),
         normals_(normals),
         stored_(stored),
         part_(part),
         rule_(rule),
-        path_(path),
         first_(std::move(first)),
         segments_(segments) {}
 
-  [[nodiscard]] Status enter(std::size_t segment) {
-    return hold_paths(stream_, segments_[segment], segments_[segment], path_);
-  }
+  [[nodiscard]] Status enter(std::size_t segment) { return stream_.hold_segment(segments_[segment]); }
   bool place(std::size_t segment, double t, std::span<Vec3d> positions) {
     if (known_ && segment == segment_ && t == t_) return false;
     known_ = true;
@@ -55,13 +51,6 @@ class SequenceSource {
     t_ = t;
     const Segment s = motion_.segment(segments_[segment]);
     const auto vertices = part_.vertices();
-    if (path_ != PathKind::kLinear) {
-      if (curve_index_ != s.index) curve_ = path_segment(motion_, s.index, path_);
-      curve_index_ = s.index;
-      const std::vector<Vec3d> all = positions_at(curve_, t);
-      for (std::size_t i = 0; i < vertices.size(); ++i) positions[i] = all[vertices[i]];
-      return true;
-    }
     const SegmentEnd from = SegmentEnd::from(s), to = SegmentEnd::to(s);
     parallel_each(vertices.size(), kRange,
                   [&](std::size_t i) { positions[i] = lerp(from[vertices[i]], to[vertices[i]], t); });
@@ -127,9 +116,6 @@ class SequenceSource {
   bool stored_;
   const JudgedPart& part_;
   AuditRule rule_;
-  PathKind path_;
-  PolynomialSegment<3> curve_;  // of segment curve_index_, on curved paths
-  std::size_t curve_index_ = static_cast<std::size_t>(-1);
   std::vector<Vec3d> first_;  // of keyframe 0
   std::span<const std::size_t> segments_;
   bool known_ = false;
@@ -143,8 +129,8 @@ std::uint32_t checksum_of_options(const AuditOptions& options, AuditRule rule, b
   for (const std::uint64_t number :
        {static_cast<std::uint64_t>(rule), std::uint64_t{options.samples.value_or(kAuditSamples)},
         std::uint64_t{options.weighting.has_value()},
-        static_cast<std::uint64_t>(options.weighting.value_or(Weighting::kArea)),
-        static_cast<std::uint64_t>(options.path), std::uint64_t{options.weld}, std::uint64_t{stored}})
+        static_cast<std::uint64_t>(options.weighting.value_or(Weighting::kArea)), std::uint64_t{options.weld},
+        std::uint64_t{stored}})
     sum.add(number);
   return sum.value();
 }
@@ -292,16 +278,13 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     return Error{ErrorCode::kUsage, "", "the rule gltf adds up the deltas of a glTF file; this input has none"};
   if (!options.hosts.empty())
     return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
-  if (const Status status = check_path(motion, options.path); !status) return status.error();
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.span = {motion.keyframes.front().time, motion.keyframes.back().time};
-  const bool is_straight = options.path == PathKind::kLinear;
   const bool in_parts = options.shard || options.keep || !options.known.empty();
   if (in_parts && (motion.kind == MotionKind::kTargets || options.keep_errors))
     return Error{
         ErrorCode::kUsage, "",
         "a shard, or a run that goes on, is of the segments of a sequence, and keeps sums and no single errors"};
-  result.path = options.path;
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   KeyframeChecksums seen(stream);
   if (options.shard) {
@@ -341,14 +324,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   const Shard share = options.shard.value_or(Shard{});
   if (const Status status = check_known(options.known, share.of(motion.segments.size())); !status)
     return status.error();
-  BendSums bend;
   const auto tell_segment = [&](SegmentErrors& found, bool is_known) -> Status {
-    if (!is_known && !is_straight) {
-      const BendSums here = bend_at(motion, found.segment + 1);
-      found.bent = here.bent;
-      found.way = here.way;
-    }
-    bend.add({found.bent, found.way});
     if (Status kept = options.keep && !is_known ? options.keep(found) : Success{}; !kept) return kept;
     if (options.shard) result.measured.push_back(std::move(found));
     return Success{};
@@ -388,8 +364,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
       continue;
     }
     if (const Status status = stream.hold(0, 0); !status) return status.error();
-    SequenceSource source(stream, normals, result.stored, part, result.rule, options.path,
-                          normals_at_first_keyframe(part, motion), segments);
+    SequenceSource source(stream, normals, result.stored, part, result.rule, normals_at_first_keyframe(part, motion),
+                          segments);
     const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr,
                           result.subjects.size(),
                           static_cast<bool>(watch),
@@ -412,7 +388,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
              {},
              {}});
     };
-    const bool in_blocks = is_straight && !kept.any() && !result.stored && !has_residuals &&
+    const bool in_blocks = !kept.any() && !result.stored && !has_residuals &&
                            can_measure_blocks(part, result.rule, weighting, subject.samples);
     const auto at = [&](std::size_t segment, double t, const JudgedOutput& output) {
       return source.at(segment, t, output);
@@ -424,11 +400,10 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     result.subjects.push_back(std::move(subject));
   }
   if (result.subjects.empty()) result.errors.clear();
-  result.bend = bend.bend();
   if (options.shard) {
     // Without peers, what follows from the whole motion is found out from all keyframes.
     const Shard read = options.peers != nullptr ? share : Shard{};
-    const Status status = seen.finish(keyframes_of_shard(motion, read, options.path), result.checksums);
+    const Status status = seen.finish(keyframes_of_shard(motion, read), result.checksums);
     if (!status) return status.error();
   }
   finish(result);

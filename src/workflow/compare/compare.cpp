@@ -19,13 +19,10 @@
 #include "chronormal/core/interruption.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
-#include "core/rounding.h"
 #include "io/bytes/checksum.h"
 #include "normals/control/shared_faces.h"
-#include "normals/curves/path_stream.h"
 #include "normals/groups/group_sum.h"
 #include "workflow/compare/compared.h"
-#include "workflow/compare/curved_segments.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/sample/task_checksums.h"
 
@@ -98,21 +95,8 @@ class Elements {
     return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
   }
 
-  // Compares everything with the exact normals of curved paths. The object must not be moved from now on.
-  void follow(const Motion& motion, PathKind path, bool certified) {
-    curved_.emplace(motion, path, groups_ ? &*groups_ : nullptr, certified);
-  }
-  // The normals of curved paths, for certificates; nothing where vertices move straight.
-  [[nodiscard]] std::optional<PathTruth> path_truth(const Segment& segment, IndexRange range) const {
-    return curved_ ? std::optional(curved_->truth(segment.index, range)) : std::nullopt;
-  }
-  [[nodiscard]] std::unique_ptr<Scheme> make(const std::string& name) const {
-    return curved_ && name == kExactCurve ? curved_->scheme() : make_scheme(name).value();
-  }
-
   // Makes ready for segments first to last: the control normals of faces are shared by many groups.
   void enter(const Motion& motion, std::size_t first, std::size_t last) {
-    if (curved_) curved_->enter(first, last);
     if (!groups_) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
     of_large_.erase(of_large_.begin(), of_large_.lower_bound(first));
@@ -127,16 +111,12 @@ class Elements {
       std::vector<ReferenceArea>& large = of_large_[s];
       large.resize(large_.size() * samples_);
       parallel_for(large.size(), [&](std::size_t i) {
-        large[i] = area_of(segment, large_[i / samples_], time_of_sample(i % samples_, samples_));
+        large[i] = reference_area(segment, large_[i / samples_], time_of_sample(i % samples_, samples_));
       });
     }
   }
   // What the faces of a segment cost one thread, for each of the elements that share them.
   [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
-  [[nodiscard]] double shared_ns_of_curves() const noexcept {
-    return curved_ ? curved_->shared_ns() / static_cast<double>(count_) : 0;
-  }
-
   void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const noexcept {
     if (groups_)
       group_control_normals(shared(segment), *groups_, of_faces_.find(segment.index)->second, range, result);
@@ -152,16 +132,15 @@ class Elements {
       errors.push_back(settled_group_normals(shared(segment), *groups_, of_faces, range.first + i).errors);
     return errors;
   }
-  // For exact_normals(); nothing where these are not normals of triangles on straight lines.
+  // For exact_normals(); nothing where these are not normals of triangles.
   [[nodiscard]] std::optional<ReferenceTriangles> triangles(const Segment& segment, IndexRange range) const {
-    if (groups_ || curved_ || !segment.topology->all_triangles()) return std::nullopt;
+    if (groups_ || !segment.topology->all_triangles()) return std::nullopt;
     return ReferenceTriangles(segment, range);
   }
   // Exact normals at a sample, of any length.
   void exact_normals(const Segment& segment, IndexRange range, const std::optional<ReferenceTriangles>& triangles,
                      std::size_t sample, std::size_t samples, std::span<Vec3d> result) const {
     const double t = time_of_sample(sample, samples);
-    if (!groups_ && curved_) return curved_->face_normals(segment.index, range, t, result);
     if (triangles) return triangles->normals(t, result);
     if (!groups_) return reference_normals(segment, range, t, result);
     std::vector<ReferenceArea> areas;
@@ -170,29 +149,17 @@ class Elements {
       areas.clear();
       for (const std::uint32_t f : faces)
         areas.push_back(segment.topology->face(f).size() > many_corners_ ? area_of_large(segment.index, f, sample)
-                                                                         : area_of(segment, f, t));
-      result[i] = curved_ ? sum_without_rounding(areas) : reference_normal(shared(segment), faces, areas, t);
+                                                                         : reference_area(segment, f, t));
+      result[i] = reference_normal(shared(segment), faces, areas, t);
     }
   }
 
  private:
   [[nodiscard]] const SharedFaces& shared(const Segment& segment) const { return shared_.find(segment.index)->second; }
-  [[nodiscard]] ReferenceArea area_of(const Segment& segment, std::uint32_t face, double t) const noexcept {
-    if (!curved_) return reference_area(segment, face, t);
-    ReferenceArea area;
-    curved_->face_normals(segment.index, {face, 1}, t, std::span(&area.n, 1));
-    return area;
-  }
   [[nodiscard]] const ReferenceArea& area_of_large(std::size_t segment, std::uint32_t face, std::size_t sample) const {
     const auto number = static_cast<std::size_t>(std::lower_bound(large_.begin(), large_.end(), face) - large_.begin());
     return of_large_.find(segment)->second[number * samples_ + sample];
   }
-  static Vec3d sum_without_rounding(std::span<const ReferenceArea> areas) noexcept {
-    VectorSum sum;
-    for (const ReferenceArea& area : areas) sum.add(area.n);
-    return sum.without_rounding();
-  }
-
   std::optional<NormalGroups> groups_;
   std::size_t count_;
   std::size_t samples_ = 0;  // for groups
@@ -202,7 +169,6 @@ class Elements {
   std::vector<std::uint32_t> large_;                             // these faces, for groups
   std::map<std::size_t, SharedFaces> shared_;                    // by segment, for groups
   std::map<std::size_t, std::vector<ReferenceArea>> of_large_;   // theirs at each sample, by segment
-  std::optional<CurvedSegments> curved_;                         // where vertices move on curves
   double shared_ns_ = 0;
 };
 
@@ -233,18 +199,12 @@ ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOpti
   return table;
 }
 
-// Bounds the largest error of a scheme that is prepared on a block, on curved paths against their truth.
-CertifiedError certified_error(const std::string& name, const Scheme& scheme, const ElementBlock& block,
-                               std::span<const ControlErrors> errors, const std::optional<PathTruth>& truth) {
+// Bounds the largest error of a scheme that is prepared on a block.
+CertifiedError certified_error(const Scheme& scheme, const ElementBlock& block, std::span<const ControlErrors> errors) {
   CertifyOptions options;
   options.only_worst = true;
   std::vector<ErrorBounds> bounds(block.elements.count);
-  if (!truth)
-    certify(scheme, block, bounds, options, errors);
-  else if (name == kExactCurve)
-    certify_path_curves(*truth, bounds);
-  else
-    certify(scheme, block, *truth, bounds, options, errors);
+  certify(scheme, block, bounds, options, errors);
   CertifiedError all;
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     const auto& [lower, upper, at, from, to] = bounds[i];
@@ -260,9 +220,8 @@ std::uint32_t checksum_of_options(const CompareOptions& options, const std::vect
   for (const std::string& name : names) sum.add(name);
   sum.add(std::uint64_t{options.samples});
   for (const std::uint64_t number :
-       {static_cast<std::uint64_t>(options.access), static_cast<std::uint64_t>(options.path),
-        static_cast<std::uint64_t>(options.elements.kind), std::uint64_t{options.certify},
-        std::uint64_t{options.tolerance.has_value()}})
+       {static_cast<std::uint64_t>(options.access), static_cast<std::uint64_t>(options.elements.kind),
+        std::uint64_t{options.certify}, std::uint64_t{options.tolerance.has_value()}})
     sum.add(number);
   sum.add(options.tolerance.value_or(0));
   return sum.value();
@@ -283,12 +242,11 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   std::vector<std::unique_ptr<Scheme>> schemes;
   std::vector<Tally> tallies(names.size());
   for (std::size_t s = 0; s < names.size(); ++s) {
-    schemes.push_back(all.make(names[s]));
+    schemes.push_back(make_scheme(names[s]).value());
     Scheme& scheme = *schemes[s];
     const auto start = Clock::now();
     scheme.prepare({&segment, range, control_normals, all.are_faces()});
-    const double shared_ns = names[s] == kExactCurve ? all.shared_ns_of_curves() * elements : 0;
-    const double prepare_ns = nanoseconds_since(start) + (scheme.uses_control_normals() ? control_ns : shared_ns);
+    const double prepare_ns = nanoseconds_since(start) + (scheme.uses_control_normals() ? control_ns : 0);
     tallies[s].prepare_ns.push_back(static_cast<float>(prepare_ns / elements));
     tallies[s].fallbacks = scheme.fallback_count();
     tallies[s].flagged = scheme.flagged_count();
@@ -296,10 +254,8 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   }
   if (options.certify || options.tolerance) {
     const std::vector<ControlErrors> errors = all.control_errors(segment, range);
-    const std::optional<PathTruth> truth = all.path_truth(segment, range);
     const ElementBlock block{&segment, range, control_normals, all.are_faces()};
-    for (std::size_t s = 0; s < names.size(); ++s)
-      tallies[s].certified = certified_error(names[s], *schemes[s], block, errors, truth);
+    for (std::size_t s = 0; s < names.size(); ++s) tallies[s].certified = certified_error(*schemes[s], block, errors);
   }
 
   const std::optional<ReferenceTriangles> triangles = all.triangles(segment, range);
@@ -377,8 +333,6 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     return Error{ErrorCode::kUsage, "", "the tolerance must be an angle in degrees, 0 or more"};
   if (certified && options.access == Access::kSequential)
     return Error{ErrorCode::kUsage, "", "certificates are of normals at random access, not of those that are played"};
-  const bool curved = options.path != PathKind::kLinear;
-  if (const Status status = check_path(motion, options.path); !status) return status.error();
 
   // Linear is the measure of the others, so it takes part even where it is not a row.
   std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
@@ -397,10 +351,6 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     row.operations = row.sequential ? *sequential : scheme.value()->operations();
     rows.push_back(std::move(row));
   }
-  if (curved) {
-    names.emplace_back(kExactCurve);
-    rows.emplace_back().scheme = names.back();
-  }
   if (std::find(names.begin(), names.end(), "linear") == names.end()) names.emplace_back("linear");
 
   KeyframeChecksums seen(stream);
@@ -413,17 +363,14 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     if (!groups) return groups.error();
     all.emplace(motion.topology, std::move(groups).value(), options.samples);
   }
-  if (curved) {
-    all->follow(motion, options.path, certified);
-    rows.back().operations = all->make(rows.back().scheme)->operations();
-  }
-  // The errors of all elements at all samples, of every row but the last on curves, which has none.
+  // The errors of all elements at all samples, of every row.
   std::vector<std::vector<float>> each;
   if (options.keep_errors) {
-    const std::size_t samples = motion.segments.size() * options.samples, kept = rows.size() - (curved ? 1 : 0);
+    const std::size_t samples = motion.segments.size() * options.samples;
     ErrorTable room{names[0], kind, motion.topology, {}};
-    if (const Status status = reserve_rows(room, samples * kept, options.expansion); !status) return status.error();
-    each.assign(kept, std::vector<float>(samples * all->count()));
+    if (const Status status = reserve_rows(room, samples * rows.size(), options.expansion); !status)
+      return status.error();
+    each.assign(rows.size(), std::vector<float>(samples * all->count()));
   }
   if ((options.shard || !options.known.empty()) && (options.keep_errors || options.keep_samples))
     return Error{ErrorCode::kUsage, "",
@@ -441,10 +388,8 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   const std::size_t blocks_per_wave = kBlocksPerWaveAndThread * thread_count();
   std::vector<std::vector<Tally>> wave(std::min(blocks - first_block, blocks_per_wave));
   std::vector<Tally> of_segment(names.size());
-  BendSums bend;
   const auto add_segment = [&](ComparedSegment found) {
     for (std::size_t s = 0; s < names.size(); ++s) add(totals[s], found.schemes[s]);
-    bend.add({found.bent, found.way});
     if (options.shard) compared.push_back(std::move(found));
   };
   for (const ComparedSegment& known : options.known) add_segment(known);
@@ -455,8 +400,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
         std::min({blocks_per_wave, blocks - first, std::max(left, blocks_per_segment < blocks_per_wave ? blocks : 0)});
     const std::size_t first_segment = first / blocks_per_segment;
     const std::size_t last_segment = (first + count - 1) / blocks_per_segment;
-    if (const Status status = hold_paths(stream, first_segment, last_segment, options.path); !status)
-      return status.error();
+    if (const Status status = stream.hold_segments(first_segment, last_segment); !status) return status.error();
     all->enter(motion, first_segment, last_segment);
     parallel_for(count, [&](std::size_t i) {
       const Segment segment = motion.segment((first + i) / blocks_per_segment);
@@ -485,11 +429,6 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
         done.schemes.push_back(found);
         found = {};
       }
-      if (curved) {
-        const BendSums here = bend_at(motion, segment + 1);
-        done.bent = here.bent;
-        done.way = here.way;
-      }
       if (const Status kept = options.keep ? options.keep(done) : Success{}; !kept) return kept.error();
       add_segment(std::move(done));
     }
@@ -504,9 +443,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
                         options.samples,
                         {},
                         motion.kind};
-  comparison.path = options.path;
   comparison.span = {motion.keyframes.front().time, motion.keyframes.back().time};
-  comparison.bend = bend.bend();
   comparison.schemes = std::move(rows);
   comparison.tolerance = options.tolerance;
   comparison.compared = std::move(compared);
@@ -524,7 +461,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     sharing.add(all->element_of_output());
     comparison.checksums["the options"] = checksum_of_options(options, names);
     comparison.checksums["who shares a normal"] = sharing.value();
-    const Status status = seen.finish(keyframes_of_shard(motion, *options.shard, options.path), comparison.checksums);
+    const Status status = seen.finish(keyframes_of_shard(motion, *options.shard), comparison.checksums);
     if (!status) return status.error();
   }
   conclude(totals, share.count, certified, comparison);

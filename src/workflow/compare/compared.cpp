@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "normals/curves/path_stream.h"
 #include "workflow/errors/shards.h"
 #include "workflow/sample/task_checksums.h"
 
@@ -34,7 +33,7 @@ bool are_of_one(const Comparison& a, const Comparison& b) {
   };
   return a.kind == b.kind && a.vertices == b.vertices && a.faces == b.faces && a.elements == b.elements &&
          a.segments == b.segments && a.samples == b.samples && a.motion == b.motion && a.tolerance == b.tolerance &&
-         a.span == b.span && a.path == b.path &&
+         a.span == b.span &&
          std::equal(a.schemes.begin(), a.schemes.end(), b.schemes.begin(), b.schemes.end(), same_scheme);
 }
 
@@ -94,12 +93,9 @@ Result<Comparison> merge(std::vector<Comparison> shards) {
   Comparison all = std::move(shards.front());
   if (const Status complete = put_in_order(all.segments, compared); !complete) return complete.error();
   std::vector<SchemeTally> totals(compared.front().schemes.size());
-  BendSums bend;
   for (const ComparedSegment& segment : compared) {
     for (std::size_t i = 0; i < totals.size(); ++i) add(totals[i], segment.schemes[i]);
-    bend.add({segment.bent, segment.way});
   }
-  all.bend = bend.bend();
   const bool certified = all.schemes.front().certified.has_value();
   for (SchemeComparison& row : all.schemes) row.prepare_ns = row.evaluate_ns = 0;
   all.compared.clear();

@@ -12,9 +12,8 @@
 
 #include "analysis/quality/shared_reference.h"
 #include "chronormal/core/parallel.h"
+#include "chronormal/motion/paths.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/path_curves.h"
-#include "chronormal/normals/paths.h"
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/compare.h"
 #include "normals/control/shared_faces.h"
@@ -57,7 +56,7 @@ class KeptKeys {
   std::size_t every_;
 };
 
-// The faces of a motion, or groups of their corners, and the control normals of either on a path of any degree.
+// The faces of a motion, or groups of their corners, and the control normals of either.
 class TruthElements {
  public:
   TruthElements(const Topology& topology, std::optional<NormalGroups> groups)
@@ -76,9 +75,6 @@ class TruthElements {
     std::vector<ControlNormals> result(count_);
     group_control_normals(segment, *groups_, of_faces, {0, count_}, result);
     return result;
-  }
-  [[nodiscard]] std::vector<PolynomialNormals<3>> control_normals(const PolynomialSegment<3>& segment) const {
-    return groups_ ? all_path_normals(segment, *groups_) : all_path_normals(segment);
   }
   // The exact normals of a mesh that stands still.
   void exact_normals(const Segment& still, IndexRange range, std::span<Vec3d> result) const {
@@ -112,12 +108,27 @@ struct Piece {
   Segment segment;
   std::span<const Motion::Keyframe> between;
   std::vector<ControlNormals> straight;
-  std::vector<std::vector<PolynomialNormals<3>>> curved;  // those of each curved path
+  std::vector<std::vector<Motion::Keyframe>> curved;  // on each curved path, at the times of those between
 
   [[nodiscard]] double local_time(const Motion::Keyframe& keyframe) const {
     return (keyframe.time - segment.start_time) / (segment.end_time - segment.start_time);
   }
 };
+
+// The mesh on a curve at the times of the keyframes that were left out.
+std::vector<Motion::Keyframe> poses_on_curve(const Piece& piece, const CubicSegment& curve) {
+  std::vector<Motion::Keyframe> poses;
+  for (const Motion::Keyframe& keyframe : piece.between) {
+    const double t = piece.local_time(keyframe);
+    std::vector<double> coordinates;
+    for (std::size_t v = 0; v < piece.segment.topology->vertex_count(); ++v) {
+      const Vec3d p = curve.position(v, t);
+      coordinates.insert(coordinates.end(), {p.x, p.y, p.z});
+    }
+    poses.emplace_back().set_positions(coordinates, std::vector<double>(coordinates.size(), 0));
+  }
+  return poses;
+}
 
 // The errors of all rows on one block of elements, curved paths last.
 std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& elements, IndexRange range,
@@ -129,7 +140,7 @@ std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& el
         {&piece.segment, range, std::span(piece.straight).subspan(range.first, range.count), elements.are_faces()});
   }
   std::vector<Quality> result(names.size() + piece.curved.size());
-  std::vector<Vec3d> exact(range.count);
+  std::vector<Vec3d> exact(range.count), on_curve(range.count);
   std::vector<float> packed(3 * range.count);
   const auto shown = VectorView<float>::packed(packed);
   for (const Motion::Keyframe& keyframe : piece.between) {
@@ -142,8 +153,9 @@ std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& el
       result[s].add(exact, shown, first);
     }
     for (std::size_t c = 0; c < piece.curved.size(); ++c) {
-      for (std::size_t i = 0; i < range.count; ++i)
-        shown.set(i, to_float(unit_normal_at(piece.curved[c][range.first + i], t).vector));
+      const std::size_t k = static_cast<std::size_t>(&keyframe - piece.between.data());
+      elements.exact_normals(still_segment(*piece.segment.topology, piece.curved[c][k]), range, on_curve);
+      for (std::size_t i = 0; i < range.count; ++i) shown.set(i, to_float(unit(on_curve[i])));
       result[names.size() + c].add(exact, shown, first);
     }
   }
@@ -210,7 +222,8 @@ Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOpti
   result.elements = elements.count();
   result.kept = keys.count();
   result.left_out = (keys.count() - 1) * (options.every - 1);
-  result.bend = bend_of(motion, options.every);
+  MotionStream whole(motion);
+  result.bend = bend_of(whole, options.every).value();
   for (const std::string& name : names) result.rows.push_back({std::string(path_name(PathKind::kLinear)), name, {}});
   for (const PathKind curve : curves) result.rows.push_back({std::string(path_name(curve)), "exact", {}});
 
@@ -219,7 +232,7 @@ Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOpti
   for (std::size_t i = 0; i + 1 < keys.count(); ++i) {
     Piece piece{keys.segment(i), keys.between(i), elements.control_normals(keys.segment(i)), {}};
     for (const PathKind curve : curves)
-      piece.curved.push_back(elements.control_normals(path_segment(motion.topology, keys.all(), i, curve)));
+      piece.curved.push_back(poses_on_curve(piece, cubic_segment(keys.all(), i, curve)));
     TruthElements::parallel_blocks_of(elements.count(), [&](IndexRange range) {
       found[range.first / kTruthBlock] = errors_of_block(piece, elements, range, names);
     });

@@ -144,7 +144,7 @@ Json internal::audit_object(const std::string& input, const Audit& audit, const 
   Json json;
   json["input"] = {{"name", input}};
   json["rule"] = audit_rule_name(audit.rule);
-  if (audit.path != PathKind::kLinear) put_path(json, audit.path, audit.bend);
+  put_path(json, audit.cut);
   json["weighting"] = audit.weighting ? Json(weighting_name(*audit.weighting)) : Json();
   json["stored_normals"] = audit.stored;
   json["tolerance_degrees"] = or_null(limits.degrees);

@@ -154,7 +154,7 @@ std::string plan_json(const GltfBake& bake, const BakeReport& report) {
 std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {
   Json json = common_json(report);
   json["encoding"] = name_of(encoding);
-  if (bake.path != PathKind::kLinear) put_path(json, bake.path, bake.bend);
+  put_path(json, bake.cut);
   json["keyframes"] = bake.keyframes;
   json["vertices"] = bake.vertices;
   json["targets"] = bake.targets;

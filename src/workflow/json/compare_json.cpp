@@ -12,7 +12,7 @@ Json input_json(const NamedComparison& input) {
   const Comparison& c = input.comparison;
   Json json = {{"name", input.name}, {"vertices", c.vertices}, {"faces", c.faces}, {"segments", c.segments}};
   if (c.kind != ElementKind::kFaces) json["different_normals"] = c.elements;
-  if (c.path != PathKind::kLinear) put_path(json, c.path, c.bend);
+  put_path(json, c.cut);
   return json;
 }
 

@@ -13,10 +13,16 @@ std::string json_text(const Json& json) {
   return escaped_for_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n';
 }
 
-void put_path(Json& json, PathKind path, double bend) {
-  json["path"] = path_name(path);
-  json["bend"] = bend;
-  json["is_too_sparse"] = is_too_sparse(bend);
+void put_path(Json& json, const std::optional<CutPath>& cut) {
+  if (!cut) return;
+  json["path"] = path_name(cut->path.kind);
+  json["bend"] = cut->bend;
+  json["is_too_sparse"] = is_too_sparse(cut->bend);
+  json["cut"] = {{"tolerance_degrees", cut->path.tolerance},
+                 {"segments", cut->segments},
+                 {"pieces", cut->pieces},
+                 {"faces_beyond", cut->beyond},
+                 {"rounding", cut->rounding}};
 }
 
 }  // namespace chronormal::inline internal

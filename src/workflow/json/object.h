@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "chronormal/normals/paths.h"
+#include "chronormal/motion/paths.h"
 
 namespace chronormal::inline internal {
 
@@ -18,8 +18,8 @@ using Json = nlohmann::ordered_json;  // fields stay in the order of the documen
 /// The text, indented, with the end of its last line. Names in files need not be UTF-8; what is not becomes U+FFFD.
 [[nodiscard]] std::string json_text(const Json& json);
 
-/// Writes the path whose normals are right, and how far it bends.
-void put_path(Json& json, PathKind path, double bend);
+/// Writes which curves were cut into which pieces, and how far they bend; nothing where none were.
+void put_path(Json& json, const std::optional<CutPath>& cut);
 
 template <class T>
 [[nodiscard]] Json or_null(const std::optional<T>& value) {

@@ -11,7 +11,6 @@
 #include "chronormal/schemes/scheme.h"
 #include "io/bytes/checksum.h"
 #include "io/json/json.h"
-#include "workflow/compare/curved_segments.h"
 #include "workflow/json/object.h"
 #include "workflow/sample/task_checksums.h"
 
@@ -189,26 +188,31 @@ std::array<double, 2> read_span(const JsonView& part) {
   return {first, numbers.real()};
 }
 
-// Where the exact normals are those of curves: the path, and what each segment adds to the sums of its bend.
-template <class Segment>
-void put_bend(const Segment& segment, Json& json) {
-  if (segment.way != 0) json["bend"] = {segment.bent, segment.way};
+// Curves that were cut, as parts have them.
+void put_cut(Json& json, const std::optional<CutPath>& cut) {
+  if (!cut) return;
+  json["path"] = path_name(cut->path.kind);
+  json["cut"] = {cut->path.tolerance, cut->segments, cut->pieces, cut->beyond, cut->rounding, cut->bend};
 }
 
-template <class Segment>
-void read_bend(const JsonView& view, Segment& segment) {
-  if (!view.has("bend")) return;
-  const std::optional<JsonView> list = view.array("bend");
-  if (!list) return;
-  Numbers numbers(*list);
-  segment.bent = numbers.real();
-  segment.way = numbers.real();
-}
-
-PathKind read_path(const JsonView& part) {
-  const Result<PathKind> path = make_path(part.required_text("path"));
-  if (!path) part.complain("path", path.error().message);
-  return path ? path.value() : PathKind::kLinear;
+std::optional<CutPath> read_cut(const JsonView& part) {
+  if (!part.has("path")) return std::nullopt;
+  CutPath cut;
+  const Result<Path> path = make_path(part.required_text("path"));
+  if (path)
+    cut.path.kind = path.value().kind;
+  else
+    part.complain("path", path.error().message);
+  if (const std::optional<JsonView> list = part.array("cut")) {
+    Numbers numbers(*list);
+    cut.path.tolerance = numbers.real();
+    cut.segments = numbers.count();
+    cut.pieces = numbers.count();
+    cut.beyond = numbers.count();
+    cut.rounding = numbers.real();
+    cut.bend = numbers.real();
+  }
+  return cut;
 }
 
 // Calls each(view) for the items of a list that may be missing.
@@ -224,23 +228,17 @@ constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max() >> 1U;
 Json segment_json(const ComparedSegment& segment) {
   Json tallies = Json::array();
   for (const SchemeTally& tally : segment.schemes) tallies.push_back(tally_json(tally));
-  Json json = {{"segment", segment.segment}, {"tallies", std::move(tallies)}};
-  put_bend(segment, json);
-  return json;
+  return {{"segment", segment.segment}, {"tallies", std::move(tallies)}};
 }
 
 ComparedSegment read_compared(const JsonView& segment) {
   ComparedSegment found{segment.required_count("segment", kMost), {}};
   each_item(segment, "tallies", [&](const JsonView& tally) { found.schemes.push_back(read_tally(Numbers(tally))); });
-  read_bend(segment, found);
   return found;
 }
 
 Json segment_json(const SegmentErrors& segment) {
-  Json json = {
-      {"segment", segment.segment}, {"error", error_json(segment.error)}, {"at_keys", error_json(segment.at_keys)}};
-  put_bend(segment, json);
-  return json;
+  return {{"segment", segment.segment}, {"error", error_json(segment.error)}, {"at_keys", error_json(segment.at_keys)}};
 }
 
 SegmentErrors read_measured(const JsonView& segment) {
@@ -248,7 +246,6 @@ SegmentErrors read_measured(const JsonView& segment) {
   found.segment = segment.required_count("segment", kMost);
   if (const auto list = segment.array("error")) found.error = read_error(*list);
   if (const auto list = segment.array("at_keys")) found.at_keys = read_error(*list);
-  read_bend(segment, found);
   return found;
 }
 
@@ -279,7 +276,7 @@ NamedComparison read_comparison(const JsonView& part) {
   c.samples = part.required_count("samples", kMost);
   c.tolerance = read_tolerance(part);
   c.span = read_span(part);
-  c.path = read_path(part);
+  c.cut = read_cut(part);
   c.checksums = read_task_checksums(part);
   if (c.segments == 0) part.complain("segment_count", "there are no segments");
   const bool is_sequential = part.flag("sequential"), is_certified = part.flag("certified");
@@ -287,10 +284,6 @@ NamedComparison read_comparison(const JsonView& part) {
   each_item(part, "schemes", [&](const JsonView& name) {
     SchemeComparison row;
     row.scheme = name.as_text();
-    if (c.path != PathKind::kLinear && row.scheme == kExactCurve) {
-      row.operations = exact_curve_operations();
-      return c.schemes.push_back(std::move(row));
-    }
     const auto scheme = make_scheme(row.scheme);
     if (!scheme) return name.complain(scheme.error().message);
     const auto sequential = scheme.value()->sequential_operations();
@@ -323,7 +316,7 @@ NamedAudit read_audit(const JsonView& part) {
   named.tolerance = read_tolerance(part);
   Audit& audit = named.audit;
   audit.span = read_span(part);
-  audit.path = read_path(part);
+  audit.cut = read_cut(part);
   audit.checksums = read_task_checksums(part);
   audit.rule = static_cast<AuditRule>(part.required_count("rule", static_cast<std::size_t>(AuditRule::kFlat)));
   audit.weighting = read_weighting(part.required_count("weighting", kWeightings.size()), part);
@@ -421,7 +414,7 @@ std::string compare_part(const NamedComparison& shard) {
   json["elements"] = c.elements;
   json["segment_count"] = c.segments;
   json["span"] = c.span;
-  json["path"] = path_name(c.path);
+  put_cut(json, c.cut);
   json["samples"] = c.samples;
   json["sequential"] = std::any_of(c.schemes.begin(), c.schemes.end(), [](const auto& row) { return row.sequential; });
   json["certified"] = c.schemes.front().certified.has_value();
@@ -437,7 +430,7 @@ std::string audit_part(const std::string& input, const Audit& shard, std::option
   json["stored"] = shard.stored;
   json["still"] = shard.still;
   json["span"] = shard.span;
-  json["path"] = path_name(shard.path);
+  put_cut(json, shard.cut);
   for (const AuthoredOffset& offset : shard.offsets) json["offsets"].push_back(authored_offset_json(offset));
   json["subjects"] = shard.subjects.size();
   for (const AuditSubject& subject : shard.subjects) {

@@ -12,13 +12,10 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/path_curves.h"
-#include "chronormal/normals/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
 #include "core/twofold.h"
 #include "motion/segment_end.h"
-#include "normals/curves/path_stream.h"
 #include "normals/weighting/shared_weighting.h"
 
 namespace chronormal {
@@ -85,12 +82,10 @@ Result<NormalSampler> NormalSampler::make(const Motion& motion, const SampleOpti
 }
 
 Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOptions& options) {
-  const Motion& motion = stream.motion();
-  assert(!motion.keyframes.empty());
+  assert(!stream.motion().keyframes.empty());
   const bool by_area = options.weighting == Weighting::kArea;
   if (options.length == NormalLength::kArea && !by_area)
     return misuse("only sums of areas have a length that means something: weigh by area, or take unit normals");
-  if (const Status status = check_path(motion, options.path); !status) return status.error();
   NormalSampler sampler(stream, options);
   if (options.elements.kind == ElementKind::kFaces) {
     if (!by_area) return misuse("faces are not weighted: they have one normal");
@@ -163,51 +158,10 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   if (!instant) return instant.error();
   const LocalTime t = instant.value().t;
   const std::size_t here = instant.value().segment;
-  if (const Status status = hold_paths(*stream_, here, here, options_.path); !status) return status.error();
-  if (options_.path != PathKind::kLinear) return pose_on_curve(here, t);
+  if (const Status status = stream_->hold_segment(here); !status) return status.error();
   const Segment segment = motion_->segment(here);
   return Pose{positions_at(segment, t),
               are_exact_units() ? unit_normals(segment, t, evaluations) : normals_anew(segment, t)};
-}
-
-Result<Pose> NormalSampler::pose_on_curve(std::size_t segment, double t) {
-  if (!curve_ || segment_ != segment) {
-    // The curves of the segment before take as much memory as those that are made now.
-    path_curves_ = {};
-    curve_.reset();
-    curve_ = path_segment(*motion_, segment, options_.path);
-    segment_ = segment;
-    if (are_exact_units())
-      path_curves_ = are_faces() ? PathCurves(*curve_, Threads::kAll) : PathCurves(*curve_, *groups_, Threads::kAll);
-  }
-  const std::vector<Vec3d> places = positions_at(*curve_, t);
-  LongSums coordinates(3 * places.size());
-  for (std::size_t v = 0; v < places.size(); ++v) {
-    coordinates.set(3 * v, {places[v].x, 0});
-    coordinates.set(3 * v + 1, {places[v].y, 0});
-    coordinates.set(3 * v + 2, {places[v].z, 0});
-  }
-  const Result<Motion::Keyframe> pose = pose_of(coordinates, "this path moves");
-  if (!pose) return pose.error();
-  Pose result{pose.value().positions, {}};
-  if (are_exact_units()) {
-    result.normals.resize(3 * element_count());
-    path_curves_.unit_normals(t, VectorView<float>::packed(result.normals.data(), element_count()), Threads::kAll);
-    return result;
-  }
-  // The positions are rounded to double, and with them a face without area gets a normal. Nothing but the curve itself
-  // tells that this is rounding.
-  std::vector<Vec3d> of_faces(motion_->topology.face_count());
-  parallel_blocks(of_faces.size(), kBlock, [&](IndexRange faces) {
-    polynomial_face_normals_at(*curve_, t, faces, std::span(of_faces).subspan(faces.first, faces.count));
-  });
-  if (are_faces()) {
-    result.normals = as_asked(of_faces);
-    return result;
-  }
-  const Segment segment_at_t = still_segment(motion_->topology, pose.value());
-  result.normals = as_asked(all_weighted_normals_at(segment_at_t, *groups_, options_.weighting, 0.0, of_faces));
-  return result;
 }
 
 Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {

@@ -282,7 +282,7 @@ Result<std::string> end_of_part(const Motion& motion, const SampleOptions& optio
   sharing.add(sampler.element_of_output());
   part.checksums["the options"] = checksum_of_options(options, moments);
   part.checksums["who shares a normal"] = sharing.value();
-  const Status status = seen.finish(keyframes_of_moments(motion, moments, shard, options.path), part.checksums);
+  const Status status = seen.finish(keyframes_of_moments(motion, moments, shard), part.checksums);
   if (!status) return status.error();
   return part.text();
 }

@@ -7,7 +7,6 @@
 
 #include "io/bytes/checksum.h"
 #include "io/json/json.h"
-#include "normals/curves/path_stream.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -45,8 +44,8 @@ std::uint32_t checksum_of_options(const SampleOptions& options, const Moments& m
   NumberChecksum sum;
   for (const std::uint64_t number :
        {static_cast<std::uint64_t>(options.elements.kind), static_cast<std::uint64_t>(options.weighting),
-        static_cast<std::uint64_t>(options.length), static_cast<std::uint64_t>(options.path),
-        std::uint64_t{moments.times.size()}, std::uint64_t{moments.weights.size()}})
+        static_cast<std::uint64_t>(options.length), std::uint64_t{moments.times.size()},
+        std::uint64_t{moments.weights.size()}})
     sum.add(number);
   for (const double time : moments.times) sum.add(time);
   for (const std::vector<double>& weights : moments.weights)
@@ -54,8 +53,7 @@ std::uint32_t checksum_of_options(const SampleOptions& options, const Moments& m
   return sum.value();
 }
 
-std::set<std::size_t> keyframes_of_moments(const Motion& motion, const Moments& moments, const Shard& shard,
-                                           PathKind path) {
+std::set<std::size_t> keyframes_of_moments(const Motion& motion, const Moments& moments, const Shard& shard) {
   std::set<std::size_t> keyframes;
   const IndexRange share = shard.of(moments.count());
   if (!moments.weights.empty())
@@ -63,7 +61,7 @@ std::set<std::size_t> keyframes_of_moments(const Motion& motion, const Moments& 
   if (moments.times.empty()) return keyframes;
   for (std::size_t i = share.first; i < std::min(share.end() + 1, moments.count()); ++i) {
     const std::size_t segment = find_instant(motion, moments.times[i]).value().segment;
-    const auto [first, last] = keyframes_of_paths(motion, segment, segment, path);
+    const auto [first, last] = motion.segments[segment];
     for (std::size_t k = first; k <= (i < share.end() ? last : first); ++k) keyframes.insert(k);
   }
   return keyframes;

@@ -1,6 +1,6 @@
 /// How the .npy file of a shard of samples ends, behind its elements, where NumPy does not look:
 ///
-///     {"chronormal_part":4,"command":"sample","first":10,"total":40,"array":305441741,"checksums":{"keyframe 0":7,
+///     {"chronormal_part":6,"command":"sample","first":10,"total":40,"array":305441741,"checksums":{"keyframe 0":7,
 ///     ...},"checksum":"1a2b3c4d"}
 ///
 /// in one line. Private to workflow.
@@ -38,7 +38,7 @@ struct SamplePart {
 /// The keyframes that the moments of a shard follow from, and those with which the next shard begins. The moments must
 /// be of the motion
 [[nodiscard]] std::set<std::size_t> keyframes_of_moments(const Motion& motion, const Moments& moments,
-                                                         const Shard& shard, PathKind path);
+                                                         const Shard& shard);
 
 }  // namespace chronormal::inline internal
 

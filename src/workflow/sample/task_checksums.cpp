@@ -6,7 +6,6 @@
 
 #include "io/bytes/checksum.h"
 #include "io/gltf/glb/glb_builder.h"
-#include "normals/curves/path_stream.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -43,15 +42,14 @@ void add_outline(const Motion& motion, TaskChecksums& result) {
 
 }  // namespace
 
-std::set<std::size_t> keyframes_of_shard(const Motion& motion, const Shard& shard, PathKind path) {
+std::set<std::size_t> keyframes_of_shard(const Motion& motion, const Shard& shard) {
   std::set<std::size_t> keyframes;
   const IndexRange share = shard.of(motion.segments.size());
   if (share.count > 0) {
-    const auto [first, last] = keyframes_of_paths(motion, share.first, share.end() - 1, path);
-    for (std::size_t k = first; k <= last; ++k) keyframes.insert(k);
+    const std::size_t last = motion.segments[share.end() - 1].to;
+    for (std::size_t k = motion.segments[share.first].from; k <= last; ++k) keyframes.insert(k);
   }
-  if (share.end() < motion.segments.size())
-    keyframes.insert(keyframes_of_paths(motion, share.end(), share.end(), path).first);
+  if (share.end() < motion.segments.size()) keyframes.insert(motion.segments[share.end()].from);
   return keyframes;
 }
 

@@ -16,14 +16,13 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion_stream.h"
-#include "chronormal/normals/paths.h"
 #include "chronormal/workflow/shard.h"
 #include "io/json/json.h"
 
 namespace chronormal::inline internal {
 
 /// The keyframes from which a shard of segments follows, and the one with which the next shard begins.
-[[nodiscard]] std::set<std::size_t> keyframes_of_shard(const Motion& motion, const Shard& shard, PathKind path);
+[[nodiscard]] std::set<std::size_t> keyframes_of_shard(const Motion& motion, const Shard& shard);
 
 class KeyframeChecksums {
  public:
@@ -50,7 +49,7 @@ class KeyframeChecksums {
 };
 
 /// The version of all parts, and what is said of a part that does not end with its checksum.
-inline constexpr std::size_t kPartVersion = 5;
+inline constexpr std::size_t kPartVersion = 6;
 inline constexpr std::string_view kDamagedPart =
     "the part is damaged: its bytes do not have the checksum that it ends with";
 

@@ -11,7 +11,7 @@
 
 #include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
-#include "chronormal/normals/paths.h"
+#include "chronormal/motion/paths.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/inspect.h"
@@ -100,43 +100,64 @@ TEST(InputStream, keyframes_have_the_bits_of_the_input_read_whole) {
   }
 }
 
-// The cubic of a segment, from which all normals on a curved path follow.
-std::array<std::vector<Vec3d>, 4> cubic_of(MotionStream& stream, std::size_t segment) {
-  EXPECT_TRUE(stream.hold_all().ok());
-  return path_segment(stream.motion(), segment, PathKind::kCatmullRom).control;
-}
-
+// A part of a sequence moves on the curves of the whole: the pieces between two keyframes are the same.
 TEST(InputStream, the_ends_of_a_part_move_on_the_curves_of_the_whole) {
   const TemporaryFolder folder;
   for (const auto& names : write_all(folder, wave(14))) {
     for (const bool is_streamed : {false, true}) {
-      const auto open = [&](std::size_t from, std::optional<std::size_t> to, std::size_t every, bool ends) {
+      const auto pieces = [&](std::size_t from, std::optional<std::size_t> to, std::size_t every) {
         InputOptions options = is_streamed ? streamed(test::files(names, 24)) : test::files(names, 24);
         options.from = from;
         options.to = to;
         options.every = every;
-        options.ends_of_whole = ends;
+        options.path = "catmull-rom:0.5";
         Result<Input> input = open_input(options);
         EXPECT_TRUE(input.ok()) << input.error().text();
-        return std::move(input).value();
+        std::vector<std::pair<double, std::vector<float>>> found;
+        for (const Motion::Keyframe& keyframe : input.value().motion().value()->keyframes)
+          found.emplace_back(keyframe.time, keyframe.positions);
+        return found;
       };
       struct Part {
         std::size_t from, to, every;
       };
       for (const Part& part : {Part{4, 9, 1}, Part{0, 1, 1}, Part{0, 2, 1}, Part{12, 13, 1}, Part{10, 13, 1},
                                Part{2, 8, 2}, Part{6, 9, 3}}) {
-        Input whole = open(0, std::nullopt, part.every, true), cut = open(part.from, part.to, part.every, true),
-              alone = open(part.from, part.to, part.every, false);
-        MotionStream &all = *whole.stream().value(), &some = *cut.stream().value();
-        const std::size_t segments = some.motion().segments.size();
-        for (std::size_t s = 0; s < segments; ++s)
-          EXPECT_EQ(cubic_of(some, s), cubic_of(all, part.from / part.every + s))
-              << names.back() << ' ' << part.from << ' ' << part.to << ' ' << s;
-        if (part.from == 4) {
-          EXPECT_NE(cubic_of(*alone.stream().value(), 0), cubic_of(all, 4));
-        }
+        const auto all = pieces(0, std::nullopt, part.every), some = pieces(part.from, part.to, part.every);
+        const auto first =
+            std::find_if(all.begin(), all.end(), [&](const auto& key) { return key.first == some[0].first; });
+        ASSERT_LE(some.size(), static_cast<std::size_t>(all.end() - first));
+        EXPECT_TRUE(std::equal(some.begin(), some.end(), first)) << names.back() << ' ' << part.from << ' ' << part.to;
       }
     }
+  }
+}
+
+TEST(InputStream, curves_are_cut_and_what_has_none_is_refused) {
+  const TemporaryFolder folder;
+  const auto inputs = write_all(folder, wave(5));
+  for (const auto& names : inputs) {
+    InputOptions options = streamed(test::files(names));
+    options.path = "catmull-rom:0.1";
+    Result<Input> input = open_input(options);
+    ASSERT_TRUE(input.ok());
+    const CutMotion whole =
+        cut_into_segments(test::read_motion(test::files(names)).value(), {PathKind::kCatmullRom, 0.1}).value();
+    const Motion& found = *input.value().motion().value();
+    ASSERT_EQ(found.keyframes.size(), whole.motion.keyframes.size());
+    EXPECT_GT(found.keyframes.size(), 5U);
+    EXPECT_EQ(input.value().cut_path().pieces, found.segments.size());
+    for (std::size_t k = 0; k < found.keyframes.size(); ++k)
+      EXPECT_EQ(found.keyframes[k].positions, whole.motion.keyframes[k].positions);
+    options.path = "hermite";
+    Result<Input> without = open_input(options);
+    ASSERT_TRUE(without.ok());
+    for (int again = 0; again < 2; ++again) EXPECT_EQ(without.value().motion().error().place, "--path");
+    options.path = "round";
+    EXPECT_EQ(open_input(options).error().place, "--path");
+    options.path = "catmull-rom";
+    options.max_expansion = 2;
+    EXPECT_LE(open_input(options).value().motion().value()->segments.size(), 8U);
   }
 }
 
@@ -180,10 +201,8 @@ TEST(InputStream, commands_give_the_bytes_that_they_give_of_a_motion_in_memory) 
 
   most_held = 0;  // a comparison takes several small segments at once
   for (const char* const name : {"n.npy", "n.npz", "n_%02d.ply"}) {
-    for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
-      if (path != PathKind::kLinear && std::string(name) != "n.npy") continue;
-      SampleOptions options;
-      options.path = path;
+    {
+      const SampleOptions options;
       const Moments moments{{0, 0.25, 3.5, 3.75, 1, 7.5, 8}, {}};
       const SampleFormat format = find_sample_format(name).value();
       ASSERT_TRUE(write_samples(stream, options, moments, {folder / (std::string("s") + name), format, true}).ok());
@@ -192,7 +211,7 @@ TEST(InputStream, commands_give_the_bytes_that_they_give_of_a_motion_in_memory) 
       EXPECT_EQ(test::read_whole(folder / ("s" + one)), test::read_whole(folder / ("w" + one))) << one;
     }
   }
-  EXPECT_LE(most_held, 4U);  // curved paths need four keyframes
+  EXPECT_LE(most_held, 3U);
   for (const char* const name : {"c.npz", "c.pc2", "c.mdd", "c_%d.ply"}) {
     ASSERT_TRUE(write_motion(stream, folder / (std::string("s") + name), false, Expansion::unlimited()).ok());
     ASSERT_TRUE(write_motion(whole, folder / (std::string("w") + name), false).ok());
@@ -230,51 +249,6 @@ TEST(InputStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_not
       << written.error().message;
   EXPECT_NE(written.error().message.find("it was cut while it was read"), std::string::npos);
   EXPECT_EQ(folder.entry_count(), before);
-}
-
-TEST(InputStream, curved_paths_need_nothing_but_the_keyframes_around_a_time) {
-  const TemporaryFolder folder;
-  const Motion whole = wave(9);
-  SampleOptions options;
-  options.path = PathKind::kCatmullRom;
-  for (const double time : {3.25, 5.0, 7.5, 8.0}) {
-    MotionStream read(whole);
-    std::size_t most_held = 0;
-    MotionStream stream = test::strict(read, most_held);
-    const Moments moments{{time}, {}};
-    ASSERT_TRUE(write_samples(stream, options, moments, {folder / "s.npy", SampleFormat::kNpy, true}).ok());
-    ASSERT_TRUE(write_samples(whole, options, moments, {folder / "w.npy", SampleFormat::kNpy, true}).ok());
-    EXPECT_EQ(test::read_whole(folder / "s.npy"), test::read_whole(folder / "w.npy")) << time;
-  }
-}
-
-TEST(InputStream, curved_paths_are_compared_as_in_memory_and_audited_with_at_most_five_keyframes) {
-  const Motion whole = wave(9);
-  for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
-    MotionStream read(whole);
-    std::size_t most_held = 0;
-    MotionStream stream = test::strict(read, most_held);
-    CompareOptions options;
-    options.path = PathKind::kCatmullRom;
-    options.elements.kind = kind;
-    const auto text = [](const Result<Comparison>& comparison) {
-      return compare_json({{"x", comparison.value()}}, false, false);
-    };
-    EXPECT_EQ(text(compare(stream, options)), text(compare(whole, options)));
-    EXPECT_EQ(compare(whole, options).value().bend, bend_of(whole));
-  }
-  for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kFlat}) {
-    MotionStream read(whole);
-    std::size_t most_held = 0;
-    MotionStream stream = test::strict(read, most_held);
-    AuditOptions options;
-    options.path = PathKind::kCatmullRom;
-    options.rule = rule;
-    EXPECT_EQ(audit_json("x", audit(stream, {}, options).value(), {1}),
-              audit_json("x", audit(whole, {}, options).value(), {1}));
-    EXPECT_LE(most_held, 5U);  // a comparison takes several small segments at once
-    EXPECT_EQ(audit(whole, {}, options).value().bend, bend_of(whole));
-  }
 }
 
 TEST(InputStream, keyframes_may_be_written_over_the_files_that_they_come_from) {

@@ -19,7 +19,6 @@
 #include "chronormal/normals/encodings.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/paths.h"
 #include "chronormal/normals/recompute.h"
 #include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
@@ -276,9 +275,6 @@ TEST(LocalTime, in_double_is_no_other) {
   EXPECT_EQ(unit_normal_at(c, 2).vector, c.n1);
   EXPECT_EQ(unit_normal_at(c, kNan).vector, Vec3d{});
   EXPECT_EQ(unit_normal_at(c, kNan).direction, Direction::kNone);
-  const std::array<Vec3d, 5> path{Vec3d{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};
-  EXPECT_EQ(unit_normal_at(path, 2).vector, path.back());
-  EXPECT_EQ(unit_normal_at(path, kNan).direction, Direction::kNone);
 
   const Motion motion = fixtures::large_soup(4);
   std::vector<Vec3d> late(4), end(4);

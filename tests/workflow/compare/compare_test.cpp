@@ -469,44 +469,38 @@ Motion polygon(std::uint32_t corners) {
 
 // Each corner of a polygon shows its normal, which is computed once for all of them.
 TEST(Compare, time_is_linear_in_the_corners_of_a_polygon) {
-  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
-    CompareOptions options;
-    options.schemes = {"linear"};
-    options.elements.kind = ElementKind::kVertices;
-    options.path = path;
-    const auto seconds = [&](std::uint32_t corners) {
-      const Motion motion = polygon(corners);
-      double least = 1e9;
-      for (int i = 0; i < 3; ++i) {
-        const test::CpuClock clock;
-        EXPECT_EQ(compare(motion, options).value().elements, corners);
-        least = std::min(least, clock.seconds());
-      }
-      return least;
-    };
-    const double few = seconds(1000), many = seconds(8000);
-    EXPECT_LT(many, 16 * few) << path_name(path);
-  }
+  CompareOptions options;
+  options.schemes = {"linear"};
+  options.elements.kind = ElementKind::kVertices;
+  const auto seconds = [&](std::uint32_t corners) {
+    const Motion motion = polygon(corners);
+    double least = 1e9;
+    for (int i = 0; i < 3; ++i) {
+      const test::CpuClock clock;
+      EXPECT_EQ(compare(motion, options).value().elements, corners);
+      least = std::min(least, clock.seconds());
+    }
+    return least;
+  };
+  const double few = seconds(1000), many = seconds(8000);
+  EXPECT_LT(many, 16 * few);
 }
 
 // The normal of a vertex is that of its polygon, however many corners that has: of some that are few enough to be
 // computed for each corner, and of some that are not.
 TEST(Compare, vertices_of_a_polygon_have_the_errors_of_its_face) {
-  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
-    for (const std::uint32_t corners : {3U, 5U, 32U, 33U, 34U, 200U}) {
-      for (const std::size_t samples : {std::size_t{2}, std::size_t{5}, std::size_t{1000}}) {
-        CompareOptions options;
-        options.schemes = {"linear"};
-        options.samples = samples;
-        options.path = path;
-        const Motion motion = polygon(corners);
-        const Comparison face = compare(motion, options).value();
-        options.elements.kind = ElementKind::kVertices;
-        const Comparison vertices = compare(motion, options).value();
-        EXPECT_EQ(vertices.schemes[0].quality.max, face.schemes[0].quality.max) << corners;
-        EXPECT_NEAR(vertices.schemes[0].quality.mean(), face.schemes[0].quality.mean(), 1e-12) << corners;
-        EXPECT_EQ(vertices.schemes[0].quality.count, corners * face.schemes[0].quality.count);
-      }
+  for (const std::uint32_t corners : {3U, 5U, 32U, 33U, 34U, 200U}) {
+    for (const std::size_t samples : {std::size_t{2}, std::size_t{5}, std::size_t{1000}}) {
+      CompareOptions options;
+      options.schemes = {"linear"};
+      options.samples = samples;
+      const Motion motion = polygon(corners);
+      const Comparison face = compare(motion, options).value();
+      options.elements.kind = ElementKind::kVertices;
+      const Comparison vertices = compare(motion, options).value();
+      EXPECT_EQ(vertices.schemes[0].quality.max, face.schemes[0].quality.max) << corners;
+      EXPECT_NEAR(vertices.schemes[0].quality.mean(), face.schemes[0].quality.mean(), 1e-12) << corners;
+      EXPECT_EQ(vertices.schemes[0].quality.count, corners * face.schemes[0].quality.count);
     }
   }
 }

@@ -102,9 +102,6 @@ TEST(MergeParts, shards_of_a_comparison_give_the_bytes_of_one_run) {
   all[1].schemes = {"slerp", "quadratic"};
   all[1].tolerance = 0.5;
   all[2].access = Access::kSequential;
-  all.emplace_back().path = PathKind::kCatmullRom;
-  all.emplace_back(all[1]).tolerance = {};
-  all.back().path = PathKind::kCatmullRom;
   for (const CompareOptions& options : all) {
     const std::string whole = compare_json({{"walk", compare(motion, options).value()}}, false, false);
     for (const std::size_t count : {1U, 2U, 3U, 8U, 11U})
@@ -123,14 +120,11 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   }
   for (const StoredNormals& stored : {StoredNormals{}, normals}) {
     for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kFlat}) {
-      for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
-        AuditOptions options;
-        options.rule = rule;
-        options.path = path;
-        const std::string whole = audit_json("walk", audit(motion, stored, options).value(), {1});
-        for (const std::size_t count : {2U, 5U, 9U})
-          EXPECT_EQ(merged(audit_parts(motion, stored, options, count)), whole);
-      }
+      AuditOptions options;
+      options.rule = rule;
+      const std::string whole = audit_json("walk", audit(motion, stored, options).value(), {1});
+      for (const std::size_t count : {2U, 5U, 9U})
+        EXPECT_EQ(merged(audit_parts(motion, stored, options, count)), whole);
     }
   }
 }
@@ -138,61 +132,55 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
 // Ends a run after so many segments, and gives what it kept to another one.
 TEST(KnownSegments, a_comparison_that_goes_on_gives_the_bytes_of_one_run) {
   const Motion motion = bending();
-  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
-    for (const Shard shard : {Shard{}, Shard{1, 2}}) {
-      for (std::size_t most = 0; most <= shard.of(8).count; ++most) {
-        CompareOptions options;
-        options.path = path;
-        options.shard = shard;
-        const std::string whole = compare_part({"walk", compare(motion, options).value()});
-        std::vector<std::string> kept;
-        CompareOptions first = options, second = options;
-        first.keep = [&](const ComparedSegment& segment) -> Status {
-          if (kept.size() == most) return Error{ErrorCode::kFailed, "", "the disk is full"};
-          kept.push_back(segment_part(segment));
-          return Success{};
-        };
-        EXPECT_EQ(compare(motion, first).ok(), most == shard.of(8).count);
-        ASSERT_EQ(kept.size(), most);
-        for (const std::string& text : kept) second.known.push_back(read_compared_segment(text, "journal").value());
-        std::size_t computed = 0;
-        second.keep = [&](const ComparedSegment&) -> Status {
-          ++computed;
-          return Success{};
-        };
-        EXPECT_EQ(compare_part({"walk", compare(motion, second).value()}), whole);
-        EXPECT_EQ(computed + most, shard.of(8).count);
-      }
+  for (const Shard shard : {Shard{}, Shard{1, 2}}) {
+    for (std::size_t most = 0; most <= shard.of(8).count; ++most) {
+      CompareOptions options;
+      options.shard = shard;
+      const std::string whole = compare_part({"walk", compare(motion, options).value()});
+      std::vector<std::string> kept;
+      CompareOptions first = options, second = options;
+      first.keep = [&](const ComparedSegment& segment) -> Status {
+        if (kept.size() == most) return Error{ErrorCode::kFailed, "", "the disk is full"};
+        kept.push_back(segment_part(segment));
+        return Success{};
+      };
+      EXPECT_EQ(compare(motion, first).ok(), most == shard.of(8).count);
+      ASSERT_EQ(kept.size(), most);
+      for (const std::string& text : kept) second.known.push_back(read_compared_segment(text, "journal").value());
+      std::size_t computed = 0;
+      second.keep = [&](const ComparedSegment&) -> Status {
+        ++computed;
+        return Success{};
+      };
+      EXPECT_EQ(compare_part({"walk", compare(motion, second).value()}), whole);
+      EXPECT_EQ(computed + most, shard.of(8).count);
     }
   }
 }
 
 TEST(KnownSegments, an_audit_that_goes_on_gives_the_bytes_of_one_run) {
   const Motion motion = bending();
-  for (const PathKind path : {PathKind::kLinear, PathKind::kCatmullRom}) {
-    for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {
-      for (const std::size_t most : {0U, 3U, 8U}) {
-        AuditOptions options;
-        options.path = path;
-        options.rule = rule;
-        const std::string whole = audit_json("walk", audit(motion, {}, options).value(), {1});
-        std::vector<std::string> kept;
-        AuditOptions first = options, second = options;
-        first.keep = [&](const SegmentErrors& segment) -> Status {
-          if (kept.size() == most) return Error{ErrorCode::kFailed, "", "the disk is full"};
-          kept.push_back(segment_part(segment));
-          return Success{};
-        };
-        EXPECT_EQ(audit(motion, {}, first).ok(), most == 8);
-        for (const std::string& text : kept) second.known.push_back(read_measured_segment(text, "journal").value());
-        std::size_t measured = 0;
-        second.keep = [&](const SegmentErrors&) -> Status {
-          ++measured;
-          return Success{};
-        };
-        EXPECT_EQ(audit_json("walk", audit(motion, {}, second).value(), {1}), whole);
-        EXPECT_EQ(measured + most, 8U);
-      }
+  for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {
+    for (const std::size_t most : {0U, 3U, 8U}) {
+      AuditOptions options;
+      options.rule = rule;
+      const std::string whole = audit_json("walk", audit(motion, {}, options).value(), {1});
+      std::vector<std::string> kept;
+      AuditOptions first = options, second = options;
+      first.keep = [&](const SegmentErrors& segment) -> Status {
+        if (kept.size() == most) return Error{ErrorCode::kFailed, "", "the disk is full"};
+        kept.push_back(segment_part(segment));
+        return Success{};
+      };
+      EXPECT_EQ(audit(motion, {}, first).ok(), most == 8);
+      for (const std::string& text : kept) second.known.push_back(read_measured_segment(text, "journal").value());
+      std::size_t measured = 0;
+      second.keep = [&](const SegmentErrors&) -> Status {
+        ++measured;
+        return Success{};
+      };
+      EXPECT_EQ(audit_json("walk", audit(motion, {}, second).value(), {1}), whole);
+      EXPECT_EQ(measured + most, 8U);
     }
   }
 }
@@ -303,7 +291,7 @@ TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
   EXPECT_EQ(merged({{"a", "{}"}}), "a: this is no part that a --shard has left");
   EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "compare"})"}}).find("another version"),
             std::string::npos);
-  EXPECT_NE(merged({{"a", R"({"chronormal_part": 5, "command": "bake"})"}}).find("the part is damaged"),
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 6, "command": "bake"})"}}).find("the part is damaged"),
             std::string::npos);
   const std::string text = audit_parts(motion, {}, {}, 2)[0].text;
   EXPECT_NE(merged({{"a", edited(text, "\"audit\"", "\"bake\"")}}).find("of compare and of audit"), std::string::npos);

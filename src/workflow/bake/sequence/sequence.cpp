@@ -7,10 +7,9 @@
 //     *_deltas, each_exact_segment   what each target adds to the base, as arrays             sequence_deltas
 //     unit_*              the same of what every host shows alike                             harmless_sequence
 //     fewest_keys         at which instants there have to be keys                             fewest_keys
-//     each_curved_*       the same of curved paths, whose weights are cubics                  curved_sequence
 //     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
 //
-// These are passes over the keyframes, of which a pass holds two at a time, four on curved paths, and for keys those
+// These are passes over the keyframes, of which a pass holds two at a time, and for keys those
 // between two of these. The arrays that they make go to a spool. So memory does not grow with the number of keyframes;
 // it does with fits of a weighting.
 #include <algorithm>
@@ -27,7 +26,6 @@
 #include "io/bytes/spool.h"
 #include "io/gltf/glb/glb_builder.h"
 #include "motion/triangles.h"
-#include "workflow/bake/sequence/curved_sequence.h"
 #include "workflow/bake/sequence/fewest_keys.h"
 #include "workflow/bake/sequence/harmless_sequence.h"
 #include "workflow/bake/sequence/sequence_deltas.h"
@@ -301,53 +299,6 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
   return times;
 }
 
-// Adds the targets of curved paths to the file, gives its bytes to take, and notes the results in the report.
-Status write_curved(const CurvedSource& source, const SequenceNormals& normals,
-                    const std::vector<SequenceElement>& elements, double tolerance, const std::vector<float>& times,
-                    const Step& step, SequenceFile& file, const GlbBuilder::Take& take, SequenceBake& report) {
-  const Motion& motion = source.stream->motion();
-  const std::size_t segments = motion.segments.size();
-  Status status = each_curved_key(source, elements, [&](std::size_t k, const std::vector<Vec3d>& deltas) {
-    file.add_key(k, normals.deltas(k), deltas);
-    step(k, 2 * segments);
-    return file.check();
-  });
-  if (!status) return status;
-  const std::vector<std::size_t> with_velocities = keys_with_velocities(motion, source.path);
-  status = each_key_turning(source, with_velocities, [&](std::size_t k, const std::vector<Vec3d>& deltas) {
-    file.add_velocities(k, given_velocities(motion.keyframes[k], source.path), deltas);
-    return file.check();
-  });
-  if (!status) return status;
-  GltfBakeMark mark{BakeEncoding::kEndpoint, true, {}};
-  std::vector<CurveBend> bends;
-  const Result<double> error = each_curved_bend(
-      source, elements, tolerance / kDegreesPerRadian,
-      [&](const CurveBend& bend, const std::vector<Vec3d>& deltas) {
-        mark.extras.emplace_back().target = segments + with_velocities.size() + bends.size();
-        bends.push_back(bend);
-        file.add_bend(bend.segment, deltas);
-        return file.check();
-      },
-      [&](std::size_t done) { step(segments + done, 2 * segments); });
-  if (!error) return error.error();
-  const SequenceTrack track = curved_track(times, with_velocities, bends);
-  if (status = file.check(sizeof(float) * (track.times.size() + std::uint64_t{track.rows} * track.width)); !status)
-    return status;
-  const Result<double> bend = bend_of(*source.stream);
-  if (!bend) return bend.error();
-  report.largest_error = kDegreesPerRadian * error.value();
-  report.targets = segments + with_velocities.size();
-  report.extra_targets = bends.size();
-  report.path = source.path;
-  report.bend = bend.value();
-  const std::vector<int> rest(report.targets + report.extra_targets, 0);
-  const Result<std::size_t> bytes = file.finish(track, "CUBICSPLINE", mark, rest, take);
-  if (!bytes) return bytes.error();
-  report.bytes = bytes.value();
-  return Success{};
-}
-
 std::string titles_of_others(std::span<const Host> hosts) {
   std::string titles;
   for (const Host& host : hosts)
@@ -356,13 +307,12 @@ std::string titles_of_others(std::span<const Host> hosts) {
 }
 
 void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, std::size_t targets, std::size_t without_room,
-                   PathKind path, std::vector<std::string>& warnings) {
+                   std::vector<std::string>& warnings) {
   if (const std::string titles = titles_of_others(hosts); encoding != BakeEncoding::kHarmless && !titles.empty())
     warnings.push_back(
         "by --encode " + std::string(name_of(encoding)) +
         " its normals are made for hosts that add up deltas as they are stored; they can be far off in " + titles +
-        (path == PathKind::kLinear ? ": --encode harmless is for all of these"
-                                   : ": --encode harmless is for all of these, and has straight paths alone"));
+        ": --encode harmless is for all of these");
   if (without_room > 0)
     warnings.push_back(std::to_string(without_room) +
                        " normals turn so far from those of keyframe 0 that compressors cut their deltas");
@@ -385,8 +335,7 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
                                  const GlbBuilder::Take& take) {
   const BakeOptions options = for_all_viewers(asked);
   const Motion& motion = stream.motion();
-  const bool is_curved = options.path != PathKind::kLinear;
-  const BakeEncoding encoding = options.encoding.value_or(is_curved ? BakeEncoding::kEndpoint : BakeEncoding::kExact);
+  const BakeEncoding encoding = options.encoding.value_or(BakeEncoding::kExact);
   const Step step = options.progress ? options.progress : [](std::size_t, std::size_t) {};
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
   if (encoding == BakeEncoding::kKeys) {
@@ -395,16 +344,10 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
     if (!(tolerance >= kLeastKeyTolerance))
       return Error{ErrorCode::kUsage, "", "the tolerance of keys must be 0.001 degrees or more"};
   }
-  if (is_curved && encoding != BakeEncoding::kEndpoint)
-    return Error{ErrorCode::kUsage, "",
-                 "on curved paths n(t) has degree 6, which weights cannot carry: endpoint fits it"};
-  if (is_curved && options.weighting.value_or(Weighting::kArea) != Weighting::kArea)
-    return Error{ErrorCode::kUsage, "", "on curved paths normals are weighted by area, and by nothing else"};
-  if (const Status status = check_path(motion, options.path); !status) return status.error();
   const Result<NormalGroups> groups = groups_of(stream, options);
   if (!groups) return groups.error();
   SequenceBake report;
-  const bool is_authored = !is_curved && encoding != BakeEncoding::kKeys;
+  const bool is_authored = encoding != BakeEncoding::kKeys;
   const VectorView<const float> stored = is_authored ? options.normal_of_corner : VectorView<const float>();
   Result<SequenceNormals> made = Error{ErrorCode::kFailed, "", ""};
   if (const Weighting weighting = is_authored ? weighting_of(stream, groups.value(), options) : Weighting::kArea;
@@ -428,11 +371,9 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
     if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
   }
   const bool are_units = encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kKeys;
-  const CurvedSource curved{&stream, &groups.value(), options.path};
-  Result<HarmlessElements> found = is_curved   ? without_limits(curved_elements(curved))
-                                   : are_units ? harmless_elements(normals)
-                                   : is_exact  ? without_limits(elements_of_start(normals))
-                                               : without_limits(sequence_elements(normals));
+  Result<HarmlessElements> found = are_units  ? harmless_elements(normals)
+                                   : is_exact ? without_limits(elements_of_start(normals))
+                                              : without_limits(sequence_elements(normals));
   if (!found) return found.error();
   std::vector<SequenceElement>& elements = found.value().elements;
   SequenceTargets targets{are_units ? BakeEncoding::kHarmless : encoding, false, normals.keys(), {}};
@@ -449,12 +390,6 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
                               " triangles overlap in the file");
   report.keyframes = normals.keys();
   report.vertices = file.vertex_count();
-  if (is_curved) {
-    const Status written = write_curved(curved, normals, elements, tolerance, times.value(), step, file, take, report);
-    if (!written) return written.error();
-    warn_of_hosts(encoding, options.hosts, report.targets + report.extra_targets, 0, options.path, report.warnings);
-    return report;
-  }
   if (encoding == BakeEncoding::kKeys) {
     times = write_keys(motion, normals, elements, times.value(), tolerance, step, file, report);
     if (!times) return times.error();
@@ -466,8 +401,7 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
     if (!error) return error.error();
     report.largest_error = std::max(report.largest_error, error.value());
   }
-  warn_of_hosts(targets.encoding, options.hosts, targets.count(), found.value().without_room, options.path,
-                report.warnings);
+  warn_of_hosts(targets.encoding, options.hosts, targets.count(), found.value().without_room, report.warnings);
   const Result<std::size_t> bytes = file.finish(targets, times.value(), take);
   if (!bytes) return bytes.error();
   report.targets = targets.of_keys();

@@ -226,10 +226,6 @@ void SequenceFile::add_bend(std::size_t segment, std::span<const Vec3d> normals)
   add_bend(segment, rounded(normals));
 }
 
-void SequenceFile::add_velocities(std::size_t key, std::span<const float> velocities, std::span<const Vec3d> normals) {
-  targets_.push_back(target("velocities " + std::to_string(key), add_positions(velocities), rounded(normals)));
-}
-
 SequenceFile::Target SequenceFile::target(std::string name, std::size_t positions, std::span<const float> normals) {
   return {std::move(name), positions,
           builder_.add_vectors(vertices_.vectors(normals, Vec3f{}, room_), {false, dense_zeros_})};

@@ -89,8 +89,6 @@ class SequenceFile {
   /// are added.
   void add_bend(std::size_t segment, std::span<const float> normals);
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
-  /// Adds a target that moves vertices by the velocities of a key, (V, 3), and normals by how fast they turn there.
-  void add_velocities(std::size_t key, std::span<const float> velocities, std::span<const Vec3d> normals);
 
   /// Errors: kInvalidInput where the file has too many bytes already, or would have with so many more; those of the
   /// spool.
@@ -99,7 +97,9 @@ class SequenceFile {
   /// say what was added. Errors: those of GlbBuilder::finish().
   [[nodiscard]] Result<std::size_t> finish(const SequenceTargets& targets, const std::vector<float>& times,
                                            const GlbBuilder::Take& take);
-  /// The same with a track and a mark of the caller's; rest are the weights of the mesh that no animation plays.
+
+ private:
+  // rest are the weights of the mesh that no animation plays.
   [[nodiscard]] Result<std::size_t> finish(const SequenceTrack& track, std::string_view interpolation,
                                            const GltfBakeMark& mark, const std::vector<int>& rest,
                                            const GlbBuilder::Take& take);

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "chronormal/normals/normal_curves.h"
-#include "chronormal/normals/path_curves.h"
 #include "tests/support/fixtures.h"
 
 namespace chronormal::prefetch_test {
@@ -80,25 +79,6 @@ TEST(PrefetchRule, a_rule_of_few_distances_tries_no_others) {
   PrefetchRule rule(2);
   for (std::size_t trial = 0; trial < 2 * PrefetchRule::kTrials; ++trial) EXPECT_EQ(rule.next(), trial % 2);
   EXPECT_EQ(rule.next(), std::nullopt);
-}
-
-TEST(PrefetchRule, large_evaluations_of_paths_are_right_in_every_trial) {
-  constexpr std::size_t kCount = 100000;  // 10 MB with the results
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> number(-0.4, 0.4);
-  std::vector<PolynomialNormals<3>> normals(kCount);
-  for (PolynomialNormals<3>& of_element : normals)
-    for (Vec3d& control : of_element) control = {number(random), number(random), 1 + number(random)};
-  const PathCurves curves(normals);
-  std::vector<float> first(3 * kCount);
-  for (std::size_t pass = 0; pass < PrefetchRule::kTrials; ++pass) {
-    (void)curves.unit_normals(0.3, VectorView<float>::packed(first));
-    for (std::size_t i = 0; i < kCount; i += 997) {
-      const Vec3f expected = to_float(unit_normal_at(normals[i], 0.3).vector);
-      for (std::size_t c = 0; c < 3; ++c)
-        ASSERT_NEAR(first[3 * i + c], (c == 0 ? expected.x : c == 1 ? expected.y : expected.z), 1e-6) << i;
-    }
-  }
 }
 
 // Threads meet at the last trial in some of many rounds only, in which they begin together and with few trials left.
