@@ -1,5 +1,5 @@
-// Ear clipping in the coordinate plane in which the polygon is seen largest. A product of two float32 is exact in double,
-// so the area of a triangle is a sum of six doubles, whose sign is found exactly.
+// Ear clipping in the coordinate plane in which the polygon is seen largest. A product of two float32 is exact in
+// double, so the area of a triangle is a sum of six doubles, whose sign is found exactly.
 #include "motion/triangles.h"
 
 #include <algorithm>
@@ -72,7 +72,7 @@ std::vector<Point> flattened(std::span<const std::uint32_t> face, std::span<cons
   return points;
 }
 
-// Whether no triangle of the fan turns right: then they cover a polygon that does not cross itself once.
+// Tells whether no triangle of the fan turns right: then they cover a polygon that does not cross itself once.
 bool is_fan_of(const std::vector<Point>& points) {
   for (std::size_t c = 2; c < points.size(); ++c)
     if (turn(points[0], points[c - 1], points[c]) < 0) return false;
@@ -95,7 +95,7 @@ std::vector<std::array<std::uint32_t, 3>> clipped(const std::vector<Point>& poin
   std::vector<std::uint32_t> rest(points.size());
   for (std::uint32_t c = 0; c < rest.size(); ++c) rest[c] = c;
   const auto corner = [&](std::size_t i) { return rest[i % rest.size()]; };
-  // Whether the corner i is one that can be cut off: it turns left, and no other point is in its triangle.
+  // Tells whether the corner i is one that can be cut off: it turns left, and no other point is in its triangle.
   const auto is_ear = [&](std::size_t i) {
     const Point &a = points[corner(i + rest.size() - 1)], &b = points[corner(i)], &c = points[corner(i + 1)];
     if (turn(a, b, c) <= 0) return false;
@@ -109,8 +109,8 @@ std::vector<std::array<std::uint32_t, 3>> clipped(const std::vector<Point>& poin
   };
   std::size_t at = 1;
   while (rest.size() > 3) {
-    // Ears in turn, so that triangles do not all meet in one corner. Then corners on a line, which cost no area. A polygon
-    // that crosses itself may have neither.
+    // Ears in turn, so that triangles do not all meet in one corner. Then corners on a line, which cost no area. A
+    // polygon that crosses itself may have neither.
     std::size_t found = rest.size();
     for (std::size_t i = 0; i < rest.size() && found == rest.size(); ++i)
       if (is_ear((at + i) % rest.size())) found = (at + i) % rest.size();

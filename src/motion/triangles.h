@@ -1,11 +1,13 @@
-/// Cuts polygons into triangles: what files that hold only triangles get, and what is asked where a surface is. Private.
+/// Cuts polygons into triangles: what files that hold only triangles get, and what is asked where a surface is.
+/// Private.
 ///
-/// A polygon that a fan around its first corner covers, as every convex one, becomes that fan, which is what most programs make of it. Another one is cut by
-/// ear clipping in the plane of its vector area at one keyframe: the triangles cover the polygon once there. All signs are
-/// exact. A polygon that crosses itself has no such triangles, and gets as many others.
+/// A polygon that a fan around its first corner covers, as every convex one, becomes that fan, which is what most
+/// programs make of it. Another one is cut by ear clipping in the plane of its vector area at one keyframe: the
+/// triangles cover the polygon once there. All signs are exact. A polygon that crosses itself has no such triangles,
+/// and gets as many others.
 ///
-/// Libraries that cut polygons (mapbox earcut, CGAL) leave out corners on straight edges, so that vertices would have no
-/// triangle, or decide by rounded numbers; so this is our own.
+/// Libraries that cut polygons (mapbox earcut, CGAL) leave out corners on straight edges, so that vertices would have
+/// no triangle, or decide by rounded numbers; so this is our own.
 #ifndef CHRONORMAL_MOTION_TRIANGLES_H_
 #define CHRONORMAL_MOTION_TRIANGLES_H_
 
@@ -30,7 +32,8 @@ inline constexpr std::size_t kMostClipped = 1U << 13;
 [[nodiscard]] std::vector<std::uint32_t> cut_polygons(const Topology& topology, std::span<const float> positions,
                                                       std::span<const std::uint32_t> vertex_of_corner);
 
-/// Whether a fan around the first corner covers the polygon once at these positions, as far as signs of areas tell.
+/// Tells whether a fan around the first corner covers the polygon once at these positions, as far as signs of areas
+/// tell.
 [[nodiscard]] bool is_fan(std::span<const std::uint32_t> face, std::span<const float> positions);
 
 }  // namespace chronormal::inline internal

@@ -70,8 +70,8 @@ std::vector<Triangle> cut(const std::vector<Place>& polygon, std::size_t axis = 
   return triangles_of_face(face, in_space(polygon, axis));
 }
 
-// Triangles that all turn left, and whose areas add up to that of the polygon, cover it once: the signed sum of what they
-// cover is what the polygon winds around.
+// Triangles that all turn left, and whose areas add up to that of the polygon, cover it once: the signed sum of what
+// they cover is what the polygon winds around.
 void expect_covers_once(const std::vector<Place>& polygon, std::size_t axis) {
   const std::vector<Triangle> triangles = cut(polygon, axis);
   ASSERT_EQ(triangles.size(), polygon.size() - 2);

@@ -176,7 +176,7 @@ class GltfDocument {
   [[nodiscard]] AffineTransform world_transform(std::size_t node) const noexcept;
   /// Extensions that the file uses, as it names them.
   [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
-  /// What is wrong with parts of the file that nobody needs for the others, in the order of the file: these parts are
+  /// Faults of parts of the file that nobody needs for the others, in the order of the file: these parts are
   /// passed over. Also extensions that the file requires, and that change nothing of a mesh, but where it is shown.
   [[nodiscard]] const std::vector<Error>& notes() const noexcept;
   /// How much the document may ask for, by its size and that of the files that hold its buffers.

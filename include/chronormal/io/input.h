@@ -74,7 +74,7 @@ struct InputOptions {
   std::size_t every = 1;
   /// The last of these keyframes is followed by the first one again, after the mean time between two of them.
   bool loop = false;
-  /// What could be read but for a part of it is refused, with the first of the notes that Input::notes() would have.
+  /// Refuses what could be read but for a part of it, with the first of the notes that Input::notes() would have.
   bool strict = false;
   /// How vertices move between these keyframes, as make_path() reads it. Curves are those of the whole sequence: up to
   /// three keyframes beyond the first and the last one are read for them. They are cut into straight pieces
@@ -138,7 +138,7 @@ class Input {
   /// The glTF file that the input is; nullptr where it is none. It lives as long as the input.
   [[nodiscard]] const GltfDocument* document() const noexcept;
 
-  /// What a person should know of the way in which the input was read, in whole sentences: that listed files were
+  /// Returns what a person should know of how the input was read, in whole sentences: that listed files were
   /// sorted, that parts of a file were passed over. Of a document, what is known so far.
   [[nodiscard]] std::vector<std::string> notes() const;
   /// The numbers of the files of a sequence; nothing where their names do not tell them.

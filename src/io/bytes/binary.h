@@ -50,8 +50,8 @@ void append(std::string& text, T value, std::endian order) {
 }
 
 /// Reads count coordinates of the type Real, float or double, from the bytes at `at`, rounded to float32. Returns how
-/// many were read: fewer than count where the next one has a coordinate_fault(). The origin is taken away before they are
-/// rounded; the first of them is coordinate `first` of a list (V, 3).
+/// many were read: fewer than count where the next one has a coordinate_fault(). The origin is taken away before they
+/// are rounded; the first of them is coordinate `first` of a list (V, 3).
 template <class Real>
 [[nodiscard]] std::size_t load_coordinates(const char* at, std::size_t count, std::endian order, float* result,
                                            const std::array<double, 3>& origin = {}, std::size_t first = 0) noexcept {

@@ -122,8 +122,8 @@ class Md2Reader {
     return Success{};
   }
 
-  // Frames of one clip follow each other. A model of several clips is an animation, in which each clip begins at the time
-  // at which the one before ends: two keyframes at one time, and no segment between them.
+  // Frames of one clip follow each other. A model of several clips is an animation, in which each clip begins at the
+  // time at which the one before ends: two keyframes at one time, and no segment between them.
   static void set_times(double frames_per_second, Motion& motion) {
     std::size_t clips = 1;
     double frame = 0;
@@ -139,8 +139,8 @@ class Md2Reader {
     motion.connect(are_clips ? MotionKind::kAnimation : MotionKind::kSequence);
   }
 
-  // Whether a frame begins another clip: run1 after stand02, and death201 after death106. Names without numbers tell
-  // nothing.
+  // Tells whether a frame begins another clip: run1 after stand02, and death201 after death106. Names without numbers
+  // tell nothing.
   static bool begins_clip(const std::string& before, const std::string& name) {
     const auto digits_at = [](const std::string& text) {
       const std::size_t last = text.find_last_not_of("0123456789");

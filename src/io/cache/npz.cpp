@@ -53,8 +53,9 @@ CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string
   return layout;
 }
 
-// Finds the origin that positions are to count from, by the first sample of an array with data; (0, 0, 0) where no sample
-// has more digits than float32. Of an array that is too large to look at, the first, the middle and the last one tell.
+// Finds the origin that positions are to count from, by the first sample of an array with data; (0, 0, 0) where no
+// sample has more digits than float32. Of an array that is too large to look at, the first, the middle and the last one
+// tell.
 Origin origin_of(const Array& array) {
   constexpr std::uint64_t kMostLooked = std::uint64_t{1} << 22;  // coordinates
   const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
@@ -116,8 +117,8 @@ constexpr const char* kPadded =
     "alone: "
     "faces.reshape(-1, 4)[:, 1:] of triangles";
 
-// Whether rows of so many numbers begin with the number of the others. Polygons around a vertex of that number do, too,
-// but have it once, and share no edge on the far side.
+// Tells whether rows of so many numbers begin with the number of the others. Polygons around a vertex of that number
+// do, too, but have it once, and share no edge on the far side.
 bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   if (width < 4 || rows.size() < 2 * width) return false;
   const auto count = static_cast<std::uint32_t>(width - 1);
@@ -134,7 +135,7 @@ bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   return !is_fan;
 }
 
-// The same of one long list, in which each face begins with its number of corners.
+// Tells the same of one long list, in which each face begins with its number of corners.
 bool is_padded_list(const Array& array) {
   if (array.kind == Kind::kFloat || array.shape.size() != 1) return false;
   const std::size_t size = array.element_count();

@@ -81,8 +81,8 @@ struct Format {
 /// bytes are of a known kind: how messages begin about a file that has no format.
 [[nodiscard]] std::string unknown_format(std::string_view bytes, std::string_view what);
 
-/// What to do about a file of a format that is not read here and that other programs turn into one that is, by its name or
-/// its first bytes: "this is an FBX file, which is not read: ..."; empty where it is none of these.
+/// Says what to do about a file of a format that is not read here and that other programs turn into one that is, by its
+/// name or its first bytes: "this is an FBX file, which is not read: ..."; empty where it is none of these.
 [[nodiscard]] std::string way_in(std::string_view file_name, std::string_view bytes);
 
 /// ".obj, .ply": the extensions of all formats that hold one of these, for messages; the last after `last`.

@@ -112,7 +112,7 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (motion.kind == MotionKind::kTargets || motion.segments.empty()) return chooses_nothing(options);
   const Result<std::vector<std::size_t>> frames = choose_frames(motion.keyframes.size(), options);
   if (!frames) return frames.error();
-  // Of several clips, a part with jumps stays one, and a part without them is a sequence like any other.
+  // A part of several clips that has jumps stays one, and a part without them is a sequence like any other.
   const std::size_t last = options.to.value_or(motion.keyframes.size() - 1);
   bool jumps = false;
   for (std::size_t k = options.from + 1; k <= last && motion.kind == MotionKind::kAnimation; ++k)
@@ -197,8 +197,8 @@ void note_if_far(const Origin& origin, std::span<const float> first, ReadMotion&
 
 // Says that a cache has the vertices of a mesh in another order, or is of another mesh; empty where nothing tells that.
 // Motion keeps the lengths of edges, or changes them smoothly. Between vertices in a wrong order, they are those of any
-// two points, which are much longer in all but the smallest meshes. There the coordinates tell, each axis by itself: where
-// they are those of the mesh in another order, so are the vertices.
+// two points, which are much longer in all but the smallest meshes. There the coordinates tell, each axis by itself:
+// where they are those of the mesh in another order, so are the vertices.
 std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh, const std::vector<float>& first) {
   constexpr double kTolerance = 1e-4, kFarther = 2, kSpread = 0.15;
   constexpr std::size_t kFewCoordinates = 1 << 20;  // are sorted in no time
@@ -382,7 +382,7 @@ Status read_whole_motion(const Format& format, std::string_view bytes, const std
     note_if_far(read.motion.origin, read.motion.keyframes.front().positions, read);
     return keep_chosen(options, read.motion);
   }
-  // What is wrong with the first sample is found when it is read again.
+  // Faults of the first sample are found when it is read again.
   first.resize(layout->coordinates());
   if (read_sample(*layout, *file, name, 0, first)) note_if_far(layout->origin, first, read);
   Result<MotionStream> stream =

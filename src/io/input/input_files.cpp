@@ -159,7 +159,7 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
       if (!shifted) return shifted;
       bool has_more_digits = shifted.value().has_more_digits;
       if (!has_more_digits && !read.last_file.empty()) {
-        // What is wrong with the last file is found when it is read in its turn.
+        // Faults of the last file are found when it is read in its turn.
         if (const Result<FileBytes> last = FileBytes::open(read.last_file, options.resolve)) {
           const Result<MeshFrame> other =
               read_mesh(last.value().bytes(), file_name_of(read.last_file), place, {false, false, of_mesh.origin});

@@ -42,7 +42,7 @@ struct Number {
   }
 };
 
-// Where a number stands in a name.
+// The place of a number in a name.
 struct Place {
   std::size_t begin = 0, end = 0;    // with its sign
   std::size_t digits = 0;            // where its digits begin
@@ -193,7 +193,7 @@ class Names {
     for (std::size_t i = 0; i < files_.size(); ++i) cuts_[i] = cut_name(files_[i], syntax);
   }
 
-  // Whether some number has an exponent, and each number has one in all names or in none.
+  // Tells whether some number has an exponent, and each number has one in all names or in none.
   [[nodiscard]] bool all_have_powers() const {
     bool some = false;
     for (const Cut& cut : cuts_) {
@@ -207,8 +207,8 @@ class Names {
     return some;
   }
 
-  // Whether the points between digits can be decimal points. `before` are digits in front of the point, `behind` those
-  // after it.
+  // Tells whether the points between digits can be decimal points. `before` are digits in front of the point, `behind`
+  // those after it.
   [[nodiscard]] bool have_fractions() const {
     std::map<std::pair<std::string, std::size_t>, std::vector<std::pair<std::string, std::string>>> found;
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
@@ -270,8 +270,8 @@ std::string group_words(const std::vector<std::string>& files, const Group& grou
          " files)";
 }
 
-// Divides groups of which several numbers differ by all of these but the last: take1_1, take1_2, take2_1, take2_2. Names
-// that stand alone then, such as those of dates, are one group.
+// Divides groups of which several numbers differ by all of these but the last: take1_1, take1_2, take2_1, take2_2.
+// Names that stand alone then, such as those of dates, are one group.
 std::vector<Group> divided(const Names& names, const std::vector<Group>& groups) {
   std::vector<Group> result;
   for (const Group& group : groups) {
@@ -301,8 +301,8 @@ void reorder(std::vector<std::string>& files, const std::vector<std::size_t>& or
   files = std::move(sorted);
 }
 
-// Whether a shell may have listed the files in this order: by their bytes, or as most languages have it, where letters
-// and digits count first.
+// Tells whether a shell may have listed the files in this order: by their bytes, or as most languages have it, where
+// letters and digits count first.
 bool stand_as_listed(const std::vector<std::string>& files) {
   const auto letters_of = [](const std::string& name) {
     std::string letters;

@@ -70,8 +70,8 @@ struct ReadFrame {
   std::uint64_t bytes = 0;  // the size of its file, where it was not counted otherwise
 };
 
-// Reads a frame; of_first has the faces and the origin of the first one. `faces` are those of the first frame, where their text can be compared; `shaded` gets the normals of
-// the frame, where they are wanted.
+// Reads a frame; of_first has the faces and the origin of the first one. `faces` are those of the first frame, where
+// their text can be compared; `shaded` gets the normals of the frame, where they are wanted.
 ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
                      const ObjFaces* faces, ReadMotion* shaded, const Motion& of_first, const std::string& first_name) {
   const Result<FileBytes> file = open_frame(options, path, place);

@@ -21,9 +21,10 @@ namespace chronormal::inline internal {
 /// file, no more files are open at a time than there are threads, and one topology is kept. The result is valid
 /// (motion/motion.h).
 ///
-/// The names of the files give the times (times_of_files() of io/input/numbering.h). Errors: kUsage for a frame rate where
-/// names are times in seconds; those of opening and of the readers, with the frame in the place ("frame 3 (walk_3.obj), line 17");
-/// kInvalidInput for fewer than two files, and where vertex count or faces differ from those of frame 0.
+/// The names of the files give the times (times_of_files() of io/input/numbering.h). Errors: kUsage for a frame rate
+/// where names are times in seconds; those of opening and of the readers, with the frame in the place ("frame 3
+/// (walk_3.obj), line 17"); kInvalidInput for fewer than two files, and where vertex count or faces differ from those
+/// of frame 0.
 [[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
 /// The same, except that the files of keyframes after the first are read when the stream asks for them, with the errors

@@ -16,8 +16,8 @@ namespace chronormal::inline internal {
 using Origin = std::array<double, 3>;
 
 /// Finds the point to count positions (V, 3) from where that saves four bits or more: where they are farther from
-/// (0, 0, 0) than 16 times their extent. It is near their middle, and a multiple of a power of two of about that extent, so
-/// that it is taken away without rounding. (0, 0, 0) otherwise.
+/// (0, 0, 0) than 16 times their extent. It is near their middle, and a multiple of a power of two of about that
+/// extent, so that it is taken away without rounding. (0, 0, 0) otherwise.
 template <class Real>
 [[nodiscard]] Origin far_origin(std::span<const Real> positions) {
   constexpr double kFar = 16, kBeside = 4;
@@ -40,13 +40,13 @@ template <class Real>
   return middle;
 }
 
-/// Whether float32 rounds a number away that is given in so many units of its last digit.
+/// Tells whether float32 rounds a number away that is given in so many units of its last digit.
 [[nodiscard]] inline bool loses_digits(double value, double last_digit) noexcept {
   return std::fabs(value - double{static_cast<float>(value)}) > last_digit / 2 * (1 + 1e-6);
 }
 
-/// Says of positions that have no more digits than float32 what rounding to that took away before, where that is much for their extent; empty
-/// where it is not.
+/// Says of positions that have no more digits than float32 what rounding to that took away before, where that is much
+/// for their extent; empty where it is not.
 [[nodiscard]] std::string note_of_lost_digits(std::span<const float> positions);
 
 /// "(452312, 5411872, 0)"

@@ -16,10 +16,10 @@ struct MeshFrame {
   Topology topology;
   std::vector<float> positions;  ///< (V, 3), V = topology.vertex_count()
 
-  /// Positions count from the origin that the reader was given, and the file has more digits than float32 would have kept
-  /// of them without it.
+  /// Positions count from the origin that the reader was given, and the file has more digits than float32 would have
+  /// kept of them without it.
   bool has_more_digits = false;
-  /// What was passed over, a sentence each.
+  /// Parts that were passed over, a sentence each.
   std::vector<std::string> notes = {};
 
   /// (V, 3): the velocity of each vertex, in length units per second, where that is asked for and the file has them.

@@ -35,25 +35,26 @@ namespace chronormal::inline internal {
 /// Reads the mesh of an OBJ file, of which name is the name for messages.
 ///
 /// Errors: kInvalidInput with the place "NAME, line N": coordinates that are missing, no number, glued to something
-/// else, not finite or too large for float32 (too small becomes 0); the index 0 and indices of no vertex; a file without vertices or without faces. Messages count vertices, faces and corners from 0,
-/// and quote indices as the file has them. A file that was cut off inside its last number, or between two faces, is
-/// still an OBJ file: it is read as the mesh that it describes.
-/// Faces of fewer than 3 corners are left out, with a note that counts them. Positions count from the origin.
+/// else, not finite or too large for float32 (too small becomes 0); the index 0 and indices of no vertex; a file
+/// without vertices or without faces. Messages count vertices, faces and corners from 0, and quote indices as the file
+/// has them. A file that was cut off inside its last number, or between two faces, is still an OBJ file: it is read as
+/// the mesh that it describes. Faces of fewer than 3 corners are left out, with a note that counts them. Positions
+/// count from the origin.
 /// Cost: one pass; memory in proportion to the numbers that are there, whatever the indices say.
 [[nodiscard]] Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name, const Origin& origin = {});
 
 /// Reads the mesh of an OBJ file and how it is shaded. Faces before the first s are in no smoothing group.
 ///
-/// A corner with the normal index 0, or one of no vn, has no normal, and faces after an s without a word are in no group; a
-/// note counts each of these.
+/// A corner with the normal index 0, or one of no vn, has no normal, and faces after an s without a word are in no
+/// group; a note counts each of these.
 ///
 /// Errors: those of read_obj(), and in the same way: vn that are not three finite numbers.
 [[nodiscard]] Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name,
                                                  const Origin& origin = {});
 
 /// Writes vertices and faces as the text of an OBJ file. Coordinates have the fewest digits that read back as the
-/// same float32; with an origin, which is added to them, as the same double. positions must have as many elements as the
-/// topology has vertices.
+/// same float32; with an origin, which is added to them, as the same double. positions must have as many elements as
+/// the topology has vertices.
 [[nodiscard]] std::string write_obj(const Topology& topology, VectorView<const float> positions,
                                     const Origin& origin = {});
 

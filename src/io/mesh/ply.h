@@ -43,10 +43,10 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 /// and row where they are known ("cube.ply, byte 310, face 17"): a header that breaks the grammar or declares something
 /// twice; no vertices, no x, y, z, or no faces with vertex_indices; triangle strips; counts for which there are too few
 /// bytes (refused before memory is taken); data that end early; coordinates that are no number, not finite or too large
-/// for float32; indices of no vertex; in ascii, a row that ends inside a line, with numbers behind it. Faces of fewer than 3
-/// corners are left out, with a note that counts them. In ascii, a row may go over several lines.
-/// A file cut off anywhere before its end is an error, with one exception: the last number of an ascii file may lose
-/// digits and still be a number.
+/// for float32; indices of no vertex; in ascii, a row that ends inside a line, with numbers behind it. Faces of fewer
+/// than 3 corners are left out, with a note that counts them. In ascii, a row may go over several lines. A file cut off
+/// anywhere before its end is an error, with one exception: the last number of an ascii file may lose digits and still
+/// be a number.
 /// Cost: one pass; memory in proportion to the size of the file.
 [[nodiscard]] Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name, const Origin& origin = {});
 
@@ -56,8 +56,9 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 [[nodiscard]] Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name,
                                                 const Origin& origin = {});
 
-/// Writes a PLY file with float x, y, z, or where there is an origin to be added double x, y, z, and one list of indices for each face. In ascii, coordinates have the fewest
-/// digits that read back as the same float32. positions must have as many elements as the topology has vertices.
+/// Writes a PLY file with float x, y, z, or where there is an origin to be added double x, y, z, and one list of
+/// indices for each face. In ascii, coordinates have the fewest digits that read back as the same float32. positions
+/// must have as many elements as the topology has vertices.
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding,
                                     const Origin& origin = {});
 

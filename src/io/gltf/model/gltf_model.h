@@ -169,9 +169,9 @@ struct Model {
 [[nodiscard]] std::string primitive_pointer(std::size_t mesh, std::size_t primitive);
 
 /// Takes a document apart: JSON that begins at byte `offset` of the file. file_bytes: the size of the file, which
-/// bounds how many elements an accessor without a buffer view may have. What is wrong with parts that the others do not need
-/// is a note of the model, and an error where is_strict. Errors: kInvalidInput, with name and JSON
-/// pointer as the place, or name and byte for what is no JSON.
+/// bounds how many elements an accessor without a buffer view may have. What is wrong with parts that the others do not
+/// need is a note of the model, and an error where is_strict. Errors: kInvalidInput, with name and JSON pointer as the
+/// place, or name and byte for what is no JSON.
 [[nodiscard]] Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset,
                                         std::size_t file_bytes, bool is_strict);
 

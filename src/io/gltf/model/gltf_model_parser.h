@@ -82,7 +82,7 @@ class Parser {
   void check_required(const JsonView& root);
   /// Notes what is wrong with buffer views and accessors that nothing has asked for.
   void note_faults();
-  /// Whether a node, or a node below, carries a mesh, or a skin is hung on it.
+  /// Tells whether a node, or a node below, carries a mesh, or a skin is hung on it.
   [[nodiscard]] std::vector<bool> nodes_that_place_meshes() const;
   void parse_buffer(const JsonView& item);
   void parse_view(const JsonView& item, BufferView& view);

@@ -90,8 +90,8 @@ Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place)
   return fs::path(*relative);
 }
 
-// The file of a path, or where there is none, the one that a person means by it: as the URI has it, without decoding, or in
-// the same folder, of the same name in another form of Unicode.
+// The file of a path, or where there is none, the one that a person means by it: as the URI has it, without decoding,
+// or in the same folder, of the same name in another form of Unicode.
 fs::path existing(const fs::path& path, const fs::path& literal) {
   std::error_code code;
   if (fs::exists(path, code)) return path;
