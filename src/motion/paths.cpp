@@ -7,13 +7,13 @@
 //
 //     d = s (1 - s) (e x q + p x f) + s^2 (1 - s)^2 p x q                                                           (1)
 //
-// added up over the triangles of the face. Both products are quadratics in s, and so is n. A quadratic is nowhere longer
+// added up over the triangles of the face. Both products are quadratics in s, and so is n. A quadratic is never longer
 // than the longest of its Bernstein coefficients, and nowhere shorter than the shortest of their projections on a
 // direction. With s (1 - s) <= 1/4 this bounds |d| from above by r and |n| from below by l, and the angle between n and
 // n + d by asin(r / l). Sums over faces differ by no more than the sum of their r, so that nothing else is needed for
 // vertices and corners.
 //
-// Rounding a keyframe to float32 moves each coordinate by up to 2^-24 of it, which changes (1) in the same way: by up to
+// Rounding a keyframe to float32 moves each coordinate by up to 2^-24 of it, which changes (1) in the same way: up to
 // |e| |dq| + |dp| |f| + |dp| |dq|. A piece whose r is below that gains nothing by being cut.
 #include "chronormal/motion/paths.h"
 

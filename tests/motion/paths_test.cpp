@@ -76,8 +76,8 @@ TEST(Path, hermite_needs_a_velocity_and_curves_a_sequence) {
 // ---- pieces --------------------------------------------------------------------------------------------------------
 
 // Holds the normals of all faces, or of all vertices, of the pieces against those of the curve at times between, and
-// returns the largest angle in degrees, less what rounding of positions to float32 may do to the face, twice: once in the
-// pieces, and once where a piece that is as near as that is good enough.
+// returns the largest angle in degrees, less what rounding of positions to float32 may do to the face, twice: once in
+// the pieces, and once where a piece that is as near as that is good enough.
 double largest_error(const Motion& motion, const Motion& pieces, bool of_vertices, bool given) {
   double largest = 0;
   for (std::size_t p = 0; p < pieces.segments.size(); ++p) {

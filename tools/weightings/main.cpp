@@ -1,4 +1,4 @@
-// chronormal_weightings [--partial] FOLDER: writes FOLDER/weightings.md and FOLDER/pictures/weightings_*.svg
+// chronormal_weightings [--partial] FOLDER: writes FOLDER/weightings.md
 // (tools/make_weightings). With --partial it leaves out what it cannot measure here: other libraries that it was built
 // without, files where CHRONORMAL_DATA does not say where they are.
 
