@@ -25,7 +25,7 @@ namespace chronormal::inline internal {
 /// O(n) for convex ones, else O(n^2); one of more corners than kMostClipped becomes a fan.
 [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles_of_face(std::span<const std::uint32_t> face,
                                                                           std::span<const float> positions);
-inline constexpr std::size_t kMostClipped = 1U << 13;
+inline constexpr std::size_t kMostClipped = 1U << 11;
 
 /// The triangles of all faces, by the vertex of each corner: (triangles, 3). positions are those of the topology's
 /// vertices; vertex_of_corner may name other vertices, and has as many entries as the topology has corners.

@@ -30,7 +30,8 @@ constexpr double kDisplaced = 1e-5;                 // a share of the size that 
 // "within 1 degree and 0 torn edges", in how many viewers.
 std::string limits_words(const Audited& input) {
   std::string limits;
-  if (input.limits.degrees) limits = formatted("{:g} {}", *input.limits.degrees, *input.limits.degrees == 1 ? "degree" : "degrees");
+  if (input.limits.degrees)
+    limits = formatted("{:g} {}", *input.limits.degrees, *input.limits.degrees == 1 ? "degree" : "degrees");
   if (input.limits.torn_edges)
     limits += (limits.empty() ? "" : " and ") + counted(*input.limits.torn_edges, "torn edge", "torn edges");
   const std::vector<HostAudit>& viewers = input.audit.hosts;

@@ -130,7 +130,8 @@ using Involved = std::vector<std::size_t>;
 JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
   JudgedPart part =
       judged_part(mesh.shading, mesh.truth, moving_outputs(mesh.shading, mesh.truth, involved, mesh.rule), mesh.rule);
-  if (mesh.rule != AuditRule::kFlat) part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());  // facets have no folds between them
+  if (mesh.rule != AuditRule::kFlat)
+    part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());  // facets have no folds between them
   return part;
 }
 

@@ -7,10 +7,10 @@
 namespace chronormal {
 namespace {
 
-constexpr const char* kKinds[] = {"unlit",      "missing_normals", "wrong_at_keys", "wrong_between", "wrong_together",
-                                  "wrong_pose", "stale_tangents",  "stale_keys",    "unknown_rule",  "flat_primitive",
-                                  "skin",       "unread_skin",     "baked",         "emptied",       "baked_keyframes",
-                                  "beyond_viewer"};
+constexpr const char* kKinds[] = {
+    "unlit",          "missing_normals", "wrong_at_keys",   "wrong_between",  "wrong_together", "wrong_pose",
+    "stale_tangents", "stale_keys",      "unknown_rule",    "flat_primitive", "skin",           "unread_skin",
+    "baked",          "emptied",         "baked_keyframes", "beyond_viewer"};
 
 Json place_json(const AuditPlace& place, const char* moment) {
   Json json;
