@@ -95,15 +95,15 @@ for (const file of ['bumps.glb', 'authored.glb']) {
   test(`every host of the page has the number of the audit: ${file}`, () => {
     chronormal('report', path(file), '--no-plan', '--for', 'all,gltfpack,quantize,meshopt', '--force', '-q', '-o', path('hosts.bin'));
     const player = makePlayer(readContainer(readFileSync(path('hosts.bin'))), () => {});
-    const { hosts } = JSON.parse(chronormal('audit', path(file), '--for', 'all,gltfpack,quantize,meshopt', '--json', '-q'));
-    for (const { name, worst_degrees: worst } of hosts) {
+    const { viewers } = JSON.parse(chronormal('audit', path(file), '--for', 'all,gltfpack,quantize,meshopt', '--json', '-q'));
+    for (const { name, worst_degrees: worst } of viewers) {
       player.host = name;
       let most = 0;
       walk(player, (motion, i, degrees) => (most = Math.max(most, degrees)));
       assert.equal(player.host, name);
       assert.ok(Math.abs(most - worst) < NEAR, `${name}: ${most}, not ${worst}`);
     }
-    assert.equal(hosts.length, 9);
+    assert.equal(viewers.length, 9);
   });
 }
 

@@ -712,7 +712,10 @@ TEST(BakeSequence, real_sequences_are_exact) {
   const int times = is_full ? 16 : 5;
   const std::string theory = test::read_whole(std::string(kSourceFolder) + "/docs/theory.md");
   for (const auto& input : inputs) {
-    const Result<Motion> motion = test::read_motion(test::files(input, 24));
+    InputOptions options = test::files(input, 24);
+    constexpr std::size_t kLastOfFirstClip = 39;
+    if (input[0].ends_with(".md2")) options.to = kLastOfFirstClip;  // between clips nothing moves
+    const Result<Motion> motion = test::read_motion(options);
     ASSERT_TRUE(motion.ok()) << motion.error().text();
     SequenceBake baked;
     const std::string file = bake(motion.value(), {}, &baked);
