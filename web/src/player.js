@@ -17,18 +17,15 @@ export function makePlayer(report, onChange) {
   const isGltf = report.kind === 'gltf';
 
   function pose() {
-    const { part, motion, surface, weights, shownWeights } = player;
+    const { part, motion, surface, weights } = player;
     if (!isGltf) {
       surface.pose(...segmentAt(motion, player.at), player.scheme, motion.least);
     } else if (player.byHand) {
       drive(player.formulas, weights);
-      surface.pose(weights, weights, player.host, null);
+      surface.pose(weights, player.host, null);
     } else {
-      if (motion) {
-        weightsAt(motion, 'specification', player.at, weights);
-        weightsAt(motion, player.host, player.at, shownWeights);
-      }
-      surface.pose(weights, shownWeights, player.host, motion?.least);
+      if (motion) weightsAt(motion, player.host, player.at, weights);
+      surface.pose(weights, player.host, motion?.least);
     }
     let worst = -1;
     const { degrees } = surface;
@@ -46,7 +43,6 @@ export function makePlayer(report, onChange) {
     Object.assign(player, { index, part, surface: surfaces.get(index), byHand: false });
     if (isGltf) {
       player.weights = new Float64Array(part.targets.length);
-      player.shownWeights = new Float64Array(part.targets.length);
       player.formulas = formulasOf(part.mark, part.targets.length);
       player.hosts = part.shown.flatMap(({ hosts }) => hosts);
       if (!player.hosts.includes(player.host)) player.host = 'specification';

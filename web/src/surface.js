@@ -111,7 +111,7 @@ export function weightsAt(motion, host, at, result) {
 /**
  * @param part of a report, of kind "gltf"
  * @returns what is drawn: positions, shown and right normals (V x 3, float32), degrees (V: -1 where nothing is judged), and
- *   pose(weights, shownWeights, host, least), which fills them. shownWeights are those that the host plays.
+ *   pose(weights, host, least), which fills them. weights are those that the host plays: it is held against the normals there.
  */
 export function makeSurface(part) {
   const { vertices: V, elements: E, element } = part;
@@ -177,13 +177,13 @@ export function makeSurface(part) {
     }
   }
 
-  surface.pose = (weights, shownWeights, host, least) => {
+  surface.pose = (weights, host, least) => {
     const entry = shownBy.find(({ hosts }) => hosts.includes(host)) ?? shownBy[0];
-    addUp(part.positions, moved, weights, p);
+    for (let k = 0; k < kept.length; ++k) kept[k] = Math.abs(weights[k]) <= entry.least_weight ? 0 : weights[k];
+    addUp(part.positions, moved, kept, p);
     copy(p, surface.positions);
     computeNormals(p, n, sizes);
-    computeTruth?.(p, weights, n, r);
-    for (let k = 0; k < kept.length; ++k) kept[k] = Math.abs(shownWeights[k]) <= entry.least_weight ? 0 : shownWeights[k];
+    computeTruth?.(p, kept, n, r);
     addUp(entry.halves ? null : entry.normals, entry.targets, kept, sums);
     judge(entry, least);
   };
