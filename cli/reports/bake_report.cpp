@@ -95,7 +95,7 @@ bool is_of_animations(const BakedMesh& mesh) {
                      [](const BakeChoice& choice) { return choice.chosen && choice.animations_only; });
 }
 
-// What one viewer shows, over all samples.
+// Errors of one viewer over all samples.
 struct Shown {
   double mean = 0, worst = 0, torn_edges = 0;
 };
@@ -104,14 +104,14 @@ Shown shown_of(const MotionError& error) { return {error.mean(), error.worst, er
 
 Shown shown_of(const ShownErrors& errors) { return {errors.mean, errors.worst, errors.torn_edges()}; }
 
-// What one viewer shows before and after.
+// Errors of one viewer before and after.
 struct ViewerRow {
   const Host* viewer = nullptr;
   Shown before, after;
   bool is_named = true, is_better = false;
 };
 
-// What bake itself measured: adds up the errors of all poses and of all meshes whose deltas are fitted to the
+// Rows of what bake itself measured: adds up the errors of all poses and of all meshes whose deltas are fitted to the
 // animations, or of all others. Its means are those of fewer samples than an audit's.
 std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   std::vector<ViewerRow> rows;
@@ -137,8 +137,8 @@ std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   return rows;
 }
 
-// What the audits found, by which a file is judged after all, where there are any and no deltas are fitted to the
-// animations alone; else what bake measured.
+// Rows of what the audits found, by which a file is judged after all, where there are any and no deltas are fitted to
+// the animations alone; else what bake measured.
 std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& report, bool of_animations) {
   std::vector<ViewerRow> rows = measured_rows(bake, of_animations);
   if (!report.audit || any_of_animations(bake)) return rows;

@@ -27,7 +27,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress() { clear(); }
 
-  /// Whether it was made quiet: then nothing else is said either that is no warning.
+  /// Returns whether it was made quiet: then nothing else is said either that is no warning.
   [[nodiscard]] bool is_quiet() const noexcept { return is_quiet_; }
 
   /// A function for the library to tell how far it is. The Progress must outlive it. The rate is that of so many

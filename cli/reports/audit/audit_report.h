@@ -21,8 +21,8 @@ struct Audited {
   /// The glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
   [[nodiscard]] bool passed(const HostAudit& host) const { return limits.allow(host); }
-  /// Whether the limits are kept: in every viewer that was named, or by the rule where none was. A file in which nothing
-  /// moves keeps them.
+  /// Returns whether the limits are kept: in every viewer that was named, or by the rule where none was. A file in
+  /// which nothing moves keeps them.
   [[nodiscard]] bool passed() const { return limits.allow(audit); }
 };
 

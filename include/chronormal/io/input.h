@@ -156,7 +156,7 @@ class Input {
   /// those of motion(), except those of reading keyframes.
   [[nodiscard]] Result<MotionStream*> stream();
 
-  /// What was cut, once motion() or stream() was asked for.
+  /// The path that was cut, once motion() or stream() was asked for.
   [[nodiscard]] const CutPath& cut_path() const noexcept;
 
   /// Returns keyframe k of the motion, from 0, in any order. It is valid until the next call that reads keyframes.

@@ -6,13 +6,13 @@
 ///     keyframes            0           1                 2
 ///     catmull-rom          0--o--o--o--1--o--o--o--o--o--2         o: keyframes on the curves, at equal steps of time
 ///
-/// How many pieces a segment gets follows from a bound, and not from samples. On each piece the cubic of a vertex is
-/// its chord and a deviation s (1 - s) ((1 - s) a + s b) with s in [0, 1], where a and b follow from the second
-/// derivatives at both ends. The products of edges and deviations bound how far the normal of a face, a vector, is from
-/// that of the chords, and the Bernstein coefficients of the latter bound its length. A segment gets the fewest pieces,
-/// of a ladder 1, 2, 3, 4, 6, 8, 12 ..., with which that ratio is at most the sine of the tolerance in every face and
-/// piece. Since it bounds vectors, sums over the faces of a vertex or of a corner are as near, as far as these faces
-/// look the same way.
+/// The number of pieces that a segment gets follows from a bound, and not from samples. On each piece the cubic of a
+/// vertex is its chord and a deviation s (1 - s) ((1 - s) a + s b) with s in [0, 1], where a and b follow from the
+/// second derivatives at both ends. The products of edges and deviations bound how far the normal of a face, a vector,
+/// is from that of the chords, and the Bernstein coefficients of the latter bound its length. A segment gets the fewest
+/// pieces, of a ladder 1, 2, 3, 4, 6, 8, 12 ..., with which that ratio is at most the sine of the tolerance in every
+/// face and piece. Since it bounds vectors, sums over the faces of a vertex or of a corner are as near, as far as these
+/// faces look the same way.
 ///
 /// The new keyframes are float32, and the rounding of their positions comes on top: a face whose normals deviate by no
 /// more than that rounding is good enough, too. A face that all but vanishes between two keyframes may be within no
@@ -83,9 +83,9 @@ struct CubicSegment {
   std::array<std::vector<Vec3d>, 4> control;  ///< control[i][vertex]
   double start_time = 0, end_time = 1;        ///< seconds, at t = 0 and t = 1
 
-  /// Where a vertex is at a local t.
+  /// Returns the position of a vertex at a local t.
   [[nodiscard]] Vec3d position(std::size_t vertex, double t) const noexcept;
-  /// Where all vertices are, rounded to float32: (V, 3).
+  /// Returns the positions of all vertices, rounded to float32: (V, 3).
   [[nodiscard]] std::vector<float> positions(double t) const;
 };
 /// The cubics from keys[i] to keys[i + 1], straight ones too, through their float32 positions: a curve is drawn through
