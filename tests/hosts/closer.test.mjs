@@ -90,12 +90,14 @@ describe('what is baked is closer to the truth', () => {
     assert.ok(rows.every(([{ mean }, then]) => then.mean < mean + ROUNDING), shown);
   }
 
-  // A head in Filament, and the picture of it in the documents.
+  // Draws the head of README, and holds the picture of the documents against that.
   async function assertPicture() {
     const input = join(DATA, 'rigs', 'blender_suzanne_two_keys.glb');
+    const output = join(folder, 'head.glb');
+    chronormal('bake', input, '-o', output);  // as the caption says, and by nothing else
     const items = [
       [['not baked', 'as Blender wrote it'], input],
-      [['baked', 'chronormal bake face.glb'], bake(input, '--encode', 'smallest')],
+      [['baked', 'chronormal bake face.glb'], output],
     ].map(([caption, path]) => ({ base64: readFileSync(path).toString('base64'), caption }));
     const [{ view }] = await stillMoments(input, 0, [PICTURE_TIME]);
     const draw = (...all) => window.drawPicture(...all);
