@@ -143,7 +143,7 @@ bool is_padded_list(const Array& array) {
   while (at < size) {
     const std::uint64_t corners = array.vertex(at);
     if (corners < 3 || corners >= size - at) return false;
-    at += corners + 1;
+    at += static_cast<std::size_t>(corners) + 1;
   }
   return size > 0;
 }

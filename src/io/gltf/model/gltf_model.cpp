@@ -365,11 +365,12 @@ void Parser::check_nodes(const JsonView& root) {
   if (!complaint_.first() && !marked_.empty()) read_marks_of_nodes();
   if (misplaced_.empty() || complaint_.first()) return;
   const std::vector<bool> places = nodes_that_place_meshes();
-  for (auto& [index, fault] : misplaced_) {
-    if (places[index])
-      complaint_.add(std::move(fault));
+  for (auto& misplaced : misplaced_) {
+    const auto add = [&] { complaint_.add(std::move(misplaced.second)); };
+    if (places[misplaced.first])
+      add();
     else
-      (void)understands([&] { complaint_.add(std::move(fault)); });
+      (void)understands(add);
   }
 }
 

@@ -97,10 +97,11 @@ void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std:
     if (!complaint_.first()) known.insert(weights);
   };
   for (std::size_t c = 0; c < channels->size() && !complaint_.first(); ++c) (void)understands([&] { read(c); });
-  for (auto& [node, weights] : lone) {
+  for (auto& of_node : lone) {
+    std::vector<LoneWeight>& weights = of_node.second;
     std::stable_sort(weights.begin(), weights.end(),
                      [](const LoneWeight& a, const LoneWeight& b) { return a.target < b.target; });
-    (void)understands([&] { assemble_track(item, node, weights, animation, sources); });
+    (void)understands([&] { assemble_track(item, of_node.first, weights, animation, sources); });
   }
 }
 
