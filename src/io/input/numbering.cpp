@@ -38,7 +38,7 @@ struct Number {
     const Number &low = a.is_negative ? b : a, &high = a.is_negative ? a : b;
     if (sign(a) == 0) return std::strong_ordering::equal;
     if (const auto order = low.point <=> high.point; order != 0) return order;
-    return low.digits <=> high.digits;
+    return low.digits.compare(high.digits) <=> 0;
   }
 };
 
@@ -171,7 +171,8 @@ class Names {
     std::map<std::string, Group> by_key;
     for (std::size_t i = 0; i < files_.size(); ++i) by_key[cuts_[i].key()].files.push_back(i);
     std::vector<Group> groups;
-    for (auto& [key, group] : by_key) {
+    for (auto& of_key : by_key) {
+      Group& group = of_key.second;
       const std::size_t first = group.files.front();
       for (std::size_t k = 0; k < numbers_[first].size(); ++k) {
         const auto differs = [&](std::size_t i) { return numbers_[i][k] != numbers_[first][k]; };
@@ -221,14 +222,16 @@ class Names {
                                       files_[i].substr(place.point + 1, end - place.point - 1));
       }
     }
-    for (const auto& [at, parts] : found) {
+    for (const auto& place : found) {
+      const auto& parts = place.second;
       const bool is_constant =
           std::all_of(parts.begin(), parts.end(), [&](const auto& each) { return each == parts.front(); });
       if (is_constant) continue;
       const bool one_version =
           std::all_of(parts.begin(), parts.end(), [&](const auto& each) { return each.first == parts.front().first; });
       const std::string& before = parts.front().first;
-      const bool is_named = at.first.ends_with('v') || at.first.ends_with('V');
+      const std::string& text = place.first.first;
+      const bool is_named = text.ends_with('v') || text.ends_with('V');
       if (one_version && (is_named || (before.size() > 1 && before.front() == '0'))) return false;
       const bool same_length = std::all_of(parts.begin(), parts.end(), [&](const auto& each) {
         return each.second.size() == parts.front().second.size();
