@@ -169,21 +169,14 @@ inline constexpr std::array<Host, 9> kHosts = {{
 /// these are not named.
 void drop_weights(const Host& host, std::span<double> weights, std::span<const std::size_t> targets = {}) noexcept;
 
-/// The sum that a host shows of one vertex: N' and then each target in their order, in float32.
-class HostSum {
- public:
-  HostSum(const Host& host, const Vec3f& kept_normal) noexcept
-      : normal_(kept_normal), sum_(host.keeps_halves() ? Vec3f{} : kept_normal), halves_(host.keeps_halves()) {}
+/// What the sum of a vertex begins with, to which each target then adds its weight times kept_delta() in their order, in
+/// float32: N', or zero in hosts of 16-bit floats, which add up deltas alone.
+[[nodiscard]] constexpr Vec3f first_of_sum(const Host& host, const Vec3f& kept_normal) noexcept {
+  return host.keeps_halves() ? Vec3f{} : kept_normal;
+}
 
-  void add(double weight, const Vec3f& kept_delta) noexcept { sum_ = sum_ + static_cast<float>(weight) * kept_delta; }
-
-  /// The unit normal that is shown; zero, or not finite, where the sum is.
-  [[nodiscard]] Vec3f normal() const noexcept;
-
- private:
-  Vec3f normal_, sum_;  // of 16-bit floats the sum of deltas alone, which is kept as such too
-  bool halves_;
-};
+/// The unit normal that is shown of a sum; zero, or not finite, where the sum is.
+[[nodiscard]] Vec3f shown_of_sum(const Host& host, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 
 }  // namespace chronormal
 

@@ -60,51 +60,18 @@ HostErrors::HostErrors(const GltfShading& shading, const JudgedPart& part, std::
     : part_(part),
       is_skinned_(is_skinned),
       weights_(std::move(weights)),
+      right_(part.outputs().size()),
       size_(size_of(shading)),
       now_(hosts.size(), std::vector<double>(involved.size())),
       last_(hosts.size()),
       errors_(hosts.size()) {
-  const std::span<const JudgedOutput> outputs = part.outputs();
   for (const Host& host : hosts) {
     const auto known = std::find_if(kept_.begin(), kept_.end(),
-                                    [&](const Kept& kept) { return keep_alike(*kept.host, host, is_skinned); });
+                                    [&](const StoredSums& kept) { return keep_alike(kept.host(), host, is_skinned); });
     kept_by_.push_back(static_cast<std::size_t>(known - kept_.begin()));
-    if (known != kept_.end()) continue;
-    Kept& kept = kept_.emplace_back();
-    kept.host = &host;
-    for (const JudgedOutput& output : outputs)
-      kept.normals.push_back(kept_normal(host, vector_at(shading.normals, output.vertex)));
-    kept.deltas.resize(involved.size());
-    for (std::size_t k = 0; k < involved.size(); ++k) {
-      const std::vector<float>& all = shading.normal_deltas[involved[k]];
-      if (all.empty()) continue;
-      for (std::uint32_t i = 0; i < outputs.size(); ++i) {
-        const Vec3f delta = vector_at(all, outputs[i].vertex);
-        if (delta == Vec3f{}) continue;
-        kept.deltas[k].emplace_back(
-            i, kept_delta(host, vector_at(shading.normals, outputs[i].vertex), kept.normals[i], delta));
-      }
-    }
+    if (known == kept_.end())
+      kept_.emplace_back(shading, part.outputs(), std::vector<std::size_t>(involved.begin(), involved.end()), host);
   }
-}
-
-std::vector<Vec3f> HostErrors::shown(const Kept& kept, std::span<const double> weights) const {
-  std::vector<Vec3f> result(kept.normals.size());
-  numbered_blocks(result.size(), kRange, [&](std::size_t, std::size_t first, std::size_t end) {
-    std::vector<HostSum> sums;
-    sums.reserve(end - first);
-    for (std::size_t i = first; i < end; ++i) sums.emplace_back(*kept.host, kept.normals[i]);
-    for (std::size_t k = 0; k < weights.size(); ++k) {
-      if (weights[k] == 0) continue;
-      const auto& deltas = kept.deltas[k];
-      auto delta = std::lower_bound(deltas.begin(), deltas.end(), first,
-                                    [](const auto& entry, std::size_t i) { return entry.first < i; });
-      for (; delta != deltas.end() && delta->first < end; ++delta)
-        sums[delta->first - first].add(weights[k], delta->second);
-    }
-    for (std::size_t i = first; i < end; ++i) result[i] = sums[i - first].normal();
-  });
-  return result;
 }
 
 void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
@@ -123,6 +90,7 @@ void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
     // Hosts that play these weights and keep normals alike show the same, so that one of them is judged for all. These
     // are the errors that are known so far.
     std::vector<const MotionError*> of_kept(kept_.size());
+    std::optional<SkinRule> is_right_for;  // whom right_ is for, of those who see this part alike
     double displaced = 0;
     if (now_[h] != source.now()) {
       if (!elsewhere_) elsewhere_.emplace(part_);
@@ -133,7 +101,7 @@ void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
       if (size_ > 0) displaced = largest_distance(sample.placed.positions, elsewhere_->positions) / size_;
     } else if (source.rule() == AuditRule::kGltf) {
       for (std::size_t k = 0; k < kept_.size(); ++k)
-        if (adds_as_specified(*kept_[k].host, is_skinned_)) of_kept[k] = &sample.error;
+        if (adds_as_specified(kept_[k].host(), is_skinned_)) of_kept[k] = &sample.error;
     }
     for (std::size_t other = h; other < weights_.size(); ++other) {
       if (is_judged[other] || now_[other] != now_[h]) continue;
@@ -143,13 +111,21 @@ void HostErrors::add_sample(BlendSource& source, const MeasuredSample& sample) {
         last_[other] = {*known, displaced};
         continue;
       }
-      const Kept& kept = kept_[kept_by_[other]];
-      const SeenByHost by_host{source, kept.host->skins};
-      const std::vector<Vec3f> normals = shown(kept, now_[other]);
+      StoredSums& kept = kept_[kept_by_[other]];
+      const SeenByHost by_host{source, kept.host().skins};
+      if (!is_right_for || (is_skinned_ && *is_right_for != by_host.rule)) {
+        parallel_each(right_.size(), kRange, [&](std::size_t i) {
+          right_[i] = right_output(by_host, *where, sample.largest, part_.outputs()[i]);
+        });
+        is_right_for = by_host.rule;
+      }
+      kept.add_up({now_[other]});
+      const std::span<const float> sums = kept.find(now_[other]);
       const auto shown_at = [&](std::size_t i, const JudgedOutput&) {
-        return source.seen(i, to_double(normals[i]), by_host.rule);
+        return source.seen(i, to_double(kept.shown(sums, i)), by_host.rule);
       };
-      last_[other] = {error_at(by_host, *where, false, sample.largest, sample.segment, sample.t, shown_at), displaced};
+      const auto right_at = [&](std::size_t i, const JudgedOutput&) -> const RightOutput& { return right_[i]; };
+      last_[other] = {error_at(by_host, *where, false, sample.segment, sample.t, shown_at, right_at), displaced};
       known = &last_[other].error;
     }
   }

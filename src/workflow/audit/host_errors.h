@@ -6,7 +6,6 @@
 #define CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "chronormal/workflow/hosts.h"
 #include "workflow/audit/blend_source.h"
 #include "workflow/audit/measure.h"
+#include "workflow/audit/stored_sums.h"
 
 namespace chronormal::inline internal {
 
@@ -42,21 +42,12 @@ class HostErrors {
   [[nodiscard]] std::vector<HostError> take() { return std::move(errors_); }
 
  private:
-  // Normals and deltas as some hosts keep them.
-  struct Kept {
-    const Host* host = nullptr;
-    std::vector<Vec3f> normals;  // of each output
-    // Of each involved target the outputs that it turns, ascending.
-    std::vector<std::vector<std::pair<std::uint32_t, Vec3f>>> deltas;
-  };
-
-  [[nodiscard]] std::vector<Vec3f> shown(const Kept& kept, std::span<const double> weights) const;
-
   const JudgedPart& part_;
   bool is_skinned_;
   std::vector<Weights> weights_;
-  std::vector<Kept> kept_;
+  std::vector<StoredSums> kept_;          // normals and deltas as some hosts keep them
   std::vector<std::size_t> kept_by_;      // of each host, in kept_
+  std::vector<RightOutput> right_;        // of each output, as some of them see it
   double size_ = 0;                       // of the mesh
   std::optional<PlacedPart> elsewhere_;   // at weights other than those of the specification, once there are any
   std::size_t placed_ = 0;                // as source.placed() was at the last sample; 0 before any

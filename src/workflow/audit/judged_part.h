@@ -74,6 +74,8 @@ class JudgedPart {
     return own_edges_.empty() ? edges_ : own_edges_;
   }
   [[nodiscard]] std::uint32_t output_of(std::uint32_t vertex) const noexcept { return output_of_[vertex]; }
+  /// How many vertices the mesh of these edges has.
+  [[nodiscard]] std::size_t vertices_of_edges() const noexcept { return output_of_.size(); }
   /// Takes the edges of a mesh of so many vertices, which must outlive this. Every vertex must have one output at most.
   void set_edges(std::span<const std::array<std::uint32_t, 2>> edges, std::size_t vertex_count);
   [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }

@@ -185,33 +185,52 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
     if (counts[bin] > 0) result.counts.add(bin, counts[bin]);
 }
 
+/// Makes a vector that is nearly of length 1, as most here are, or of any other, one of length 1.
+[[nodiscard]] inline Vec3d to_unit(const Vec3d& v) noexcept {
+  constexpr double kNear = 1e-6;  // lengths of float32 are closer
+  return std::fabs(dot(v, v) - 1) < kNear ? v : unit(v);
+}
+
 /// What is shown less what is right, as unit vectors: the other side where nothing can be lit, NaN where a pair is not
 /// judged.
 [[nodiscard]] inline Vec3f difference(double judged, const Vec3d& shown, const Vec3d& right) noexcept {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   if (judged == kNotJudged || right == Vec3d{}) return {kNan, kNan, kNan};
-  const Vec3d u = unit(right);
-  return to_float(judged == kNotLit ? -2.0 * u : unit(shown) - u);
+  const Vec3d u = to_unit(right);
+  return to_float(judged == kNotLit ? -2.0 * u : to_unit(shown) - u);
 }
 
 /// Counts the torn edges of a part, of which these are the differences between what is shown and what is right: unit
 /// vectors of outputs, NaN where none is judged.
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error);
 
-/// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows. each,
-/// where it is not empty, gets that of the i-th in degrees, NaN where none is judged.
-template <class Source, class Shown>
-[[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat,
-                                   std::span<const double> largest, std::size_t segment, double t, const Shown& shown,
-                                   std::span<float> each = {}) {
+/// What is right at an output, as it is placed.
+struct RightOutput {
+  Vec3d direction;          ///< as source.right() has it
+  bool is_hidden = false;   ///< as source.hides() has it
+  bool has_normal = false;  ///< whether the normal is long enough to be judged by
+  bool has_area = false;    ///< whether a face around it is drawn: one without area is not, whatever its normal
+};
+
+template <class Source>
+[[nodiscard]] RightOutput right_output(const Source& source, const PlacedPart& placed, std::span<const double> largest,
+                                       const JudgedOutput& output) {
+  const Vec3d& normal = placed.normals.elements[output.element];
+  const double least = kVanished * largest[output.element];
+  return {source.right(output, normal), source.hides(output, normal), length(normal) > least,
+          placed.normals.sizes[output.element] > least};
+}
+
+/// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows, and
+/// right(i, output) what is right there. each, where it is not empty, gets that of the i-th in degrees, NaN where none
+/// is judged.
+template <class Source, class Shown, class Right>
+[[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat, std::size_t segment,
+                                   double t, const Shown& shown, const Right& right, std::span<float> each = {}) {
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
   const bool has_edges = !placed.part.edges().empty();
   std::vector<Vec3f> differences(has_edges ? outputs.size() : 0);
   std::vector<MotionError> of_blocks(block_count(outputs.size(), kRange));
-  // A face without area is not drawn, whatever its normal.
-  const auto is_drawn = [&](const JudgedOutput& output, const Vec3d& normal) {
-    return is_flat ? normal != Vec3d{} : placed.normals.sizes[output.element] > kVanished * largest[output.element];
-  };
   numbered_blocks(outputs.size(), kRange, [&](std::size_t b, std::size_t first, std::size_t end) {
     std::vector<double> degrees(end - first);
     std::array<Vec3d, 256> is_shown, is_right;
@@ -219,20 +238,16 @@ template <class Source, class Shown>
       const std::size_t count = std::min(is_shown.size(), end - from);
       const std::span<double> of_some = std::span(degrees).subspan(from - first, count);
       for (std::size_t k = 0; k < count; ++k) {
-        const JudgedOutput& output = outputs[from + k];
-        const Vec3d& normal = placed.normals.elements[output.element];
-        is_shown[k] = shown(from + k, output);
+        is_shown[k] = shown(from + k, outputs[from + k]);
+        const RightOutput& is = right(from + k, outputs[from + k]);
+        const bool may_be_lit = is_flat ? is_shown[k] != Vec3d{} : is.has_area;
         // A skin may leave nothing of a normal that is right.
-        const bool is_hidden = source.hides(output, normal), may_be_lit = is_drawn(output, is_shown[k]);
-        const bool has_normal = length(normal) > kVanished * largest[output.element];
-        of_some[k] = is_hidden                                                           ? kNotJudged
+        of_some[k] = is.is_hidden                                                        ? kNotJudged
                      : !is_finite(is_shown[k]) || (may_be_lit && is_shown[k] == Vec3d{}) ? kNotLit
-                     : !has_normal || !may_be_lit                                        ? kNotJudged
+                     : !is.has_normal || !may_be_lit                                     ? kNotJudged
                                                                                          : 0;
-        if (of_some[k] == kNotJudged)
-          is_shown[k] = is_right[k] = {};
-        else
-          is_right[k] = source.right(output, normal);
+        is_right[k] = is.direction;
+        if (of_some[k] == kNotJudged) is_shown[k] = is_right[k] = {};
         if (of_some[k] == kNotLit) is_shown[k] = {};
       }
       std::array<double, is_shown.size()> angles;
@@ -249,11 +264,12 @@ template <class Source, class Shown>
           const Vec3d& normal = placed.normals.elements[output.element];
           if (normal != Vec3d{} && source.hides(output, normal)) return kNotJudged;
           const Vec3d now = shown(first + i, output);
+          const RightOutput& is = right(first + i, output);
           const double faint = normal == Vec3d{}
                                    ? kNotJudged
-                                   : faint_degrees(now, source.right(output, normal), length(normal),
+                                   : faint_degrees(now, is.direction, length(normal),
                                                    placed.part.rounding_of(placed.positions, output.element));
-          return faint == kNotJudged && is_drawn(output, now) ? kCancels : faint;
+          return faint == kNotJudged && (is_flat ? now != Vec3d{} : is.has_area) ? kCancels : faint;
         },
         [&](const JudgedOutput& output) { return source.at(segment, t, output); }, of_blocks[b]);
     for (std::size_t i = first; !each.empty() && i < end; ++i) {
@@ -335,6 +351,9 @@ template <class Source, class EachSample>
   const auto shown = [&](std::size_t i, const JudgedOutput& output) {
     return is_flat ? source.seen(i, placed.normals.faces[output.face]) : to_double(source.shown(output));
   };
+  const auto right = [&](std::size_t, const JudgedOutput& output) {
+    return right_output(source, placed, largest, output);
+  };
   MotionError error;  // of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
   const Result<IndexRange> rest = add_known(kept, subject);
@@ -353,7 +372,7 @@ template <class Source, class EachSample>
       const double t = time_of_sample(i, subject.samples);
       if (placed.place(source, s, t)) {
         source.show();
-        error = error_at(source, placed, is_flat, largest, s, t, shown, each);
+        error = error_at(source, placed, is_flat, s, t, shown, right, each);
       }
       if (kept.table != nullptr)
         keep_sample(kept, part.outputs(), each, subject.is_weighed(), source.at(s, t, part.outputs().front()).at);

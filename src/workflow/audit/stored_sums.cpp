@@ -18,13 +18,19 @@ constexpr std::size_t kGroupsPerTask = 16;
 }  // namespace
 
 StoredSums::StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs,
-                       std::vector<std::size_t> involved)
+                       std::vector<std::size_t> involved, const Host& host)
     : shading_(shading),
       outputs_(outputs),
       involved_(std::move(involved)),
+      host_(host),
       stride_(3 * kGroup * block_count(outputs.size(), kGroup)) {}
 
 void StoredSums::make_groups() {
+  if (host_.normals != NormalRule::kSum) {
+    kept_normals_.resize(outputs_.size());
+    parallel_each(outputs_.size(), kGroup * kGroupsPerTask,
+                  [&](std::size_t i) { kept_normals_[i] = kept_normal(host_, stored(i)); });
+  }
   groups_.resize(block_count(outputs_.size(), kGroup));
   parallel_each(groups_.size(), kGroupsPerTask, [&](std::size_t g) {
     Group& group = groups_[g];
@@ -36,6 +42,12 @@ void StoredSums::make_groups() {
       for (std::size_t i = 0; i < count; ++i)
         std::copy_n(all.data() + 3 * std::size_t{outputs_[first + i].vertex}, 3, row.data() + 3 * i);
       if (std::all_of(row.begin(), row.end(), [](float d) { return d == 0; })) continue;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vec3f delta = vector_at(row, i);
+        if (delta == Vec3f{}) continue;
+        const Vec3f kept_one = kept_delta(host_, stored(first + i), kept(first + i), delta);
+        row[3 * i] = kept_one.x, row[3 * i + 1] = kept_one.y, row[3 * i + 2] = kept_one.z;
+      }
       group.targets.push_back(static_cast<std::uint32_t>(k));
       group.deltas.insert(group.deltas.end(), row.begin(), row.end());
     }
@@ -68,8 +80,10 @@ void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
   const Group& group = groups_[g];
   const std::size_t sets = sets_.size(), first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);
   float* const sums = sums_.data() + 3 * first;
-  for (std::size_t i = 0; i < count; ++i)
-    std::copy_n(shading_.normals.data() + 3 * std::size_t{outputs_[first + i].vertex}, 3, sums + 3 * i);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3f term = first_of_sum(host_, kept(first + i));
+    sums[3 * i] = term.x, sums[3 * i + 1] = term.y, sums[3 * i + 2] = term.z;
+  }
   for (std::size_t s = 1; s < sets; ++s) std::copy_n(sums, 3 * count, sums + s * stride_);
 
   const auto is_active = [&](std::uint32_t k) {
@@ -89,6 +103,16 @@ void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
                  stride_);
     row = end + 1;
   }
+}
+
+Vec3f StoredSums::stored(std::size_t output) const { return vector_at(shading_.normals, outputs_[output].vertex); }
+
+Vec3f StoredSums::kept(std::size_t output) const {
+  return kept_normals_.empty() ? stored(output) : kept_normals_[output];
+}
+
+Vec3f StoredSums::shown(std::span<const float> sums, std::size_t output) const {
+  return shown_of_sum(host_, kept(output), vector_at(sums, output));
 }
 
 std::span<const float> StoredSums::find(const std::vector<double>& weights) const noexcept {

@@ -1,4 +1,5 @@
-/// Stored normals of some outputs and their deltas, added up as the specification says. Private to workflow.
+/// Stored normals of some outputs and their deltas, added up as the specification says, or as a host keeps them. Private
+/// to workflow.
 ///
 /// The deltas of many targets fill more memory than a cache has, so that a sum at one set of weights takes as long as it
 /// takes to read them all. Sums at several sets are therefore made in one pass.
@@ -10,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "chronormal/workflow/hosts.h"
 #include "workflow/audit/judged_part.h"
 #include "workflow/shading/gltf_shading.h"
 
@@ -21,7 +23,8 @@ class StoredSums {
 
   /// shading and outputs must outlive this. involved are targets, ascending: a set of weights has one for each of them,
   /// and the others have none at any time.
-  StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<std::size_t> involved);
+  StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<std::size_t> involved,
+             const Host& host = {});
 
   /// Computes N + sum w D of every output at each set of weights, in float32, target after target, as hosts add. What
   /// was known before is forgotten. A delta of zero changes no sum, even where its weight is not finite: such a weight
@@ -30,6 +33,11 @@ class StoredSums {
 
   /// The sums at one of these sets, three for each output; nothing where it is not among them.
   [[nodiscard]] std::span<const float> find(const std::vector<double>& weights) const noexcept;
+
+  /// The unit normal that is shown of a sum; zero, or not finite, where the sum is.
+  [[nodiscard]] Vec3f shown(std::span<const float> sums, std::size_t output) const;
+
+  [[nodiscard]] const Host& host() const noexcept { return host_; }
 
  private:
   // Some neighbouring outputs, and a row of deltas for each target that turns any of them.
@@ -41,11 +49,15 @@ class StoredSums {
 
   void make_groups();
   void add_group(std::size_t g, std::span<const float> by_target);
+  [[nodiscard]] Vec3f stored(std::size_t output) const;
+  [[nodiscard]] Vec3f kept(std::size_t output) const;
 
   const GltfShading& shading_;
   std::span<const JudgedOutput> outputs_;
   std::vector<std::size_t> involved_;
-  std::vector<Group> groups_;  // empty until something is added up
+  Host host_;
+  std::vector<Vec3f> kept_normals_;  // of outputs, where the host does not keep those that are stored
+  std::vector<Group> groups_;        // empty until something is added up
   std::vector<std::vector<double>> sets_;
   std::size_t stride_;       // of the sums of a set: whole groups
   std::vector<float> sums_;  // (sets, stride)

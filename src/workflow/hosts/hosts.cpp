@@ -5,23 +5,26 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
+#include "core/bits.h"
 #include "core/nearest.h"
 
 namespace chronormal {
 namespace {
 
-// The nearest 16-bit float, halves away from zero.
+// The nearest 16-bit float, halves away from zero: a sign, 5 bits of the exponent, and 10 of the fraction, of which
+// float32 has 23.
 float half(float value) noexcept {
-  constexpr int kDigits = 11, kLeastExponent = -24;
-  constexpr float kLargest = 65504;
-  if (!std::isfinite(value) || value == 0) return value;
-  int exponent = 0;
-  std::frexp(value, &exponent);
-  const int last = std::max(exponent - kDigits, kLeastExponent);  // 2^last is the step between neighbours
-  const float rounded = std::ldexp(std::round(std::ldexp(value, -last)), last);
-  return std::fabs(rounded) > kLargest ? std::copysign(INFINITY, value) : rounded;
+  constexpr std::uint32_t kInfinity = 0x7f800000, kLeastNormal = 0x38800000, kHalfOfLast = 1U << 12;
+  constexpr float kLargest = 65504, kStep = 0x1p-24F;  // the step below 2^-14
+  const float size = std::fabs(value);
+  const auto bits = bit_cast<std::uint32_t>(size);
+  if (bits >= kInfinity) return value;
+  if (bits < kLeastNormal) return std::copysign(std::round(size / kStep) * kStep, value);
+  const auto rounded = bit_cast<float>((bits + kHalfOfLast) & ~(2 * kHalfOfLast - 1));
+  return std::copysign(rounded > kLargest ? INFINITY : rounded, value);
 }
 
 Vec3f half(const Vec3f& v) noexcept { return {half(v.x), half(v.y), half(v.z)}; }
@@ -194,6 +197,8 @@ void drop_weights(const Host& host, std::span<double> weights, std::span<const s
   }
 }
 
-Vec3f HostSum::normal() const noexcept { return to_float(unit(to_double(halves_ ? normal_ + half(sum_) : sum_))); }
+Vec3f shown_of_sum(const Host& host, const Vec3f& kept_normal, const Vec3f& sum) noexcept {
+  return to_float(unit(to_double(host.keeps_halves() ? kept_normal + half(sum) : sum)));
+}
 
 }  // namespace chronormal
