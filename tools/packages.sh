@@ -1,4 +1,4 @@
-# Sourced by ./run and ./test: installs what tools/packages.txt and the package-lock.json of tests/hosts and web list
+# Sourced by ./run and ./test: installs what tools/packages.txt and the package-lock.json of tests/viewers and web list
 # and the machine lacks.
 
 say() { printf 'chronormal: %s\n' "$*" >&2; }
@@ -59,7 +59,7 @@ has_node() {
   command -v npm >/dev/null && node -e 'process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)' 2>/dev/null
 }
 
-# install_npm FOLDER: the npm packages that its package-lock.json lists, those of tests/hosts (the tests in real glTF hosts)
+# install_npm FOLDER: the npm packages that its package-lock.json lists, those of tests/viewers (the tests in real glTF viewers)
 # or of web (the pages); silent where nothing is missing.
 install_npm() {
   local folder=$root/$1

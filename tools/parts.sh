@@ -14,13 +14,13 @@ presets     28  -                 ^CMakePresets|^CMakeLists|^cmake/(compiler|pro
 clang       28  clang             ^cmake/compiler
 tidy        14  clang             ^\.clang-tidy
 fuzz        26  clang             ^fuzz/
-hosts       20  web,node,wasm     ^tests/hosts/.*_page
-pipelines   15  web,node,blender  ^tests/hosts/(pipelines|blender)
+viewers       20  web,node,wasm     ^tests/viewers/.*_page
+pipelines   15  web,node,blender  ^tests/viewers/(pipelines|blender)
 machines    14  machines,node     ^src/simd/|/kernels/|^tools/(machines|two_files)|^tests/install/two_files
 exact       20  -                 ^tests/support/exact_|^src/normals/control/exact
 faults      20  -                 ^tests/faults/
 embedding   28  embedding,node    ^(capi|tests/install)/|^cmake/(install|product)|^python/setup
-everywhere  30  web,node,wasm     ^tests/hosts/same_bytes
+everywhere  30  web,node,wasm     ^tests/viewers/same_bytes
 pages       15  plots,python      ^tools/(paper|weightings|benchmarks|support|python|uses|truth)/
 scale       28  vtk,plots         ^(vtk|cli/ranks|tools/scale)/
 peers       20  bench,peers       ^bench/

@@ -10,9 +10,9 @@
 #include "chronormal/io/poses_file.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/json.h"
 #include "chronormal/workflow/parts.h"
+#include "chronormal/workflow/viewers.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
 #include "cli/options/resume.h"
@@ -81,7 +81,7 @@ const std::vector<RefusedOption> kRefusedByAudit = {
 std::vector<std::vector<Option>> tables(AuditArguments& options) {
   return {input_table(options.input, kRefusedByAudit),
           {{"--rule NAME", &options.rule,
-            "what a host makes of stored normals between keyframes: gltf (default for\n"
+            "what a viewer makes of stored normals between keyframes: gltf (default for\n"
             "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
           options.judge.table("judge what these viewers show of a glTF file"),
           {{"--tolerance DEG", &options.limits.degrees,
@@ -138,7 +138,7 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
   if (!opened) return opened.error();
   Input& input = opened.value();
   const GltfDocument* const document = input.document();
-  if (const Status known = check_hosts(how.hosts, input); !known) return known.error();
+  if (const Status known = check_viewers(how.viewers, input); !known) return known.error();
   if (document == nullptr && options.poses)
     return misuse("--poses", "it gives the targets of a glTF file weights; this input is none");
   if (document == nullptr && options.weights)
@@ -181,8 +181,8 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
     if (!rule) return misuse("--rule", rule.error().message);
     how.rule = rule.value();
   }
-  if (const Status named = options.judge.read("audit", how.weighting, how.hosts); !named) return named.error();
-  if (!how.hosts.empty() && how.rule && *how.rule != AuditRule::kGltf)
+  if (const Status named = options.judge.read("audit", how.weighting, how.viewers); !named) return named.error();
+  if (!how.viewers.empty() && how.rule && *how.rule != AuditRule::kGltf)
     return misuse("--for", "viewers go with the rule gltf, which they stand for");
   if (options.weights) {
     const Result<std::array<double, 2>> weights = read_weights(*options.weights);
@@ -260,11 +260,11 @@ std::string why_beyond(const Audited& audited, const MotionError& error, const s
 }
 
 // Says why a viewer does not pass.
-std::string why_beyond(const Audited& audited, const HostAudit& found) {
+std::string why_beyond(const Audited& audited, const ViewerAudit& found) {
   if (found.beyond > 0 && audited.limits.degrees)
-    return formatted("{}: a mesh has {} more than it takes: {}", found.host.title,
-                     counted(found.beyond, "target", "targets"), found.host.beyond);
-  return formatted("{}: {}", found.host.title,
+    return formatted("{}: a mesh has {} more than it takes: {}", found.viewer.title,
+                     counted(found.beyond, "target", "targets"), found.viewer.beyond);
+  return formatted("{}: {}", found.viewer.title,
                    why_beyond(audited, found.error, worst_label(audited, found), "", "", ""));
 }
 
@@ -280,9 +280,9 @@ std::string why_beyond(const Audited& audited) {
 // passes.
 bool say_what_is_beyond(const Audited& audited, const std::string& place) {
   if (audited.passed()) return true;
-  const std::vector<HostAudit>& hosts = audited.audit.hosts;
-  if (hosts.empty() || !audited.audit.is_judged()) say("audit", place + why_beyond(audited), Tone::kError);
-  for (const HostAudit& found : audited.audit.is_judged() ? hosts : std::vector<HostAudit>())
+  const std::vector<ViewerAudit>& viewers = audited.audit.viewers;
+  if (viewers.empty() || !audited.audit.is_judged()) say("audit", place + why_beyond(audited), Tone::kError);
+  for (const ViewerAudit& found : audited.audit.is_judged() ? viewers : std::vector<ViewerAudit>())
     if (!audited.passed(found)) say("audit", place + why_beyond(audited, found), Tone::kError);
   return false;
 }
@@ -392,9 +392,9 @@ Command audit_command() {
   auto options = std::make_shared<AuditArguments>();
   return {
       "audit",
-      "Measure how far the normals that a host shows are from the right ones",
+      "Measure how far the normals that a viewer shows are from the right ones",
       tables(*options),
-      "A host is a program that shows meshes, such as three.js or Godot. "
+      "A viewer is a program that shows meshes, such as three.js or Godot. "
       "Without --animation, a glTF file is judged by each of its targets alone, from weight 0 to 1, and by all of\n"
       "its animations. The base normals as they were authored are kept: only what motion does to them is an error.\n"
       "Several glTF files, or a folder of them, are judged one by one: a row each, and the worst exit code.\n"

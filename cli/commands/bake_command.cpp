@@ -35,7 +35,7 @@ struct BakeArguments {
   double crease_angle = 180;
   bool recompute_base = false, smooth = false, dense_zeros = false;
   std::optional<std::size_t> most_bytes;
-  std::string hosts;                  // empty: the usual ones
+  std::string viewers;                // empty: the usual ones
   std::optional<std::string> output;  // where it is asked for by name
   std::optional<double> tolerance;
   std::optional<std::size_t> most_targets;
@@ -45,9 +45,9 @@ struct BakeArguments {
   bool json = false, no_audit = false, no_weld = false;
 };
 
-std::string host_names() {
+std::string viewer_names() {
   std::string names;
-  for (const Host& host : kHosts) names.append(names.empty() ? "" : ", ").append(host.name);
+  for (const Viewer& viewer : kViewers) names.append(names.empty() ? "" : ", ").append(viewer.name);
   return names;
 }
 
@@ -58,10 +58,10 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     if (!how.encoding)
       return misuse("--encode", "it must be harmless, exact, endpoint, smallest, or of sequences keys");
   }
-  if (!options.hosts.empty()) {
-    Result<std::vector<Host>> hosts = find_hosts(options.hosts);
-    if (!hosts) return misuse("--for", hosts.error().message);
-    how.hosts = std::move(hosts).value();
+  if (!options.viewers.empty()) {
+    Result<std::vector<Viewer>> viewers = find_viewers(options.viewers);
+    if (!viewers) return misuse("--for", viewers.error().message);
+    how.viewers = std::move(viewers).value();
   }
   how = with_viewers(std::move(how));
   if (!options.weighting.empty()) {
@@ -155,8 +155,8 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   constexpr std::size_t kEnoughSegments = 120;
   audited.most_segments = kEnoughSegments;
   if (author != nullptr) {  // a sequence is shown alike in all viewers, and has no poses of its own
-    audited.hosts = how.hosts;
-    audited.hosts.insert(audited.hosts.end(), how.spared.begin(), how.spared.end());
+    audited.viewers = how.viewers;
+    audited.viewers.insert(audited.viewers.end(), how.spared.begin(), how.spared.end());
     audited.is_posed = how.is_posed;
     audited.poses = how.poses;
   }
@@ -169,7 +169,7 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   constexpr std::size_t kSamplesToCompare = 81;
   if (first && second && is_worse(second.value().error, first.value().error)) {
     audited.samples = kSamplesToCompare;
-    audited.hosts.clear();
+    audited.viewers.clear();
     const Result<Audit> closer = audit_before(audited);
     if (closer) first.value().error.worst = std::max(first.value().error.worst, closer.value().error.worst);
   }
@@ -257,9 +257,9 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (options.animations_only) return misuse("--animations-only", kNotOfSequences);
   if (options.plan) return misuse("--plan", kNotOfSequences);
   if (options.drivers) return misuse("--drivers", "the animation of a sequence drives its extra targets");
-  const bool adds_up = std::all_of(how.hosts.begin(), how.hosts.end(),
-                                   [](const Host& host) { return host.normals == NormalRule::kSum; });
-  if (!how.encoding && !options.hosts.empty() && options.hosts != "all" && !adds_up)
+  const bool adds_up = std::all_of(how.viewers.begin(), how.viewers.end(),
+                                   [](const Viewer& viewer) { return viewer.normals == NormalRule::kSum; });
+  if (!how.encoding && !options.viewers.empty() && options.viewers != "all" && !adds_up)
     how.encoding = BakeEncoding::kHarmless;
   if (how.encoding == BakeEncoding::kSmallest)
     return misuse("--encode", "a sequence is written harmless, exact, endpoint or keys");
@@ -392,8 +392,8 @@ Command bake_command() {
       "bake",
       "Write right normals into a glTF file, or make a glTF file of a sequence",
       {input_table(options->input, refused),
-       {{"--for VIEWER,...", &options->hosts,
-         "the viewers that the result is made for: " + host_names() +
+       {{"--for VIEWER,...", &options->viewers,
+         "the viewers that the result is made for: " + viewer_names() +
              ",\nor all that are no compressors (default: those that add up deltas, three,\n"
              "babylon, playcanvas and bevy, and no worse in the others)"},
         {"--encode HOW", &options->encode,

@@ -27,7 +27,7 @@ Error blamed(Error error, const std::string& option) {
 
 std::vector<Option> BlendArguments::table() {
   return {{"--blend N", &rows,
-           "blend shapes: compare deltas of normals, which hosts add up, with exact normals at\n"
+           "blend shapes: compare deltas of normals, which viewers add up, with exact normals at\n"
            "N random sets of weights, or at N moments of an --animation"},
           {"--active N",
            &active,

@@ -7,8 +7,8 @@
 
 #include "chronormal/io/output.h"
 #include "chronormal/normals/weighting.h"
-#include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/report.h"
+#include "chronormal/workflow/viewers.h"
 #include "cli/commands/built_in_page.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
@@ -61,7 +61,7 @@ Result<std::string> read_template(const ReportArguments& options) {
 
 Result<ReportOptions> understand(const ReportArguments& options, Progress& progress) {
   ReportOptions how;
-  if (const Status named = options.judge.read("report", how.weighting, how.hosts); !named) return named.error();
+  if (const Status named = options.judge.read("report", how.weighting, how.viewers); !named) return named.error();
   if (const Status status = check_input(options.input); !status) return status.error();
   if (!is_container(options) && lower_extension(options.common.output) != ".html")
     return misuse(options.common.output, "the name must end in .html for a page, or in .bin for its data");
@@ -95,7 +95,7 @@ Result<int> run(const ReportArguments& options) {
   wanted.shading = KeepShading::kAll;
   Result<Input> input = open_input("report", std::move(wanted), progress);
   if (!input) return input.error();
-  if (const Status known = check_hosts(how.value().hosts, input.value()); !known) return known.error();
+  if (const Status known = check_viewers(how.value().viewers, input.value()); !known) return known.error();
   const Result<Report> found = report(input.value(), how.value());
   progress.clear();
   if (!found) return found.error();
@@ -124,7 +124,7 @@ Command report_command() {
       "report",
       "Write a page that shows an input as it is shown beside as it should be",
       {input_table(options->input, refused),
-       options->judge.table("glTF: what these hosts show can be looked at too"),
+       options->judge.table("glTF: what these viewers show can be looked at too"),
        {{"--no-plan", &options->no_plan, "glTF: leave out the forms that bake could give each mesh, which take time"},
         {"--template FILE",
          &options->page_template,

@@ -61,15 +61,15 @@ std::string morph_names() {
 
 }  // namespace
 
-std::vector<Option> JudgeArguments::table(const std::string& of_hosts) {
+std::vector<Option> JudgeArguments::table(const std::string& of_viewers) {
   return {{"--weighting NAME", &weighting,
            "how faces count in the right normals: area, angle, uniform, area-angle, max\n"
            "(default: as in the base normals of the file, else area)"},
-          {"--for VIEWER,...", &hosts,
-           of_hosts + ": three, babylon,\n"
-                      "playcanvas, godot, filament, bevy; after compression: gltfpack, quantize,\n"
-                      "meshopt; or all"},
-          {"--host NAME,...", &hosts_by_old_name, "the old name of --for, for this version alone"},
+          {"--for VIEWER,...", &viewers,
+           of_viewers + ": three, babylon,\n"
+                        "playcanvas, godot, filament, bevy; after compression: gltfpack, quantize,\n"
+                        "meshopt; or all"},
+          {"--host NAME,...", &viewers_by_old_name, "the old name of --for, for this version alone"},
           {"--samples N",
            &samples,
            "how many moments of each segment are judged, its ends included (default 21; in\n"
@@ -78,21 +78,21 @@ std::vector<Option> JudgeArguments::table(const std::string& of_hosts) {
 }
 
 Status JudgeArguments::read(const char* command, std::optional<Weighting>& to_weighting,
-                            std::vector<Host>& to_hosts) const {
+                            std::vector<Viewer>& to_viewers) const {
   if (!weighting.empty()) {
     const Result<Weighting> found = make_weighting(weighting);
     if (!found) return misuse("--weighting", found.error().message);
     to_weighting = found.value();
   }
-  if (!hosts_by_old_name.empty() && !hosts.empty())
+  if (!viewers_by_old_name.empty() && !viewers.empty())
     return misuse("--host", "it is the old name of --for: give one of them");
-  if (!hosts_by_old_name.empty())
+  if (!viewers_by_old_name.empty())
     say(command, "--host is called --for now; the old name goes with the next version", Tone::kWarning);
-  const std::string& named = hosts.empty() ? hosts_by_old_name : hosts;
+  const std::string& named = viewers.empty() ? viewers_by_old_name : viewers;
   if (!named.empty()) {
-    Result<std::vector<Host>> found = find_hosts(named);
-    if (!found) return misuse(hosts.empty() ? "--host" : "--for", found.error().message);
-    to_hosts = std::move(found).value();
+    Result<std::vector<Viewer>> found = find_viewers(named);
+    if (!found) return misuse(viewers.empty() ? "--host" : "--for", found.error().message);
+    to_viewers = std::move(found).value();
   }
   return Success{};
 }
@@ -131,8 +131,8 @@ Status check_ranks(const std::string& option) {
   return misuse(option, "mpirun divides one motion and adds up its shares: leave out one of the two");
 }
 
-Status check_hosts(const std::vector<Host>& hosts, const Input& input) {
-  if (input.document() != nullptr || hosts.empty()) return Success{};
+Status check_viewers(const std::vector<Viewer>& viewers, const Input& input) {
+  if (input.document() != nullptr || viewers.empty()) return Success{};
   return misuse("--for", "viewers are known for what they make of glTF files; this input is none");
 }
 

@@ -14,10 +14,10 @@
 #include "chronormal/motion/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/parts.h"
 #include "chronormal/workflow/sample.h"
 #include "chronormal/workflow/shard.h"
+#include "chronormal/workflow/viewers.h"
 #include "cli/options/options.h"
 #include "cli/terminal/progress.h"
 
@@ -62,16 +62,16 @@ struct ElementArguments {
 /// The options of commands that judge stored normals: --weighting, --for, --samples.
 struct JudgeArguments {
   std::string weighting;               ///< empty: what the stored base normals follow
-  std::string hosts;                   ///< empty: the specification alone
-  std::string hosts_by_old_name;       ///< the same by --host, which warns
+  std::string viewers;                 ///< empty: the specification alone
+  std::string viewers_by_old_name;     ///< the same by --host, which warns
   std::optional<std::size_t> samples;  ///< of each segment
 
-  /// of_hosts is what the command does with the hosts that are named, for the help.
-  [[nodiscard]] std::vector<Option> table(const std::string& of_hosts);
+  /// of_viewers is what the command does with the viewers that are named, for the help.
+  [[nodiscard]] std::vector<Option> table(const std::string& of_viewers);
   /// Writes what was asked for; what was not asked for stays. Errors: kUsage for names that do not exist.
   /// Warns in the name of the command where an option has its old name.
   [[nodiscard]] Status read(const char* command, std::optional<Weighting>& to_weighting,
-                            std::vector<Host>& to_hosts) const;
+                            std::vector<Viewer>& to_viewers) const;
 };
 
 /// The option that takes a share of the work: --shard I/N.
@@ -90,8 +90,8 @@ struct ShardArgument {
 /// and where several copies that know nothing of each other would do the same work.
 [[nodiscard]] Status check_ranks(const std::string& option);
 
-/// Errors: kUsage where hosts are named and the input is no glTF file.
-[[nodiscard]] Status check_hosts(const std::vector<Host>& hosts, const Input& input);
+/// Errors: kUsage where viewers are named and the input is no glTF file.
+[[nodiscard]] Status check_viewers(const std::vector<Viewer>& viewers, const Input& input);
 
 /// The last part of a path: what a person calls it.
 [[nodiscard]] std::string short_name(std::string path);

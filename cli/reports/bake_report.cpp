@@ -106,7 +106,7 @@ Shown shown_of(const ShownErrors& errors) { return {errors.mean, errors.worst, e
 
 // Errors of one viewer before and after.
 struct ViewerRow {
-  const Host* viewer = nullptr;
+  const Viewer* viewer = nullptr;
   Shown before, after;
   bool is_named = true, is_better = false;
 };
@@ -115,13 +115,13 @@ struct ViewerRow {
 // animations, or of all others. Its means are those of fewer samples than an audit's.
 std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   std::vector<ViewerRow> rows;
-  for (const Host& viewer : kHosts) {
+  for (const Viewer& viewer : kViewers) {
     ViewerRow row{&viewer, {}, {}};
     ShownErrors before, after;
     for (const BakedMesh& mesh : bake.meshes) {
-      for (const HostChange& change : mesh.hosts) {
-        if (change.host != viewer.name || is_of_animations(mesh) != of_animations) continue;
-        for (const HostChange::Errors& of_kind : change.poses) {
+      for (const ViewerChange& change : mesh.viewers) {
+        if (change.viewer != viewer.name || is_of_animations(mesh) != of_animations) continue;
+        for (const ViewerChange::Errors& of_kind : change.poses) {
           if (of_kind.before.judged == 0) continue;
           add_errors(of_kind.before, before);
           add_errors(of_kind.after, after);
@@ -142,10 +142,10 @@ std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
 std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& report, bool of_animations) {
   std::vector<ViewerRow> rows = measured_rows(bake, of_animations);
   if (!report.audit || any_of_animations(bake)) return rows;
-  const std::vector<HostAudit>&before = report.audit->before.hosts, &after = report.audit->after.hosts;
+  const std::vector<ViewerAudit>&before = report.audit->before.viewers, &after = report.audit->after.viewers;
   for (ViewerRow& row : rows) {
     for (std::size_t h = 0; h < std::min(before.size(), after.size()); ++h) {
-      if (before[h].host.name != row.viewer->name) continue;
+      if (before[h].viewer.name != row.viewer->name) continue;
       row.before = shown_of(before[h].error);
       row.after = shown_of(after[h].error);
     }
@@ -237,7 +237,7 @@ std::string left_over(const GltfBake& bake) {
   double worst = 0;
   for (const BakedMesh& mesh : bake.meshes)
     for (const BakeChoice& choice : mesh.choices)
-      for (const HostChange& change : choice.hosts)
+      for (const ViewerChange& change : choice.viewers)
         if (choice.chosen && !choice.within && change.is_named && change.is_better)
           worst = std::max(worst, change.poses[0].after.worst);
   if (worst <= kHarmlessTolerance) return "";
@@ -266,9 +266,9 @@ bool are_all_within(const GltfBake& bake) {
   });
 }
 
-std::string title_of_host(const std::string& name) {
-  for (const Host& host : kHosts)
-    if (host.name == name) return std::string(host.title);
+std::string title_of_viewer(const std::string& name) {
+  for (const Viewer& viewer : kViewers)
+    if (viewer.name == name) return std::string(viewer.title);
   return name;
 }
 
@@ -277,7 +277,7 @@ std::string form_words(const BakeChoice& choice) {
 }
 
 // Prints a row for each viewer and candidate whose deltas are fitted to the animations, or each other form.
-std::string plan_of_hosts(const GltfBake& bake, bool of_animations) {
+std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
   table.add_column("candidate", "", Table::Align::kLeft);
@@ -289,9 +289,9 @@ std::string plan_of_hosts(const GltfBake& bake, bool of_animations) {
   for (const BakedMesh& mesh : bake.meshes) {
     for (const BakeChoice& choice : mesh.choices) {
       if (choice.animations_only != of_animations) continue;
-      for (const HostChange& host : choice.hosts) {
-        const ShownErrors& errors = host.poses[0].after;
-        table.add_row({mesh_name(mesh), form_words(choice), title_of_host(host.host), four_decimals(errors.mean),
+      for (const ViewerChange& viewer : choice.viewers) {
+        const ShownErrors& errors = viewer.poses[0].after;
+        table.add_row({mesh_name(mesh), form_words(choice), title_of_viewer(viewer.viewer), four_decimals(errors.mean),
                        four_decimals(errors.most), four_decimals(errors.worst)});
         any = true;
       }
@@ -428,8 +428,8 @@ std::string plan_text(const GltfBake& bake, const BakeReport& report) {
                                      : ""});
     }
   }
-  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text() + plan_of_hosts(bake, false) +
-         plan_of_hosts(bake, true);
+  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text() +
+         plan_of_viewers(bake, false) + plan_of_viewers(bake, true);
 }
 
 std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {

@@ -115,7 +115,7 @@ std::string notes(const BlendComparison& comparison) {
   if (comparison.still > 0)
     text += formatted("{} left out: no target moves a normal\n", counted(comparison.still, "mesh", "meshes"));
   if (comparison.flat > 0)
-    text += formatted("{} left out: without stored normals (flat in hosts; --elements vertices makes smooth ones)\n",
+    text += formatted("{} left out: without stored normals (flat in viewers; --elements vertices makes smooth ones)\n",
                       counted(comparison.flat, "mesh", "meshes"));
   return text;
 }

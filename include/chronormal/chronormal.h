@@ -55,11 +55,10 @@
 #include "chronormal/io/poses_file.h"      // poses of a rig from a JSON file
 #include "chronormal/io/target_names.h"    // morph targets by name
 
-#include "chronormal/workflow/audit.h"    // what a host shows against what it should
+#include "chronormal/workflow/audit.h"    // what a viewer shows against what it should
 #include "chronormal/workflow/bake.h"     // right normals written into glTF files
 #include "chronormal/workflow/compare.h"  // the paper's Table 1 for any motion; deltas of targets against the truth
 #include "chronormal/workflow/errors.h"   // every error of an audit or a comparison, as arrays and files
-#include "chronormal/workflow/hosts.h"    // programs that show glTF files, and what they make of stored normals
 #include "chronormal/workflow/inspect.h"  // what a motion or a glTF file holds, and what is trouble for normals
 #include "chronormal/workflow/json.h"     // the results of these as JSON
 #include "chronormal/workflow/motion_error.h"  // errors of shown normals, added up
@@ -70,5 +69,6 @@
 #include "chronormal/workflow/sample.h"  // normals at chosen times, or at weights of targets, and files of them
 #include "chronormal/workflow/shard.h"   // a share of the segments of a motion, for many machines
 #include "chronormal/workflow/truth.h"
+#include "chronormal/workflow/viewers.h"  // programs that show glTF files, and what they make of stored normals
 
 #endif  // CHRONORMAL_CHRONORMAL_H_

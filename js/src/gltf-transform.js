@@ -112,7 +112,7 @@ export function chronormal({ onReport, ...options } = {}) {
 // The command below has these of the program's options. Each entry gives the name, how it is written, what its help says, and
 // what turns its text into a value.
 const OPTIONS = [
-  ['for', '--for <HOSTS>', 'the hosts that count, with commas between them, or all'],
+  ['for', '--for <VIEWERS>', 'the viewers that count, with commas between them, or all'],
   ['tolerance', '--tolerance <DEGREES>', 'how far off normals may be', Number],
   ['encode', '--encode <HOW>', 'smallest, harmless, exact or endpoint'],
   ['weighting', '--weighting <RULE>', 'how faces count in the normal of a vertex'],

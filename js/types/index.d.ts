@@ -3,7 +3,7 @@ import type { AuditReport, BakeReport, CompareReport, Elements, InspectReport, P
 
 export * from './reports.js';
 
-export type Host = 'three' | 'babylon' | 'playcanvas' | 'godot' | 'filament' | 'bevy' | 'gltfpack' | 'quantize' | 'meshopt';
+export type Viewer = 'three' | 'babylon' | 'playcanvas' | 'godot' | 'filament' | 'bevy' | 'gltfpack' | 'quantize' | 'meshopt';
 
 export interface Progress {
   /** What is done, as the program's bar says it. */
@@ -60,9 +60,9 @@ export interface AuditOptions extends MotionOptions {
   rule?: 'gltf' | 'lerp' | 'nlerp' | 'slerp' | 'step' | 'flat';
   weighting?: Weighting;
   /** The viewers that are judged, too. */
-  for?: Host | 'all' | Array<Host | 'all'>;
+  for?: Viewer | 'all' | Array<Viewer | 'all'>;
   /** @deprecated the old name of `for` */
-  host?: Host | 'all' | Array<Host | 'all'>;
+  host?: Viewer | 'all' | Array<Host | 'all'>;
   samples?: number;
   /** 'random', or a name among `resources`: poses that are judged, too. */
   poses?: string;
@@ -76,7 +76,7 @@ export interface AuditOptions extends MotionOptions {
 
 export interface BakeOptions extends ReadOptions {
   /** The viewers that the result is made for. Default: those that add up deltas, and none worse in the others. */
-  for?: Host | 'all' | Array<Host | 'all'>;
+  for?: Viewer | 'all' | Array<Viewer | 'all'>;
   encode?: 'smallest' | 'harmless' | 'exact' | 'endpoint' | 'keys';
   weighting?: Weighting;
   crease?: number;

@@ -358,7 +358,7 @@ export interface BlendedMesh {
   errors: Array<{ active: number; rows: number; deltas: DeltasError[] }>;
 }
 
-/** What compare() with `blend` says of deltas that hosts add up. */
+/** What compare() with `blend` says of deltas that viewers add up. */
 export interface BlendReport extends Head<'compare', 1> {
   input: string;
   weights: 'random' | 'animation';

@@ -228,16 +228,16 @@ def inspect(source=None, *, sample=None, base=None, fps=1.0, animation=None, wor
     return _json.loads(_chronormal.inspect(_source(source, sample, base, fps, animation, world)))
 
 
-def audit(source=None, *, rule=None, weighting=None, hosts=None, samples=None, tolerance=None, weld=True, sample=None,
+def audit(source=None, *, rule=None, weighting=None, viewers=None, samples=None, tolerance=None, weld=True, sample=None,
           base=None, fps=1.0, animation=None, path="linear"):
-    """Return how wrong the normals are that a file makes hosts show: the dict of `chronormal audit --json`.
+    """Return how wrong the normals are that a file makes viewers show: the dict of `chronormal audit --json`.
 
-    rule, weighting, hosts, samples, tolerance  as the options of the program; hosts may be a list
+    rule, weighting, viewers, samples, tolerance  as the options of the program; viewers may be a list
     source, sample, base, fps, animation        as for read()
     path  as for read()
     """
     opened = _source(source, sample, base, fps, animation, path=path)
-    text, _ = _chronormal.audit(opened, rule or "", weighting or "", _names(hosts or ""), samples, tolerance, weld, False)
+    text, _ = _chronormal.audit(opened, rule or "", weighting or "", _names(viewers or ""), samples, tolerance, weld, False)
     return _json.loads(text)
 
 
@@ -260,17 +260,17 @@ def compare(source=None, *, schemes=(), samples=21, access="random", elements="f
     return _json.loads(text)
 
 
-def bake(source=None, *, encode=None, hosts=None, weighting=None, tolerance=None, smooth=False, recompute_base=False,
+def bake(source=None, *, encode=None, viewers=None, weighting=None, tolerance=None, smooth=False, recompute_base=False,
          sample=None, fps=1.0, path="linear"):
     """Write right normals into a glTF file, or make one of a sequence; return (glb, report).
 
-    hosts   the viewers that it is made for; None: those that add up deltas, and none worse in the others
+    viewers   the viewers that it is made for; None: those that add up deltas, and none worse in the others
     path    as for read()
     glb     bytes of a GLB
     report  the dict of `chronormal bake --json`, but for its audit: audit(glb) has that
     """
     opened = _source(source, sample, None, fps, path=path)
-    glb, text = _chronormal.bake(opened, encode or "", _names(hosts or ""), weighting or "", tolerance, smooth, recompute_base)
+    glb, text = _chronormal.bake(opened, encode or "", _names(viewers or ""), weighting or "", tolerance, smooth, recompute_base)
     return glb, _json.loads(text)
 
 

@@ -80,7 +80,7 @@ def read(source: _Source = None, *, sample: str | None = None, base: _Path | Non
 def inspect(source: _Source = None, *, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
             animation: str | int | None = None, world: bool = False) -> dict[str, Any]: ...
 def audit(source: _Source = None, *, rule: str | None = None, weighting: _Weighting | None = None,
-          hosts: str | Iterable[str] | None = None, samples: int | None = None, tolerance: float | None = None,
+          viewers: str | Iterable[str] | None = None, samples: int | None = None, tolerance: float | None = None,
           weld: bool = True, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
           animation: str | int | None = None, path: str = "linear") -> dict[str, Any]: ...
 def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int = 21,
@@ -89,7 +89,7 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
             sample: str | None = None, base: _Path | None = None, fps: float = 1.0, animation: str | int | None = None,
             world: bool = False, path: str = "linear") -> dict[str, Any]: ...
 def bake(source: _Source = None, *, encode: Literal["smallest", "harmless", "exact", "endpoint", "keys"] | None = None,
-         hosts: str | Iterable[str] | None = None, weighting: _Weighting | None = None, tolerance: float | None = None,
+         viewers: str | Iterable[str] | None = None, weighting: _Weighting | None = None, tolerance: float | None = None,
          smooth: bool = False, recompute_base: bool = False, sample: str | None = None,
          fps: float = 1.0, path: str = "linear") -> tuple[bytes, dict[str, Any]]: ...
 def errors(source: _Source = None, *, scheme: str | None = None, samples: int | None = None,

@@ -69,12 +69,12 @@ py::list dicts_of(std::vector<ErrorTable> tables) {
 }
 
 py::tuple audit_source(const py::dict& source, const std::string& rule, const std::string& weighting,
-                       const std::string& hosts, std::optional<std::size_t> samples, std::optional<double> tolerance,
+                       const std::string& viewers, std::optional<std::size_t> samples, std::optional<double> tolerance,
                        bool weld, bool keep_errors) {
   AuditOptions options;
   if (!rule.empty()) options.rule = value_or_raise(make_audit_rule(rule));
   if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
-  if (!hosts.empty()) options.hosts = value_or_raise(find_hosts(hosts));
+  if (!viewers.empty()) options.viewers = value_or_raise(find_viewers(viewers));
   require(!tolerance || *tolerance >= 0, "tolerance", "it must be an angle in degrees, 0 or more");
   options.samples = samples;
   options.weld = weld;
@@ -159,14 +159,14 @@ std::string bake_sequence_of(Input& input, BakeOptions options, std::string& jso
   return glb;
 }
 
-py::tuple bake_source(const py::dict& source, const std::string& encode, const std::string& hosts,
+py::tuple bake_source(const py::dict& source, const std::string& encode, const std::string& viewers,
                       const std::string& weighting, std::optional<double> tolerance, bool smooth, bool recompute_base) {
   BakeOptions options;
   if (!encode.empty()) {
     options.encoding = find_bake_encoding(encode);
     require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact, endpoint or keys");
   }
-  if (!hosts.empty()) options.hosts = value_or_raise(find_hosts(hosts));
+  if (!viewers.empty()) options.viewers = value_or_raise(find_viewers(viewers));
   if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
   require(!tolerance || (*tolerance >= 0 && *tolerance <= 90), "tolerance", "it must be an angle from 0 to 90 degrees");
   options.tolerance = tolerance;

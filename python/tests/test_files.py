@@ -65,7 +65,7 @@ class ReadTest(unittest.TestCase):
                 (lambda: targets.unit_normals(weights=[[1, 2]]), ValueError, "weights|targets"),
                 (lambda: targets.unit_normals(weights=[1, 2]), ValueError, r"weights: the shape is \(2,\)"),
                 (lambda: cn.audit(sample="twist", rule="none"), ValueError, "gltf, lerp"),
-                (lambda: cn.audit(sample="twist", hosts="three"), ValueError, "glTF"),
+                (lambda: cn.audit(sample="twist", viewers="three"), ValueError, "glTF"),
                 (lambda: cn.compare(sample="twist", schemes=["none"]), ValueError, "none"),
                 (lambda: cn.compare(sample="twist", samples=1), ValueError, "2 samples"),
                 (lambda: cn.bake(sample="twist", encode="harmless"), ValueError, "encode: a sequence"),

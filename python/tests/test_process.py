@@ -75,7 +75,7 @@ class SignalTest(unittest.TestCase):
         many = np.linspace(0, 1, 2 * 10**5)
         out = np.empty((len(many), len(curves), 3), np.float32)  # whose memory is touched row by row
         for name, call in {
-                "audit": lambda: cn.audit(glb, samples=10**6, hosts="all"),
+                "audit": lambda: cn.audit(glb, samples=10**6, viewers="all"),
                 "compare": lambda: cn.compare(sample="eversion", samples=10**6),
                 "compare vertices": lambda: cn.compare(sample="eversion", samples=10**6, elements="vertices"),
                 "certificates": lambda: cn.compare(sample="eversion", samples=10**6, certify=True),
@@ -267,9 +267,9 @@ class ArgumentTest(unittest.TestCase):
             (cn.blend, (p0, [p1], faces), ("elements", "crease", "weld")),
             (cn.certify, (p0, p1, faces), ("scheme", "threads")),
             (cn.read, (), ("source", "sample", "base", "fps", "animation", "path")),
-            (cn.audit, (), ("source", "rule", "weighting", "hosts", "samples", "tolerance", "sample", "fps", "animation", "path")),
+            (cn.audit, (), ("source", "rule", "weighting", "viewers", "samples", "tolerance", "sample", "fps", "animation", "path")),
             (cn.compare, (), ("schemes", "samples", "access", "elements", "crease", "tolerance", "sample", "path")),
-            (cn.bake, (), ("source", "encode", "hosts", "weighting", "tolerance", "sample", "fps", "path")),
+            (cn.bake, (), ("source", "encode", "viewers", "weighting", "tolerance", "sample", "fps", "path")),
             (cn.facing, ([p0, p1], faces), ("times", "direction", "eye", "eye_to", "start", "end")),
             (cn.contain, ([p0, p1], faces), ("points", "times", "start", "end")),
             (cn.cones, ([p0, p1], faces), ("meshlets", "times")),

@@ -1,5 +1,5 @@
 // Linear interpolation with one end scaled: u0 + t (s u1 - u0) has the same ends for every s > 0, and the best s makes
-// it run faster where the normal does (docs/theory.md, section 4.8). The best that a host can do which only adds one
+// it run faster where the normal does (docs/theory.md, section 4.8). The best that a viewer can do which only adds one
 // delta. s is found per element by a search over its logarithm.
 
 #include "core/portable_math.h"

@@ -34,7 +34,7 @@ const std::vector<Floor> kFloors = {
     {"analysis", {"fits", "quality", "certificates", "signs", "cones", "containment"}},
     {"io", {"bytes", "json", "mesh", "cache", "gltf", "input"}},
     {"workflow",
-     {"hosts", "shading", "truth", "sample", "inspect", "errors", "audit", "compare", "bake", "query", "json",
+     {"viewers", "shading", "truth", "sample", "inspect", "errors", "audit", "compare", "bake", "query", "json",
       "report"}},
     {"cli", {"terminal", "ranks", "options", "reports", "commands"}},
 };

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
@@ -70,9 +70,9 @@ TEST_F(AuditCli, verdict_comes_first_and_what_to_do_last) {
                 "animation 0 (swing), node 0", "90 and more",
                 "target 0 (fold\\x1b[2J) of Hinge moves positions and no normals (1 primitive): off by up to 90.00"});
   const std::string last =
-      "\nchronormal bake hinge.glb -o baked.glb writes the fewest bytes that are within 0.5 degrees in all hosts, "
+      "\nchronormal bake hinge.glb -o baked.glb writes the fewest bytes that are within 0.5 degrees in all viewers, "
       "nowhere worse "
-      "than before, and says what is left of 90.00 degrees; for hosts that play targets as glTF says, --encode exact "
+      "than before, and says what is left of 90.00 degrees; for viewers that play targets as glTF says, --encode exact "
       "leaves about 0.01 degrees or "
       "less\n";
   ASSERT_GT(text.size(), last.size());
@@ -107,7 +107,7 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
   EXPECT_EQ(json_of("hinge.glb")["passed"], Json());
 }
 
-TEST_F(AuditCli, hosts_have_a_row_each_below_the_specification) {
+TEST_F(AuditCli, viewers_have_a_row_each_below_the_specification) {
   const std::string text = text_of("hinge.glb --for three,godot");
   expect_words(text, {"\nviewer ", "\n(specification) ", "\nthree.js ", "\nGodot 4 "});
   EXPECT_LT(text.find("(specification)"), text.find("three.js"));
@@ -116,10 +116,10 @@ TEST_F(AuditCli, hosts_have_a_row_each_below_the_specification) {
   EXPECT_EQ(text.find("Filament"), std::string::npos);
   EXPECT_EQ(text_of("hinge.glb").find("(specification)"), std::string::npos);
   const std::string all = text_of("hinge.glb --for all,gltfpack,quantize,meshopt");
-  for (const Host& host : kHosts) expect_words(all, {"\n" + std::string(host.title) + " "});
+  for (const Viewer& viewer : kViewers) expect_words(all, {"\n" + std::string(viewer.title) + " "});
 }
 
-TEST_F(AuditCli, hosts_are_in_the_json_with_their_errors_and_sources) {
+TEST_F(AuditCli, viewers_are_in_the_json_with_their_errors_and_sources) {
   const Json json = json_of("hinge.glb --for filament,gltfpack");
   ASSERT_EQ(json["viewers"].size(), 2U);
   const Json& filament = json["viewers"][0];
@@ -143,7 +143,7 @@ TEST_F(AuditCli, hosts_are_in_the_json_with_their_errors_and_sources) {
   EXPECT_EQ(json_of("hinge.glb")["viewers"], Json::array());
 }
 
-TEST_F(AuditCli, tolerance_is_a_gate_for_every_host_that_is_named) {
+TEST_F(AuditCli, tolerance_is_a_gate_for_every_viewer_that_is_named) {
   // Each normal is right at weight 1, and on the way the long one turns too soon where deltas are added as they are.
   test::ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals = {0, 0, 0, -1, 0, 0, -1, 0, 0, -3, 0, -1};
@@ -164,7 +164,7 @@ TEST_F(AuditCli, tolerance_is_a_gate_for_every_host_that_is_named) {
   EXPECT_EQ(Json::parse(run("long.glb --samples 3 --tolerance 20 --for godot --json").out)["passed"], true);
 }
 
-TEST_F(AuditCli, hosts_that_there_are_none_of_are_a_misuse) {
+TEST_F(AuditCli, viewers_that_there_are_none_of_are_a_misuse) {
   expect_error("hinge.glb --for gdot", 2, "did you mean godot?");
   expect_error("hinge.glb --for unreal", 2, "there are three, babylon, ");
   expect_error("hinge.glb --for all --rule slerp", 2, "--for");
@@ -225,7 +225,7 @@ TEST_F(AuditCli, json_is_one_object_with_schema_2) {
   EXPECT_EQ(json["authored_offsets"][0]["vertices"], 4);
 }
 
-TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_host) {
+TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_viewer) {
   Json json = json_of("a.obj b.obj");
   EXPECT_EQ(json["rule"], "nlerp");
   EXPECT_EQ(json["stored_normals"], true);
@@ -430,7 +430,7 @@ TEST_F(AuditCli, targets_together_are_a_fault_of_their_own_where_they_are_worse_
 TEST_F(AuditCli, advice_is_kept_by_the_command_that_it_names) {
   expect_words(
       last_line(text_of("hinge.glb")),
-      {"chronormal bake hinge.glb -o baked.glb writes the fewest bytes that are within 0.5 degrees in all hosts, "
+      {"chronormal bake hinge.glb -o baked.glb writes the fewest bytes that are within 0.5 degrees in all viewers, "
        "nowhere worse than before",
        "left of 90.00 degrees", "--encode exact leaves about 0.01 degrees or less"});
   const auto worst_after = [&](const std::string& arguments) {
@@ -458,7 +458,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   folder_.write("sheet.glb", builder.glb());
   expect_words(
       last_line(text_of("still.glb")),
-      {"chronormal bake still.glb -o baked.glb writes the fewest bytes that are within 0.5 degrees in all hosts, "
+      {"chronormal bake still.glb -o baked.glb writes the fewest bytes that are within 0.5 degrees in all viewers, "
        "nowhere worse than before"});
   bake("still.glb -o still_baked.glb -q");
   std::string advice = last_line(text_of("still_baked.glb"));
@@ -469,7 +469,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   advice = last_line(text_of("endpoint.glb"));
   expect_words(advice, {"was baked before", "bake the original with --encode exact"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // What all hosts show alike, where fewer hosts would let more be right.
+  // What all viewers show alike, where fewer viewers would let more be right.
   bake("sheet.glb -o alike.glb -q");
   advice = last_line(run("alike.glb --tolerance 1e-6").out);
   expect_words(advice, {"was baked before", "bake the original with a smaller --tolerance, with --for"});

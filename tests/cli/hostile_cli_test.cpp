@@ -325,7 +325,7 @@ TEST_F(HostileCli, a_reader_that_is_gone_ends_only_what_was_to_be_read) {
 }
 
 // A library that is loaded before the program may have set another rounding mode: nothing comes of it.
-TEST_F(HostileCli, the_rounding_mode_of_a_host_changes_no_byte) {
+TEST_F(HostileCli, the_rounding_mode_of_a_viewer_changes_no_byte) {
   if (std::string(kProgram).ends_with("_sanitized"))
     GTEST_SKIP() << "the layer would replace the malloc of a sanitizer";
   folder_.write("a.obj", kFirst);

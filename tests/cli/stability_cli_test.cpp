@@ -69,7 +69,7 @@ TEST_F(Stability, no_command_and_no_option_vanishes) {
   expect_listed(found, "stable_options.txt");
 }
 
-// Adds the paths of all keys of a value: "audit hosts[].worst_at.vertex". Each of several files has those of one.
+// Adds the paths of all keys of a value: "audit viewers[].worst_at.vertex". Each of several files has those of one.
 void add_keys(const Json& json, const std::string& path, Names& found) {
   if (json.is_array())
     for (const Json& one : json) add_keys(one, path + "[]", found);

@@ -1,4 +1,4 @@
-// What a host may set in the floating point unit, and what becomes of the promise: the modes of control_normals.h.
+// What a viewer may set in the floating point unit, and what becomes of the promise: the modes of control_normals.h.
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@
 
 namespace chronormal::test {
 
-/// A document, the bake of it, and hosts of both.
+/// A document, the bake of it, and viewers of both.
 struct Baked {
   std::unique_ptr<GltfFixture> source;
   std::string bytes;  ///< of the result; empty where there is none

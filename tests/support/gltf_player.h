@@ -1,4 +1,4 @@
-/// A host of glTF in a few lines, independent of the library: it reads a GLB, plays its weight tracks as appendix C of
+/// A viewer of glTF in a few lines, independent of the library: it reads a GLB, plays its weight tracks as appendix C of
 /// the specification has them, adds up targets in float32, and knows from the positions what it should have shown.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
@@ -64,7 +64,7 @@ class GltfPlayer {
     return values;
   }
 
-  /// The weights that a channel gives at a time, in float32 as hosts have them.
+  /// The weights that a channel gives at a time, in float32 as viewers have them.
   [[nodiscard]] std::vector<float> weights_at(std::size_t animation, std::size_t channel, double time) const {
     const Json& a = json.at("animations").at(animation);
     const Json& sampler = a.at("samplers").at(a.at("channels").at(channel).at("sampler").get<std::size_t>());

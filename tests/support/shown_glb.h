@@ -1,6 +1,6 @@
-/// What a host shows of a GLB file with one morphing mesh of one primitive and one animation, all of whose targets
+/// What a viewer shows of a GLB file with one morphing mesh of one primitive and one animation, all of whose targets
 /// have positions and normals: what tests of baked sequences need. Weights are computed in double; normals are summed
-/// in float, as hosts do. Anything else throws.
+/// in float, as viewers do. Anything else throws.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 

@@ -130,7 +130,7 @@ struct Skin {
   }
 };
 
-/// How hosts carry a normal: through the blended matrix, through its inverse transpose, or through the cofactors of each
+/// How viewers carry a normal: through the blended matrix, through its inverse transpose, or through the cofactors of each
 /// joint.
 enum class Carry { kBlended, kInverseTranspose, kByJoint };
 

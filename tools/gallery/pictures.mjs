@@ -5,8 +5,8 @@
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { chronormal } from '../../tests/hosts/program.mjs';
-import { openPages } from '../../tests/hosts/web_page.mjs';
+import { chronormal } from '../../tests/viewers/program.mjs';
+import { openPages } from '../../tests/viewers/web_page.mjs';
 
 const data = (name) => join(process.env.CHRONORMAL_DATA, name);
 

@@ -66,11 +66,11 @@ struct Rows {
   std::vector<Cells> sizes, errors;
 };
 
-std::vector<HostAudit> judged(const GltfDocument& document) {
+std::vector<ViewerAudit> judged(const GltfDocument& document) {
   AuditOptions options;
   options.samples = kSamples;
-  options.hosts = {kHosts.begin(), kHosts.end()};
-  return value_of(audit(document, options)).hosts;
+  options.viewers = {kViewers.begin(), kViewers.end()};
+  return value_of(audit(document, options)).viewers;
 }
 
 void add_rows(const std::string& path, Rows& rows) {
@@ -86,22 +86,22 @@ void add_rows(const std::string& path, Rows& rows) {
   }
   rows.sizes.push_back({name, forms, std::to_string(targets), std::to_string(after.report.added_targets),
                         std::to_string(after.report.added_bytes), fmt::format("{:.1f}", after.processor_seconds)});
-  const auto add_errors = [&](const char* state, const std::vector<HostAudit>& hosts) {
+  const auto add_errors = [&](const char* state, const std::vector<ViewerAudit>& viewers) {
     Cells& line = rows.errors.emplace_back(Cells{name, state});
-    for (const HostAudit& host : hosts)
-      line.push_back(three_degrees(host.error.mean(), host.error.percentile(0.999), host.error.worst));
+    for (const ViewerAudit& viewer : viewers)
+      line.push_back(three_degrees(viewer.error.mean(), viewer.error.percentile(0.999), viewer.error.worst));
   };
   add_errors("as it is", judged(document));
   add_errors("baked", judged(value_of(GltfDocument::read(std::string_view(after.bytes), path))));
 }
 
-// The captured face with so many extra targets, for hosts that add up deltas as they are stored: as it is baked, and
+// The captured face with so many extra targets, for viewers that add up deltas as they are stored: as it is baked, and
 // where nothing but its animation will ever be played.
 Cells row_of_curve(const GltfDocument& document, std::size_t extras) {
   Cells row = {std::to_string(extras)};
   for (const bool animations_only : {false, true}) {
     BakeOptions options;
-    options.hosts = {kHosts[0]};
+    options.viewers = {kViewers[0]};
     options.most_targets = document.meshes()[0].target_count + extras;
     options.animations_only = animations_only;
     const Baked after = baked(document, options);
@@ -131,7 +131,7 @@ Cells row_of_speed(const std::string& file, const std::string& words, const std:
 std::vector<Cells> rows_of_speed(const GltfDocument& face) {
   BakeOptions exact, for_three;
   exact.encoding = BakeEncoding::kExact;
-  for_three.hosts = {kHosts[0]};
+  for_three.viewers = {kViewers[0]};
   for_three.most_targets = 112;
   std::vector<Cells> rows = {
       row_of_speed("the captured face", "`--encode exact`", "over 300", face, exact),
@@ -162,7 +162,7 @@ std::string files_part(const fs::path& data, Extent extent, const std::string& f
   files.set("samples", std::to_string(kSamples));
   files.table("sizes", {"file", "form", "targets", "extra targets", "bytes added", "seconds"}, rows.sizes, 2);
   Cells header = {"file", ""};
-  for (const Host& host : kHosts) header.emplace_back(host.title);
+  for (const Viewer& viewer : kViewers) header.emplace_back(viewer.title);
   files.table("errors", header, rows.errors, 2);
   return files.markdown();
 }

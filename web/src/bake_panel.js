@@ -1,9 +1,9 @@
-// The panel of a bake: for which hosts, how right, how large; the plan of it, and the bake itself.
+// The panel of a bake: for which viewers, how right, how large; the plan of it, and the bake itself.
 import { degreesText } from './colors.js';
 import { h, panel, table } from './dom.js';
 import { choiceTable } from './panels.js';
 
-const HOSTS = [
+const VIEWERS = [
   ['three', 'three.js'], ['babylon', 'Babylon.js'], ['playcanvas', 'PlayCanvas'], ['godot', 'Godot 4'], ['filament', 'Filament'], ['bevy', 'Bevy'],
   ['gltfpack', 'after gltfpack'], ['quantize', 'after quantize'], ['meshopt', 'after meshopt'],
 ];
@@ -12,16 +12,16 @@ const HOSTS = [
 const ADDING_UP = ['three', 'babylon', 'playcanvas', 'bevy'];
 
 /**
- * @param input of page.js; its member `options` is what was chosen: {hosts, tolerance, maxTargets, maxBytes}, hosts empty for the usual ones
+ * @param input of page.js; its member `options` is what was chosen: {viewers, tolerance, maxTargets, maxBytes}, viewers empty for the usual ones
  * @param {{plan: () => void, bake: () => void}} acts
  */
 export function makeBakePanel(input, { plan, bake }) {
-  const chosen = (input.options ??= { hosts: [], tolerance: '', maxTargets: '', maxBytes: '' });
-  const USUAL = HOSTS.map(([name]) => name).filter((name) => ADDING_UP.includes(name));
-  const boxes = HOSTS.map(([name, title]) => {
-    const box = h('input', { type: 'checkbox', value: name, checked: (chosen.hosts.length === 0 ? USUAL : chosen.hosts).includes(name), onchange: () => {
+  const chosen = (input.options ??= { viewers: [], tolerance: '', maxTargets: '', maxBytes: '' });
+  const USUAL = VIEWERS.map(([name]) => name).filter((name) => ADDING_UP.includes(name));
+  const boxes = VIEWERS.map(([name, title]) => {
+    const box = h('input', { type: 'checkbox', value: name, checked: (chosen.viewers.length === 0 ? USUAL : chosen.viewers).includes(name), onchange: () => {
       const named = boxes.map((label) => label.firstChild).filter(({ checked }) => checked).map(({ value }) => value);
-      chosen.hosts = String(named) === String(USUAL) ? [] : named;
+      chosen.viewers = String(named) === String(USUAL) ? [] : named;
     } });
     return h('label', { className: 'tick' }, box, title);
   });
@@ -33,7 +33,7 @@ export function makeBakePanel(input, { plan, bake }) {
   const planned = input.plan && choiceTable({ plan: input.plan.plan });
   if (planned) planned.open = true;
   return panel('Bake', true,
-    h('fieldset', {}, h('legend', {}, 'right in these hosts, worse in none'), boxes),
+    h('fieldset', {}, h('legend', {}, 'right in these viewers, worse in none'), boxes),
     number('within', 'tolerance', '0.5', 'degrees'),
     isGltf && number('at most', 'maxTargets', 'any', 'targets'),
     number('at most', 'maxBytes', 'any', 'bytes more'),

@@ -75,8 +75,8 @@ function explain(error) {
 }
 
 async function reportOf(call, { args, bytes }) {
-  const hosts = args.some((name) => DOCUMENT.test(name)) ? ['--host', 'all'] : [];
-  const { files } = await call(['report', ...args, '--no-plan', ...hosts, '-o', 'out/report.bin'], bytes);
+  const viewers = args.some((name) => DOCUMENT.test(name)) ? ['--for', 'all'] : [];
+  const { files } = await call(['report', ...args, '--no-plan', ...viewers, '-o', 'out/report.bin'], bytes);
   return readContainer(files['report.bin']);
 }
 
@@ -145,8 +145,8 @@ function show(input, side) {
   root.dataset.ready = `${inputs.indexOf(input)} ${side}`;
 }
 
-const flagsOf = ({ hosts, tolerance, maxTargets, maxBytes }) => [
-  ...(hosts.length > 0 ? ['--for', hosts.join(',')] : []), ...(tolerance ? ['--tolerance', tolerance] : []),
+const flagsOf = ({ viewers, tolerance, maxTargets, maxBytes }) => [
+  ...(viewers.length > 0 ? ['--for', viewers.join(',')] : []), ...(tolerance ? ['--tolerance', tolerance] : []),
   ...(maxTargets ? ['--max-targets', maxTargets] : []), ...(maxBytes ? ['--max-bytes', maxBytes] : []),
 ];
 

@@ -12,16 +12,16 @@ const select = (label, options, value, onChoose) => {
   return h('label', { className: 'field' }, h('span', {}, label), box);
 };
 
-const hostTitle = (report, name) =>
-  name === 'specification' ? 'glTF to the letter' : report.audit?.viewers?.find((host) => host.name === name)?.title ?? name;
+const viewerTitle = (report, name) =>
+  name === 'specification' ? 'glTF to the letter' : report.audit?.viewers?.find((viewer) => viewer.name === name)?.title ?? name;
 
-/** What a host shows, in the label above the picture. */
+/** What a viewer shows, in the label above the picture. */
 export const shownBy = (report, player) => {
   if (report.kind !== 'gltf') return player.scheme === 'linear' ? 'As shown: normals interpolated between keyframes' : `As shown by ${player.scheme}`;
-  return player.host === 'specification' ? 'As shown' : `As shown: ${hostTitle(report, player.host)}`;
+  return player.viewer === 'specification' ? 'As shown' : `As shown: ${viewerTitle(report, player.viewer)}`;
 };
 
-/** Which part, which motion, and for a glTF file which host. */
+/** Which part, which motion, and for a glTF file which viewer. */
 export function choosers(report, player) {
   const box = h('div', { className: 'choosers' });
   const fill = () => {
@@ -35,8 +35,8 @@ export function choosers(report, player) {
       fields.push(select('motion', player.byHand ? [['hand', 'weights set by hand'], ...motions] : motions, chosen,
         (i) => i !== 'hand' && player.chooseMotion(Number(i))));
     }
-    if (player.hosts.length > 1) {
-      fields.push(select('host', player.hosts.map((name) => [name, hostTitle(report, name)]), player.host, player.chooseHost));
+    if (player.viewers.length > 1) {
+      fields.push(select('viewer', player.viewers.map((name) => [name, viewerTitle(report, name)]), player.viewer, player.chooseViewer));
     }
     if (player.schemes().length > 0) {
       fields.push(select('scheme', player.schemes().map((name) => [name, SCHEMES[name].title]), player.scheme, player.chooseScheme));
@@ -99,13 +99,13 @@ export function weightSliders(player) {
   };
 }
 
-/** What each host shows of the file, the whole audit in a row. */
-export function hostTable({ audit }) {
+/** What each viewer shows of the file, the whole audit in a row. */
+export function viewerTable({ audit }) {
   if (!audit?.viewers?.length) return null;
   const row = (title, { worst_degrees: worst, percentile_99_9_degrees: most, mean_degrees: mean }) =>
     ({ cells: [title, degreesText(mean), degreesText(most), degreesText(worst)] });
-  const rows = [row('glTF to the letter', audit), ...audit.viewers.map((host) => row(host.title, host))];
-  return panel('What hosts show', false, table('Errors in each host', ['host', 'mean ', '99.9 % below ', 'worst '], rows));
+  const rows = [row('glTF to the letter', audit), ...audit.viewers.map((viewer) => row(viewer.title, viewer))];
+  return panel('What viewers show', false, table('Errors in each viewer', ['viewer', 'mean ', '99.9 % below ', 'worst '], rows));
 }
 
 /** What a bake would come to, by candidate: the table of `bake --plan`. */

@@ -1,4 +1,4 @@
-// What is shown at the moment: which part, which motion and where in it, or weights set by hand; for which host, by which scheme.
+// What is shown at the moment: which part, which motion and where in it, or weights set by hand; for which viewer, by which scheme.
 import { drive, formulasOf } from '../../js/src/drive.js';
 import { makeSequence } from './sequence.js';
 import { SCHEMES } from './schemes.js';
@@ -13,7 +13,7 @@ const TOUR = 3; // seconds that a motion without a time takes
  */
 export function makePlayer(report, onChange) {
   const surfaces = new Map();
-  const player = { report, at: 0, host: 'specification', scheme: 'linear', byHand: false, isPlaying: false };
+  const player = { report, at: 0, viewer: 'specification', scheme: 'linear', byHand: false, isPlaying: false };
   const isGltf = report.kind === 'gltf';
 
   function pose() {
@@ -22,10 +22,10 @@ export function makePlayer(report, onChange) {
       surface.pose(...segmentAt(motion, player.at), player.scheme, motion.least);
     } else if (player.byHand) {
       drive(player.formulas, weights);
-      surface.pose(weights, player.host, null);
+      surface.pose(weights, player.viewer, null);
     } else {
-      if (motion) weightsAt(motion, player.host, player.at, weights);
-      surface.pose(weights, player.host, motion?.least);
+      if (motion) weightsAt(motion, player.viewer, player.at, weights);
+      surface.pose(weights, player.viewer, motion?.least);
     }
     let worst = -1;
     const { degrees } = surface;
@@ -44,10 +44,10 @@ export function makePlayer(report, onChange) {
     if (isGltf) {
       player.weights = new Float64Array(part.targets.length);
       player.formulas = formulasOf(part.mark, part.targets.length);
-      player.hosts = part.shown.flatMap(({ hosts }) => hosts);
-      if (!player.hosts.includes(player.host)) player.host = 'specification';
+      player.viewers = part.shown.flatMap(({ viewers }) => viewers);
+      if (!player.viewers.includes(player.viewer)) player.viewer = 'specification';
     } else {
-      player.hosts = [];
+      player.viewers = [];
     }
     onChange('part');
     const worst = part.motions.reduce((best, motion, i) => (motion.worst[worstSample(motion)] > part.motions[best].worst[worstSample(part.motions[best])] ? i : best), 0);
@@ -62,7 +62,7 @@ export function makePlayer(report, onChange) {
   /** Goes to a place of report.worst; returns its vertex. */
   player.visit = ({ part, motion, sample, vertex }) => {
     player.pause();
-    if (player.host !== 'specification') player.chooseHost('specification');
+    if (player.viewer !== 'specification') player.chooseViewer('specification');
     if (player.scheme !== 'linear') player.chooseScheme('linear');
     if (part !== player.index) player.choosePart(part);
     player.chooseMotion(motion, sample);
@@ -92,15 +92,15 @@ export function makePlayer(report, onChange) {
     player.weights.fill(0);
     step();
   };
-  player.chooseHost = (host) => {
-    player.host = host;
+  player.chooseViewer = (viewer) => {
+    player.viewer = viewer;
     step();
-    onChange('host');
+    onChange('viewer');
   };
   player.chooseScheme = (scheme) => {
     player.scheme = scheme;
     step();
-    onChange('host');
+    onChange('viewer');
   };
   player.schemes = () => (isGltf ? [] : Object.keys(SCHEMES));
 

@@ -1,5 +1,5 @@
-// A mesh with morph targets at given weights: where its vertices are, what a host shows, what it should show, and the angle
-// between the two (docs/hosts.md). All arrays are made once; a step fills them.
+// A mesh with morph targets at given weights: where its vertices are, what a viewer shows, what it should show, and the angle
+// between the two (docs/viewers.md). All arrays are made once; a step fills them.
 import { NONE, copy, degreesBetween, normalsOf, truthOf } from './geometry.js';
 
 // The largest float32: what is beyond cannot be lit.
@@ -96,8 +96,8 @@ function judgedVertices({ vertices, triangles, element, elements, truth }, moved
 }
 
 /** Weights with a number for each target at a moment of a motion: `at` counts samples, and is linear between two of them. */
-export function weightsAt(motion, host, at, result) {
-  const track = motion.weights.find(({ hosts }) => hosts.includes(host)) ?? motion.weights[0];
+export function weightsAt(motion, viewer, at, result) {
+  const track = motion.weights.find(({ viewers }) => viewers.includes(viewer)) ?? motion.weights[0];
   const count = track.targets.length, from = Math.min(Math.floor(at), motion.at.length - 1), to = Math.min(from + 1, motion.at.length - 1);
   const t = at - from;
   result.fill(0);
@@ -111,7 +111,7 @@ export function weightsAt(motion, host, at, result) {
 /**
  * @param part of a report, of kind "gltf"
  * @returns what is drawn: positions, shown and right normals (V x 3, float32), degrees (V: -1 where nothing is judged), and
- *   pose(weights, host, least), which fills them. weights are those that the host plays: it is held against the normals there.
+ *   pose(weights, viewer, least), which fills them. weights are those that the viewer plays: it is held against the normals there.
  */
 export function makeSurface(part) {
   const { vertices: V, elements: E, element } = part;
@@ -177,8 +177,8 @@ export function makeSurface(part) {
     }
   }
 
-  surface.pose = (weights, host, least) => {
-    const entry = shownBy.find(({ hosts }) => hosts.includes(host)) ?? shownBy[0];
+  surface.pose = (weights, viewer, least) => {
+    const entry = shownBy.find(({ viewers }) => viewers.includes(viewer)) ?? shownBy[0];
     for (let k = 0; k < kept.length; ++k) kept[k] = Math.abs(weights[k]) <= entry.least_weight ? 0 : weights[k];
     addUp(part.positions, moved, kept, p);
     copy(p, surface.positions);

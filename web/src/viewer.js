@@ -1,7 +1,7 @@
 // A report on the screen: the picture, the slider and the plot below it, and the panels beside it.
 import { h, panel, segmented } from './dom.js';
 import { degreesText, gradient, scaleEnd } from './colors.js';
-import { choiceTable, choosers, hostTable, notes, schemeTable, shownBy, shownPlaces, verdict, weightSliders, worstPlaces } from './panels.js';
+import { choiceTable, choosers, viewerTable, notes, schemeTable, shownBy, shownPlaces, verdict, weightSliders, worstPlaces } from './panels.js';
 import { worstSample } from './motions.js';
 import { makePlayer } from './player.js';
 import { makePlot } from './plot.js';
@@ -64,7 +64,7 @@ export function makeViewer(root, report) {
       stage, legend, h('div', { className: 'timeline' }, play, slider, moment),
       h('div', { className: 'here' }, now, h('span', { className: 'key', 'aria-hidden': true })), plotBox),
     h('aside', { className: 'panels' }, h('p', { className: 'verdict' }, verdict(report)), chooser.box, places, weights?.box,
-      schemeTable(report, player), hostTable(report), choiceTable(report), notes(report), aboutOf(report)),
+      schemeTable(report, player), viewerTable(report), choiceTable(report), notes(report), aboutOf(report)),
     help);
 
   function point(found) {
@@ -109,7 +109,7 @@ export function makeViewer(root, report) {
       setScale();
       showPlot();
     }
-    if (what === 'host') {
+    if (what === 'viewer') {
       label();
       chooser.fill();
       showPlot();
@@ -178,7 +178,7 @@ export function makeViewer(root, report) {
     const first = report.worst[0];
     if (first) view.mark(player.visit(first));
     else player.choosePart(0);
-    changed('host');
+    changed('viewer');
     view.frame(true);
     if (first) view.mark(first.vertex);
   }

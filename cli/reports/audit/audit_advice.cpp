@@ -17,8 +17,8 @@ enum class Remedy {
   kNone,      // no normal is off
   kUnknown,   // none of those that could be judged, and there are others, or none
   kTangents,  // normals are right, and bake writes no tangents
-  kHosts,     // right by the specification, and not in hosts that do otherwise
-  kRule,      // what was judged is not what a glTF file makes hosts show
+  kViewers,   // right by the specification, and not in viewers that do otherwise
+  kRule,      // what was judged is not what a glTF file makes viewers show
   kOriginal,  // what is off was baked before, and is never baked twice
   kTargets,   // bake takes no targets over a base
   kBake,
@@ -51,11 +51,11 @@ std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked
   return result;
 }
 
-// The hosts in which something is off, by their titles.
-std::string wrong_hosts(const Audited& input) {
+// The viewers in which something is off, by their titles.
+std::string wrong_viewers(const Audited& input) {
   std::string titles;
-  for (const HostAudit& host : input.audit.hosts) {
-    if (!host.error.is_within(limit_of(input))) titles.append(titles.empty() ? "" : ", ").append(host.host.title);
+  for (const ViewerAudit& viewer : input.audit.viewers) {
+    if (!viewer.error.is_within(limit_of(input))) titles.append(titles.empty() ? "" : ", ").append(viewer.viewer.title);
   }
   return titles;
 }
@@ -64,7 +64,7 @@ Remedy remedy_of(const Audited& input) {
   const Audit& audit = input.audit;
   const bool any_fresh = !wrong_subjects(input, false).empty(), any_baked = !wrong_subjects(input, true).empty();
   if (!any_fresh && !any_baked) {
-    if (!wrong_hosts(input).empty()) return Remedy::kHosts;
+    if (!wrong_viewers(input).empty()) return Remedy::kViewers;
     const bool any_fault = std::any_of(audit.findings.begin(), audit.findings.end(),
                                        [](const AuditFinding& finding) { return finding.is_fault(); });
     if (any_fault) return Remedy::kTangents;
@@ -98,11 +98,12 @@ std::string outcome(const Audited& input) {
   const std::string now = error.unlit > 0 ? formatted("{} that cannot be lit", pairs(error.unlit))
                                           : formatted("{} degrees", degrees(error.worst));
   std::string text = formatted(
-      "writes the fewest bytes that are within {:g} degrees in all hosts, nowhere worse than before, and says what is "
+      "writes the fewest bytes that are within {:g} degrees in all viewers, nowhere worse than before, and says what "
+      "is "
       "left of {}",
       kHarmlessTolerance, now);
   if (driven == wrong.size() && by_area && error.unlit == 0)
-    text += "; for hosts that play targets as glTF says, --encode exact leaves about 0.01 degrees or less";
+    text += "; for viewers that play targets as glTF says, --encode exact leaves about 0.01 degrees or less";
   return text;
 }
 
@@ -119,12 +120,12 @@ std::string original_words(const Audited& input) {
   const std::string baked = "what is off was baked before, and bake changes it no more: ";
   if (any_harmless && any_driven)
     return baked +
-           "this is what all hosts of that bake show alike within its tolerance; bake the original with a smaller "
-           "--tolerance, with --for and those hosts that count, or with --encode exact where these play targets as "
+           "this is what all viewers of that bake show alike within its tolerance; bake the original with a smaller "
+           "--tolerance, with --for and those viewers that count, or with --encode exact where these play targets as "
            "glTF "
            "says";
   if (any_harmless)
-    return baked + "what hosts show alike of each target is all that there is where no animation moves them";
+    return baked + "what viewers show alike of each target is all that there is where no animation moves them";
   if (!all_single && all_fitted)
     return formatted("what is off is what a fit of {} normals leaves, and bake comes no nearer",
                      weighting_words(wrong));
@@ -151,12 +152,14 @@ std::string advice(const Audited& input) {
                  : "\nnothing is known to be right: no face that moves has an area\n";
     case Remedy::kTangents:
       return "\nthe normals are right, and bake writes no tangents: export them for all targets, or for none, so that "
-             "hosts compute them\n";
-    case Remedy::kHosts:
-      return formatted("\nright where a host adds up targets as stored, which these do not: {}\n", wrong_hosts(input));
+             "viewers compute them\n";
+    case Remedy::kViewers:
+      return formatted("\nright where a viewer adds up targets as stored, which these do not: {}\n",
+                       wrong_viewers(input));
     case Remedy::kRule:
-      return formatted("\nhosts do not show a glTF file by the rule {}: without --rule, audit says what bake can do\n",
-                       audit_rule_name(input.audit.rule));
+      return formatted(
+          "\nviewers do not show a glTF file by the rule {}: without --rule, audit says what bake can do\n",
+          audit_rule_name(input.audit.rule));
     case Remedy::kOriginal:
       return '\n' + original_words(input) + '\n';
     case Remedy::kTargets:
@@ -177,8 +180,8 @@ std::string verdict(const Audited& input) {
       return "unknown";
     case Remedy::kTangents:
       return "wrong tangents";
-    case Remedy::kHosts:
-      return "wrong in hosts";
+    case Remedy::kViewers:
+      return "wrong in viewers";
     case Remedy::kRule:
     case Remedy::kTargets:
       return "wrong";

@@ -29,7 +29,7 @@ std::vector<Group> groups_of(const Audit& audit, bool faults) {
   for (const AuditFinding& finding : audit.findings) {
     if (finding.is_fault() != faults) continue;
     const auto is_same = [&](const Group& g) {
-      return g.worst->kind == finding.kind && g.worst->mesh == finding.mesh && g.worst->host == finding.host;
+      return g.worst->kind == finding.kind && g.worst->mesh == finding.mesh && g.worst->viewer == finding.viewer;
     };
     auto group = std::find_if(groups.begin(), groups.end(), is_same);
     if (group == groups.end()) group = groups.insert(groups.end(), Group{&finding});
@@ -137,9 +137,9 @@ std::string group_words(const Audited& input, const Group& group) {
     case Kind::kSequenceTargets:
       return formatted("{}: {} baked keyframes: only animations were judged", who,
                        counted(found.count, "target is one of its", "targets are"));
-    case Kind::kBeyondHost:
+    case Kind::kBeyondViewer:
       return formatted("{}: {} more than {} takes: {}", who, counted(found.count, "target", "targets"),
-                       found.host->title, found.host->beyond);
+                       found.viewer->title, found.viewer->beyond);
   }
   return "";
 }

@@ -34,10 +34,10 @@ std::string limits_words(const Audited& input) {
     limits = formatted("{:g} {}", *input.limits.degrees, *input.limits.degrees == 1 ? "degree" : "degrees");
   if (input.limits.torn_edges)
     limits += (limits.empty() ? "" : " and ") + counted(*input.limits.torn_edges, "torn edge", "torn edges");
-  const std::vector<HostAudit>& viewers = input.audit.hosts;
+  const std::vector<ViewerAudit>& viewers = input.audit.viewers;
   if (viewers.empty()) return formatted("{} {}", input.passed() ? "within" : "beyond", limits);
   const auto within =
-      std::count_if(viewers.begin(), viewers.end(), [&](const HostAudit& viewer) { return input.passed(viewer); });
+      std::count_if(viewers.begin(), viewers.end(), [&](const ViewerAudit& viewer) { return input.passed(viewer); });
   return formatted("within {} in {} of {}", limits, within, counted(viewers.size(), "viewer", "viewers"));
 }
 
@@ -142,7 +142,7 @@ std::string subject_table(const Audited& input) {
 // after this one are about that one alone.
 std::string viewer_table(const Audited& input) {
   const Audit& audit = input.audit;
-  if (audit.hosts.empty()) return "";
+  if (audit.viewers.empty()) return "";
   Table table;
   table.add_column("viewer", "", Align::kLeft);
   for (const char* const title : {"average", "99 %", "99.9 %", "worst"})
@@ -158,10 +158,10 @@ std::string viewer_table(const Audited& input) {
                    grouped(error.unlit), displaced, note});
   };
   add_row("(specification)", audit.error, "-", "");
-  for (const HostAudit& found : audit.hosts) {
+  for (const ViewerAudit& found : audit.viewers) {
     std::string note = found.beyond > 0 ? "too many targets" : "";
     if (note.empty() && !input.passed(found)) note = "beyond the limits";
-    add_row(found.host.title, found.error,
+    add_row(found.viewer.title, found.error,
             found.displaced > kDisplaced ? formatted("{:.2g}", 100 * found.displaced) : "-", note);
   }
   return '\n' + table.text();
@@ -236,8 +236,8 @@ std::string worst_label(const Audited& input) {
   return place_words(input, subject, subject.error.worst_at);
 }
 
-std::string worst_label(const Audited& input, const HostAudit& host) {
-  return host.worst ? place_words(input, input.audit.subjects[*host.worst], host.error.worst_at) : "";
+std::string worst_label(const Audited& input, const ViewerAudit& viewer) {
+  return viewer.worst ? place_words(input, input.audit.subjects[*viewer.worst], viewer.error.worst_at) : "";
 }
 
 std::string unlit_label(const Audited& input) {

@@ -20,7 +20,7 @@ struct Audited {
   [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
   /// The glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
-  [[nodiscard]] bool passed(const HostAudit& host) const { return limits.allow(host); }
+  [[nodiscard]] bool passed(const ViewerAudit& viewer) const { return limits.allow(viewer); }
   /// Returns whether the limits are kept: in every viewer that was named, or by the rule where none was. A file in
   /// which nothing moves keeps them.
   [[nodiscard]] bool passed() const { return limits.allow(audit); }
@@ -32,8 +32,8 @@ struct Audited {
 /// "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55": where the worst error of all is.
 [[nodiscard]] std::string worst_label(const Audited& input);
 
-/// The same of one host.
-[[nodiscard]] std::string worst_label(const Audited& input, const HostAudit& host);
+/// The same of one viewer.
+[[nodiscard]] std::string worst_label(const Audited& input, const ViewerAudit& viewer);
 
 /// The same for the first pair that cannot be lit.
 [[nodiscard]] std::string unlit_label(const Audited& input);

@@ -16,7 +16,7 @@
 /// so nothing to be seen, the axis 0 and the cutoff 0.
 ///
 /// Proof      docs/theory.md, section 20. For vertices on straight lines, p(t) = (1-t) p0 + t p1, without rounding; a
-///            host that moves vertices in float32 shows faces that are edge on from either side, as it does anyhow.
+///            viewer that moves vertices in float32 shows faces that are edge on from either side, as it does anyhow.
 /// Threads    pure, on the thread that calls.
 /// Source     meshoptimizer 0.18, src/clusterizer.cpp; Shirman, Abi-Ezzi: The cone of normals technique (1993).
 #ifndef CHRONORMAL_ANALYSIS_CLUSTER_BOUNDS_H_

@@ -1,4 +1,4 @@
-/// What a host shows against what it should show: the errors of stored normals over a motion.
+/// What a viewer shows against what it should show: the errors of stored normals over a motion.
 ///
 /// Shown at a sample is what the rule makes of the stored normals; what should be shown is n(t), area-weighted or by
 /// another weighting, from the positions at that time, in double. An author may give normals of his own (another
@@ -23,7 +23,7 @@
 ///            counted apart, and are in no mean and no worst error. What they show must be finite; and it must not be
 ///            zero where the faces around have an area, which is drawn.
 /// Faint      those of them whose n(t) is more than what rounding the positions to float32 may change it by have a
-///            direction all the same, and a gate must not pass what is lit from behind: is_within() of audits and hosts
+///            direction all the same, and a gate must not pass what is lit from behind: is_within() of audits and viewers
 ///            looks at them, with the angle less what that rounding explains.
 /// Cancelled  those that are not faint although the faces around have an area: faces that lie back to back and share
 ///            their vertices. Nobody knows what is right there, and no gate passes.
@@ -51,14 +51,14 @@
 #include "chronormal/motion/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/errors.h"
-#include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/motion_error.h"
 #include "chronormal/workflow/peers.h"
 #include "chronormal/workflow/shard.h"
+#include "chronormal/workflow/viewers.h"
 
 namespace chronormal {
 
-/// What a host makes of stored normals between two keyframes.
+/// What a viewer makes of stored normals between two keyframes.
 enum class AuditRule {
   kGltf,   ///< normalize(N + sum w D), with the file's deltas, in float32
   kLerp,   ///< a straight line between the stored normals of the keyframes
@@ -97,10 +97,10 @@ struct AuditOptions {
   /// Without any, but with is_posed, kRandomPoses of each mesh that a program may set (docs/cli.md).
   bool is_posed = false;
   std::vector<RigPose> poses = {};
-  std::vector<Host> hosts = {};  ///< glTF, by the rule gltf: these are judged too
-  bool skins = true;             ///< glTF: judges meshes in nodes with a skin as they are seen through it
-  bool weld = true;              ///< vertices at one point throughout are one
-  bool keep_errors = false;      ///< every single one, in Audit::errors
+  std::vector<Viewer> viewers = {};  ///< glTF, by the rule gltf: these are judged too
+  bool skins = true;                 ///< glTF: judges meshes in nodes with a skin as they are seen through it
+  bool weld = true;                  ///< vertices at one point throughout are one
+  bool keep_errors = false;          ///< every single one, in Audit::errors
   /// For sequences: judges this share of the segments only, and keeps the errors of each of them in
   /// Audit::measured. Every shard finds out for itself what follows from the whole motion (which vertices move, how
   /// long a normal gets).
@@ -176,13 +176,13 @@ struct AuditFinding {
     kStaleTangents,   ///< tangents that are not perpendicular to the right normal at weight 1, as they were in the base
     kStaleKeys,       ///< a note: stored normals of a target tell nothing of the author's, of `count` vertices
     kUnknownRule,     ///< a note: base normals follow no rule; degrees is how far rules are from each other
-    kFlat,            ///< a note: primitives without normals, which hosts shade flat and right
+    kFlat,            ///< a note: primitives without normals, which viewers shade flat and right
     kSkinned,         ///< a note: nodes with a skin, through which normals are judged; degrees is what skinning turns
     kUnreadSkin,      ///< a note: nodes with a skin that cannot be read, so that normals are judged without it
     kBaked,           ///< a note: a bake was here
     kEmptied,  ///< a note: another program made the normals anew that a bake wrote; its extra targets turn nothing now
     kSequenceTargets,  ///< a note: baked keyframes, which mean nothing one by one
-    kBeyondHost        ///< a note: a mesh has more targets than a host takes
+    kBeyondViewer      ///< a note: a mesh has more targets than a viewer takes
   };
   Kind kind;
   std::optional<std::size_t> mesh, target, node, animation, expression;
@@ -190,25 +190,25 @@ struct AuditFinding {
   double degrees = 0;                  ///< the worst
   std::optional<Error> reason = {};    ///< why something could not be read
   std::optional<AuditPlace> worst_at;  ///< where there is one
-  std::optional<Host> host;            ///< that it is about; nothing: all
+  std::optional<Viewer> viewer;        ///< that it is about; nothing: all
 
   /// Normals may be missing where the motion does not turn them.
   [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kStaleKeys && degrees > kAuditFault; }
 };
 
-/// What one host shows of a file. What it should show is n(w) at the weights that it plays.
-struct HostAudit {
-  Host host;
+/// What one viewer shows of a file. What it should show is n(w) at the weights that it plays.
+struct ViewerAudit {
+  Viewer viewer;
   MotionError error;                 ///< of all subjects
   std::optional<std::size_t> worst;  ///< the subject with the worst error
   /// How far a vertex is from where the specification has it, at most: a share of the diagonal of the box around the
   /// base of its mesh.
   double displaced = 0;
-  /// Targets of a mesh beyond those that the host takes: it shows nothing then (Host::beyond). The errors above are as
+  /// Targets of a mesh beyond those that the viewer takes: it shows nothing then (Viewer::beyond). The errors above are as
   /// if it left these out.
   std::size_t beyond = 0;
 
-  /// Whether the host shows the file, and every pair as MotionError::passes() has it.
+  /// Whether the viewer shows the file, and every pair as MotionError::passes() has it.
   [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.passes(degrees); }
   /// Whether no more edges are torn than these at any sample.
   [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept { return error.most_torn <= most_torn; }
@@ -218,7 +218,7 @@ struct Audit {
   AuditRule rule = AuditRule::kGltf;
   /// The weighting of the normals that all subjects are judged against; empty where meshes have different ones.
   std::optional<Weighting> weighting = Weighting::kArea;
-  /// Whether normals are stored for every keyframe; else a host computes them there.
+  /// Whether normals are stored for every keyframe; else a viewer computes them there.
   bool stored = true;
   std::array<double, 2> span = {};  ///< of a sequence: the times of its first and its last keyframe
   std::optional<CutPath> cut = {};  ///< of curves, set by who has cut them: for reports
@@ -227,7 +227,7 @@ struct Audit {
   std::size_t still = 0;
   MotionError error;                 ///< of all subjects
   std::optional<std::size_t> worst;  ///< the subject with the worst error
-  std::vector<HostAudit> hosts;      ///< those of the options, in their order
+  std::vector<ViewerAudit> viewers;  ///< those of the options, in their order
   std::vector<AuthoredOffset> offsets;
   std::vector<AuditFinding> findings;  ///< faults first
   /// With keep_errors a table for each mesh of a glTF file that has subjects, and one for other inputs. Tracks with the
@@ -239,19 +239,19 @@ struct Audit {
   /// Whether there was anything to judge. Where nothing turns normals, or no face ever has an area, nothing is known to
   /// be right.
   [[nodiscard]] bool is_judged() const noexcept { return error.judged + error.faint > 0; }
-  /// Whether every host that was named shows no more, or the rule where none was: MotionError::passes(). Of motions
+  /// Whether every viewer that was named shows no more, or the rule where none was: MotionError::passes(). Of motions
   /// some pair must have been judged; a file in which nothing moves is within anything.
   [[nodiscard]] bool is_within(double degrees) const noexcept {
     if (!subjects.empty() && !is_judged()) return false;
-    if (hosts.empty()) return error.passes(degrees);
-    return std::all_of(hosts.begin(), hosts.end(),
-                       [degrees](const HostAudit& host) { return host.is_within(degrees); });
+    if (viewers.empty()) return error.passes(degrees);
+    return std::all_of(viewers.begin(), viewers.end(),
+                       [degrees](const ViewerAudit& viewer) { return viewer.is_within(degrees); });
   }
-  /// Whether no more edges are torn than these at any sample, in any host that was named, or by the rule where none was.
+  /// Whether no more edges are torn than these at any sample, in any viewer that was named, or by the rule where none was.
   [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept {
-    if (hosts.empty()) return error.most_torn <= most_torn;
-    return std::all_of(hosts.begin(), hosts.end(),
-                       [most_torn](const HostAudit& host) { return host.is_whole(most_torn); });
+    if (viewers.empty()) return error.most_torn <= most_torn;
+    return std::all_of(viewers.begin(), viewers.end(),
+                       [most_torn](const ViewerAudit& viewer) { return viewer.is_whole(most_torn); });
   }
 };
 
@@ -261,7 +261,7 @@ struct AuditLimits {
   std::optional<std::size_t> torn_edges = {};  ///< at one sample
 
   [[nodiscard]] bool any() const noexcept { return degrees || torn_edges; }
-  /// Whether an audit, or one of its hosts, keeps to them.
+  /// Whether an audit, or one of its viewers, keeps to them.
   template <class Found>
   [[nodiscard]] bool allow(const Found& found) const noexcept {
     return (!degrees || found.is_within(*degrees)) && (!torn_edges || found.is_whole(*torn_edges));
@@ -277,14 +277,14 @@ struct AuditLimits {
 /// track, and the pose in which the file opens, give them what the file says. A file in which nothing moves has no
 /// subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
-/// animation that is not there, hosts with another rule than gltf, fewer than 2 samples, weights that are
+/// animation that is not there, viewers with another rule than gltf, fewer than 2 samples, weights that are
 /// not ascending, and errors to keep that take more than kMostErrorBytes; kInvalidInput for poses that fit no mesh.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
-/// then. Without stored normals, a host computes them at keyframes, area-weighted, and interpolates: the truth is what
+/// then. Without stored normals, a viewer computes them at keyframes, area-weighted, and interpolates: the truth is what
 /// it would get in between. Residuals of positions count, but for which weighting stored normals
-/// follow, which differences of a tenth of a degree tell. Errors: kUsage for the rule gltf, for hosts,
+/// follow, which differences of a tenth of a degree tell. Errors: kUsage for the rule gltf, for viewers,
 /// and for fewer than 2 samples; kInvalidInput for normals that do not fit. Precondition: the
 /// motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);

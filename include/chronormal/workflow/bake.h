@@ -1,19 +1,19 @@
 /// Writes right normals into ordinary glTF files.
 ///
 ///     smallest   the default: of all these forms and more, the one of fewest bytes whose worst error along the
-///                animations is within a tolerance in every host that is named: what the file has, deltas of its
+///                animations is within a tolerance in every viewer that is named: what the file has, deltas of its
 ///                targets alone, extra targets that products of weights drive, or extra targets of low rank that only
 ///                the animations of the file drive (docs/theory.md, section 17); nowhere worse than before
 ///     harmless   unit normals at weight 1 for each target, and extra morph targets of unit normals for what that
 ///                leaves wrong on the way and where targets meet, as far as it is beyond a tolerance: nearly right in
-///                every host that is named, and in none of them worse than before (docs/theory.md, section 16)
+///                every viewer that is named, and in none of them worse than before (docs/theory.md, section 16)
 ///     exact      extra morph targets that carry the quadratic terms of eq. 32, driven by quadratics of the weights:
-///                exact at every instant in every host that adds up targets
+///                exact at every instant in every viewer that adds up targets
 ///     endpoint   the best single delta per target (analysis/fits/end_delta.h): right at the ends, with a stated error
 ///                between; where the file has several targets active at once, deltas fitted to its weights by least
-///                squares (docs/theory.md, eq. 44); in hosts that add up targets no worse than before
+///                squares (docs/theory.md, eq. 44); in viewers that add up targets no worse than before
 ///
-///     keys       of sequences: nothing but unit normals at keys, as few keys as hosts need that draw straight lines
+///     keys       of sequences: nothing but unit normals at keys, as few keys as viewers need that draw straight lines
 ///                between them, certified at every instant (docs/uses.md)
 ///
 /// The base NORMAL stays as it is, and so does every other byte of the file that is not named by GltfBake::pointers.
@@ -37,21 +37,21 @@
 #include "chronormal/motion/motion_stream.h"
 #include "chronormal/motion/paths.h"
 #include "chronormal/normals/weighting.h"
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 
 namespace chronormal {
 
 inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< degrees
-inline constexpr double kLeastKeyTolerance = 0.001;  ///< degrees: float32 in hosts takes some
+inline constexpr double kLeastKeyTolerance = 0.001;  ///< degrees: float32 in viewers takes some
 
 struct BakeOptions {
   std::optional<BakeEncoding> encoding = {};  ///< nothing: smallest; of sequences exact
   /// The viewers that it is made for. Nothing: those that add up deltas (three.js, Babylon.js, PlayCanvas, Bevy), and
   /// `spared` are those that keep unit normals (Godot, Filament).
-  std::vector<Host> hosts = {};
+  std::vector<Viewer> viewers = {};
   /// Viewers in which nothing should get worse: of candidates that are alike in the others, one that keeps to that comes
   /// first.
-  std::vector<Host> spared = {};
+  std::vector<Viewer> spared = {};
   /// The bytes that the document takes, by which a result is too large where no tolerance and no limit is asked for; 0:
   /// none is.
   std::size_t bytes_of_file = 0;
@@ -74,7 +74,7 @@ struct BakeOptions {
   /// Of keys, what no normal may be off by at any instant; kLeastKeyTolerance or more. Nothing: kHarmlessTolerance, and
   /// kExactBakeTolerance of exact.
   std::optional<double> tolerance = {};
-  /// Of smallest: how many targets a mesh may have, its own ones among them. Nothing: as many as the hosts bear.
+  /// Of smallest: how many targets a mesh may have, its own ones among them. Nothing: as many as the viewers bear.
   std::optional<std::size_t> most_targets = {};
   /// Of smallest: nothing but the animations of the file will ever be played, so that the deltas of the mesh's own
   /// targets may be fitted to these, and mean nothing alone.
@@ -112,11 +112,11 @@ struct ShownErrors {
 };
 
 /// The errors that a viewer shows of a mesh before and after a bake, seen through the skins of the nodes that carry it.
-struct HostChange {
+struct ViewerChange {
   struct Errors {
     ShownErrors before, after;
   };
-  std::string host;
+  std::string viewer;
   bool is_named = true;    ///< the bake is made for it
   bool is_better = false;  ///< as a whole, and by more than is allowed for in no respect worse
   /// In the animations of the file as the viewer plays them, and its standing weights; each target alone from 0 to 1; and
@@ -129,19 +129,19 @@ struct BakeChoice {
   /// "as it is", "own deltas", "products", "quadratics" or "low rank"
   std::string_view form;
   std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas and tangents, and those by which tracks grow
-  /// In the worst of the named hosts, along the animations of the file, between its keys, and in its standing weights,
+  /// In the worst of the named viewers, along the animations of the file, between its keys, and in its standing weights,
   /// or where it has no animation of weights, each target alone and in poses that the mesh is made for, which nothing
   /// was fitted to: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0). They are seen
   /// through the skins of the nodes that show the mesh.
   ShownErrors played;
-  /// What each named host shows. It is empty where bake looked at no other form than "as it is", and for the numbers of
+  /// What each named viewer shows. It is empty where bake looked at no other form than "as it is", and for the numbers of
   /// "quadratics" that bake tried on all vertices alike.
-  std::vector<HostChange> hosts;
+  std::vector<ViewerChange> viewers;
   bool within = false;  ///< its worst is within the tolerance, and it within the limits
   bool chosen = false;
   bool animations_only = false;  ///< its deltas are fitted to the animations, and mean nothing alone
   bool skinned = false;  ///< some skin does more than turn and scale evenly, so that played is other than without
-  /// Degrees, of the chosen form: the worst where compressors among the named hosts round what they keep, which no form
+  /// Degrees, of the chosen form: the worst where compressors among the named viewers round what they keep, which no form
   /// can help and no choice looks at; 0 where none of them does.
   double rounded = 0;
 };
@@ -164,7 +164,7 @@ struct BakedMesh {
   std::size_t left_flat = 0;       ///< primitives without NORMAL that stay flat
   std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero, or nearly: nothing can be added to
   std::size_t rescaled = 0;  ///< vertices whose stored base normal was too long or short for float32: now of length 1
-  /// Targets whose tangents leaned on the right normals: they are made anew, for hosts that add up tangents.
+  /// Targets whose tangents leaned on the right normals: they are made anew, for viewers that add up tangents.
   std::size_t new_tangents = 0;
   std::size_t left_tangents = 0;  ///< those for which most_delta_bytes has no room: they stay as they are
   std::size_t stilled = 0;        ///< targets that moved normals and no position: their deltas are zero now
@@ -172,13 +172,13 @@ struct BakedMesh {
   /// Degrees, of endpoint targets and fits: each alone, over w in [0, 1] and beyond as the file goes; targets that are
   /// active together are held against the weights of the file, at keys and up to fifteen instants between any two.
   double largest_error = 0;
-  std::size_t fitted_elements = 0;  ///< of endpoint: with deltas by least squares, for targets active together
-  double resampling_error = 0;      ///< degrees, of cubic splines and left-out pairs, along the animations
-  bool has_lone_weight = false;     ///< KHR_animation_pointer drives a weight alone: no extra targets, but of exact
-  bool already_baked = false;       ///< nothing was changed; `choices` has what smallest finds it to be
-  std::vector<HostChange> hosts;    ///< but of exact: what each named host shows, where the mesh changed
-  std::vector<BakeChoice> choices;  ///< of smallest: the forms that were looked at
-  std::size_t left_out = 0;         ///< extra targets that the hosts have no room for
+  std::size_t fitted_elements = 0;    ///< of endpoint: with deltas by least squares, for targets active together
+  double resampling_error = 0;        ///< degrees, of cubic splines and left-out pairs, along the animations
+  bool has_lone_weight = false;       ///< KHR_animation_pointer drives a weight alone: no extra targets, but of exact
+  bool already_baked = false;         ///< nothing was changed; `choices` has what smallest finds it to be
+  std::vector<ViewerChange> viewers;  ///< but of exact: what each named viewer shows, where the mesh changed
+  std::vector<BakeChoice> choices;    ///< of smallest: the forms that were looked at
+  std::size_t left_out = 0;           ///< extra targets that the viewers have no room for
   /// Nodes that carry the mesh and whose extras are no object: what drives extra targets does not stand there.
   std::vector<std::size_t> unmarked_nodes;
 };
@@ -229,7 +229,7 @@ struct SequenceBake {
 
 /// Makes an animated GLB of a sequence: keyframe 0 is the base, every later one a target with hat weights, and for
 /// exact one more target per segment with the weight t (1 - t) (docs/theory.md, section 15). Harmless has unit normals
-/// in all of them, bends with 4 t (1 - t) where hosts have room, and a LINEAR track (section 16). Vertices of hard
+/// in all of them, bends with 4 t (1 - t) where viewers have room, and a LINEAR track (section 16). Vertices of hard
 /// edges (crease angle) are doubled. Keys is harmless without bends, at keys of its own choice, for area weights.
 /// glb gets the bytes of the file; where there is an error, it stays as it was.
 /// The file holds float32 positions, and its normals are exact for these: residuals of a computed motion are left out.

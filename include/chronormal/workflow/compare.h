@@ -1,7 +1,7 @@
 /// The paper's Table 1 for any motion, every scheme held against the exact normals; and the same for the deltas of
 /// blend shapes.
 ///
-/// A host that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic form
+/// A viewer that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic form
 /// in the weights (docs/theory.md, section 14). Compared are the deltas of a glTF file, end-point deltas (right for
 /// each target alone at weight 1), those that are best by least squares (analysis/quality/blend_quality.h), and the
 /// exact normals of BlendNormals, which are off by rounding. All of them are held against cross products of blended
@@ -14,7 +14,7 @@
 ///            file moves by a delta. One for each different normal; of a glTF file, for each vertex.
 /// glTF       Each mesh on its own, with elements by its stored normals. Where an author gave base normals of his own,
 ///            the truth is turned as these are, as in an audit (workflow/gltf_shading.h). Flat primitives are right in
-///            hosts and are left out. Targets that a bake added get products of weights.
+///            viewers and are left out. Targets that a bake added get products of weights.
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_H_
 #define CHRONORMAL_WORKFLOW_COMPARE_H_
 

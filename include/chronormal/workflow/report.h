@@ -30,8 +30,8 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
-#include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/json.h"
+#include "chronormal/workflow/viewers.h"
 
 namespace chronormal {
 
@@ -44,7 +44,7 @@ struct ReportOptions {
   std::string animation = {};               ///< as AuditOptions has it
   std::optional<std::size_t> samples = {};  ///< as AuditOptions has it
   std::optional<Weighting> weighting = {};  ///< as AuditOptions has it
-  std::vector<Host> hosts = {};             ///< glTF: what these show can be looked at, beside the specification
+  std::vector<Viewer> viewers = {};         ///< glTF: what these show can be looked at, beside the specification
   bool plan = true;                         ///< glTF: with the forms that bake could give each mesh
   std::size_t most_bytes = kMostReportBytes;
   std::size_t template_bytes = 0;  ///< of the page, those that are not the report
@@ -68,7 +68,7 @@ struct ReportPart {
 
 struct Report {
   std::string input;  ///< its name without folders
-  Audit audit;        ///< of a glTF file with all hosts
+  Audit audit;        ///< of a glTF file with all viewers
   std::optional<GltfBake> plan;
   std::string plan_message;                   ///< why there is no plan where one was asked for
   std::optional<NamedComparison> comparison;  ///< of the schemes, on the vertices of what is no glTF file

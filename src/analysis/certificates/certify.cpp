@@ -207,7 +207,8 @@ double line_error(const ControlNormals& normals, double a, double b, const Vec3d
   const std::optional<Normal> normal = without_zero_ends(normals, promised_errors(normals));
   if (!normal) return 0;
   const NormalPiece piece = normal->over(a, b);
-  return bounds_of(CubicCurve(from, kHostRounding, to, kHostRounding), Normal{piece.n, piece.error}, {}, enough, true)
+  return bounds_of(CubicCurve(from, kViewerRounding, to, kViewerRounding), Normal{piece.n, piece.error}, {}, enough,
+                   true)
       .upper;
 }
 

@@ -1,4 +1,4 @@
-/// How far a straight line between two directions, as hosts draw it between two keys, is from the normal over a piece
+/// How far a straight line between two directions, as viewers draw it between two keys, is from the normal over a piece
 /// of a segment. Private: certificates of analysis/certify.h for what is no scheme.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFICATES_LINE_BOUND_H_
 #define CHRONORMAL_ANALYSIS_CERTIFICATES_LINE_BOUND_H_
@@ -8,9 +8,9 @@
 
 namespace chronormal::inline internal {
 
-/// What a host may add to a line of unit vectors, in float32: two deltas of up to 2 are rounded, their weights, and a
+/// What a viewer may add to a line of unit vectors, in float32: two deltas of up to 2 are rounded, their weights, and a
 /// sum of three terms, whose rounding is below 25 of 2^-24.
-inline constexpr double kHostRounding = 32 * 0x1p-24;
+inline constexpr double kViewerRounding = 32 * 0x1p-24;
 
 /// An upper bound of the angle, in radians, between n(t) and the line from `from` (t = a) to `to` (t = b), for all t in
 /// [a, b] and at any length of the two. It is as close as it has to be: at most `enough`, or above it for sure. 0 where

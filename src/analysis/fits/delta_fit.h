@@ -1,6 +1,6 @@
-/// The normal deltas that a host should add up, by least squares.
+/// The normal deltas that a viewer should add up, by least squares.
 ///
-/// A host shows normalize(N + sum_i w_i D_i) for the weights w. DeltaFit starts from some D, is told for weight vectors
+/// A viewer shows normalize(N + sum_i w_i D_i) for the weights w. DeltaFit starts from some D, is told for weight vectors
 /// of interest how much is missing, and finds what to add to every D so that as little as possible is:
 ///
 ///     DeltaFit fit(start);
@@ -23,13 +23,13 @@
 
 namespace chronormal::inline internal {
 
-/// What a host adds up.
+/// What a viewer adds up.
 struct DeltaNormals {
   std::vector<float> base;          ///< N, (elements, 3)
   std::vector<BlendTarget> deltas;  ///< D_i, of elements in place of vertices
 };
 
-/// Writes N + sum_i w_i D_i of all elements: what a host shows, of any length.
+/// Writes N + sum_i w_i D_i of all elements: what a viewer shows, of any length.
 /// weights must have one for each delta, result one for each element
 void shown_normals(const DeltaNormals& deltas, std::span<const double> weights, std::span<Vec3d> result) noexcept;
 

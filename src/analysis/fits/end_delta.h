@@ -1,4 +1,4 @@
-/// The best single delta for a host that can only add one: base + w delta, for w in [0, 1].
+/// The best single delta for a viewer that can only add one: base + w delta, for w in [0, 1].
 ///
 /// A straight line between normals has both end directions right however long its ends are: u0 + w (s u1 - u0) for any
 /// s > 0. The s that keeps the largest angle to the exact normals smallest is a search in one dimension for each

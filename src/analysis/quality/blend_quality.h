@@ -1,6 +1,6 @@
-/// How far normals are off in hosts that add one normal delta per target, at any weights.
+/// How far normals are off in viewers that add one normal delta per target, at any weights.
 ///
-/// A host shows normalize(N + sum_i w_i D_i). The true normal is a quadratic form in the weights (docs/theory.md,
+/// A viewer shows normalize(N + sum_i w_i D_i). The true normal is a quadratic form in the weights (docs/theory.md,
 /// section 14), so no choice of D is right everywhere. Three of them are compared: what a file stores; the end-point
 /// deltas, right for each target alone at weight 1; and those that are best on the whole for given weights:
 ///
@@ -36,7 +36,7 @@ namespace chronormal::inline internal {
 /// weights must be (rows, targets)
 [[nodiscard]] DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights);
 
-/// The angles between what a host shows and the exact normals, over all rows, and all elements of which one of the two
+/// The angles between what a viewer shows and the exact normals, over all rows, and all elements of which one of the two
 /// is not as in the base. max_at has the row as its segment.
 /// weights must be (rows, targets), deltas of the elements and targets of normals
 [[nodiscard]] Quality delta_quality(const DeltaNormals& deltas, BlendNormals& normals, std::span<const double> weights);

@@ -118,7 +118,7 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
       files, [&](const std::string& file) { return file == base || (!options.resolve && is_same_file(file, base)); });
   if (files.empty()) return invalid_input(place_of(base), "there is no target besides the base itself");
 
-  // Normals are those of the base: hosts that show targets have none of theirs.
+  // Normals are those of the base: viewers that show targets have none of theirs.
   InputOptions of_base = options;
   if (of_base.shading != KeepShading::kNone) of_base.shading = KeepShading::kFirst;
   const std::size_t total = 1 + files.size();

@@ -1,4 +1,4 @@
-// Blends positions and stored normals of a mesh by its weights, as a host does.
+// Blends positions and stored normals of a mesh by its weights, as a viewer does.
 #include "workflow/audit/blend_source.h"
 
 #include <algorithm>

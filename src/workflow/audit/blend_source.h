@@ -1,4 +1,4 @@
-/// What a host makes of the mesh of a glTF file and its weights: a source of measure.h. Private to workflow.
+/// What a viewer makes of the mesh of a glTF file and its weights: a source of measure.h. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_
 

@@ -14,18 +14,18 @@
 #include "io/gltf/gltf_weights.h"
 #include "workflow/audit/blend_source.h"
 #include "workflow/audit/gltf_findings.h"
-#include "workflow/audit/host_errors.h"
 #include "workflow/audit/measure.h"
 #include "workflow/audit/skinning_error.h"
+#include "workflow/audit/viewer_errors.h"
 #include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
-#include "workflow/hosts/played_track.h"
 #include "workflow/shading/authored_weighting.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/mesh_skin.h"
 #include "workflow/shading/rig_poses.h"
 #include "workflow/shading/surface_edges.h"
 #include "workflow/truth/author_truth.h"
+#include "workflow/viewers/played_track.h"
 
 namespace chronormal {
 namespace {
@@ -135,17 +135,17 @@ JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
   return part;
 }
 
-// The weights of the targets that are involved in a subject: those of the specification, and those that each host
+// The weights of the targets that are involved in a subject: those of the specification, and those that each viewer
 // plays.
 struct SubjectWeights {
   Weights specified;
   std::vector<Weights> played;
 };
 
-// A subject, and what hosts show of it.
+// A subject, and what viewers show of it.
 struct Measured {
   AuditSubject subject;
-  std::vector<HostError> of_hosts;
+  std::vector<ViewerError> of_viewers;
 };
 
 // Spreads the weights of the targets that are involved over all.
@@ -175,15 +175,15 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
   }
   BlendSource source(mesh.shading, mesh.truth, part, mesh.rule, involved, weights.specified, moment, subject.samples,
                      skin);
-  HostErrors hosts(mesh.shading, part, mesh.options.hosts, weights.played, involved, skin != nullptr);
+  ViewerErrors viewers(mesh.shading, part, mesh.options.viewers, weights.played, involved, skin != nullptr);
   SkinningErrors skinning;
-  const auto judge_hosts = [&](const MeasuredSample& sample) {
-    hosts.add_sample(source, sample);
+  const auto judge_viewers = [&](const MeasuredSample& sample) {
+    viewers.add_sample(source, sample);
     skinning.add_sample(source, sample);
     if (!mesh.watch) return;
     const std::size_t targets = mesh.shading.set.targets.size();
     std::vector<std::vector<double>> played;
-    for (const std::vector<double>& now : hosts.now()) played.push_back(of_all_targets(now, involved, targets));
+    for (const std::vector<double>& now : viewers.now()) played.push_back(of_all_targets(now, involved, targets));
     mesh.watch({index, subject, sample.segment, sample.t, moment(sample.segment, sample.t), part, sample.largest,
                 sample.error, sample.each, of_all_targets(source.now(), involved, targets), played});
   };
@@ -192,18 +192,18 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
   KeptErrors kept{mesh.errors, index, are_watched};
   if (subject.kind == AuditSubject::Kind::kTrack && mesh.options.most_segments > 0)
     kept.step = block_count(std::max<std::size_t>(1, subject.segments), mesh.options.most_segments);
-  (void)measure(source, part, mesh.rule, mesh.progress, subject, kept, judge_hosts);
+  (void)measure(source, part, mesh.rule, mesh.progress, subject, kept, judge_viewers);
   subject.skinning = skinning.all();
-  return Measured{std::move(subject), hosts.take()};
+  return Measured{std::move(subject), viewers.take()};
 }
 
 void add_subject(Measured measured, Audit& result) {
-  for (std::size_t h = 0; h < measured.of_hosts.size(); ++h) {
-    HostAudit& host = result.hosts[h];
-    const HostError& found = measured.of_hosts[h];
-    if (found.error.worst > host.error.worst) host.worst = result.subjects.size();
-    host.error.add(found.error);
-    host.displaced = std::max(host.displaced, found.displaced);
+  for (std::size_t h = 0; h < measured.of_viewers.size(); ++h) {
+    ViewerAudit& viewer = result.viewers[h];
+    const ViewerError& found = measured.of_viewers[h];
+    if (found.error.worst > viewer.error.worst) viewer.worst = result.subjects.size();
+    viewer.error.add(found.error);
+    viewer.displaced = std::max(viewer.displaced, found.displaced);
   }
   result.subjects.push_back(std::move(measured.subject));
 }
@@ -241,10 +241,10 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   // There may be thousands of targets, so that nothing is done for each of them here without need.
   weights.specified = [&](std::size_t, double t, std::span<double> alone) { alone[0] = weight_at(t); };
   if (shading.mark) weights.specified = of_involved(involved, shading.set.targets.size(), with_extras);
-  for (const Host& host : mesh.options.hosts) {
+  for (const Viewer& viewer : mesh.options.viewers) {
     weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> played) {
       weights.specified(segment, t, played);
-      drop_weights(host, played, involved);
+      drop_weights(viewer, played, involved);
     });
   }
   const auto moment = [&](std::size_t, double t) { return weight_at(t); };
@@ -269,7 +269,7 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
   Result<GltfKeys> keys = mesh.document.keys(animation, index);
   if (!keys) return keys.error();
   Result<TimeRange> range = TimeRange();
-  if (!mesh.options.hosts.empty()) range = weight_time_range(mesh.document, animation);
+  if (!mesh.options.viewers.empty()) range = weight_time_range(mesh.document, animation);
   if (!range) return range.error();
   const std::vector<double> times = keys.value().times;
   const std::size_t width = mesh.shading.set.targets.size();
@@ -280,8 +280,8 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
   for (std::size_t k = 0; k < width; ++k)
     if (is_involved[k]) involved.push_back(k);
   std::vector<PlayedTrack> played;
-  for (const Host& host : mesh.options.hosts)
-    played.emplace_back(host, keys.value(), track.interpolation, width, range.value());
+  for (const Viewer& viewer : mesh.options.viewers)
+    played.emplace_back(viewer, keys.value(), track.interpolation, width, range.value());
   const gltf::WeightCurve curve(std::move(keys).value(), track.interpolation, width);
   AuditSubject subject;
   subject.kind = AuditSubject::Kind::kTrack;
@@ -303,9 +303,9 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
   weights.specified = of_involved(involved, width, [&](std::size_t segment, double t, std::span<double> of_targets) {
     curve.at(moment(segment, t), moves && t == 1, of_targets);
   });
-  for (const PlayedTrack& by_host : played) {
+  for (const PlayedTrack& by_viewer : played) {
     weights.played.push_back(of_involved(involved, width, [&](std::size_t segment, double t, std::span<double> all) {
-      by_host.at(moment(segment, t), moves && t == 1, all);
+      by_viewer.at(moment(segment, t), moves && t == 1, all);
     }));
   }
   std::optional<MeshSkin> skin;
@@ -370,10 +370,10 @@ std::optional<Measured> measure_poses(const MeshAudit& mesh, const PoseList& pos
   weights.specified = [&](std::size_t segment, double t, std::span<double> now) {
     for (std::size_t i = 0; i < involved.size(); ++i) now[i] = (1 - t) * poses[segment][involved[i]];
   };
-  for (const Host& host : mesh.options.hosts) {
+  for (const Viewer& viewer : mesh.options.viewers) {
     weights.played.emplace_back([&](std::size_t segment, double t, std::span<double> played) {
       weights.specified(segment, t, played);
-      drop_weights(host, played, involved);
+      drop_weights(viewer, played, involved);
     });
   }
   return measure_part(mesh, part_of(mesh, involved), involved, weights, moment, skin, std::move(subject), index);
@@ -533,9 +533,9 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
   Audit result;
   result.weighting = options.weighting.value_or(Weighting::kArea);
   result.rule = options.rule.value_or(AuditRule::kGltf);
-  if (!options.hosts.empty() && result.rule != AuditRule::kGltf)
-    return Error{ErrorCode::kUsage, "", "hosts go with the rule gltf, which they stand for"};
-  for (const Host& host : options.hosts) result.hosts.emplace_back().host = host;
+  if (!options.viewers.empty() && result.rule != AuditRule::kGltf)
+    return Error{ErrorCode::kUsage, "", "viewers go with the rule gltf, which they stand for"};
+  for (const Viewer& viewer : options.viewers) result.viewers.emplace_back().viewer = viewer;
   const std::size_t total = count_segments(document, options, only);
   std::size_t done = 0;
   const auto progress = [&] {
@@ -561,10 +561,10 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     if (truth.rule().weighting == Weighting::kArea) shading.groups.forget_corners();
     for (const AuditFinding& note : notes_of(document, shading)) result.findings.push_back(note);
     for (const AuditFinding& note : notes_of_truth(shading, truth)) result.findings.push_back(note);
-    for (const AuditFinding& note : limits_of(shading, options.hosts)) result.findings.push_back(note);
-    for (HostAudit& host : result.hosts) {
-      const std::size_t most = host.host.most_targets, targets = shading.set.targets.size();
-      if (most > 0 && targets > most) host.beyond = std::max(host.beyond, targets - most);
+    for (const AuditFinding& note : limits_of(shading, options.viewers)) result.findings.push_back(note);
+    for (ViewerAudit& viewer : result.viewers) {
+      const std::size_t most = viewer.viewer.most_targets, targets = shading.set.targets.size();
+      if (most > 0 && targets > most) viewer.beyond = std::max(viewer.beyond, targets - most);
     }
 
     ErrorTable table;

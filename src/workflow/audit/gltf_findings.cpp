@@ -113,14 +113,14 @@ std::vector<AuditFinding> notes_of_skins(const GltfDocument& document, const Glt
   return notes;
 }
 
-std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Host> hosts) {
+std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Viewer> viewers) {
   std::vector<AuditFinding> notes;
   const std::size_t targets = shading.set.targets.size();
-  for (const Host& host : hosts) {
-    if (host.most_targets == 0 || targets <= host.most_targets) continue;
-    AuditFinding& note = notes.emplace_back(finding_of(Kind::kBeyondHost, shading.mesh));
-    note.count = targets - host.most_targets;
-    note.host = host;
+  for (const Viewer& viewer : viewers) {
+    if (viewer.most_targets == 0 || targets <= viewer.most_targets) continue;
+    AuditFinding& note = notes.emplace_back(finding_of(Kind::kBeyondViewer, shading.mesh));
+    note.count = targets - viewer.most_targets;
+    note.viewer = viewer;
   }
   return notes;
 }

@@ -23,8 +23,8 @@ namespace chronormal::inline internal {
                                                        std::span<const AuditSubject> subjects,
                                                        const std::map<std::size_t, Error>& unread);
 
-/// The hosts that take fewer targets than the mesh has.
-[[nodiscard]] std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Host> hosts);
+/// The viewers that take fewer targets than the mesh has.
+[[nodiscard]] std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Viewer> viewers);
 
 /// The faults of a target that was measured, at the weights that measured it, which are those of the involved targets.
 [[nodiscard]] std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading,

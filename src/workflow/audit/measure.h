@@ -41,7 +41,7 @@ inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
   return bin;
 }
 
-/// The fine bin for it. Where a host rounds otherwise than to nearest, an angle may also be -0, or a little beyond 180:
+/// The fine bin for it. Where a viewer rounds otherwise than to nearest, an angle may also be -0, or a little beyond 180:
 /// nothing may be indexed by such bits unchecked.
 [[nodiscard]] inline std::size_t fine_bin_of(double degrees) noexcept {
   // Each doubling is an exponent of double, and its bins are the first bits of the fraction; both together are one

@@ -61,7 +61,7 @@ struct Scratch {
   TrianglesInMotion triangles;
   std::vector<TrianglesInMotion::Normal> faces;
   PlanesOf4 start, end, between;  // right normals, at the ends of a segment and inside
-  PlanesOf4 from, to;             // what a host keeps of those at the ends
+  PlanesOf4 from, to;             // what a viewer keeps of those at the ends
   std::vector<double> degrees;
 };
 
@@ -111,8 +111,8 @@ void maximize(const Peers& peers, std::vector<std::vector<double>>& numbers) {
   }
 }
 
-// The normals that a host stores at a keyframe, and interpolates, made from the right ones.
-void keep_as_host(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
+// The normals that a viewer stores at a keyframe, and interpolates, made from the right ones.
+void keep_as_viewer(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   result.resize(sums.x.size());
   for (std::size_t e = 0; e < sums.x.size(); ++e) {
     Vec3d kept = rounded_to_float(unit(normal_of(sums, e)));
@@ -135,7 +135,7 @@ double rounding_at(const Segment& segment, double t, const Block& block, std::si
   return sum;
 }
 
-// Everything that a host shows of an element between what it keeps at the ends.
+// Everything that a viewer shows of an element between what it keeps at the ends.
 Vec3d shown_at(const Scratch& scratch, std::size_t e, double weight) {
   const auto kept = [e](const PlanesOf4& planes) { return Vec3d{planes.x[e], planes.y[e], planes.z[e]}; };
   return rounded_to_float(unit(lerp(kept(scratch.from), kept(scratch.to), weight)));
@@ -148,8 +148,8 @@ void measure_block(const Segment& segment, std::size_t number, const Block& bloc
   scratch.triangles.gather(segment.from, segment.to, block.corners);
   add_up_at(block, 0, scratch, scratch.start);
   add_up_at(block, 1, scratch, scratch.end);
-  keep_as_host(rule, scratch.start, scratch.from);
-  keep_as_host(rule, scratch.end, scratch.to);
+  keep_as_viewer(rule, scratch.start, scratch.from);
+  keep_as_viewer(rule, scratch.end, scratch.to);
   for (std::size_t e = 0; e < largest.size(); ++e) scratch.from.w[e] = kVanished * largest[e];
   scratch.degrees.resize(block.elements.count);
   for (std::size_t i = 0; i < errors.size(); ++i) {

@@ -26,7 +26,7 @@ namespace chronormal::inline internal {
 /// Names a moment and a vertex for people, as a source does (measure.h).
 using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const JudgedOutput& output)>;
 
-/// Measures all samples of these segments of a motion, as measure() does for normals that a host computes at keyframes.
+/// Measures all samples of these segments of a motion, as measure() does for normals that a viewer computes at keyframes.
 /// The outputs of the part must be in the order of their elements. Calls progress after each segment. Of `kept`, only
 /// the shard, the known segments and tell_segment are used. Errors: those of the stream, of which one segment is held
 /// at a time.

@@ -1,4 +1,4 @@
-// Audits of sequences: what a host shows that interpolates normals between keyframes.
+// Audits of sequences: what a viewer shows that interpolates normals between keyframes.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -67,7 +67,7 @@ class SequenceSource {
 
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const {
     if (stored_) return blend_stored(rule_, stored_at(keys().from, output), stored_at(keys().to, output), t_);
-    // What a host computes at the keyframes, as it keeps it.
+    // What a viewer computes at the keyframes, as it keeps it.
     const auto computed = [](const Vec3d& normal) { return rounded_to_float(unit(normal)); };
     return blend_stored(rule_, computed(start_[output.element]), computed(end_[output.element]), t_);
   }
@@ -276,8 +276,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   result.rule = options.rule.value_or(AuditRule::kNlerp);
   if (result.rule == AuditRule::kGltf)
     return Error{ErrorCode::kUsage, "", "the rule gltf adds up the deltas of a glTF file; this input has none"};
-  if (!options.hosts.empty())
-    return Error{ErrorCode::kUsage, "", "hosts are known for what they make of glTF files; this input is none"};
+  if (!options.viewers.empty())
+    return Error{ErrorCode::kUsage, "", "viewers are known for what they make of glTF files; this input is none"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.span = {motion.keyframes.front().time, motion.keyframes.back().time};
   const bool in_parts = options.shard || options.keep || !options.known.empty();
@@ -300,7 +300,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
 
   const Topology& topology = motion.topology;
   if (const Status status = stream.hold(0, 0); !status) return status.error();
-  // Where a host computes the normals of keyframes, it does so by area, whatever the program did that made the first.
+  // Where a viewer computes the normals of keyframes, it does so by area, whatever the program did that made the first.
   const std::optional<Weighting> asked =
       result.stored || options.weighting ? options.weighting : std::optional(Weighting::kArea);
   Weighting weighting = asked.value_or(Weighting::kArea);

@@ -18,18 +18,18 @@ constexpr std::size_t kGroupsPerTask = 16;
 }  // namespace
 
 StoredSums::StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs,
-                       std::vector<std::size_t> involved, const Host& host)
+                       std::vector<std::size_t> involved, const Viewer& viewer)
     : shading_(shading),
       outputs_(outputs),
       involved_(std::move(involved)),
-      host_(host),
+      viewer_(viewer),
       stride_(3 * kGroup * block_count(outputs.size(), kGroup)) {}
 
 void StoredSums::make_groups() {
-  if (host_.normals != NormalRule::kSum) {
+  if (viewer_.normals != NormalRule::kSum) {
     kept_normals_.resize(outputs_.size());
     parallel_each(outputs_.size(), kGroup * kGroupsPerTask,
-                  [&](std::size_t i) { kept_normals_[i] = kept_normal(host_, stored(i)); });
+                  [&](std::size_t i) { kept_normals_[i] = kept_normal(viewer_, stored(i)); });
   }
   groups_.resize(block_count(outputs_.size(), kGroup));
   parallel_each(groups_.size(), kGroupsPerTask, [&](std::size_t g) {
@@ -45,7 +45,7 @@ void StoredSums::make_groups() {
       for (std::size_t i = 0; i < count; ++i) {
         const Vec3f delta = vector_at(row, i);
         if (delta == Vec3f{}) continue;
-        const Vec3f kept_one = kept_delta(host_, stored(first + i), kept(first + i), delta);
+        const Vec3f kept_one = kept_delta(viewer_, stored(first + i), kept(first + i), delta);
         row[3 * i] = kept_one.x, row[3 * i + 1] = kept_one.y, row[3 * i + 2] = kept_one.z;
       }
       group.targets.push_back(static_cast<std::uint32_t>(k));
@@ -81,7 +81,7 @@ void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
   const std::size_t sets = sets_.size(), first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);
   float* const sums = sums_.data() + 3 * first;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3f term = first_of_sum(host_, kept(first + i));
+    const Vec3f term = first_of_sum(viewer_, kept(first + i));
     sums[3 * i] = term.x, sums[3 * i + 1] = term.y, sums[3 * i + 2] = term.z;
   }
   for (std::size_t s = 1; s < sets; ++s) std::copy_n(sums, 3 * count, sums + s * stride_);
@@ -112,7 +112,7 @@ Vec3f StoredSums::kept(std::size_t output) const {
 }
 
 Vec3f StoredSums::shown(std::span<const float> sums, std::size_t output) const {
-  return shown_of_sum(host_, kept(output), vector_at(sums, output));
+  return shown_of_sum(viewer_, kept(output), vector_at(sums, output));
 }
 
 std::span<const float> StoredSums::find(const std::vector<double>& weights) const noexcept {

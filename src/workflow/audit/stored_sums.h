@@ -1,4 +1,4 @@
-/// Stored normals of some outputs and their deltas, added up as the specification says, or as a host keeps them. Private
+/// Stored normals of some outputs and their deltas, added up as the specification says, or as a viewer keeps them. Private
 /// to workflow.
 ///
 /// The deltas of many targets fill more memory than a cache has, so that a sum at one set of weights takes as long as it
@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "workflow/audit/judged_part.h"
 #include "workflow/shading/gltf_shading.h"
 
@@ -24,9 +24,9 @@ class StoredSums {
   /// shading and outputs must outlive this. involved are targets, ascending: a set of weights has one for each of them,
   /// and the others have none at any time.
   StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<std::size_t> involved,
-             const Host& host = {});
+             const Viewer& viewer = {});
 
-  /// Computes N + sum w D of every output at each set of weights, in float32, target after target, as hosts add. What
+  /// Computes N + sum w D of every output at each set of weights, in float32, target after target, as viewers add. What
   /// was known before is forgotten. A delta of zero changes no sum, even where its weight is not finite: such a weight
   /// never makes a sum finite, whatever the delta is. On all threads.
   void add_up(std::vector<std::vector<double>> sets);
@@ -37,7 +37,7 @@ class StoredSums {
   /// The unit normal that is shown of a sum; zero, or not finite, where the sum is.
   [[nodiscard]] Vec3f shown(std::span<const float> sums, std::size_t output) const;
 
-  [[nodiscard]] const Host& host() const noexcept { return host_; }
+  [[nodiscard]] const Viewer& viewer() const noexcept { return viewer_; }
 
  private:
   // Some neighbouring outputs, and a row of deltas for each target that turns any of them.
@@ -55,8 +55,8 @@ class StoredSums {
   const GltfShading& shading_;
   std::span<const JudgedOutput> outputs_;
   std::vector<std::size_t> involved_;
-  Host host_;
-  std::vector<Vec3f> kept_normals_;  // of outputs, where the host does not keep those that are stored
+  Viewer viewer_;
+  std::vector<Vec3f> kept_normals_;  // of outputs, where the viewer does not keep those that are stored
   std::vector<Group> groups_;        // empty until something is added up
   std::vector<std::vector<double>> sets_;
   std::size_t stride_;       // of the sums of a set: whole groups

@@ -29,7 +29,7 @@ struct AuditSample {
   const MotionError& error;
   std::span<const float> degrees;               ///< of the outputs of the part; NaN where none is judged
   std::span<const double> weights;              ///< of a glTF file, of all targets
-  std::span<const std::vector<double>> played;  ///< of a glTF file, those that each host of the options plays
+  std::span<const std::vector<double>> played;  ///< of a glTF file, those that each viewer of the options plays
 };
 
 using AuditWatch = std::function<void(const AuditSample&)>;

@@ -138,7 +138,7 @@ MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, 
                          std::size_t tangent_bytes, BakedMesh& report, bool& is_of_animations) {
   ChosenCandidate chosen = choose_candidate(source, weights, options, tangent_bytes);
   const auto candidate = std::make_shared<Candidate>(std::move(chosen.candidate));
-  report.hosts = std::move(chosen.hosts);
+  report.viewers = std::move(chosen.viewers);
   if (source.plan.encoding == BakeEncoding::kSmallest) report.choices = std::move(chosen.choices);
   report.left_out = candidate->left_out;
   report.resampling_error = candidate->track_error * kDegreesPerRadian;
@@ -224,7 +224,7 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   const BaseFaults faults = find_base_faults(source);
   baked.report.without_base = faults.without_base;
   baked.report.without_stored = faults.without_stored;
-  std::vector<bool> is_stale = find_stale_tangents(source, options.hosts);
+  std::vector<bool> is_stale = find_stale_tangents(source, options.viewers);
   std::size_t tangent_bytes = bytes_of_tangents(source, is_stale);
   if (options.most_delta_bytes && tangent_bytes > *options.most_delta_bytes) {
     baked.report.left_tangents = static_cast<std::size_t>(std::count(is_stale.begin(), is_stale.end(), true));
@@ -347,9 +347,9 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
 }  // namespace
 
 BakeOptions with_viewers(BakeOptions options) {
-  if (!options.hosts.empty()) return options;
-  for (const Host& viewer : kHosts) {
-    if (viewer.normals == NormalRule::kSum) options.hosts.push_back(viewer);
+  if (!options.viewers.empty()) return options;
+  for (const Viewer& viewer : kViewers) {
+    if (viewer.normals == NormalRule::kSum) options.viewers.push_back(viewer);
     if (viewer.normals == NormalRule::kUnit) options.spared.push_back(viewer);
   }
   return options;

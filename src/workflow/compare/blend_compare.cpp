@@ -180,7 +180,7 @@ class BlendMeter {
     return result;
   }
 
-  // N + sum w D as a file has them, in float32 as hosts add.
+  // N + sum w D as a file has them, in float32 as viewers add.
   [[nodiscard]] Vec3d stored(const Output& output, std::span<const double> weights) const {
     Vec3f sum = to_float(vector_at(subject_.shading->normals, output.number));
     for (std::size_t k = 0; k < weights.size(); ++k) {

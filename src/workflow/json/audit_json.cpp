@@ -106,7 +106,7 @@ Json finding_json(const AuditFinding& finding) {
           {"node", or_null(finding.node)},
           {"expression", or_null(finding.expression)},
           {"count", finding.count},
-          {"viewer", finding.host ? Json(finding.host->name) : Json()},
+          {"viewer", finding.viewer ? Json(finding.viewer->name) : Json()},
           {"reason", finding.reason ? Json(finding.reason->text()) : Json()},
           {"worst_degrees", finding.is_fault() || finding.kind == AuditFinding::Kind::kSkinned ||
                                     finding.kind == AuditFinding::Kind::kUnknownRule
@@ -117,18 +117,18 @@ Json finding_json(const AuditFinding& finding) {
                            : Json()}};
 }
 
-Json viewer_json(const Audit& audit, const AuditLimits& limits, const HostAudit& found) {
+Json viewer_json(const Audit& audit, const AuditLimits& limits, const ViewerAudit& found) {
   constexpr const char* kNormals[] = {"sum", "unit", "clamped"};
   constexpr const char* kTracks[] = {"specified", "splines_resampled", "all_resampled", "splines_without_duration",
                                      "splines_misread"};
   constexpr const char* kSkins[] = {"blended", "inverse_transpose", "by_joint"};
-  Json json = {{"name", found.host.name},
-               {"title", found.host.title},
-               {"normals", kNormals[static_cast<std::size_t>(found.host.normals)]},
-               {"tracks", kTracks[static_cast<std::size_t>(found.host.tracks)]},
-               {"skins", kSkins[static_cast<std::size_t>(found.host.skins)]},
-               {"most_targets", found.host.most_targets > 0 ? Json(found.host.most_targets) : Json()},
-               {"source", found.host.source},
+  Json json = {{"name", found.viewer.name},
+               {"title", found.viewer.title},
+               {"normals", kNormals[static_cast<std::size_t>(found.viewer.normals)]},
+               {"tracks", kTracks[static_cast<std::size_t>(found.viewer.tracks)]},
+               {"skins", kSkins[static_cast<std::size_t>(found.viewer.skins)]},
+               {"most_targets", found.viewer.most_targets > 0 ? Json(found.viewer.most_targets) : Json()},
+               {"source", found.viewer.source},
                {"passed", limits.any() ? Json(limits.allow(found)) : Json()}};
   add_error(found.error, json);
   json["worst_subject"] = or_null(found.worst);
@@ -158,7 +158,7 @@ Json internal::audit_object(const std::string& input, const Audit& audit, const 
   json["subjects"] = Json::array();
   for (const AuditSubject& subject : audit.subjects) json["subjects"].push_back(subject_json(subject));
   json["viewers"] = Json::array();
-  for (const HostAudit& found : audit.hosts) json["viewers"].push_back(viewer_json(audit, limits, found));
+  for (const ViewerAudit& found : audit.viewers) json["viewers"].push_back(viewer_json(audit, limits, found));
   json["authored_offsets"] = Json::array();
   for (const AuthoredOffset& offset : audit.offsets) json["authored_offsets"].push_back(offset_json(offset));
   json["findings"] = Json::array();

@@ -10,7 +10,7 @@
 
 namespace chronormal::inline internal {
 
-/// The number of the JSON objects of audits. 2: `viewers` for hosts; torn edges.
+/// The number of the JSON objects of audits. 2: `viewers` for `hosts`; torn edges.
 inline constexpr int kAuditSchema = 2;
 
 /// All that was found in one input; without the fields that every command begins with.

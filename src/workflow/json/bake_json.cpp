@@ -9,7 +9,7 @@
 namespace chronormal {
 namespace {
 
-// 3: `viewers` for hosts and `candidates` for choices of forms; kinds of poses; torn edges.
+// 3: `viewers` for `hosts` and `candidates` for choices of forms; kinds of poses; torn edges.
 constexpr int kSchema = 3;
 
 Json common_json(const BakeReport& report) {
@@ -44,10 +44,10 @@ Json shown_json(const ShownErrors& errors) {
           {"torn_edges", std::move(torn)}};
 }
 
-Json viewers_json(const std::vector<HostChange>& changes) {
+Json viewers_json(const std::vector<ViewerChange>& changes) {
   Json viewers = Json::array();
-  for (const HostChange& change : changes) {
-    Json viewer = {{"viewer", change.host}, {"named", change.is_named}, {"better", change.is_better}};
+  for (const ViewerChange& change : changes) {
+    Json viewer = {{"viewer", change.viewer}, {"named", change.is_named}, {"better", change.is_better}};
     for (std::size_t k = 0; k < kPoses.size(); ++k) {
       const auto& [before, after] = change.poses[k];
       if (before.judged == 0) continue;
@@ -65,7 +65,7 @@ Json candidates_json(const BakedMesh& mesh) {
                           {"targets", choice.targets},
                           {"bytes", choice.bytes},
                           {"played", shown_json(choice.played)},
-                          {"viewers", viewers_json(choice.hosts)},
+                          {"viewers", viewers_json(choice.viewers)},
                           {"within", choice.within},
                           {"chosen", choice.chosen},
                           {"animations_only", choice.animations_only},
@@ -99,7 +99,7 @@ Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
           {"stilled_targets", mesh.stilled},
           {"fitted_normals", mesh.fitted_elements},
           {"left_out_targets", mesh.left_out},
-          {"viewers", viewers_json(mesh.hosts)},
+          {"viewers", viewers_json(mesh.viewers)},
           {"candidates", candidates_json(mesh)},
           {"target_fit_degrees", mesh.largest_error},
           {"track_fit_degrees", mesh.resampling_error},
@@ -111,10 +111,10 @@ Json mesh_json(const BakedMesh& mesh, const BakeReport& report) {
 void add_audit(const BakeReport& report, Json& json) {
   if (!report.audit) return;
   json["audit"] = audit_json(report.audit->before.error, report.audit->after.error);
-  const std::vector<HostAudit>&before = report.audit->before.hosts, &after = report.audit->after.hosts;
+  const std::vector<ViewerAudit>&before = report.audit->before.viewers, &after = report.audit->after.viewers;
   json["audit"]["viewers"] = Json::array();
   for (std::size_t h = 0; h < std::min(before.size(), after.size()); ++h) {
-    Json viewer = {{"viewer", before[h].host.name}};
+    Json viewer = {{"viewer", before[h].viewer.name}};
     viewer.update(audit_json(before[h].error, after[h].error));
     json["audit"]["viewers"].push_back(std::move(viewer));
   }

@@ -70,8 +70,9 @@ Json motion_json(const ModelMotion& motion, Arrays& arrays) {
     json["t"] = arrays.add(motion.t);
   }
   for (const ModelWeights& weights : motion.weights)
-    json["weights"].push_back(
-        {{"hosts", weights.hosts}, {"targets", arrays.add(weights.targets)}, {"values", arrays.add(weights.values)}});
+    json["weights"].push_back({{"viewers", weights.viewers},
+                               {"targets", arrays.add(weights.targets)},
+                               {"values", arrays.add(weights.values)}});
   json["worst"] = arrays.add(motion.worst);
   json["mean"] = arrays.add(motion.mean);
   json["least"] = arrays.add_or_null(motion.least);
@@ -99,7 +100,7 @@ void add_gltf(const ModelPart& part, Arrays& arrays, Json& json) {
   for (const ModelShown& shown : part.shown) {
     Json targets = Json::array();
     for (const ModelVectors& target : shown.targets) targets.push_back(arrays.add(target, "deltas"));
-    json["shown"].push_back({{"hosts", shown.hosts},
+    json["shown"].push_back({{"viewers", shown.viewers},
                              {"halves", shown.keeps_halves},
                              {"least_weight", shown.least_weight},
                              {"normals", arrays.add(shown.normals)},

@@ -21,48 +21,49 @@ ModelVectors without_zeros(const std::vector<float>& vectors) {
   return result;
 }
 
-// The normals and deltas that one host keeps of the stored ones. The specification keeps all of them.
-ModelShown shown_by(const GltfShading& shading, const Host& host) {
+// The normals and deltas that one viewer keeps of the stored ones. The specification keeps all of them.
+ModelShown shown_by(const GltfShading& shading, const Viewer& viewer) {
   ModelShown shown;
-  shown.keeps_halves = host.keeps_halves();
-  shown.least_weight = host.least_weight;
+  shown.keeps_halves = viewer.keeps_halves();
+  shown.least_weight = viewer.least_weight;
   shown.normals = shading.normals;
   for (const std::vector<float>& deltas : shading.normal_deltas) shown.targets.push_back(without_zeros(deltas));
-  if (host.normals == NormalRule::kSum && host.bits == 32) return shown;
+  if (viewer.normals == NormalRule::kSum && viewer.bits == 32) return shown;
   const auto put = [](const Vec3f& vector, float* to) { std::copy_n(&vector.x, 3, to); };
   for (std::size_t v = 0; 3 * v < shown.normals.size(); ++v)
-    put(kept_normal(host, vector_at(shading.normals, v)), &shown.normals[3 * v]);
+    put(kept_normal(viewer, vector_at(shading.normals, v)), &shown.normals[3 * v]);
   for (ModelVectors& target : shown.targets) {
     for (std::size_t i = 0; i < target.size(); ++i) {
       const Vec3f normal = vector_at(shading.normals, target.vertex(i)), delta = vector_at(target.values, i);
-      put(kept_delta(host, normal, delta), &target.values[3 * i]);
+      put(kept_delta(viewer, normal, delta), &target.values[3 * i]);
     }
   }
   return shown;
 }
 
-bool show_alike(const Host& a, const Host& b) noexcept {
+bool show_alike(const Viewer& a, const Viewer& b) noexcept {
   return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
          a.octahedral_base == b.octahedral_base && a.least_weight == b.least_weight;
 }
 
-// The first entry is what the specification shows, with the names of all hosts that show the same. The others are what
-// the rest of `hosts` show.
-std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Host> hosts) {
-  const Host specification{.name = "specification", .title = ""};
-  std::vector<Host> firsts = {specification};
+// The first entry is what the specification shows, with the names of all viewers that show the same. The others are what
+// the rest of `viewers` show.
+std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Viewer> viewers) {
+  const Viewer specification{.name = "specification", .title = ""};
+  std::vector<Viewer> firsts = {specification};
   std::vector<ModelShown> result = {shown_by(shading, specification)};
-  result[0].hosts.emplace_back(specification.name);
-  for (const Host& host : kHosts) {
-    const auto alike = std::find_if(firsts.begin(), firsts.end(), [&](const Host& h) { return show_alike(h, host); });
-    const bool is_wanted = std::find(hosts.begin(), hosts.end(), host) != hosts.end();
+  result[0].viewers.emplace_back(specification.name);
+  for (const Viewer& viewer : kViewers) {
+    const auto alike =
+        std::find_if(firsts.begin(), firsts.end(), [&](const Viewer& h) { return show_alike(h, viewer); });
+    const bool is_wanted = std::find(viewers.begin(), viewers.end(), viewer) != viewers.end();
     if (alike == firsts.end() && !is_wanted) continue;
     if (alike == firsts.end()) {
-      firsts.push_back(host);
-      result.push_back(shown_by(shading, host));
-      result.back().hosts.emplace_back(host.name);
+      firsts.push_back(viewer);
+      result.push_back(shown_by(shading, viewer));
+      result.back().viewers.emplace_back(viewer.name);
     } else if (is_wanted || alike == firsts.begin()) {
-      result[static_cast<std::size_t>(alike - firsts.begin())].hosts.emplace_back(host.name);
+      result[static_cast<std::size_t>(alike - firsts.begin())].viewers.emplace_back(viewer.name);
     }
   }
   return result;
@@ -117,7 +118,7 @@ void add_offsets(const AuthorTruth& truth, std::size_t targets, ModelTruth& resu
 }  // namespace
 
 Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh, std::optional<Weighting> asked,
-                            std::span<const Host> hosts, WatchedPart watched) {
+                            std::span<const Viewer> viewers, WatchedPart watched) {
   Result<GltfShading> read = read_gltf_shading(document, mesh);
   if (!read) return read.error();
   GltfShading& shading = read.value();
@@ -145,7 +146,7 @@ Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh, std:
     part.targets.back().drop_vertices_of(part.vertex_count());
   }
   part.mark = shading.mark;
-  part.shown = shown_of(shading, hosts);
+  part.shown = shown_of(shading, viewers);
   if (truth.rule().any_polygons || truth.rule().any_whole_point) add_sums(truth, shading, part.truth);
   add_offsets(truth, part.targets.size(), part.truth);
   part.motions = std::move(watched.motions);

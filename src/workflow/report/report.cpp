@@ -58,15 +58,15 @@ AuditOptions audit_options(const ReportOptions& options) {
 
 Status read_gltf(const GltfDocument& document, const ReportOptions& options, Report& report, ReportModel& model) {
   AuditOptions how = audit_options(options);
-  how.hosts = {kHosts.begin(), kHosts.end()};
+  how.viewers = {kViewers.begin(), kViewers.end()};
   how.skins = false;  // the page has no joints
-  WatchedMotions watched(how.hosts, options.hosts);
+  WatchedMotions watched(how.viewers, options.viewers);
   Result<Audit> found = watched_audit(document, how, [&](const AuditSample& sample) { watched.add(sample); });
   if (!found) return found.error();
   report.audit = std::move(found).value();
   model.kind = "gltf";
   for (auto& [mesh, motions] : watched.take()) {
-    Result<ModelPart> part = gltf_part(document, *mesh, options.weighting, options.hosts, std::move(motions));
+    Result<ModelPart> part = gltf_part(document, *mesh, options.weighting, options.viewers, std::move(motions));
     if (!part) return part.error();
     model.parts.push_back(std::move(part).value());
   }

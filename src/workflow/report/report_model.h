@@ -13,8 +13,8 @@
 #include "chronormal/io/bake_mark.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/hosts.h"
 #include "chronormal/workflow/report.h"
+#include "chronormal/workflow/viewers.h"
 
 namespace chronormal::inline internal {
 
@@ -37,9 +37,9 @@ struct ModelVectors {
   }
 };
 
-/// What hosts keep of the normals of a glTF mesh.
+/// What viewers keep of the normals of a glTF mesh.
 struct ModelShown {
-  std::vector<std::string> hosts;
+  std::vector<std::string> viewers;
   bool keeps_halves = false;
   double least_weight = 0;
   std::vector<float> normals;         ///< (V, 3)
@@ -73,10 +73,10 @@ struct ModelTruth {
   [[nodiscard]] bool is_plain() const noexcept { return first.empty() && offsets.empty(); }
 };
 
-/// Weights at all samples as some hosts play them, of the targets that have another weight than 0 at one of them: (S,
+/// Weights at all samples as some viewers play them, of the targets that have another weight than 0 at one of them: (S,
 /// n).
 struct ModelWeights {
-  std::vector<std::string> hosts;
+  std::vector<std::string> viewers;
   std::vector<std::uint32_t> targets;  ///< (n), ascending
   std::vector<float> values;
 };

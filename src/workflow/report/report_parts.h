@@ -14,16 +14,16 @@
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/workflow/compare.h"
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "workflow/report/report_model.h"
 #include "workflow/report/watched_motions.h"
 
 namespace chronormal::inline internal {
 
-/// A mesh of a glTF file, with what `hosts` keep of its normals; right is what the author would see, or sums by a
+/// A mesh of a glTF file, with what `viewers` keep of its normals; right is what the author would see, or sums by a
 /// weighting where one is asked for. Errors: of GltfDocument
 [[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh,
-                                          std::optional<Weighting> asked, std::span<const Host> hosts,
+                                          std::optional<Weighting> asked, std::span<const Viewer> viewers,
                                           WatchedPart watched);
 
 /// The vertices of a motion in a report: a vertex of the file stands there once for each normal that it shows.

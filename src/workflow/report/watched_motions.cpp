@@ -30,12 +30,12 @@ ModelWeights WatchedMotions::Weights::take() {
   return result;
 }
 
-WatchedMotions::WatchedMotions(std::span<const Host> audited, std::span<const Host> kept,
+WatchedMotions::WatchedMotions(std::span<const Viewer> audited, std::span<const Viewer> kept,
                                std::span<const std::uint32_t> vertex_of_corner)
     : vertex_of_corner_(vertex_of_corner) {
-  for (const Host& host : audited) {
-    const bool is_kept = std::find(kept.begin(), kept.end(), host) != kept.end();
-    played_.push_back({&host, is_kept, true, {}});
+  for (const Viewer& viewer : audited) {
+    const bool is_kept = std::find(kept.begin(), kept.end(), viewer) != kept.end();
+    played_.push_back({&viewer, is_kept, true, {}});
   }
 }
 
@@ -80,7 +80,7 @@ void WatchedMotions::begin(const AuditSample& sample) {
   for (std::size_t e = 0; e < elements.size(); ++e) motion.least[elements[e]] = kVanished * sample.largest[e];
 }
 
-// Sorts what hosts played in the motion that was told last: those that play alike stand together.
+// Sorts what viewers played in the motion that was told last: those that play alike stand together.
 void WatchedMotions::end() {
   if (now_ == nullptr || now_->motions.back().weights.empty()) return;
   std::vector<ModelWeights>& weights = now_->motions.back().weights;
@@ -96,9 +96,9 @@ void WatchedMotions::end() {
                                           : std::find_if(weights.begin() + 1, weights.end(),
                                                          [&](const ModelWeights& w) { return play_alike(w, own); });
     if (same != weights.end())
-      same->hosts.emplace_back(played.host->name);
+      same->viewers.emplace_back(played.viewer->name);
     else if (played.is_kept)
-      weights.push_back({{std::string(played.host->name)}, std::move(own.targets), std::move(own.values)});
+      weights.push_back({{std::string(played.viewer->name)}, std::move(own.targets), std::move(own.values)});
     played.is_specified = true;
   }
 }

@@ -23,9 +23,9 @@ struct WatchedPart {
 
 class WatchedMotions {
  public:
-  /// audited are the hosts of the audit; the weights that those of `kept` play are kept. vertex_of_corner, which must
+  /// audited are the viewers of the audit; the weights that those of `kept` play are kept. vertex_of_corner, which must
   /// outlive this, says which vertex of the report shows a corner; where it is empty, vertices are those of the audit.
-  WatchedMotions(std::span<const Host> audited, std::span<const Host> kept,
+  WatchedMotions(std::span<const Viewer> audited, std::span<const Viewer> kept,
                  std::span<const std::uint32_t> vertex_of_corner = {});
 
   void add(const AuditSample& sample);
@@ -52,9 +52,9 @@ class WatchedMotions {
     std::size_t samples_ = 0;
   };
 
-  // The weights that one host plays in the motion that the audit tells of.
+  // The weights that one viewer plays in the motion that the audit tells of.
   struct Played {
-    const Host* host = nullptr;
+    const Viewer* viewer = nullptr;
     bool is_kept = false, is_specified = true;
     Weights weights;
   };

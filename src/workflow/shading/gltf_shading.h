@@ -1,6 +1,6 @@
 /// What the vertices of one mesh of a glTF file show, and what they should show. Private to workflow.
 ///
-/// A host shows normalize(N + sum_i w_i D_i): the stored base normal and the stored deltas. What it should show follows
+/// A viewer shows normalize(N + sum_i w_i D_i): the stored base normal and the stored deltas. What it should show follows
 /// from the geometry: n(w) of eq. 32, area-weighted, over the faces whose corners share the stored base normal at one
 /// point. Where an author gave base normals of his own (another weighting, a bevel, a lie), that is kept: the smallest
 /// rotation that takes the direction of n(0) to N, fixed per vertex, takes every n(w) to what should be shown.
@@ -8,7 +8,7 @@
 ///     authored offset    the angle of that rotation: no fault
 ///     motion error       the angle between what is shown at w and what should be
 ///
-/// A primitive without NORMAL is flat by the specification: hosts compute it from positions, so that it is right.
+/// A primitive without NORMAL is flat by the specification: viewers compute it from positions, so that it is right.
 ///
 /// Shapes     V = vertices of all primitives with faces, one primitive after the other (parts); K = targets of the
 /// mesh.

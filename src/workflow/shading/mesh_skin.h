@@ -1,6 +1,6 @@
 /// How the skin of a node moves the vertices of a mesh. Private to workflow.
 ///
-/// Hosts blend the joint matrices of a vertex by its shares, M = sum of w_j M_j, and take its position through M and
+/// Viewers blend the joint matrices of a vertex by its shares, M = sum of w_j M_j, and take its position through M and
 /// its normal through the linear part L of M (docs/decisions/0022, which has those that do otherwise). L is no normal
 /// matrix: where it is more than a turn and a scale, what it makes of a right normal is not the normal of the skinned
 /// surface. No target can mend that. So normals are held against each other as L carries them, and what L itself does
@@ -23,7 +23,7 @@
 #include "chronormal/core/vec3.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/normals/transform.h"
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "io/gltf/gltf_skin.h"
 #include "workflow/shading/gltf_shading.h"
 

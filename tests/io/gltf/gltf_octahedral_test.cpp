@@ -21,7 +21,7 @@ namespace chronormal::gltf_octahedral_test {
 namespace {
 
 // Every (x, y) of so many steps along each side of the square, for each number of bits; all there are where the steps
-// are as many. w is a number that must stay. tests/hosts/filters.test.mjs has the same loop.
+// are as many. w is a number that must stay. tests/viewers/filters.test.mjs has the same loop.
 template <class T>
 std::vector<T> lattice(int least_bits, int most_bits, int most_steps) {
   std::vector<T> elements;
@@ -85,7 +85,7 @@ TEST(GltfOctahedral, normals_of_16_bits_are_the_nearest_but_for_float) {
   EXPECT_LE(worst_rounding(kManyOf16Bits), 0.5 + 0.004);
 }
 
-// The constants are what npm meshoptimizer 1.3.0 decodes; tests/hosts/filters.test.mjs computes them.
+// The constants are what npm meshoptimizer 1.3.0 decodes; tests/viewers/filters.test.mjs computes them.
 TEST(GltfOctahedral, normals_are_bit_for_bit_those_of_browsers) {
   EXPECT_EQ(hash(decoded(kEveryOf8Bits)), 4083453700U);
   EXPECT_EQ(hash(decoded(kManyOf16Bits)), 995496109U);

@@ -522,7 +522,7 @@ TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_
     mesh.positions = hinges.floats(false);
     for (std::size_t v = 0; v < mesh.vertices(); ++v) mesh.normals.insert(mesh.normals.end(), {0.6F, 0, 0.8F});
     mesh.targets.push_back({hinges.floats(true), {}, {}});
-    const Audit of_file = audit_of(mesh.file(), {.samples = 3, .hosts = {kHosts[0]}});
+    const Audit of_file = audit_of(mesh.file(), {.samples = 3, .viewers = {kViewers[0]}});
     // The same as a sequence: without normals blocks are measured, and with a slerp outputs one by one.
     std::vector<float> moved = mesh.positions;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += mesh.targets[0].positions[i];
@@ -530,7 +530,7 @@ TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_
     motion.topology = Topology::triangles(mesh.vertices(), mesh.corners).value();
     motion.keyframes = {{mesh.positions, 0, ""}, {moved, 1, ""}};
     motion.connect_as_sequence();
-    // A host shows nothing where those at both ends are opposite.
+    // A viewer shows nothing where those at both ends are opposite.
     for (const Audit& found : {of_file, audit(motion, {}, {.samples = 3}).value(),
                                audit(motion, {}, {.rule = AuditRule::kSlerp, .samples = 3}).value()}) {
       EXPECT_EQ(found.error.cancelled + found.error.unlit, right) << draw;
@@ -539,7 +539,7 @@ TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_
       of_sequences += found.error.cancelled;
     }
     EXPECT_EQ(of_file.error.unlit, 0U) << draw;
-    EXPECT_EQ(of_file.hosts[0].error.cancelled, right) << draw;
+    EXPECT_EQ(of_file.viewers[0].error.cancelled, right) << draw;
   }
   EXPECT_GT(of_sequences, 20U);
   EXPECT_GT(with, 10U);

@@ -158,7 +158,7 @@ TEST(SkinnedAudit, targets_are_seen_through_the_skin_as_the_file_poses_it) {
   }
 }
 
-TEST(SkinnedAudit, hosts_see_the_same_normals_through_a_skin_in_ways_of_their_own) {
+TEST(SkinnedAudit, viewers_see_the_same_normals_through_a_skin_in_ways_of_their_own) {
   const ShadedMesh mesh = test::random_sheet(11, kSide, 1, 0.2);
   fixtures::Random random(11);
   const Skin skin = random_skin(random, mesh.vertices());
@@ -169,7 +169,7 @@ TEST(SkinnedAudit, hosts_see_the_same_normals_through_a_skin_in_ways_of_their_ow
   skin.add_to(builder, {1, 2, 3});
   AuditOptions options;
   for (const SkinRule rule : {SkinRule::kBlended, SkinRule::kInverseTranspose, SkinRule::kByJoint, SkinRule::kBlended})
-    options.hosts.emplace_back().skins = rule;
+    options.viewers.emplace_back().skins = rule;
   const Audit result = audit_of(builder, options);
   const std::array rules = {test::Carry::kBlended, test::Carry::kInverseTranspose, test::Carry::kByJoint,
                             test::Carry::kBlended};
@@ -178,13 +178,13 @@ TEST(SkinnedAudit, hosts_see_the_same_normals_through_a_skin_in_ways_of_their_ow
     for (std::size_t i = 0; i <= 20; ++i)
       for (std::size_t v = 0; v < mesh.vertices(); ++v)
         shown.add(test::seen_errors(mesh, skin, rig.world(), v, {static_cast<double>(i) / 20}, rules[h]).shown);
-    EXPECT_EQ(result.hosts[h].error.judged, shown.count);
-    EXPECT_NEAR(result.hosts[h].error.worst, shown.worst, 2e-5) << h;
-    EXPECT_NEAR(result.hosts[h].error.mean(), shown.mean(), 1e-5) << h;
+    EXPECT_EQ(result.viewers[h].error.judged, shown.count);
+    EXPECT_NEAR(result.viewers[h].error.worst, shown.worst, 2e-5) << h;
+    EXPECT_NEAR(result.viewers[h].error.mean(), shown.mean(), 1e-5) << h;
   }
-  EXPECT_EQ(result.hosts[0].error.sum, result.error.sum);
-  EXPECT_GT(std::fabs(result.hosts[1].error.mean() - result.error.mean()), 0.1);
-  EXPECT_GT(std::fabs(result.hosts[2].error.mean() - result.hosts[1].error.mean()), 0.1);
+  EXPECT_EQ(result.viewers[0].error.sum, result.error.sum);
+  EXPECT_GT(std::fabs(result.viewers[1].error.mean() - result.error.mean()), 0.1);
+  EXPECT_GT(std::fabs(result.viewers[2].error.mean() - result.viewers[1].error.mean()), 0.1);
 }
 
 // The value of a track by the formulas of the specification, with its own search.
@@ -315,7 +315,7 @@ std::vector<double> figures(const Audit& audit) {
   for (const AuditSubject& subject : audit.subjects)
     result.insert(result.end(), {subject.error.worst, subject.error.sum, subject.error.sum_of_squares,
                                  static_cast<double>(subject.error.judged), subject.at_keys.sum});
-  for (const HostAudit& host : audit.hosts) result.insert(result.end(), {host.error.sum, host.error.worst});
+  for (const ViewerAudit& viewer : audit.viewers) result.insert(result.end(), {viewer.error.sum, viewer.error.worst});
   return result;
 }
 
@@ -333,7 +333,7 @@ GltfBuilder with_one_joint(const ShadedMesh& mesh, const Json& place) {
 TEST(SkinnedAudit, bind_pose_gives_the_figures_without_a_skin_and_so_do_turns_and_even_scales) {
   const ShadedMesh mesh = test::random_sheet(7, kSide, kTargets, 0.2);
   AuditOptions options;
-  options.hosts = {kHosts.begin(), kHosts.end()};
+  options.viewers = {kViewers.begin(), kViewers.end()};
   GltfBuilder plain = mesh.file();
   plain.add_track(plain.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
   const std::vector<double> expected = figures(audit_of(plain, options));

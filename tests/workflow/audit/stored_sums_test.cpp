@@ -1,4 +1,4 @@
-// Sums of stored normals at several sets of weights are, bit for bit, those that a host makes vertex by vertex.
+// Sums of stored normals at several sets of weights are, bit for bit, those that a viewer makes vertex by vertex.
 #include "workflow/audit/stored_sums.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ float plain_sum(const GltfShading& shading, std::size_t i, const std::vector<dou
   return sum;
 }
 
-TEST(StoredSums, are_those_that_a_host_makes_vertex_by_vertex) {
+TEST(StoredSums, are_those_that_a_viewer_makes_vertex_by_vertex) {
   constexpr unsigned kSeed = 20261125;
   SCOPED_TRACE(kSeed);
   std::mt19937 random(kSeed);

@@ -146,7 +146,7 @@ class BakeCapture : public testing::Test {
     BakeOptions options;
     options.encoding = BakeEncoding::kSmallest;
     options.most_targets = kMostTargets;
-    options.hosts = {kHosts[0]};
+    options.viewers = {kViewers[0]};
     return options;
   }
   [[nodiscard]] static std::vector<std::size_t> own_tracks() {

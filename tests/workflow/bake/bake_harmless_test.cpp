@@ -27,7 +27,7 @@ Vector unit_of(const Vector& v) {
   return size == 0 ? v : Vector{v[0] / size, v[1] / size, v[2] / size};
 }
 
-// What a host shows of a vertex: the sum of what it keeps of the base normal and of each delta.
+// What a viewer shows of a vertex: the sum of what it keeps of the base normal and of each delta.
 Vector shown(const test::GltfPlayer& player, const Json& primitive, std::size_t v, const std::vector<double>& weights,
              Rule rule) {
   const auto vector_of = [&](const Json& accessor) {
@@ -150,9 +150,9 @@ Baked baked(const GltfBuilder& builder, BakeOptions options = {}) {
   return result;
 }
 
-BakeOptions for_hosts(const char* names) {
+BakeOptions for_viewers(const char* names) {
   BakeOptions options;
-  options.hosts = find_hosts(names).value();
+  options.viewers = find_viewers(names).value();
   return options;
 }
 
@@ -161,7 +161,7 @@ const Json& sampler_of(const Baked& of) {
   return a["samplers"][a["channels"][0]["sampler"].get<std::size_t>()];
 }
 
-TEST(BakeHarmless, is_as_near_in_hosts_of_unit_normals_as_in_those_that_add_up) {
+TEST(BakeHarmless, is_as_near_in_viewers_of_unit_normals_as_in_those_that_add_up) {
   double before = 0, sum = 0, unit = 0;
   for (unsigned seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
@@ -290,14 +290,14 @@ TEST(BakeHarmless, no_surface_is_worse_than_before_whatever_normals_the_author_g
   EXPECT_GT(changed, 20U) << "else this says nothing";
 }
 
-TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_hosts) {
+TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_viewers) {
   GltfBuilder builder = test::hills_document(24, 2);
   std::vector<float> values(24, 0.0F);
   for (int k = 0; k < 24; ++k) values.push_back(0.3F);
   builder.add_track(0, 0, std::vector<float>{0, 1}, values);
   const Baked all = baked(builder);
   EXPECT_LE(all.mesh()["primitives"][0]["targets"].size(), 256U);
-  const Baked three = baked(builder, for_hosts("three"));
+  const Baked three = baked(builder, for_viewers("three"));
   EXPECT_EQ(three.report.meshes[0].left_out, 0U);
 }
 
@@ -315,30 +315,30 @@ TEST(BakeHarmless, a_plain_bake_is_nearly_right_where_deltas_add_up_and_no_worse
   }
 }
 
-TEST(BakeHarmless, the_report_says_what_each_host_shows) {
-  const Baked result = baked(moving(2, 4), for_hosts("three,filament"));
-  const std::vector<HostChange>& hosts = result.report.meshes[0].hosts;
-  ASSERT_EQ(hosts.size(), 2U);
-  for (const HostChange& host : hosts) {
-    const auto& [before, after] = host.poses[0];
+TEST(BakeHarmless, the_report_says_what_each_viewer_shows) {
+  const Baked result = baked(moving(2, 4), for_viewers("three,filament"));
+  const std::vector<ViewerChange>& viewers = result.report.meshes[0].viewers;
+  ASSERT_EQ(viewers.size(), 2U);
+  for (const ViewerChange& viewer : viewers) {
+    const auto& [before, after] = viewer.poses[0];
     EXPECT_GT(before.judged, 300U);
     EXPECT_LT(after.mean, before.mean);
     EXPECT_LE(after.worst, before.worst);
-    EXPECT_LE(host.poses[1].after.mean, host.poses[1].before.mean);
-    EXPECT_LE(host.poses[1].after.worst, host.poses[1].before.worst);
+    EXPECT_LE(viewer.poses[1].after.mean, viewer.poses[1].before.mean);
+    EXPECT_LE(viewer.poses[1].after.worst, viewer.poses[1].before.worst);
   }
   std::vector<Weights> poses = on_track(result);
   const std::vector<Weights> of_targets = alone(result);
   poses.insert(poses.end(), of_targets.begin(), of_targets.end());
-  EXPECT_NEAR(change(result, poses, Rule::kSum).worst, hosts[0].poses[0].after.worst, 0.5);
+  EXPECT_NEAR(change(result, poses, Rule::kSum).worst, viewers[0].poses[0].after.worst, 0.5);
 }
 
 TEST(BakeHarmless, the_mean_of_the_report_is_over_all_vertices) {
   // All of them are about as wrong, so that the mean is no small part of the worst.
   const Baked result = test::bake_document(test::with_misleading_normals(test::still_hills_document(2)));
   ASSERT_EQ(result.error, "");
-  const HostChange& host = result.report.meshes[0].hosts.at(0);
-  const ShownErrors& alone = host.poses[1].before;
+  const ViewerChange& viewer = result.report.meshes[0].viewers.at(0);
+  const ShownErrors& alone = viewer.poses[1].before;
   EXPECT_GT(alone.worst, 90);
   EXPECT_GT(alone.mean, 0.3 * alone.worst);
   EXPECT_LE(alone.mean, alone.most);
@@ -373,7 +373,7 @@ TEST(BakeHarmless, what_a_target_corrects_of_itself_makes_it_right_half_way) {
     const DeltaSource source{shading, terms, plan, shading.normals};
     const RightNormals rights(shading, terms, shading.normals, plan.largest);
     const MeshWeights weights = read_weights(*file, shading).value();
-    const std::array<Host, 1> viewer = {kHosts[0]};
+    const std::array<Viewer, 1> viewer = {kViewers[0]};
     const Judge judge(source, rights, weights, viewer, false);
     const Candidate made = products_candidate({source, rights, weights, judge, viewer, lengths, 1e-6, 100});
     ASSERT_GT(made.extras.size(), 0U);

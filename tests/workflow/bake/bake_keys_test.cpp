@@ -1,4 +1,4 @@
-// The fewest keys of a sequence: held against the motion that went in, as a host shows them that draws straight lines.
+// The fewest keys of a sequence: held against the motion that went in, as a viewer shows them that draws straight lines.
 
 #include <gtest/gtest.h>
 

@@ -39,7 +39,7 @@ using reference::VectorD;
 using test::ShownGlb;
 
 constexpr double kDegree = std::numbers::pi / 180;
-const std::vector<Host> kAddingUp = {kHosts[0]};  // of others a bake warns
+const std::vector<Viewer> kAddingUp = {kViewers[0]};  // of others a bake warns
 
 // Which vertices of the file make which face, and which of them show the same normal.
 struct Surface {
@@ -164,7 +164,7 @@ TEST(BakeSequence, exact_normals_are_shown_at_every_instant) {
   for (const double distance : {0.02, 0.2}) {
     const Motion motion = wandering(fixtures::icosphere(2), 5, distance, 1);
     SequenceBake baked;
-    const std::string file = bake(motion, {.hosts = kAddingUp}, &baked);
+    const std::string file = bake(motion, {.viewers = kAddingUp}, &baked);
     const ShownGlb glb(file);
     EXPECT_EQ(glb.vertices(), motion.topology.vertex_count());
     EXPECT_EQ(glb.targets(), 8U);
@@ -202,7 +202,7 @@ TEST(BakeSequence, weights_are_hats_and_bubbles_between_the_times_in_the_file) {
   }
 }
 
-// The sum as hosts have it that keep only the direction of N + D: N + sum w (unit(N + D) - N).
+// The sum as viewers have it that keep only the direction of N + D: N + sum w (unit(N + D) - N).
 VectorD unit_rule(const ShownGlb& glb, std::size_t v, const std::vector<double>& weights) {
   VectorD base{}, sum{};
   for (std::size_t c = 0; c < 3; ++c) base[c] = sum[c] = glb.normals[3 * v + c];
@@ -263,18 +263,19 @@ TEST(BakeSequence, harmless_is_the_same_by_sums_and_by_directions_and_better_tha
   }
 }
 
-TEST(BakeSequence, harmless_bends_no_more_segments_than_the_hosts_have_room_for) {
+TEST(BakeSequence, harmless_bends_no_more_segments_than_the_viewers_have_room_for) {
   const Motion motion = wandering(fixtures::icosphere(1), 5, 0.2, 4);
-  Host small = *std::find_if(kHosts.begin(), kHosts.end(), [](const Host& host) { return host.name == "filament"; });
+  Viewer small =
+      *std::find_if(kViewers.begin(), kViewers.end(), [](const Viewer& viewer) { return viewer.name == "filament"; });
   small.most_targets = 6;
   SequenceBake baked;
-  const ShownGlb glb(bake(motion, {.encoding = BakeEncoding::kHarmless, .hosts = {small}}, &baked));
+  const ShownGlb glb(bake(motion, {.encoding = BakeEncoding::kHarmless, .viewers = {small}}, &baked));
   EXPECT_EQ(baked.targets, 4U);
   EXPECT_EQ(baked.extra_targets, 2U);
   EXPECT_EQ(glb.targets(), 6U);
   EXPECT_TRUE(baked.warnings.empty());
   small.most_targets = 3;
-  (void)bake(motion, {.encoding = BakeEncoding::kHarmless, .hosts = {small}}, &baked);
+  (void)bake(motion, {.encoding = BakeEncoding::kHarmless, .viewers = {small}}, &baked);
   EXPECT_EQ(baked.extra_targets, 0U);
   ASSERT_EQ(baked.warnings.size(), 1U);
   EXPECT_NE(baked.warnings[0].find("4 targets are more than Filament takes"), std::string::npos) << baked.warnings[0];
@@ -288,14 +289,14 @@ TEST(BakeSequence, harmless_says_which_extra_target_follows_from_which_keys) {
                {"target": 3, "linear": [], "quadratic": [[0, 1, 4.0]]}]})"_json);
 }
 
-TEST(BakeSequence, other_forms_say_in_which_hosts_they_can_be_off) {
+TEST(BakeSequence, other_forms_say_in_which_viewers_they_can_be_off) {
   const Motion motion = wandering(fixtures::icosphere(1), 3, 0.2, 6);
   for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint}) {
     SequenceBake baked;
     (void)bake(motion, {.encoding = encoding}, &baked);
     ASSERT_EQ(baked.warnings.size(), 1U);
     EXPECT_NE(baked.warnings[0].find("they can be far off in Godot 4, Filament"), std::string::npos);
-    (void)bake(motion, {.encoding = encoding, .hosts = kAddingUp}, &baked);
+    (void)bake(motion, {.encoding = encoding, .viewers = kAddingUp}, &baked);
     EXPECT_TRUE(baked.warnings.empty());
   }
 }
@@ -398,7 +399,7 @@ TEST(BakeSequence, a_first_keyframe_without_area_gets_a_target_of_its_own) {
   for (const bool keep_half : {false, true}) {
     const Motion motion = unfolding(keep_half);
     SequenceBake baked;
-    const std::string file = bake(motion, {.hosts = kAddingUp}, &baked);
+    const std::string file = bake(motion, {.viewers = kAddingUp}, &baked);
     const ShownGlb glb(file);
     EXPECT_EQ(baked.targets, 3U);
     ASSERT_EQ(baked.warnings.size(), 1U);
@@ -420,7 +421,7 @@ TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
     for (float& c : motion.keyframes[k + 1].positions) c *= 0x1p-12F;  // areas by 2^-24
   }
   SequenceBake baked;
-  const std::string file = bake(motion, {.hosts = kAddingUp}, &baked);
+  const std::string file = bake(motion, {.viewers = kAddingUp}, &baked);
   const ShownGlb glb(file);
   EXPECT_EQ(baked.warnings.size(), 1U);
   // Positions are base + delta, and half a millionth of the sphere is left: their rounding is part of the surface.
@@ -443,7 +444,7 @@ TEST(BakeSequence, elements_that_shrink_or_appear_at_the_end_are_right_from_the_
         for (float& c : motion.keyframes[k].positions) c *= 0x1p-12F;
     }
     std::size_t last = 0, whole = 0;
-    BakeOptions options{.hosts = kAddingUp};
+    BakeOptions options{.viewers = kAddingUp};
     options.progress = [&](std::size_t done, std::size_t total) {
       EXPECT_GT(done, last);
       last = done;
@@ -593,7 +594,7 @@ TEST(BakeSequence, names_say_what_targets_are) {
       {"target": 3, "linear": [], "quadratic": [[0, 1, 1.0]]}]}})"_json;
   EXPECT_EQ(glb.json["meshes"][0]["extras"], expected);
   EXPECT_EQ(glb.json["nodes"][0]["extras"]["chronormal"], expected["chronormal"])
-      << "for hosts that hand on only these";
+      << "for viewers that hand on only these";
   EXPECT_EQ(glb.json["animations"][0]["name"], "motion");
   EXPECT_EQ(glb.json["asset"]["version"], "2.0");
   EXPECT_TRUE(glb.json["asset"]["generator"].get<std::string>().starts_with("chronormal "));
@@ -624,7 +625,7 @@ TEST(BakeSequence, negative_times_are_shifted_and_that_is_said) {
   Motion motion = wandering(fixtures::icosphere(1), 3, 0.1, 16);
   for (Motion::Keyframe& key : motion.keyframes) key.time -= 5;
   SequenceBake baked;
-  const std::string file = bake(motion, {.hosts = kAddingUp}, &baked);
+  const std::string file = bake(motion, {.viewers = kAddingUp}, &baked);
   EXPECT_EQ(ShownGlb(file).times[0], 0);
   EXPECT_EQ(baked.warnings.size(), 1U);
 }

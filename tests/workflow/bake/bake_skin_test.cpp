@@ -1,4 +1,4 @@
-// What smallest chooses is what a skin shows: the tolerance holds behind joints that squash, in hosts that carry
+// What smallest chooses is what a skin shows: the tolerance holds behind joints that squash, in viewers that carry
 // normals in ways of their own, and joints that turn and scale evenly change nothing.
 
 #include <gtest/gtest.h>
@@ -29,13 +29,13 @@ using Json = GltfBuilder::Json;
 constexpr std::size_t kSide = 5, kVertices = kSide * kSide, kTargets = 2;
 constexpr double kTolerance = 1;
 // Three.js takes normals through the blended matrix, Bevy through its inverse transpose.
-const Host kThree = find_hosts("three").value()[0], kBevy = find_hosts("bevy").value()[0];
+const Viewer kThree = find_viewers("three").value()[0], kBevy = find_viewers("bevy").value()[0];
 
-BakeOptions smallest(double tolerance = kTolerance, std::vector<Host> hosts = {kThree}) {
+BakeOptions smallest(double tolerance = kTolerance, std::vector<Viewer> viewers = {kThree}) {
   BakeOptions options;
   options.encoding = BakeEncoding::kSmallest;
   options.tolerance = tolerance;
-  options.hosts = std::move(hosts);
+  options.viewers = std::move(viewers);
   return options;
 }
 
@@ -177,24 +177,24 @@ TEST(BakeSkin, tolerance_holds_where_the_joints_bend_while_the_weights_rest) {
       return std::vector<Rows>{Trs().rows(), turned(kMost * away).rows()};
     };
     EXPECT_GT(seen_error(without, skin, world).worst, 0) << seed;
-    const Host filament = find_hosts("filament").value()[0];
-    for (const auto& [host, rule] : {std::pair(kThree, Carry::kBlended), {filament, Carry::kByJoint}}) {
-      const Baked baked = test::bake_document(builder, smallest(kTolerance, {host}));
+    const Viewer filament = find_viewers("filament").value()[0];
+    for (const auto& [viewer, rule] : {std::pair(kThree, Carry::kBlended), {filament, Carry::kByJoint}}) {
+      const Baked baked = test::bake_document(builder, smallest(kTolerance, {viewer}));
       ASSERT_TRUE(baked.ok()) << baked.error;
       const test::ShownError seen = seen_error(baked, skin, world, rule);
-      EXPECT_LT(seen.worst, 1.05 * std::max(kTolerance, chosen(baked).played.worst)) << seed << host.title;
-      EXPECT_NEAR(chosen(baked).played.worst, seen.worst, 0.05 * seen.worst) << seed << host.title;
-      EXPECT_TRUE(chosen(baked).within || !(host == kThree));
+      EXPECT_LT(seen.worst, 1.05 * std::max(kTolerance, chosen(baked).played.worst)) << seed << viewer.title;
+      EXPECT_NEAR(chosen(baked).played.worst, seen.worst, 0.05 * seen.worst) << seed << viewer.title;
+      EXPECT_TRUE(chosen(baked).within || !(viewer == kThree));
     }
   }
 }
 
 TEST(BakeSkin, figures_of_forms_are_those_of_the_oracle_behind_the_skin) {
   const Trs flat = scaled(1, 0.8, 0.25);
-  for (const std::vector<Host>& hosts : {std::vector<Host>{kThree}, {kBevy}, {kThree, kBevy}}) {
+  for (const std::vector<Viewer>& viewers : {std::vector<Viewer>{kThree}, {kBevy}, {kThree, kBevy}}) {
     GltfBuilder builder = test::with_misleading_normals(played_hills(4, {0.2F, 0.3F, 0.4F}, "STEP"));
     add_skin(builder, skin_of(false), flat);
-    BakeOptions options = smallest(kTolerance, hosts);
+    BakeOptions options = smallest(kTolerance, viewers);
     options.plan = true;
     const Baked baked = test::bake_document(builder, options);
     ASSERT_TRUE(baked.ok()) << baked.error;
@@ -202,8 +202,8 @@ TEST(BakeSkin, figures_of_forms_are_those_of_the_oracle_behind_the_skin) {
     ASSERT_EQ(before.form, "as it is");
     // The poses are the three keys and the weights of the mesh, which are zero.
     double mean = 0, worst = 0;
-    for (const Host& host : hosts) {
-      const Carry rule = host == kThree ? Carry::kBlended : Carry::kInverseTranspose;
+    for (const Viewer& viewer : viewers) {
+      const Carry rule = viewer == kThree ? Carry::kBlended : Carry::kInverseTranspose;
       test::ShownError error;
       const test::GltfTruth truth(*baked.before, 0);
       const std::vector<test::Vector> base = truth.normals_at({0, 0});
@@ -246,7 +246,7 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
   add_turns(builder, {0, 1, 2}, turns, "STEP");
   for (const auto& [name, rule] :
        {std::pair("three", Carry::kBlended), {"bevy", Carry::kInverseTranspose}, {"filament", Carry::kByJoint}}) {
-    const Baked baked = test::bake_document(builder, smallest(kTolerance, find_hosts(name).value()));
+    const Baked baked = test::bake_document(builder, smallest(kTolerance, find_viewers(name).value()));
     ASSERT_TRUE(baked.ok()) << baked.error;
     const test::GltfTruth truth(*baked.before, 0);
     const std::vector<test::Vector> base = truth.normals_at({0, 0});
@@ -265,8 +265,8 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
   }
 }
 
-TEST(BakeSkin, tolerance_holds_in_each_host_in_its_own_way) {
-  // A joint that flattens normals for one host raises them for the other.
+TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
+  // A joint that flattens normals for one viewer raises them for the other.
   const Trs high = scaled(1, 1, 4);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), high);
@@ -277,17 +277,17 @@ TEST(BakeSkin, tolerance_holds_in_each_host_in_its_own_way) {
   EXPECT_GT(seen_error(three, skin_of(false), standing(high), Carry::kInverseTranspose).worst, 1.2 * kTolerance);
 }
 
-TEST(BakeSkin, what_hosts_show_before_and_after_is_seen_in_their_own_ways) {
+TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
   // The inverse transpose of what lowers is what raises.
-  const auto hosts_of = [](Real height, const std::vector<Host>& hosts) {
+  const auto viewers_of = [](Real height, const std::vector<Viewer>& viewers) {
     GltfBuilder builder = played_hills(3, {0, 0.4F});
     add_skin(builder, skin_of(false), scaled(1, 1, height));
-    BakeOptions options = smallest(kTolerance, hosts);
+    BakeOptions options = smallest(kTolerance, viewers);
     options.encoding = BakeEncoding::kEndpoint;
-    return test::bake_document(builder, options).report.meshes.at(0).hosts;
+    return test::bake_document(builder, options).report.meshes.at(0).viewers;
   };
-  const std::vector<HostChange> both = hosts_of(0.25, {kThree, kBevy});
-  const HostChange raised = hosts_of(4, {kThree}).at(0), even = hosts_of(1, {kThree}).at(0);
+  const std::vector<ViewerChange> both = viewers_of(0.25, {kThree, kBevy});
+  const ViewerChange raised = viewers_of(4, {kThree}).at(0), even = viewers_of(1, {kThree}).at(0);
   ASSERT_EQ(both.size(), 2U);
   for (std::size_t kind = 0; kind < 2; ++kind) {  // of the file, and at random
     const ShownErrors &lowered = both[0].poses[kind].before, &bevy = both[1].poses[kind].before;
@@ -415,9 +415,9 @@ TEST(BakeSkin, no_surface_gets_worse_behind_the_skin) {
           };
           const test::Vector right =
               seen(test::unit_of(test::GltfTruth::turn(base[v], truth.vertices[v].stored, exact[v])));
-          const auto error_of = [&](const test::GltfPlayer& host, const std::vector<float>& weights) {
-            return static_cast<double>(
-                test::degrees_between(seen(host.shown(host.json["meshes"][0]["primitives"][0], v, weights)), right));
+          const auto error_of = [&](const test::GltfPlayer& viewer, const std::vector<float>& weights) {
+            return static_cast<double>(test::degrees_between(
+                seen(viewer.shown(viewer.json["meshes"][0]["primitives"][0], v, weights)), right));
           };
           before_of_all.add(error_of(*baked.before, {pose.before.begin(), pose.before.end()}));
           after_of_all.add(error_of(*baked.after, pose.after));

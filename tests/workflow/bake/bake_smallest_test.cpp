@@ -24,7 +24,7 @@ BakeOptions smallest(double tolerance) {
   BakeOptions options;
   options.encoding = BakeEncoding::kSmallest;
   options.tolerance = tolerance;
-  options.hosts = {kHosts[0]};
+  options.viewers = {kViewers[0]};
   return options;
 }
 
@@ -246,22 +246,22 @@ TEST(BakeSmallest, a_second_bake_judges_what_the_first_one_wrote_and_says_what_t
 }
 
 TEST(BakeSmallest, fits_to_animations_alone_are_taken_only_where_they_are_better) {
-  for (const std::size_t hosts : {std::size_t{1}, kHosts.size()}) {
+  for (const std::size_t viewers : {std::size_t{1}, kViewers.size()}) {
     for (const unsigned seed : {61U, 62U, 63U}) {
       GltfBuilder builder = test::hills_document(3, seed);
       builder.add_track(0, 0, kTimes, random_weights(3 * kTimes.size(), seed));
       BakeOptions options = smallest(0.5), animations_only;
-      options.hosts = {kHosts.begin(), kHosts.begin() + static_cast<std::ptrdiff_t>(hosts)};
+      options.viewers = {kViewers.begin(), kViewers.begin() + static_cast<std::ptrdiff_t>(viewers)};
       animations_only = options;
       animations_only.animations_only = true;
       const Baked plain = test::bake_document(builder, options), fitted = test::bake_document(builder, animations_only);
       ASSERT_TRUE(plain.ok() && fitted.ok()) << plain.error << fitted.error;
       const BakeChoice &of_plain = chosen(plain), &of_fitted = chosen(fitted);
-      EXPECT_GE(of_fitted.within, of_plain.within) << hosts << " hosts, seed " << seed;
+      EXPECT_GE(of_fitted.within, of_plain.within) << viewers << " viewers, seed " << seed;
       if (of_plain.within) {
-        EXPECT_LE(of_fitted.bytes, of_plain.bytes) << hosts << " hosts, seed " << seed;
+        EXPECT_LE(of_fitted.bytes, of_plain.bytes) << viewers << " viewers, seed " << seed;
       } else {
-        EXPECT_LE(of_fitted.played.mean, 1.001 * of_plain.played.mean) << hosts << " hosts, seed " << seed;
+        EXPECT_LE(of_fitted.played.mean, 1.001 * of_plain.played.mean) << viewers << " viewers, seed " << seed;
       }
       EXPECT_EQ(fitted.mesh()["extras"]["chronormal"].contains("animations_only"), of_fitted.animations_only);
     }
@@ -273,7 +273,7 @@ TEST(BakeSmallest, fits_the_deltas_of_targets_to_animations_alone_without_room_f
     GltfBuilder builder = test::hills_document(3, seed);
     builder.add_track(0, 0, kTimes, random_weights(3 * kTimes.size(), seed));
     BakeOptions options = smallest(0.5), animations_only;
-    options.hosts = {kHosts[0]};
+    options.viewers = {kViewers[0]};
     options.most_targets = 3;
     animations_only = options;
     animations_only.animations_only = true;
@@ -334,13 +334,13 @@ TEST(BakeSmallest, a_limit_of_bytes_is_kept_by_a_form_about_as_near_as_a_limit_o
 
 TEST(BakeSmallest, says_where_a_compressor_that_is_named_rounds_by_more_than_the_tolerance) {
   BakeOptions options = smallest(0.1);
-  options.hosts = find_hosts("meshopt").value();
+  options.viewers = find_viewers("meshopt").value();
   const Baked rounded = test::bake_document(driven_hills("LINEAR", 3), options);
   ASSERT_TRUE(rounded.ok()) << rounded.error;
   const BakeChoice& choice = chosen(rounded);
   EXPECT_GT(choice.rounded, 0.1) << "eight bits are half a degree";
   EXPECT_EQ(is_beyond_by_rounding(choice, options), choice.within);
-  options.hosts = {kHosts[0]};
+  options.viewers = {kViewers[0]};
   EXPECT_EQ(chosen(test::bake_document(driven_hills("LINEAR", 3), options)).rounded, 0);
 }
 

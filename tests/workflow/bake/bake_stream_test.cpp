@@ -115,11 +115,11 @@ TEST(BakeStream, has_the_bytes_of_a_motion_in_memory_and_holds_few_keyframes) {
   }
 }
 
-TEST(BakeStream, hosts_with_little_room_get_the_bends_that_gain_most_from_a_stream_too) {
+TEST(BakeStream, viewers_with_little_room_get_the_bends_that_gain_most_from_a_stream_too) {
   const TemporaryFolder folder;
   const Motion whole = waving(9, 12);
   BakeOptions options = with_viewers({.encoding = BakeEncoding::kHarmless});
-  for (Host& host : options.hosts) host.most_targets = 15;
+  for (Viewer& viewer : options.viewers) viewer.most_targets = 15;
   std::string glb;
   EXPECT_EQ(bake_sequence(whole, options, glb).value().extra_targets, 4U);
   std::size_t most_held = 0;

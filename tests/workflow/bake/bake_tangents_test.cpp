@@ -1,5 +1,5 @@
 // Tangents of normal-mapped morphs: perpendicular to the right normal where a target has the weight 1, of length 1, and
-// along the texture, for hosts that add them up. The oracle moves texture coordinates along in long double.
+// along the texture, for viewers that add them up. The oracle moves texture coordinates along in long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,10 +47,10 @@ std::vector<float> new_deltas(const Baked& baked, std::size_t target) {
   return baked.numbers(baked.mesh()["primitives"][0]["targets"][target]["TANGENT"]);
 }
 
-BakeOptions by_area(std::vector<Host> hosts = {kHosts.begin(), kHosts.end()}) {
+BakeOptions by_area(std::vector<Viewer> viewers = {kViewers.begin(), kViewers.end()}) {
   BakeOptions options;
   options.weighting = Weighting::kArea;
-  options.hosts = std::move(hosts);
+  options.viewers = std::move(viewers);
   return options;
 }
 
@@ -104,7 +104,7 @@ TEST(BakeTangents, follow_the_texture_through_shears_and_turns) {
   }
 }
 
-TEST(BakeTangents, stay_where_they_are_right_and_where_no_host_adds_them_up) {
+TEST(BakeTangents, stay_where_they_are_right_and_where_no_viewer_adds_them_up) {
   ShadedMesh mesh = sheet(21, 0);
   const Baked first = bake_bytes(mesh.file().glb(), by_area());
   ASSERT_TRUE(first.ok()) << first.error;
@@ -114,7 +114,7 @@ TEST(BakeTangents, stay_where_they_are_right_and_where_no_host_adds_them_up) {
   EXPECT_EQ(again.report.meshes[0].new_tangents, 0U);
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(new_deltas(again, k), mesh.targets[k].tangents);
 
-  const Baked three = bake_bytes(sheet(21, 0).file().glb(), by_area(find_hosts("three,playcanvas").value()));
+  const Baked three = bake_bytes(sheet(21, 0).file().glb(), by_area(find_viewers("three,playcanvas").value()));
   ASSERT_TRUE(three.ok()) << three.error;
   EXPECT_EQ(three.report.meshes[0].new_tangents, 0U);
   EXPECT_FALSE(three.mesh()["primitives"][0]["targets"][0].contains("TANGENT"));

@@ -1,4 +1,4 @@
-// What hosts and the specification ask of extra targets beside right normals, one test for each.
+// What viewers and the specification ask of extra targets beside right normals, one test for each.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "tests/support/bake_fixture.h"
 #include "tests/support/gltf_compressed.h"
 
@@ -348,7 +348,7 @@ TEST(BakeTraps, weights_of_normalised_integers_become_floats) {
   test::expect_exact(test::track_error(result));
 }
 
-// A triangle that falls over to one side, with a base normal of the other side: what hosts that show both sides do.
+// A triangle that falls over to one side, with a base normal of the other side: what viewers that show both sides do.
 TEST(BakeTraps, normals_of_the_inner_side_stay_on_that_side) {
   for (const float tilt : {0.0F, 1e-3F}) {
     GltfBuilder builder;
@@ -579,7 +579,7 @@ GltfBuilder avatar_of_hills(unsigned seed, double strength) {
 
 // The worst error of the expressions, or of the tracks, of a file.
 double worst_of(const GltfDocument& document, AuditSubject::Kind kind) {
-  const Result<Audit> audited = audit(document, {.hosts = {}});
+  const Result<Audit> audited = audit(document, {.viewers = {}});
   EXPECT_TRUE(audited.ok());
   double worst = 0;
   for (const AuditSubject& subject : audited.value().subjects)
@@ -593,7 +593,7 @@ TEST(BakeTraps, what_a_bake_says_of_expressions_is_what_an_audit_finds_in_the_fi
   for (const double tolerance : {0.5, 3.0}) {
     for (unsigned seed = 1; seed <= 6; ++seed) {
       BakeOptions options = {.tolerance = tolerance};
-      options.hosts = find_hosts("three").value();
+      options.viewers = find_viewers("three").value();
       const Baked baked = test::bake_document(avatar_of_hills(seed, 0.1 * seed), options);
       ASSERT_EQ(baked.error, "");
       const test::GltfFixture after(baked.bytes);

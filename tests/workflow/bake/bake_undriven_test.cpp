@@ -23,7 +23,7 @@ BakeOptions smallest(double tolerance = 0.5) {
   BakeOptions options;
   options.encoding = BakeEncoding::kSmallest;
   options.tolerance = tolerance;
-  options.hosts = {kHosts[0]};
+  options.viewers = {kViewers[0]};
   options.is_posed = true;
   return options;
 }

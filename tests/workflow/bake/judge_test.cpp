@@ -59,7 +59,7 @@ TEST(Judge, finds_the_errors_and_tears_of_a_list_of_all_pairs) {
     for (double& weight : pose) weight = part(random);
 
   // Deltas of any kind.
-  const std::array<Host, 1> viewer = {kHosts[0]};
+  const std::array<Viewer, 1> viewer = {kViewers[0]};
   const Judge judge(source, rights, weights, viewer, true);
   Candidate candidate;
   candidate.own.resize(kTargets);
@@ -111,7 +111,7 @@ TEST(Judge, looks_at_each_target_alone_where_it_ends) {
   const test::GltfFixture file(test::still_hills_document(kTargets, kSeed));
   const MeshWeights nothing = read_weights(*file, read_gltf_shading(*file, 0).value()).value();
   const std::vector<std::vector<std::uint32_t>> numbers(kTargets, {0});
-  const std::array<Host, 1> viewer = {kHosts[0]};
+  const std::array<Viewer, 1> viewer = {kViewers[0]};
   for (std::size_t k = 0; k < kTargets; ++k) {
     std::vector<double> end(kTargets, 0.0);
     end[k] = 1;

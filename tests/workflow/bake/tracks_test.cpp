@@ -78,7 +78,7 @@ TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_
     form.own = {columns[0]};
     form.extras = {columns[1]};
     form.drivers.formulas = {{0, 0, 4, -4}};
-    cut_tracks(rights, weights, kHosts, vertices, 1.01 * expected / (count * count), form);
+    cut_tracks(rights, weights, kViewers, vertices, 1.01 * expected / (count * count), form);
     EXPECT_EQ(form.drivers.pieces.at({0, 0}), std::vector<std::uint32_t>{static_cast<std::uint32_t>(pieces)});
     EXPECT_NEAR(form.track_error, expected / (count * count), 1e-6) << pieces;
   }

@@ -166,7 +166,7 @@ TEST(Report, numbers_of_a_gltf_file_follow_from_the_report_alone) {
     EXPECT_FLOAT_EQ(*std::max_element(worst.begin(), worst.end()),
                     static_cast<float>(found.value().audit.subjects[3].error.worst));
     EXPECT_TRUE(file.json["plan"].is_null());
-    EXPECT_EQ(file.json["audit"]["viewers"].size(), kHosts.size());
+    EXPECT_EQ(file.json["audit"]["viewers"].size(), kViewers.size());
   }
 }
 
@@ -297,24 +297,24 @@ TEST(Report, numbers_of_targets_over_a_base_follow_from_the_report_alone) {
   EXPECT_EQ(file.part(0)["keyframes"]["positions"][1]["indices"]["count"], 12);
 }
 
-TEST(Report, what_hosts_show_is_what_they_keep) {
+TEST(Report, what_viewers_show_is_what_they_keep) {
   ReportOptions options = without_plan();
-  options.hosts = {kHosts[3], kHosts[6]};  // godot, gltfpack
+  options.viewers = {kViewers[3], kViewers[6]};  // godot, gltfpack
   const test::GltfBuilder builder = sheet_file(14, 0.2);
   const Result<Report> found = report_of_glb(builder.glb(), options);
   ASSERT_TRUE(found) << found.error().text();
   const ReportFile file = expect_numbers(found.value());
   const nlohmann::json &shown = file.part(0)["shown"], &weights = file.part(0)["motions"][3]["weights"];
   ASSERT_EQ(shown.size(), 3U);
-  EXPECT_EQ(shown[0]["hosts"], nlohmann::json({"specification", "three", "babylon", "bevy"}));
-  EXPECT_EQ(shown[1]["hosts"], nlohmann::json({"godot"}));
+  EXPECT_EQ(shown[0]["viewers"], nlohmann::json({"specification", "three", "babylon", "bevy"}));
+  EXPECT_EQ(shown[1]["viewers"], nlohmann::json({"godot"}));
   EXPECT_EQ(shown[1]["least_weight"], 1e-4);
-  EXPECT_EQ(shown[2]["hosts"], nlohmann::json({"gltfpack"}));
+  EXPECT_EQ(shown[2]["viewers"], nlohmann::json({"gltfpack"}));
   // 8 bits: every component is a whole number of 127ths.
   for (const float component : file.numbers<float>(shown[2]["targets"][0]["deltas"]))
     EXPECT_NEAR(component * 127, std::round(component * 127), 1e-4);
   ASSERT_EQ(weights.size(), 2U);
-  EXPECT_EQ(weights[1]["hosts"], nlohmann::json({"gltfpack"}));
+  EXPECT_EQ(weights[1]["viewers"], nlohmann::json({"gltfpack"}));
   EXPECT_NE(file.numbers<float>(weights[1]["values"]), file.numbers<float>(weights[0]["values"]));
 }
 

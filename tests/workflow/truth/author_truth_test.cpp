@@ -457,7 +457,7 @@ TEST(AuthorTruth, normals_that_a_bake_spread_over_its_targets_are_still_those_of
                         std::vector<float>{0, 0, 1, 0.4F, 0.2F, 1});
       BakeOptions options;
       options.encoding = encoding;
-      options.hosts = find_hosts("three").value();
+      options.viewers = find_viewers("three").value();
       options.tolerance = 0.01;
       const test::Baked baked = test::bake_document(builder, options);
       ASSERT_TRUE(baked.ok()) << baked.error;

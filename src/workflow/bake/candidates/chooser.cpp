@@ -42,7 +42,7 @@ bool has_new_base(const DeltaSource& source) {
 std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   std::size_t most = 10000;
   const auto limit = [&](std::size_t all) { most = std::min(most, all - std::min(all, targets)); };
-  for (const Host& viewer : options.hosts)
+  for (const Viewer& viewer : options.viewers)
     if (viewer.most_targets > 0) limit(viewer.most_targets);
   if (options.most_targets) limit(*options.most_targets);
   return most;
@@ -74,7 +74,7 @@ class Chooser {
       : source_(source),
         weights_(weights),
         options_(options),
-        viewers_(options.hosts),
+        viewers_(options.viewers),
         rights_(source.shading, source.terms, source.base_normals, source.plan.largest),
         tolerance_(options.tolerance.value_or(kHarmlessTolerance)),
         prefers_bytes_(source.plan.encoding == BakeEncoding::kSmallest),
@@ -91,13 +91,13 @@ class Chooser {
             rights_,
             weights_,
             *judge_,
-            options_.hosts,
-            lengths_for(options_.hosts, options_.spared),
+            options_.viewers,
+            lengths_for(options_.viewers, options_.spared),
             made_within_.value_or(tolerance_),
             most_extras(options_, source_.shading.set.targets.size()),
             animations_only,
-            std::any_of(options_.hosts.begin(), options_.hosts.end(),
-                        [](const Host& viewer) { return viewer.normals == NormalRule::kUnit; })};
+            std::any_of(options_.viewers.begin(), options_.viewers.end(),
+                        [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; })};
   }
 
   // Looks at a candidate, and returns the bytes that it takes.
@@ -135,7 +135,8 @@ class Chooser {
     if (options_.plan) return false;
     const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
     const auto is_beyond = [&](const ErrorsOfKinds& errors) { return errors[0].spread.worst > tolerance_; };
-    return std::any_of(glance.begin(), glance.begin() + static_cast<std::ptrdiff_t>(options_.hosts.size()), is_beyond);
+    return std::any_of(glance.begin(), glance.begin() + static_cast<std::ptrdiff_t>(options_.viewers.size()),
+                       is_beyond);
   }
 
   [[nodiscard]] std::size_t most_bytes() const {
@@ -179,12 +180,12 @@ class Chooser {
     ChosenCandidate result;
     choices_[of_choice_].chosen = true;
     choices_[of_choice_].rounded = rounded_worst();
-    result.hosts = of_best_.choice.hosts;
+    result.viewers = of_best_.choice.viewers;
     const bool is_rounding = std::any_of(viewers_.begin(), viewers_.end(),
-                                         [](const Host& viewer) { return viewer.normals == NormalRule::kClamped; });
+                                         [](const Viewer& viewer) { return viewer.normals == NormalRule::kClamped; });
     if (is_rounding)
-      result.hosts = changes(judge_->measure(stored_, Judge::Depth::kGlance, true),
-                             judge_->measure(*best_, Judge::Depth::kGlance, true), result.hosts);
+      result.viewers = changes(judge_->measure(stored_, Judge::Depth::kGlance, true),
+                               judge_->measure(*best_, Judge::Depth::kGlance, true), result.viewers);
     result.candidate = std::move(*best_);
     result.choices = std::move(choices_);
     return result;
@@ -200,14 +201,14 @@ class Chooser {
   // The smallest mean of the viewers that are named: some gain where others lose.
   [[nodiscard]] double mean_of(const std::vector<ErrorsOfKinds>& errors) const {
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t v = 0; v < options_.hosts.size(); ++v) least = std::fmin(least, file_of(errors[v]).mean);
+    for (std::size_t v = 0; v < options_.viewers.size(); ++v) least = std::fmin(least, file_of(errors[v]).mean);
     return least;
   }
 
   // The changes of viewers that compressors round for, and of the others as they are known.
-  [[nodiscard]] std::vector<HostChange> changes(const std::vector<ErrorsOfKinds>& before,
-                                                const std::vector<ErrorsOfKinds>& after,
-                                                std::vector<HostChange> known) const {
+  [[nodiscard]] std::vector<ViewerChange> changes(const std::vector<ErrorsOfKinds>& before,
+                                                  const std::vector<ErrorsOfKinds>& after,
+                                                  std::vector<ViewerChange> known) const {
     for (std::size_t v = 0; v < viewers_.size(); ++v)
       if (viewers_[v].normals == NormalRule::kClamped || known.size() <= v)
         for (std::size_t k = 0; k < kPoseKinds; ++k) known[v].poses[k] = {before[v][k].errors(), after[v][k].errors()};
@@ -216,11 +217,11 @@ class Chooser {
 
   void judge(const std::vector<ErrorsOfKinds>& after, Judged& judged) const {
     BakeChoice& choice = judged.choice;
-    choice.hosts.resize(viewers_.size());
+    choice.viewers.resize(viewers_.size());
     for (std::size_t v = 0; v < viewers_.size(); ++v) {
-      HostChange& change = choice.hosts[v];
-      const bool is_named = v < options_.hosts.size();
-      change.host = std::string(viewers_[v].name);
+      ViewerChange& change = choice.viewers[v];
+      const bool is_named = v < options_.viewers.size();
+      change.viewer = std::string(viewers_[v].name);
       change.is_named = is_named;
       bool any_grows = false;
       for (std::size_t k = 0; k < kPoseKinds; ++k) {
@@ -278,7 +279,7 @@ class Chooser {
   [[nodiscard]] double rounded_worst() const {
     double worst = 0;
     const std::vector<ErrorsOfKinds> rounded = judge_->measure(*best_, Judge::Depth::kGlance, true);
-    for (std::size_t v = 0; v < options_.hosts.size(); ++v)
+    for (std::size_t v = 0; v < options_.viewers.size(); ++v)
       if (viewers_[v].normals == NormalRule::kClamped)
         worst = std::fmax(worst, rounded[v][static_cast<std::size_t>(PoseKind::kFile)].spread.worst);
     return worst;
@@ -287,7 +288,7 @@ class Chooser {
   const DeltaSource& source_;
   const MeshWeights& weights_;
   const BakeOptions& options_;
-  std::vector<Host> viewers_;  // those that are named, then the others
+  std::vector<Viewer> viewers_;  // those that are named, then the others
   RightNormals rights_;
   double tolerance_;
   std::optional<double> made_within_;  // what candidates are made for, where that is less than the tolerance
@@ -381,7 +382,7 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
     ChosenCandidate chosen = chooser.take();
     // Nothing is known of deltas of targets alone, where these are played together, but what was measured.
     if (chosen.candidate.fit_error < source.plan.lines.largest_error())
-      for (const HostChange& change : chosen.hosts)
+      for (const ViewerChange& change : chosen.viewers)
         if (change.is_named)
           chosen.candidate.fit_error =
               std::fmax(chosen.candidate.fit_error, change.poses[0].after.worst / kDegreesPerRadian);

@@ -27,7 +27,8 @@ namespace chronormal::inline internal {
 /// The candidate that was chosen, and all that were looked at.
 struct ChosenCandidate {
   Candidate candidate;
-  std::vector<HostChange> hosts;    ///< what each viewer shows before and after: those that are named, then the others
+  std::vector<ViewerChange>
+      viewers;                      ///< what each viewer shows before and after: those that are named, then the others
   std::vector<BakeChoice> choices;  ///< every candidate that was looked at
 };
 

@@ -99,13 +99,13 @@ void set_gains(const RightNormals& rights, std::span<const std::uint32_t> vertic
 
 }  // namespace
 
-void cut_tracks(const RightNormals& rights, const MeshWeights& weights, std::span<const Host> hosts,
+void cut_tracks(const RightNormals& rights, const MeshWeights& weights, std::span<const Viewer> viewers,
                 std::span<const std::uint32_t> vertices, double tolerance, Candidate& candidate) {
   ExtraDrivers& drivers = candidate.drivers;
   if (drivers.size() == 0) return;
   const VertexColumns columns = columns_of(candidate, vertices);
-  const bool play_splines = std::all_of(hosts.begin(), hosts.end(), [](const Host& host) {
-    return host.tracks == TrackRule::kSpecified && host.weight_bits == 32;
+  const bool play_splines = std::all_of(viewers.begin(), viewers.end(), [](const Viewer& viewer) {
+    return viewer.tracks == TrackRule::kSpecified && viewer.weight_bits == 32;
   });
   const std::size_t extras = drivers.size();
   for (std::size_t t = 0; t < weights.tracks.size() && extras > 0; ++t) {

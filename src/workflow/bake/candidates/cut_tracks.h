@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "workflow/bake/deltas/candidate.h"
 #include "workflow/bake/deltas/right_normals.h"
 #include "workflow/bake/poses/mesh_weights.h"
@@ -18,12 +18,12 @@ namespace chronormal::inline internal {
 /// tolerance (radians):
 ///
 ///     LINEAR        straight pieces of each gap, as far as a limit of their number allows; track_error becomes no less
-///                   than what they turn. Where all hosts play cubic splines and a spline takes fewer numbers, or pieces
+///                   than what they turn. Where all viewers play cubic splines and a spline takes fewer numbers, or pieces
 ///                   leave too much, the track becomes one, which is exact
-///     CUBICSPLINE   more keys where all hosts play them as the specification says, for formulas
+///     CUBICSPLINE   more keys where all viewers play them as the specification says, for formulas
 ///
 /// The candidate must have its deltas, and its formulas or curves.
-void cut_tracks(const RightNormals& rights, const MeshWeights& weights, std::span<const Host> hosts,
+void cut_tracks(const RightNormals& rights, const MeshWeights& weights, std::span<const Viewer> viewers,
                 std::span<const std::uint32_t> vertices, double tolerance, Candidate& candidate);
 
 }  // namespace chronormal::inline internal

@@ -398,7 +398,7 @@ Candidate low_rank_candidate(const Making& making, Candidate own) {
   const std::size_t extras = form.extras.size();
   // What goes along N turns normals by more than a right angle where deltas are added up, and wrongly elsewhere.
   const bool keeps_along = std::none_of(making.viewers.begin(), making.viewers.end(),
-                                        [](const Host& viewer) { return viewer.normals == NormalRule::kUnit; });
+                                        [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
   std::vector<Share> shares = shares_of(making.rights, std::move(form.extras), making.lengths,
                                         {making.keeps_across && making.lengths == Lengths::kShort, keeps_along});
   ExtraDrivers& drivers = result.drivers;

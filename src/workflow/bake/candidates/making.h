@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "workflow/bake/deltas/candidate.h"
 #include "workflow/bake/deltas/deltas.h"
 #include "workflow/bake/deltas/right_normals.h"
@@ -24,7 +24,7 @@ enum class Lengths {
 };
 
 /// Returns the lengths that all of these viewers keep, or lose little of.
-[[nodiscard]] Lengths lengths_for(std::span<const Host> named, std::span<const Host> spared);
+[[nodiscard]] Lengths lengths_for(std::span<const Viewer> named, std::span<const Viewer> spared);
 
 /// Returns how many times larger weights are than beside deltas of any length.
 [[nodiscard]] constexpr double weight_factor(Lengths lengths) noexcept { return lengths == Lengths::kShort ? 64 : 1; }
@@ -35,7 +35,7 @@ struct Making {
   const RightNormals& rights;
   const MeshWeights& weights;
   const Judge& judge;
-  std::span<const Host> viewers;  ///< in which it should be right
+  std::span<const Viewer> viewers;  ///< in which it should be right
   Lengths lengths = Lengths::kFree;
   double tolerance = 0;  ///< degrees
   std::size_t most_extras = 0;

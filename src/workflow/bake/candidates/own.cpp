@@ -8,9 +8,9 @@
 
 namespace chronormal::inline internal {
 
-Lengths lengths_for(std::span<const Host> named, std::span<const Host> spared) {
-  const auto any = [](std::span<const Host> viewers, NormalRule rule) {
-    return std::any_of(viewers.begin(), viewers.end(), [rule](const Host& viewer) { return viewer.normals == rule; });
+Lengths lengths_for(std::span<const Viewer> named, std::span<const Viewer> spared) {
+  const auto any = [](std::span<const Viewer> viewers, NormalRule rule) {
+    return std::any_of(viewers.begin(), viewers.end(), [rule](const Viewer& viewer) { return viewer.normals == rule; });
   };
   if (any(named, NormalRule::kClamped)) return Lengths::kUnit;
   return any(named, NormalRule::kUnit) || any(spared, NormalRule::kUnit) ? Lengths::kShort : Lengths::kFree;

@@ -12,7 +12,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kDeltasBlock = 1024;
-// Stored base normals must have length 1; hosts can show nothing right with those that are shorter than this.
+// Stored base normals must have length 1; viewers can show nothing right with those that are shorter than this.
 constexpr double kShortest = 1e-3;
 // A normal of this length, with deltas of 1e6 times that, can be squared in float32, and so can its inverse.
 constexpr double kLongestStored = 1e10;

@@ -33,7 +33,7 @@ struct NewBaseNormals {
 
 /// Replaces the base normals of some parts by those of the geometry. A vertex without one keeps what is stored, or gets
 /// (0, 0, 1) where that is zero: a file cannot say that there is none. Elsewhere only normals that are longer than
-/// 1e10, or shorter than 1e-10, are brought to length 1: no host can square those in float32, nor add deltas to them.
+/// 1e10, or shorter than 1e-10, are brought to length 1: no viewer can square those in float32, nor add deltas to them.
 /// is_recomputed has one entry for each part.
 [[nodiscard]] NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
                                               const std::vector<bool>& is_recomputed);

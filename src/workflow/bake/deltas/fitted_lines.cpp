@@ -15,7 +15,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A host scales what it adds up to length 1, so that any length will do: each round takes those that come nearest to
+// A viewer scales what it adds up to length 1, so that any length will do: each round takes those that come nearest to
 // what the round before shows.
 constexpr int kRounds = 12;
 // A round that leaves more than this of the squares before it is the last.

@@ -29,7 +29,7 @@ struct MeshUse {
   const WeightUse& use;
   bool is_driven;
 
-  // Without animations a host may do what it likes.
+  // Without animations a viewer may do what it likes.
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const { return !is_driven || use.together(i, j); }
   [[nodiscard]] double largest_weight(const ExtraWeight& extra) const {
     const auto largest = [this](std::size_t i) { return is_driven ? use.largest(i) : std::fmax(1, use.largest(i)); };

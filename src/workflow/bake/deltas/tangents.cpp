@@ -98,11 +98,11 @@ bool has_tangents(const GltfShading& shading, const GltfPart& part) {
 
 }  // namespace
 
-std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Host> hosts) {
+std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers) {
   const GltfShading& shading = source.shading;
   std::vector<bool> result(shading.set.targets.size(), false);
   if (shading.tangents.empty() ||
-      std::none_of(hosts.begin(), hosts.end(), [](const Host& host) { return host.adds_tangents; }))
+      std::none_of(viewers.begin(), viewers.end(), [](const Viewer& viewer) { return viewer.adds_tangents; }))
     return result;
   const auto lean = [](const Vec3d& a, const Vec3d& b) {
     return std::fabs(angle_between(a, b) * kDegreesPerRadian - 90);

@@ -16,14 +16,14 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "workflow/bake/deltas/deltas.h"
 
 namespace chronormal::inline internal {
 
-/// The targets whose stored tangents are stale, one entry for each; none are where no host adds them up. The shading
+/// The targets whose stored tangents are stale, one entry for each; none are where no viewer adds them up. The shading
 /// must have its deltas. O(corners) for each target that moves something.
-[[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Host> hosts);
+[[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers);
 
 /// What a target adds to the tangents: (vertices, 3) of each part, empty for parts without tangents.
 [[nodiscard]] TargetDeltas tangent_deltas(const DeltaSource& source, std::size_t target);

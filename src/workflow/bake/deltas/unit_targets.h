@@ -1,6 +1,6 @@
-/// Deltas that every host shows alike: from the base normal N to other unit normals. Private to workflow.
+/// Deltas that every viewer shows alike: from the base normal N to other unit normals. Private to workflow.
 ///
-/// One host adds N + D, another keeps only its direction, a third cuts the components of D at 1. Where |N + D| = 1 and
+/// One viewer adds N + D, another keeps only its direction, a third cuts the components of D at 1. Where |N + D| = 1 and
 /// no component of D is beyond 1 these are the same, so that u - N, with unit vectors u, is all that an author's target
 /// and an extra one may add (docs/theory.md, section 16).
 ///

@@ -44,7 +44,7 @@ class QuadraticFit {
     std::vector<GltfExtraTarget> weights;  ///< about from -1 to 1 in the poses of the rig; no index is set
     std::vector<VertexVectors> vectors;    ///< of any length
   };
-  /// The best so many; count must be no more than extras(). Where hosts keep no lengths, the direction of the sum alone
+  /// The best so many; count must be no more than extras(). Where viewers keep no lengths, the direction of the sum alone
   /// is fitted, and its length left as it is.
   [[nodiscard]] Extras best(std::size_t count, bool keeps_lengths) const;
 

@@ -23,14 +23,14 @@ constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
 constexpr std::size_t kMostErrors = 4000000;
 
 // The viewer without what is too fine to choose by, or a compressor's own: halves, and numbers of a few bits.
-Host without_rounding(Host viewer) {
+Viewer without_rounding(Viewer viewer) {
   viewer.bits = viewer.normals == NormalRule::kClamped ? kFineBits : 32;
   viewer.octahedral_base = false;
   return viewer;
 }
 
 // Returns whether two viewers show the same of all deltas.
-bool shows_alike(const Host& a, const Host& b, bool is_skinned) {
+bool shows_alike(const Viewer& a, const Viewer& b, bool is_skinned) {
   return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
          a.octahedral_base == b.octahedral_base && (a.skins == b.skins || !is_skinned);
 }
@@ -72,7 +72,7 @@ class PoseWeights {
 // Sums of one vertex in many poses.
 class Sums {
  public:
-  void add_up(const Host& viewer, const Vec3f& normal, std::span<const VertexColumns::Entry> entries,
+  void add_up(const Viewer& viewer, const Vec3f& normal, std::span<const VertexColumns::Entry> entries,
               const PoseWeights& weights, std::size_t first, std::size_t count) {
     const Vec3f base = kept_normal(viewer, normal);
     x_.assign(count, base.x);
@@ -198,7 +198,7 @@ JudgedErrors errors_of_all(const ErrorsOfKinds& kinds) {
 }
 
 Judge::Judge(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
-             std::span<const Host> viewers, bool animations_only)
+             std::span<const Viewer> viewers, bool animations_only)
     : rights_(rights), weights_(weights), viewers_(viewers) {
   const std::vector<VertexVectors> stored = stored_deltas(source.shading);
   vertices_ = judged_vertices(source, stored);
@@ -231,7 +231,7 @@ std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& po
     thread_local Sums sums;
     thread_local std::vector<float> degrees;
     thread_local std::vector<float> errors, planes;
-    sums.add_up(Host{}, to_float(rights_.stored(vertices_[n])), columns.of(n), weights, first, right.size());
+    sums.add_up(Viewer{}, to_float(rights_.stored(vertices_[n])), columns.of(n), weights, first, right.size());
     degrees.resize(right.size());
     errors.resize(3 * right.size());
     planes.resize(3 * right.size());
@@ -252,9 +252,9 @@ std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth dept
     const std::vector<SeenPose> poses =
         with_extra_targets(known.set, weights_, candidate.drivers, viewers_[known.set.viewers[0]]);
     const bool is_skinned = any_skinned(poses);
-    std::vector<std::pair<Host, JudgedErrors>> measured;
+    std::vector<std::pair<Viewer, JudgedErrors>> measured;
     for (const std::size_t v : known.set.viewers) {
-      const Host viewer = with_rounding ? viewers_[v] : without_rounding(viewers_[v]);
+      const Viewer viewer = with_rounding ? viewers_[v] : without_rounding(viewers_[v]);
       auto found = std::find_if(measured.begin(), measured.end(),
                                 [&](const auto& of_other) { return shows_alike(of_other.first, viewer, is_skinned); });
       if (found == measured.end()) {
@@ -267,7 +267,7 @@ std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth dept
   return result;
 }
 
-JudgedErrors Judge::errors_of(const KnownSet& known, const Host& viewer, const VertexColumns& columns,
+JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const VertexColumns& columns,
                               std::span<const SeenPose> all, std::size_t step) const {
   JudgedErrors result;
   const std::size_t count = known.numbers.size();

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "chronormal/workflow/bake.h"
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "workflow/bake/deltas/candidate.h"
 #include "workflow/bake/deltas/right_normals.h"
 #include "workflow/bake/deltas/vertex_columns.h"
@@ -59,11 +59,11 @@ class Judge {
 
   /// All arguments must outlive this.
   Judge(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
-        std::span<const Host> viewers, bool animations_only);
+        std::span<const Viewer> viewers, bool animations_only);
 
   /// The vertices that are judged, ascending.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
-  [[nodiscard]] std::span<const Host> viewers() const noexcept { return viewers_; }
+  [[nodiscard]] std::span<const Viewer> viewers() const noexcept { return viewers_; }
 
   /// Measures what each viewer shows, in all kinds of poses. What compressors round is left out, unless it is asked for.
   [[nodiscard]] std::vector<ErrorsOfKinds> measure(const Candidate& candidate, Depth depth,
@@ -87,13 +87,13 @@ class Judge {
     std::size_t poses = 0;
   };
 
-  [[nodiscard]] JudgedErrors errors_of(const KnownSet& known, const Host& viewer, const VertexColumns& columns,
+  [[nodiscard]] JudgedErrors errors_of(const KnownSet& known, const Viewer& viewer, const VertexColumns& columns,
                                        std::span<const SeenPose> poses, std::size_t step) const;
   [[nodiscard]] TearCounts tears_of(const KnownSet& known, const Differences& differences) const;
 
   const RightNormals& rights_;
   const MeshWeights& weights_;
-  std::span<const Host> viewers_;
+  std::span<const Viewer> viewers_;
   std::vector<std::uint32_t> vertices_;
   std::vector<KnownSet> sets_;
 };

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "workflow/hosts/played_track.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/mesh_skin.h"
 #include "workflow/shading/rig_poses.h"
 #include "workflow/shading/target_weights.h"
+#include "workflow/viewers/played_track.h"
 
 namespace chronormal::inline internal {
 

@@ -168,7 +168,7 @@ std::vector<double> skinned_instants(const WeightTrack& track, const MeshSkin& s
 
 }  // namespace
 
-std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Host& host, std::size_t most) {
+std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Viewer& viewer, std::size_t most) {
   std::vector<std::size_t> counts;
   std::size_t total = 0;
   for (const WeightTrack& track : weights.tracks) {
@@ -179,7 +179,7 @@ std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Host& ho
   std::vector<PlayedPose> poses;
   for (std::size_t t = 0; t < weights.tracks.size(); ++t) {
     const WeightTrack& track = weights.tracks[t];
-    const PlayedTrack played(host, track.keys, track.interpolation, track.targets, weights.ranges[t]);
+    const PlayedTrack played(viewer, track.keys, track.interpolation, track.targets, weights.ranges[t]);
     const double share = static_cast<double>(most) * static_cast<double>(counts[t]) / static_cast<double>(total);
     const std::vector<double> times = instants_of(track, std::max<std::size_t>(1, static_cast<std::size_t>(share)));
     for (const auto& skin : weights.skins.of_tracks.empty() ? as_they_are : weights.skins.of_tracks[t]) {

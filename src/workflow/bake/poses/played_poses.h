@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "workflow/bake/poses/mesh_weights.h"
 #include "workflow/bake/poses/seen_pose.h"
-#include "workflow/hosts/played_track.h"
 #include "workflow/shading/target_weights.h"
+#include "workflow/viewers/played_track.h"
 
 namespace chronormal::inline internal {
 
@@ -43,7 +43,7 @@ struct PlayedPose {
 /// taken, and then fewer keys. Each track gets a share by the number of its telling keys, and one pose at least. Through
 /// each of the skins of its nodes, which must outlive the poses, a track is seen at its keys, those of the joints and
 /// instants between, and only where these are more than `most` at some of them and as above.
-[[nodiscard]] std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Host& host, std::size_t most);
+[[nodiscard]] std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Viewer& viewer, std::size_t most);
 
 /// Each of these targets alone, at `steps` weights up to 1.
 [[nodiscard]] PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count, std::size_t steps);

@@ -1,4 +1,4 @@
-/// Vectors that were found for poses of a mesh and are asked for again and again: what is judged for one host or one form
+/// Vectors that were found for poses of a mesh and are asked for again and again: what is judged for one viewer or one form
 /// is judged in the same poses for the next. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
 #define CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_

@@ -14,11 +14,11 @@ constexpr std::size_t kMostWeights = 8000000, kMostSteps = 8, kFewestSteps = 2;
 constexpr unsigned kRigSeed = 3;
 
 // Whether two viewers play these tracks alike.
-bool plays_alike(const Host& a, const Host& b, std::span<const WeightTrack> tracks) {
+bool plays_alike(const Viewer& a, const Viewer& b, std::span<const WeightTrack> tracks) {
   if (a.tracks == b.tracks && a.weight_bits == b.weight_bits && a.least_weight == b.least_weight) return true;
   return std::all_of(tracks.begin(), tracks.end(), [&](const WeightTrack& track) {
-    const auto is_as_specified = [&](const Host& host) {
-      return PlayedTrack(host, track.keys, track.interpolation, track.targets, {}).is_as_specified();
+    const auto is_as_specified = [&](const Viewer& viewer) {
+      return PlayedTrack(viewer, track.keys, track.interpolation, track.targets, {}).is_as_specified();
     };
     return is_as_specified(a) && is_as_specified(b);
   });
@@ -33,7 +33,7 @@ PlayedPose standing_pose(std::vector<double> weights, const MeshSkin* skin, std:
 
 }  // namespace
 
-std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Host> viewers,
+std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Viewer> viewers,
                                std::span<const std::vector<std::uint32_t>> numbers, std::size_t most,
                                bool animations_only) {
   std::vector<std::size_t> all(viewers.size());
@@ -75,7 +75,7 @@ std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Host>
 }
 
 std::vector<SeenPose> with_extra_targets(const PoseSet& set, const MeshWeights& weights, const ExtraDrivers& drivers,
-                                         const Host& viewer) {
+                                         const Viewer& viewer) {
   const PoseList standing = drivers.standing(weights.poses);
   std::map<std::size_t, PlayedTrack> tracks;
   const auto track_of = [&](std::size_t t) -> const PlayedTrack& {

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "workflow/bake/poses/extra_curves.h"
 #include "workflow/bake/poses/mesh_weights.h"
 #include "workflow/bake/poses/played_poses.h"
@@ -32,13 +32,13 @@ struct PoseSet {
 /// Lists the poses of a mesh: no more than about `most` of its tracks, as each viewer plays them; the poses that stand
 /// still, and unless animations are all that counts, each target alone; and those that the rig is made for. `numbers` has
 /// for each target the judged vertices that it turns; targets that turn none are in no pose.
-[[nodiscard]] std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Host> viewers,
+[[nodiscard]] std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Viewer> viewers,
                                              std::span<const std::vector<std::uint32_t>> numbers, std::size_t most,
                                              bool animations_only);
 
 /// The same poses with the weights of extra targets, as a viewer plays them of the tracks that will be written.
 [[nodiscard]] std::vector<SeenPose> with_extra_targets(const PoseSet& set, const MeshWeights& weights,
-                                                       const ExtraDrivers& drivers, const Host& viewer);
+                                                       const ExtraDrivers& drivers, const Viewer& viewer);
 
 }  // namespace chronormal::inline internal
 

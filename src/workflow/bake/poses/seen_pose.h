@@ -12,7 +12,7 @@
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/normals/transform.h"
-#include "chronormal/workflow/hosts.h"
+#include "chronormal/workflow/viewers.h"
 #include "workflow/shading/mesh_skin.h"
 #include "workflow/shading/target_weights.h"
 

@@ -74,7 +74,7 @@ class LineJudge {
 
   [[nodiscard]] const Status& status() const { return status_; }
 
-  // Whether a host may draw one line from a to b.
+  // Whether a viewer may draw one line from a to b.
   [[nodiscard]] bool may_draw(double a, double b) { return is_straight(a, b) && error(a, b) <= tolerance_; }
   // The bound of the largest error, radians; above the tolerance it is not followed further.
   [[nodiscard]] double error(double a, double b) {

@@ -1,7 +1,7 @@
-/// The fewest keys of a sequence for hosts that draw straight lines between the normals of two keys. Private to
+/// The fewest keys of a sequence for viewers that draw straight lines between the normals of two keys. Private to
 /// workflow.
 ///
-/// Every key has the exact unit normals of its instant, and between two keys a host shows normalize((1-t) u_0 + t u_1).
+/// Every key has the exact unit normals of its instant, and between two keys a viewer shows normalize((1-t) u_0 + t u_1).
 /// From the first key on, the next one is put as late as possible: as long as the line is within the tolerance of n(t)
 /// at every instant, by a certificate and not by samples (analysis/certificates/line_bound.h), and no vertex leaves the
 /// straight line between the two keys. A key may lie between two keyframes, where the motion is straight and the normal

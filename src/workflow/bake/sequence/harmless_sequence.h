@@ -1,4 +1,4 @@
-/// The numbers of a sequence that every host shows alike (docs/theory.md, section 16). Private to workflow.
+/// The numbers of a sequence that every viewer shows alike (docs/theory.md, section 16). Private to workflow.
 ///
 /// N is the normal of key 0, and the target of a key has the delta from it to the normal there, both of length 1.
 /// Between two keys that is a straight line between unit normals; one more unit normal for each segment, with the

@@ -1,11 +1,11 @@
-// Bakes a sequence. A host shows normalize(N + sum_k w_k D_k). With hat weights over the keys and t (1 - t) on one more
+// Bakes a sequence. A viewer shows normalize(N + sum_k w_k D_k). With hat weights over the keys and t (1 - t) on one more
 // target for each segment that is eq. 41, so that the normals are exact (docs/theory.md, section 15).
 //
 //     AreaSums            sums of the areas of faces around elements, in blocks                area_sums
 //     SequenceNormals     normals at keys, and their bends between, from a stream             sequence_normals
 //     sequence_elements   base normals, and which of them the first key cannot have           sequence_deltas
 //     *_deltas, each_exact_segment   what each target adds to the base, as arrays             sequence_deltas
-//     unit_*              the same of what every host shows alike                             harmless_sequence
+//     unit_*              the same of what every viewer shows alike                             harmless_sequence
 //     fewest_keys         at which instants there have to be keys                             fewest_keys
 //     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
 //
@@ -196,11 +196,11 @@ Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<
   return largest;
 }
 
-// The targets that all of these hosts have room for.
-std::size_t room_for_targets(std::span<const Host> hosts) {
+// The targets that all of these viewers have room for.
+std::size_t room_for_targets(std::span<const Viewer> viewers) {
   std::size_t room = std::numeric_limits<std::size_t>::max();
-  for (const Host& host : hosts)
-    if (host.most_targets > 0) room = std::min(room, host.most_targets);
+  for (const Viewer& viewer : viewers)
+    if (viewer.most_targets > 0) room = std::min(room, viewer.most_targets);
   return room;
 }
 
@@ -235,9 +235,9 @@ Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const
 // Adds the targets of harmless to the file, and notes which segments bend. Returns the largest angle that is left, in
 // degrees.
 Result<double> write_harmless(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
-                              std::span<const Host> hosts, const Step& step, SequenceTargets& targets,
+                              std::span<const Viewer> viewers, const Step& step, SequenceTargets& targets,
                               SequenceFile& file) {
-  const std::size_t room = room_for_targets(hosts), total = 2 * normals.keys() - 1;
+  const std::size_t room = room_for_targets(viewers), total = 2 * normals.keys() - 1;
   const Result<std::vector<bool>> chosen =
       segments_to_bend(normals, elements, room - std::min(room, targets.of_keys()));
   if (!chosen) return chosen.error();
@@ -299,33 +299,33 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
   return times;
 }
 
-std::string titles_of_others(std::span<const Host> hosts) {
+std::string titles_of_others(std::span<const Viewer> viewers) {
   std::string titles;
-  for (const Host& host : hosts)
-    if (host.normals != NormalRule::kSum) titles.append(titles.empty() ? "" : ", ").append(host.title);
+  for (const Viewer& viewer : viewers)
+    if (viewer.normals != NormalRule::kSum) titles.append(titles.empty() ? "" : ", ").append(viewer.title);
   return titles;
 }
 
-void warn_of_hosts(BakeEncoding encoding, std::span<const Host> hosts, std::size_t targets, std::size_t without_room,
-                   std::vector<std::string>& warnings) {
-  if (const std::string titles = titles_of_others(hosts); encoding != BakeEncoding::kHarmless && !titles.empty())
+void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std::size_t targets,
+                     std::size_t without_room, std::vector<std::string>& warnings) {
+  if (const std::string titles = titles_of_others(viewers); encoding != BakeEncoding::kHarmless && !titles.empty())
     warnings.push_back(
         "by --encode " + std::string(name_of(encoding)) +
-        " its normals are made for hosts that add up deltas as they are stored; they can be far off in " + titles +
+        " its normals are made for viewers that add up deltas as they are stored; they can be far off in " + titles +
         ": --encode harmless is for all of these");
   if (without_room > 0)
     warnings.push_back(std::to_string(without_room) +
                        " normals turn so far from those of keyframe 0 that compressors cut their deltas");
-  for (const Host& host : hosts)
-    if (host.most_targets > 0 && targets > host.most_targets)
-      warnings.push_back(std::to_string(targets) + " targets are more than " + std::string(host.title) +
-                         " takes: " + std::string(host.beyond));
+  for (const Viewer& viewer : viewers)
+    if (viewer.most_targets > 0 && targets > viewer.most_targets)
+      warnings.push_back(std::to_string(targets) + " targets are more than " + std::string(viewer.title) +
+                         " takes: " + std::string(viewer.beyond));
 }
 
 // A sequence has no choice of candidates: it is made for the viewers that are named, or for all.
 BakeOptions for_all_viewers(const BakeOptions& asked) {
   BakeOptions options = with_viewers(asked);
-  options.hosts.insert(options.hosts.end(), options.spared.begin(), options.spared.end());
+  options.viewers.insert(options.viewers.end(), options.spared.begin(), options.spared.end());
   options.spared.clear();
   return options;
 }
@@ -397,11 +397,11 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   } else if (!is_exact) {
     const Result<double> error = encoding == BakeEncoding::kEndpoint
                                      ? write_endpoint(normals, elements, step, file)
-                                     : write_harmless(normals, elements, options.hosts, step, targets, file);
+                                     : write_harmless(normals, elements, options.viewers, step, targets, file);
     if (!error) return error.error();
     report.largest_error = std::max(report.largest_error, error.value());
   }
-  warn_of_hosts(targets.encoding, options.hosts, targets.count(), found.value().without_room, report.warnings);
+  warn_of_viewers(targets.encoding, options.viewers, targets.count(), found.value().without_room, report.warnings);
   const Result<std::size_t> bytes = file.finish(targets, times.value(), take);
   if (!bytes) return bytes.error();
   report.targets = targets.of_keys();

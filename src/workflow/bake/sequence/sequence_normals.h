@@ -1,7 +1,7 @@
 /// The normals of a sequence in the form of eq. 40: one for each key, and one bend for each segment. Private to
 /// workflow.
 ///
-/// A host sees the positions base + delta, where both are float32: normals are those of these positions, in double.
+/// A viewer sees the positions base + delta, where both are float32: normals are those of these positions, in double.
 /// (The positions of the motion differ from them by half an ulp of the delta.)
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Hosts that keep morphed attributes in vertex attributes have room for so many (WebGL 1, the least that the
+// Viewers that keep morphed attributes in vertex attributes have room for so many (WebGL 1, the least that the
 // specification asks for).
 constexpr std::size_t kMorphedAttributes = 8;
 // A file that is so many times as large, or half as many with more than a few correction targets, is told of.
@@ -78,10 +78,10 @@ void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<Mesh
   if (baked.left_flat == 0) return;
   warnings.push_back({label_of(mesh, baked),
                       baked.left_flat == 1
-                          ? "1 primitive has no normals and stays flat, as hosts shade it by the specification "
+                          ? "1 primitive has no normals and stays flat, as viewers shade it by the specification "
                             "(--smooth gives it normals)"
                           : std::to_string(baked.left_flat) +
-                                " primitives have no normals and stay flat, as hosts shade them by the specification "
+                                " primitives have no normals and stay flat, as viewers shade them by the specification "
                                 "(--smooth gives them normals)"});
 }
 
@@ -107,9 +107,11 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
   if (chosen->within) {
     if (!is_beyond_by_rounding(*chosen, options)) return;
     std::string names;
-    for (const Host& host : options.hosts)
-      if (host.normals == NormalRule::kClamped)
-        names.append(names.empty() ? "" : ", ").append(host.title).append(" (" + std::to_string(host.bits) + " bits)");
+    for (const Viewer& viewer : options.viewers)
+      if (viewer.normals == NormalRule::kClamped)
+        names.append(names.empty() ? "" : ", ")
+            .append(viewer.title)
+            .append(" (" + std::to_string(viewer.bits) + " bits)");
     warnings.push_back({label_of(mesh, baked), "its normals are within " + tolerance + " degrees, but up to " +
                                                    rounded_text(rounded_up(chosen->rounded)) +
                                                    " degrees off where compression rounds them: " + names});
@@ -127,8 +129,8 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
   std::vector<std::string> remedies;
   if (options.most_targets || options.most_delta_bytes)
     remedies.emplace_back("allow more by --max-targets and --max-bytes");
-  if (options.hosts.size() > 1 && std::any_of(options.hosts.begin(), options.hosts.end(),
-                                              [](const Host& h) { return h.normals != NormalRule::kSum; }))
+  if (options.viewers.size() > 1 && std::any_of(options.viewers.begin(), options.viewers.end(),
+                                                [](const Viewer& h) { return h.normals != NormalRule::kSum; }))
     remedies.emplace_back("name the viewers that count by --for");
   remedies.emplace_back("take a larger --tolerance");
   std::string text = "no candidate is within " + tolerance +
@@ -149,8 +151,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
              ? "no animation drives its targets, and no extra target that a program could drive brings its poses "
                "nearer: each is right at weight 1"
              : "no animation drives its targets, so that the file can hold the rest pose and each slider alone; where "
-               "several are up, a program has to drive correction targets, which --poses writes (chronormal/three and "
-               "chronormal/babylon do)");
+               "several are up, a program has to drive correction targets, which --poses writes (chronormal/three, "
+               "/babylon and /playcanvas do)");
   }
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
@@ -160,8 +162,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (plan.encoding == BakeEncoding::kExact || plan.encoding == BakeEncoding::kEndpoint) {
     std::string names;
-    for (const std::vector<Host>* const viewers : {&options.hosts, &options.spared})
-      for (const Host& viewer : *viewers)
+    for (const std::vector<Viewer>* const viewers : {&options.viewers, &options.spared})
+      for (const Viewer& viewer : *viewers)
         if (viewer.normals != NormalRule::kSum) names.append(names.empty() ? "" : ", ").append(viewer.title);
     if (!names.empty()) {
       warn("by --encode " + std::string(name_of(plan.encoding)) +
@@ -182,7 +184,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.rescaled > 0) {
     warn(std::to_string(baked.rescaled) +
-         " stored base normals are longer than 1e10 or shorter than 1e-10, which no host can add to: they were brought "
+         " stored base normals are longer than 1e10 or shorter than 1e-10, which no viewer can add to: they were "
+         "brought "
          "to length 1");
   }
   if (baked.stilled > 0) {
@@ -205,7 +208,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(std::to_string(baked.without_base) +
          " vertices have no area around them in the base: their normals are right but for weights near 0");
   }
-  // No host that can be named has so little room, but others have.
+  // No viewer that can be named has so little room, but others have.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
     warn(std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
          " morphed attributes; viewers that have room for 8 leave out those of the smallest weights");

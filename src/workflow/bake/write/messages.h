@@ -1,4 +1,4 @@
-/// What a bake tells people and hosts: warnings, and what has to drive its extra targets. Private to workflow.
+/// What a bake tells people and viewers: warnings, and what has to drive its extra targets. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_MESSAGES_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_MESSAGES_H_
 

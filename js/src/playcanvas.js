@@ -1,0 +1,65 @@
+// Baked files in PlayCanvas: before a frame is drawn, extra targets get the weights that belong to what the application, or an
+// animation, has set for the targets of the mesh itself. PlayCanvas hands on no extras, but the resource of a container keeps
+// the JSON of its file.
+import { formulasOf, markOf, weightOf } from './drive.js';
+
+const attached = new WeakMap(); // of each application: {update, driven}
+
+// The mark of each mesh of PlayCanvas that a container has, a primitive each.
+function marksOf({ gltf, renders }) {
+  const nodes = (gltf.nodes ?? []).map((node) => ({ extras: node.extras, mesh: node.mesh }));
+  gltf.nodes?.forEach(({ children = [] }, i) => children.forEach((child) => (nodes[child].parent = nodes[i])));
+  const marks = new Map();
+  renders.forEach(({ meshes }, i) => {
+    const mesh = { extras: gltf.meshes[i].extras, parent: nodes.find((node) => node.mesh === i) };
+    const mark = markOf(mesh, ({ extras }) => extras);
+    for (const primitive of meshes ?? []) marks.set(primitive, mark);
+  });
+  return marks;
+}
+
+/**
+ * Drives all meshes of a baked file that an application shows, until detach(). Entities that come later need another
+ * attach(). Costs a few operations for each target and frame, and allocates nothing.
+ * @param {import('playcanvas').AppBase} app
+ * @param {...import('playcanvas').Asset} assets containers, loaded
+ * @returns {import('playcanvas').MeshInstance[]} those that have extra targets with formulas
+ */
+export function attach(app, ...assets) {
+  if (attached.has(app)) app.off('prerender', attached.get(app).update);
+  const marks = new Map(assets.flatMap(({ resource }) => [...marksOf(resource.data)]));
+  const driven = [...(attached.get(app)?.driven ?? [])].filter(({ meshInstance }) => !marks.has(meshInstance.mesh));
+  for (const { meshInstances } of app.root.findComponents('render')) {
+    for (const meshInstance of meshInstances) {
+      const { mesh, morphInstance } = meshInstance;
+      const count = morphInstance?.morph.targets.length ?? 0;
+      const formulas = formulasOf(marks.get(mesh), count);
+      if (formulas.length > 0) driven.push({ meshInstance, formulas, w: new Float64Array(count) });
+    }
+  }
+  const update = () => {
+    for (let d = 0; d < driven.length; ++d) {
+      const { meshInstance: { morphInstance }, formulas, w } = driven[d];
+      if (!morphInstance) continue; // destroyed meanwhile
+      for (let i = 0; i < w.length; ++i) w[i] = morphInstance.getWeight(i);
+      for (let k = 0; k < formulas.length; ++k) {
+        const { target } = formulas[k], weight = weightOf(formulas[k], w);
+        if (w[target] !== weight) morphInstance.setWeight(target, weight);
+      }
+    }
+  };
+  app.on('prerender', update);
+  attached.set(app, { update, driven });
+  return driven.map(({ meshInstance }) => meshInstance);
+}
+
+/** Leaves the meshes of an application to it again; extra targets get the weight 0. */
+export function detach(app) {
+  if (!attached.has(app)) return;
+  const { update, driven } = attached.get(app);
+  attached.delete(app);
+  app.off('prerender', update);
+  for (const { meshInstance: { morphInstance }, formulas } of driven) {
+    for (const { target } of formulas) morphInstance?.setWeight(target, 0);
+  }
+}

@@ -1,0 +1,205 @@
+// What viewers keep of normals and deltas.
+#include "chronormal/workflow/viewers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "core/bits.h"
+#include "core/nearest.h"
+
+namespace chronormal {
+namespace {
+
+// The nearest 16-bit float, halves away from zero: a sign, 5 bits of the exponent, and 10 of the fraction, of which
+// float32 has 23.
+float half(float value) noexcept {
+  constexpr std::uint32_t kInfinity = 0x7f800000, kLeastNormal = 0x38800000, kHalfOfLast = 1U << 12;
+  constexpr float kLargest = 65504, kStep = 0x1p-24F;  // the step below 2^-14
+  const float size = std::fabs(value);
+  const auto bits = bit_cast<std::uint32_t>(size);
+  if (bits >= kInfinity) return value;
+  if (bits < kLeastNormal) return std::copysign(std::round(size / kStep) * kStep, value);
+  const auto rounded = bit_cast<float>((bits + kHalfOfLast) & ~(2 * kHalfOfLast - 1));
+  return std::copysign(rounded > kLargest ? INFINITY : rounded, value);
+}
+
+Vec3f half(const Vec3f& v) noexcept { return {half(v.x), half(v.y), half(v.z)}; }
+
+// Rounds to a signed integer of some bits that stands for [-1, 1], halves away from zero. In 9 to 15 bits it is kept in
+// 16, its upper bits once more below it, so that 1 stays 1.
+float clamped(float value, int bits) noexcept {
+  const int wide = bits <= 8 ? 8 : 16;
+  const int lack = wide - bits;
+  const float size = std::fabs(value) < 1 ? std::fabs(value) : std::isnan(value) ? 0 : 1.0F;
+  const float scaled = size * static_cast<float>((1 << (bits - 1)) - 1);
+  const int whole = static_cast<int>(scaled);
+  const int small = scaled - static_cast<float>(whole) >= 0.5F ? whole + 1 : whole;  // the difference is exact
+  const int kept = lack == 0 ? small : (small << lack) | (small >> (bits - 1 - lack));
+  return std::copysign(static_cast<float>(kept) / static_cast<float>((1 << (wide - 1)) - 1), value);
+}
+
+Vec3f clamped(const Vec3f& v, int bits) noexcept {
+  return {clamped(v.x, bits), clamped(v.y, bits), clamped(v.z, bits)};
+}
+
+struct Octahedral {
+  double x = 0, y = 0;  // in [-1, 1]
+};
+
+Octahedral to_octahedral(const Vec3d& v) noexcept {
+  const double size = std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
+  const double x = v.x / size, y = v.y / size;
+  if (v.z >= 0) return {x, y};
+  return {std::copysign(1 - std::fabs(y), x), std::copysign(1 - std::fabs(x), y)};
+}
+
+Vec3d from_octahedral(const Octahedral& o) noexcept {
+  const double z = 1 - std::fabs(o.x) - std::fabs(o.y), fold = std::fmax(-z, 0);
+  return unit(Vec3d{o.x - std::copysign(fold, o.x), o.y - std::copysign(fold, o.y), z});
+}
+
+// The direction of a vector as two unsigned numbers that stand for [-1, 1] keep it, cut off below.
+Vec3d through_unsigned_octahedral(const Vec3d& v, int bits) noexcept {
+  if (v == Vec3d{} || !is_finite(v)) return v;
+  const double most = std::ldexp(1, bits) - 1;
+  const auto kept = [&](double value) { return 2 * std::floor((value / 2 + 0.5) * most) / most - 1; };
+  const Octahedral o = to_octahedral(v);
+  return from_octahedral({kept(o.x), kept(o.y)});
+}
+
+// The same of two signed numbers, rounded.
+Vec3d through_signed_octahedral(const Vec3d& v, int bits) noexcept {
+  if (v == Vec3d{} || !is_finite(v)) return v;
+  const double most = std::ldexp(1, bits - 1) - 1;
+  const Octahedral o = to_octahedral(v);
+  return from_octahedral({std::round(o.x * most) / most, std::round(o.y * most) / most});
+}
+
+// The first axis of the frame that Frisvad's rule makes of a unit vector, here with y up, taken as the rule is of any
+// vector.
+Vec3d first_axis(const Vec3d& n) noexcept {
+  constexpr double kDown = -1 + 1.0 / (1 << 23);
+  if (n.y < kDown) return {-1, 0, 0};
+  const double a = 1 / (1 + n.y);
+  return {-n.z * n.x * a, -n.z, 1 - n.z * n.z * a};
+}
+
+// The third axis of the rotation that is read from the frame of a vector by the rule for orthonormal frames, once it
+// was kept as a quaternion of signed integers.
+Vec3d through_frame(const Vec3d& v, int bits) noexcept {
+  if (v == Vec3d{} || !is_finite(v)) return v;
+  const Vec3d x = first_axis(v), y = cross(v, x);
+  const double m[3][3] = {{x.x, x.y, x.z}, {y.x, y.y, y.z}, {v.x, v.y, v.z}};
+  std::array<double, 4> q{};  // x, y, z, w
+  const double trace = m[0][0] + m[1][1] + m[2][2];
+  if (trace > 0) {
+    const double root = std::sqrt(trace + 1), s = 0.5 / root;
+    q = {(m[1][2] - m[2][1]) * s, (m[2][0] - m[0][2]) * s, (m[0][1] - m[1][0]) * s, root / 2};
+  } else {
+    const std::size_t larger = m[1][1] > m[0][0] ? 1 : 0;
+    const std::size_t i = m[2][2] > m[larger][larger] ? 2 : larger, j = (i + 1) % 3, k = (j + 1) % 3;
+    const double root = std::sqrt(m[i][i] - m[j][j] - m[k][k] + 1), s = 0.5 / root;  // root is 1 or more
+    q[i] = root / 2;
+    q[j] = (m[i][j] + m[j][i]) * s;
+    q[k] = (m[i][k] + m[k][i]) * s;
+    q[3] = (m[j][k] - m[k][j]) * s;
+  }
+  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  const double most = std::ldexp(1, bits - 1) - 1;
+  for (double& part : q) part = std::round(part / length * most) / most;
+  return unit(
+      Vec3d{2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]), 1 - 2 * (q[0] * q[0] + q[1] * q[1])});
+}
+
+// The unit normal that a viewer keeps of a vector of any length. In so many bits nothing is rounded but to float32; a frame
+// turns vectors whose length is not 1 all the same.
+Vec3f kept_direction(const Viewer& viewer, const Vec3f& v) noexcept {
+  constexpr int kAllBits = 32;
+  const Vec3d vector = to_double(v);
+  if (viewer.by_frame) return to_float(through_frame(vector, std::min(viewer.bits, kAllBits - 1)));
+  return to_float(viewer.bits >= kAllBits ? unit(vector) : through_unsigned_octahedral(unit(vector), viewer.bits));
+}
+
+Error no_such_viewer(std::string_view name) {
+  std::string list;
+  std::vector<std::string> names;
+  for (const Viewer& viewer : kViewers) {
+    list.append(viewer.name).append(", ");
+    names.emplace_back(viewer.name);
+  }
+  std::string message = std::string("there is no viewer '").append(name) + "'";
+  const std::string nearest = nearest_name(name, names);
+  message.append(nearest.empty() ? "; there are " : "; did you mean " + nearest + "? There are ");
+  return Error{ErrorCode::kUsage, "", message.append(list).append("and all")};
+}
+
+}  // namespace
+
+Result<std::vector<Viewer>> find_viewers(std::string_view names) {
+  std::vector<Viewer> viewers;
+  const auto add = [&viewers](const Viewer& viewer) {
+    if (std::find(viewers.begin(), viewers.end(), viewer) == viewers.end()) viewers.push_back(viewer);
+  };
+  for (std::size_t first = 0; first <= names.size();) {
+    const std::size_t end = std::min(names.find(',', first), names.size());
+    const std::string_view name = names.substr(first, end - first);
+    first = end + 1;
+    if (name == "all") {
+      for (const Viewer& viewer : kViewers)
+        if (viewer.normals != NormalRule::kClamped) add(viewer);
+      continue;
+    }
+    const auto* const found =
+        std::find_if(kViewers.begin(), kViewers.end(), [&](const Viewer& viewer) { return viewer.name == name; });
+    if (found == kViewers.end()) return no_such_viewer(name);
+    add(*found);
+  }
+  return viewers;
+}
+
+Vec3f kept_normal(const Viewer& viewer, const Vec3f& normal) noexcept {
+  switch (viewer.normals) {
+    case NormalRule::kSum:
+      return normal;
+    case NormalRule::kUnit:
+      return kept_direction(viewer, normal);
+    case NormalRule::kClamped:
+      return clamped(
+          viewer.octahedral_base ? to_float(through_signed_octahedral(to_double(normal), viewer.bits)) : normal,
+          viewer.bits);
+  }
+  return normal;
+}
+
+Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& delta) noexcept {
+  return kept_delta(viewer, normal, kept_normal(viewer, normal), delta);
+}
+
+Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& kept_normal, const Vec3f& delta) noexcept {
+  switch (viewer.normals) {
+    case NormalRule::kSum:
+      return viewer.keeps_halves() ? half(delta) : delta;
+    case NormalRule::kUnit:
+      return kept_direction(viewer, normal + delta) - kept_normal;
+    case NormalRule::kClamped:
+      return clamped(delta, viewer.bits);
+  }
+  return delta;
+}
+
+void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<const std::size_t> targets) noexcept {
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const bool is_beyond = viewer.most_targets > 0 && (targets.empty() ? k : targets[k]) >= viewer.most_targets;
+    if (is_beyond || std::fabs(weights[k]) <= viewer.least_weight) weights[k] = 0;
+  }
+}
+
+Vec3f shown_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept {
+  return to_float(unit(to_double(viewer.keeps_halves() ? kept_normal + half(sum) : sum)));
+}
+
+}  // namespace chronormal

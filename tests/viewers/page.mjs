@@ -1,0 +1,94 @@
+// The page's entry: all viewers behind the same functions, and the comparison, so that pixels stay in the page.
+import * as babylon from './babylon_page.mjs';
+import * as filament from './filament_page.mjs';
+import { differenceOfPictures, drawPicture } from './picture.mjs';
+import { compareNormals, middleOf, normalAt } from './pixels.mjs';
+import * as playcanvas from './playcanvas_page.mjs';
+import * as three from './three_page.mjs';
+
+const viewers = { three, babylon, playcanvas, filament };
+
+const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+const loaded = (viewer, base64) => viewers[viewer].load(bytesOf(base64));
+
+// For each moment {time, truth, view}: what the viewer draws of each file at that time of an animation, against the
+// still file `truth`. Files are GLB in base64. Returns, for each moment, what compareNormals() says of each file.
+window.compareInViewer = async (viewer, files, animation, moments, size) => {
+  const { play, drawNormals, dispose } = viewers[viewer];
+  const models = [];
+  for (const file of files) models.push(await loaded(viewer, file));
+  const results = [];
+  for (const { time, truth, view } of moments) {
+    const still = await loaded(viewer, truth);
+    play(still, null, 0);
+    const expected = await drawNormals(still, view, size);
+    const row = [];
+    for (const model of models) {
+      play(model, animation, time);
+      row.push(compareNormals(await drawNormals(model, view, size), expected, size));
+    }
+    dispose(still);
+    results.push(row);
+  }
+  models.forEach(dispose);
+  return results;
+};
+
+// What a function makes of each picture of normals that a viewer draws of a file, at times of its first animation.
+async function ofPictures(viewer, file, times, view, size, made) {
+  const { play, drawNormals, dispose } = viewers[viewer];
+  const model = await loaded(viewer, file);
+  const results = [];
+  for (const time of times) {
+    play(model, 0, time);
+    results.push(made(await drawNormals(model, view, size)));
+  }
+  dispose(model);
+  return results;
+}
+
+// The normals at the pixels [x, y] of each picture; null where nothing is.
+window.normalsInViewer = (viewer, file, times, view, size, pixels) =>
+  ofPictures(viewer, file, times, view, size, (picture) => pixels.map(([x, y]) => normalAt(picture, size, x, y)));
+
+// The middle of all that is drawn, in pixels; null where nothing is.
+window.middlesInViewer = (viewer, file, times, view, size) =>
+  ofPictures(viewer, file, times, view, size, (picture) => middleOf(picture, size));
+
+// What the viewer draws of a file when a program has set the weights of its own targets, then while our package drives the
+// extra ones, when it does so no more, and when the program has driven them itself, against the still file of the moment.
+window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
+  const { play, drawNormals, setWeights, drive, attach, detach, dispose } = viewers[viewer];
+  const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];
+  play(still, null, 0);
+  play(model, null, 0);
+  const expected = await drawNormals(still, view, size);
+  const results = [];
+  for (const step of [() => setWeights(model, weights), () => attach(model), () => detach(model), () => drive?.(model)]) {
+    step();
+    results.push(compareNormals(await drawNormals(model, view, size), expected, size));
+  }
+  [still, model].forEach(dispose);
+  return results;
+};
+
+// The same while clips are blended, whose sum the weights are: in three.js of a clone, whose mixer does so.
+window.compareBlended = async (viewer, file, weights, { truth, view }, size) => {
+  const { play, drawNormals, blend, attach, dispose } = viewers[viewer];
+  const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];
+  play(still, null, 0);
+  const expected = await drawNormals(still, view, size);
+  blend(model, weights);
+  const results = [];
+  for (const step of [() => {}, () => attach(model)]) {
+    step();
+    results.push(compareNormals(await drawNormals(model, view, size), expected, size));
+  }
+  [still, model].forEach(dispose);
+  return results;
+};
+
+window.drawPicture = (viewer, items, ...others) =>
+  drawPicture(viewer, items.map(({ base64, caption }) => ({ bytes: bytesOf(base64), caption })), ...others);
+
+window.differenceOfPictures = (...pictures) => differenceOfPictures(...pictures.map(bytesOf));

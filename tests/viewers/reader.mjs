@@ -1,0 +1,134 @@
+// What a glTF file holds, as plain arrays, and what every viewer must make of it at a time: the formulas of glTF 2.0,
+// written down here once more, in float32 where viewers add in float32. It knows nothing about extra targets.
+import { Logger, NodeIO } from '@gltf-transform/core';
+import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
+
+const TRIANGLES = 4;
+
+export const errorsOnly = new Logger(Logger.Verbosity.ERROR);
+
+export function newIO() {
+  return new NodeIO().setLogger(errorsOnly).registerExtensions(ALL_EXTENSIONS);
+}
+
+// All numbers of an accessor: floats as they are stored, normalised integers as the numbers they stand for.
+function numbers(accessor) {
+  const width = accessor.getElementSize();
+  const result = new Float32Array(accessor.getCount() * width);
+  const element = [];
+  for (let i = 0; i < accessor.getCount(); ++i) result.set(accessor.getElement(i, element), i * width);
+  return result;
+}
+
+function readPrimitive(primitive) {
+  const attribute = (owner, name) => {
+    const accessor = owner.getAttribute(name);
+    return accessor ? numbers(accessor) : null;
+  };
+  const positions = attribute(primitive, 'POSITION');
+  const count = positions.length / 3;
+  return {
+    positions,
+    normals: attribute(primitive, 'NORMAL'),
+    indices: primitive.getIndices()?.getArray() ?? Uint32Array.from({ length: count }, (_, i) => i),
+    triangles: primitive.getMode() === TRIANGLES,
+    targets: primitive.listTargets().map((target) => ({
+      positions: attribute(target, 'POSITION'),
+      normals: attribute(target, 'NORMAL'),
+    })),
+  };
+}
+
+// {meshes: [{name, primitives, weights, extras}], nodes: [{mesh, weights}], animations: [{name, start, end, tracks}]}.
+// Nodes are those with a mesh, in the order of the file; a track names its node by the index in that list.
+export function describe(document) {
+  const root = document.getRoot();
+  const meshes = root.listMeshes();
+  const nodes = root.listNodes().filter((node) => node.getMesh());
+  return {
+    meshes: meshes.map((mesh) => {
+      const primitives = mesh.listPrimitives().map(readPrimitive);
+      const count = primitives[0].targets.length;
+      const weights = Float32Array.from({ length: count }, (_, k) => mesh.getWeights()[k] ?? 0);
+      return { name: mesh.getName(), primitives, weights, extras: mesh.getExtras() };
+    }),
+    nodes: nodes.map((node) => ({
+      name: node.getName(),
+      mesh: meshes.indexOf(node.getMesh()),
+      weights: node.getWeights().length > 0 ? Float32Array.from(node.getWeights()) : null,
+    })),
+    animations: root.listAnimations().map((animation) => {
+      const tracks = animation
+        .listChannels()
+        .filter((channel) => channel.getTargetPath() === 'weights')
+        .map((channel) => ({
+          node: nodes.indexOf(channel.getTargetNode()),
+          interpolation: channel.getSampler().getInterpolation(),
+          times: numbers(channel.getSampler().getInput()),
+          values: numbers(channel.getSampler().getOutput()),
+        }));
+      return {
+        name: animation.getName(),
+        start: Math.min(...tracks.map((track) => track.times[0])),
+        end: Math.max(...tracks.map((track) => track.times.at(-1))),
+        tracks,
+      };
+    }),
+  };
+}
+
+export async function read(path) {
+  return describe(await newIO().read(path));
+}
+
+// The weights that a track gives at a time (glTF 2.0, appendix C), rounded to float32 as viewers keep them.
+export function weightsAt(track, time) {
+  const { times, values, interpolation } = track;
+  const spline = interpolation === 'CUBICSPLINE';
+  const last = times.length - 1;
+  const count = values.length / times.length / (spline ? 3 : 1);
+  // Of key k: the in-tangents (0), values (1) or out-tangents (2) of a spline, else the values.
+  const at = (k, part, i) => values[spline ? (3 * k + part) * count + i : k * count + i];
+  const weights = (weight) => Float32Array.from({ length: count }, (_, i) => weight(i));
+  if (time <= times[0]) return weights((i) => at(0, 1, i));
+  if (time >= times[last]) return weights((i) => at(last, 1, i));
+  let k = 0;
+  while (times[k + 1] <= time) ++k;
+  if (interpolation === 'STEP') return weights((i) => at(k, 1, i));
+  const length = times[k + 1] - times[k];
+  const t = (time - times[k]) / length;
+  if (!spline) return weights((i) => (1 - t) * at(k, 1, i) + t * at(k + 1, 1, i));
+  return weights(
+    (i) =>
+      (2 * t ** 3 - 3 * t ** 2 + 1) * at(k, 1, i) +
+      length * (t ** 3 - 2 * t ** 2 + t) * at(k, 2, i) +
+      (-2 * t ** 3 + 3 * t ** 2) * at(k + 1, 1, i) +
+      length * (t ** 3 - t ** 2) * at(k + 1, 0, i),
+  );
+}
+
+// The weights of a node at a time of an animation: by its track, else its own, else those of its mesh.
+export function nodeWeights(file, node, animation, time) {
+  const track = animation?.tracks.find((candidate) => candidate.node === node);
+  if (track) return weightsAt(track, time);
+  return file.nodes[node].weights ?? file.meshes[file.nodes[node].mesh].weights;
+}
+
+// base + sum_i w_i delta_i in float32, one product and one sum after the other.
+export function morphed(base, deltas, weights) {
+  const result = Float32Array.from(base);
+  deltas.forEach((delta, i) => {
+    const weight = Math.fround(weights[i]);
+    if (!delta || weight === 0) return;
+    for (let c = 0; c < result.length; ++c) result[c] += Math.fround(weight * delta[c]);
+  });
+  return result;
+}
+
+export function shownNormals(primitive, weights) {
+  return morphed(primitive.normals, primitive.targets.map((target) => target.normals), weights);
+}
+
+export function shownPositions(primitive, weights) {
+  return morphed(primitive.positions, primitive.targets.map((target) => target.positions), weights);
+}

@@ -1,0 +1,245 @@
+// The page of `chronormal report`: its numbers are those of the program, what it draws as right is right, and it asks for nothing.
+//
+//   CHRONORMAL_PROGRAM        the program
+//   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place
+//   CHRONORMAL_DATA           moving files by other people, where it is set
+//   CHRONORMAL_FULL=1         all of these
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { fromBase64, readContainer, unzipped } from '../../web/src/data.js';
+import { makePlayer } from '../../web/src/player.js';
+import { ExactNormals, exactPositions } from './exact.mjs';
+import { writeAuthored } from './authored.mjs';
+import { writeStill } from './fixtures.mjs';
+import { chronormal } from './program.mjs';
+import { read } from './reader.mjs';
+import { randomNumbers } from './random.mjs';
+import { clickWorst, openPages, worstNow } from './web_page.mjs';
+
+const FULL = process.env.CHRONORMAL_FULL === '1', DATA = process.env.CHRONORMAL_DATA;
+const NEAR = 1e-3; // degrees, which the page may be off
+const SHOWN = 5e-4; // degrees: places that are off by less are not listed
+const SEED = 49;
+
+let folder, template;
+const path = (name) => join(folder, name);
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'chronormal-report-'));
+  template = path('template.html');
+  execFileSync(process.execPath, [fileURLToPath(new URL('../../web/build.mjs', import.meta.url)), 'report', template]);
+  await writeStill(path('still.glb'), { parts: 2 });
+  await writeAuthored(path('authored.glb'), SEED);
+  chronormal('convert', '--sample', 'bumps', '-o', path('bumps.glb'));
+});
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const audited = (...input) => JSON.parse(chronormal('audit', ...input, '--json', '-q'));
+function dataOf(name, ...input) {
+  chronormal('report', ...input, '--no-plan', '--force', '-q', '-o', path(`${name}.bin`));
+  return readContainer(readFileSync(path(`${name}.bin`)));
+}
+function pageOf(name, ...input) {
+  chronormal('report', ...input, '--no-plan', '--force', '-q', '-o', path(`${name}.html`), '--template', template);
+  return path(`${name}.html`);
+}
+
+// Calls visit(motion, sample, degrees) for all samples that the page can show.
+function walk(player, visit) {
+  player.report.parts.forEach((part, p) => {
+    player.choosePart(p);
+    part.motions.forEach((motion, m) => {
+      player.chooseMotion(m, 0);
+      for (let i = 0; i < motion.at.length; ++i) {
+        player.go(i);
+        visit(motion, i, player.worst < 0 ? NaN : player.surface.degrees[player.worst]);
+      }
+    });
+  });
+}
+
+const inputs = { still: () => [path('still.glb')], bumps: () => [path('bumps.glb')], angles: () => [path('bumps.glb'), '--weighting', 'angle'], authored: () => [path('authored.glb')], twist: () => ['--sample', 'twist'] };
+for (const [name, input] of Object.entries(inputs)) {
+  test(`the page computes the worst error of every sample as the audit does: ${name}`, () => {
+    const report = dataOf(name, ...input()), player = makePlayer(report, () => {});
+    let samples = 0;
+    walk(player, (motion, i, degrees) => {
+      ++samples;
+      assert.ok(Math.abs(degrees - motion.worst[i]) < NEAR, `${motion.kind} ${motion.name}, sample ${i}: ${degrees}, not ${motion.worst[i]}`);
+    });
+    assert.ok(samples >= 21);
+    assert.ok(Math.abs(report.worst[0].degrees - audited(...input()).worst_degrees) < NEAR);
+  });
+}
+
+test('every scheme of the page has the numbers of compare', () => {
+  const report = dataOf('twist', '--sample', 'twist'), player = makePlayer(report, () => {});
+  const compared = JSON.parse(chronormal('compare', '--sample', 'twist', '--elements', 'vertices', '--json', '--no-times', '-q'));
+  let found = 0;
+  for (const { scheme, max_degrees: worst } of compared.schemes.filter((one) => player.schemes().includes(one.scheme))) {
+    ++found;
+    player.scheme = scheme;
+    let most = 0;
+    walk(player, (motion, i, degrees) => (most = Math.max(most, degrees)));
+    assert.ok(Math.abs(most - worst) < NEAR, `${scheme}: ${most}, not ${worst}`);
+  }
+  assert.ok(found >= 6, `${found} schemes`);
+});
+
+for (const file of ['bumps.glb', 'authored.glb']) {
+  test(`every viewer of the page has the number of the audit: ${file}`, () => {
+    chronormal('report', path(file), '--no-plan', '--for', 'all,gltfpack,quantize,meshopt', '--force', '-q', '-o', path('viewers.bin'));
+    const player = makePlayer(readContainer(readFileSync(path('viewers.bin'))), () => {});
+    const { viewers } = JSON.parse(chronormal('audit', path(file), '--for', 'all,gltfpack,quantize,meshopt', '--json', '-q'));
+    for (const { name, worst_degrees: worst } of viewers) {
+      player.viewer = name;
+      let most = 0;
+      walk(player, (motion, i, degrees) => (most = Math.max(most, degrees)));
+      assert.equal(player.viewer, name);
+      assert.ok(Math.abs(most - worst) < NEAR, `${name}: ${most}, not ${worst}`);
+    }
+    assert.equal(viewers.length, 9);
+  });
+}
+
+test('weights that are set by hand drive the extra targets of a baked file', () => {
+  const player = makePlayer(dataOf('bumps', path('bumps.glb')), () => {});
+  const setAll = (one) => [0, 1, 2].forEach((k) => one.setWeight(k, 0.4 + 0.2 * k));
+  player.choosePart(0);
+  setAll(player);
+  const before = player.surface.degrees[player.worst];
+  chronormal('bake', path('bumps.glb'), '--encode', 'exact', '--force', '-q', '-o', path('exact.glb'));
+  const baked = makePlayer(dataOf('exact', path('exact.glb')), () => {});
+  baked.choosePart(0);
+  setAll(baked);
+  assert.ok(baked.formulas.length > 0 && before > 1, `${baked.formulas.length} extra targets, ${before} degrees before`);
+  assert.ok(baked.surface.degrees[baked.worst] < 0.01, `${baked.surface.degrees[baked.worst]} degrees`);
+});
+
+const DAMAGED = /^the data of this page (are damaged|end too early|are no report|have version)/;
+
+// Where the arrays of a container are: {begin, size, count} in bytes, of each array of numbers with a point.
+function arraysOf(bytes) {
+  const size = bytes.readUInt32LE(12), first = Math.ceil((16 + size) / 8) * 8, found = [];
+  const look = (value) => {
+    if (value === null || typeof value !== 'object') return;
+    if (['f32', 'f64'].includes(value.type)) found.push({ begin: first + value.offset, size: Number(value.type.slice(1)) / 8, count: value.count });
+    Object.values(value).forEach(look);
+  };
+  look(JSON.parse(bytes.subarray(16, 16 + size)));
+  return found.filter(({ count }) => count > 0);
+}
+
+test(`data with a number that is not finite, at a place of the seed ${SEED}, are refused`, () => {
+  dataOf('bumps', path('bumps.glb'));
+  const whole = readFileSync(path('bumps.bin')), arrays = arraysOf(whole), random = randomNumbers(SEED);
+  const below = (count) => Math.floor(count * random());
+  for (let i = 0; i < 100; ++i) {
+    const { begin, size, count } = arrays[below(arrays.length)], bytes = Buffer.from(whole);
+    const at = begin + size * below(count), value = [NaN, Infinity, -Infinity][below(3)];
+    size === 4 ? bytes.writeFloatLE(value, at) : bytes.writeDoubleLE(value, at);
+    assert.throws(() => readContainer(bytes), { message: DAMAGED }, `${value} at ${at}`);
+  }
+});
+
+// The data that stand in a page, with some characters of their base64 changed or cut off.
+function damage(page, random) {
+  const [, before, data, after] = page.match(/^(.*id="chronormal-data">)([^<]*)(<.*)$/s);
+  const from = Math.floor(data.length * random()), kind = Math.floor(4 * random());
+  const broken = [
+    () => data.slice(0, from), () => data.slice(0, from - (from % 4)),
+    () => `${data.slice(0, from)}!${data.slice(from + 1)}`,
+    () => `${data.slice(0, from)}${data[from] === 'A' ? 'B' : 'A'}${data.slice(from + 1)}`,
+  ][kind]();
+  return { broken, page: before + broken + after };
+}
+
+test(`data that are damaged, by the seed ${SEED}, are called that`, async () => {
+  const page = readFileSync(pageOf('bumps', path('bumps.glb')), 'utf8'), random = randomNumbers(SEED);
+  for (let i = 0; i < 100; ++i) {
+    const { broken } = damage(page, random);
+    const open = async () => readContainer(await unzipped(fromBase64(broken)));
+    await assert.rejects(open, { message: DAMAGED }, `${i}`);
+  }
+});
+
+describe('in Chromium', () => {
+  let pages;
+  before(async () => (pages = await openPages()));
+  after(() => pages.close());
+
+  test('a report shows the number of the audit at its worst place, follows its slider, and asks for nothing', async () => {
+    await pages.show(pageOf('bumps', path('bumps.glb')));
+    const { worst_degrees: worst } = audited(path('bumps.glb'));
+    assert.ok(Math.abs((await clickWorst(pages.page)).degrees - worst) < NEAR);
+    await pages.page.evaluate(() => {
+      const slider = document.querySelector('.time');
+      slider.value = 0;
+      slider.dispatchEvent(new Event('input'));
+    });
+    assert.ok((await worstNow(pages.page)).degrees < NEAR, 'the base is right');
+    await pages.page.keyboard.press('3');
+    assert.equal(await pages.page.$eval('.segmented button[aria-pressed=true]', (button) => button.textContent), 'Error');
+    assert.deepEqual(pages.faults, []);
+  });
+
+  test('a page whose data are damaged says so', async () => {
+    const whole = readFileSync(pageOf('bumps', path('bumps.glb')), 'utf8'), random = randomNumbers(SEED);
+    for (let i = 0; i < 8; ++i) {
+      writeFileSync(path('damaged.html'), damage(whole, random).page);
+      await pages.show(path('damaged.html'));
+      assert.match(await pages.page.$eval('.fault', (box) => box.textContent), DAMAGED);
+    }
+    assert.deepEqual(pages.faults, []);
+  });
+
+  test('what is drawn as right has the pixels of a still mesh with the exact normals', async () => {
+    await pages.show(pageOf('still', path('still.glb'), '--weighting', 'area'));
+    const weights = [0.7, 0.4], mesh = (await read(path('still.glb'))).meshes[0];
+    const right = new ExactNormals(mesh).at(weights).flatMap(({ directions }) => [...directions]);
+    const positions = mesh.primitives.flatMap((primitive) => [...exactPositions(primitive, weights)]);
+    const { drawn, still, different } = await pages.page.evaluate((w, p, n) => {
+      const { player, view, setMode } = globalThis.chronormal;
+      const pixels = () => {
+        view.draw();
+        const { width, height } = view.canvas, sheet = new OffscreenCanvas(width, height).getContext('2d');
+        sheet.drawImage(view.canvas, 0, 0);
+        return sheet.getImageData(width / 2, 0, width / 2, height).data;
+      };
+      setMode('normals');
+      w.forEach((weight, k) => player.setWeight(k, weight));
+      const drawn = pixels(), { surface } = player;
+      surface.positions.set(p);
+      for (let i = 0; i < n.length; i += 3) {
+        const length = Math.hypot(n[i], n[i + 1], n[i + 2]) || 1;
+        for (let c = 0; c < 3; ++c) surface.right[i + c] = n[i + c] / length;
+      }
+      view.update();
+      const still = pixels();
+      let different = 0;
+      for (let i = 0; i < still.length; ++i) if (Math.abs(still[i] - drawn[i]) > 1) ++different;
+      const covered = (data) => data.filter((value, i) => i % 4 === 3 && value > 0).length;
+      return { drawn: covered(drawn), still: covered(still), different };
+    }, weights, positions, right);
+    assert.ok(drawn > 10_000, `${drawn} pixels are drawn`);
+    assert.equal(drawn, still);
+    assert.equal(different, 0);
+    assert.deepEqual(pages.faults, []);
+  });
+
+  const files = DATA ? readdirSync(DATA, { recursive: true }).filter((name) => /^(gltf|rigs)\/.*\.(glb|gltf)$/.test(name)) : [];
+  for (const name of FULL ? files : []) {
+    test(`a report of ${name} shows the number of the audit`, async () => {
+      const file = join(DATA, name), { worst_degrees: worst, judged } = audited(file);
+      if (judged === 0) return assert.throws(() => pageOf(basename(name), file), /nothing to show/);
+      await pages.show(pageOf(basename(name), file));
+      if (worst >= SHOWN) assert.ok(Math.abs((await clickWorst(pages.page)).degrees - worst) < NEAR);
+      assert.deepEqual(pages.faults, []);
+    });
+  }
+});

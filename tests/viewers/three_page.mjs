@@ -1,0 +1,90 @@
+// three.js as a viewer, in the page: its loader, its animation mixer, its normal material.
+import * as THREE from 'three';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { driveThree } from '../../examples/drive.mjs';
+import * as live from '../../js/src/three.js';
+
+let renderer;
+
+export function rendererOf(size) {
+  if (!renderer) renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+  renderer.setPixelRatio(1);
+  renderer.setSize(size.width, size.height, false);
+  return renderer;
+}
+
+export async function load(bytes) {
+  const gltf = await new GLTFLoader().parseAsync(bytes.buffer, '');
+  const mixer = new THREE.AnimationMixer(gltf.scene);
+  const scene = new THREE.Scene();
+  scene.add(gltf.scene);
+  return { scene, mixer, clips: gltf.animations };
+}
+
+// Sets every object to a time, by the mixer.
+export function play(model, animation, time) {
+  model.mixer.stopAllAction();
+  if (animation === null) return;
+  const action = model.mixer.clipAction(model.clips[animation]);
+  action.reset().setLoop(THREE.LoopOnce, 1);
+  action.clampWhenFinished = true;
+  action.play();
+  model.mixer.setTime(time);
+}
+
+// Sets the weights of the first targets of every mesh; drive() sets those of extra targets.
+export function setWeights({ scene }, weights) {
+  scene.traverse(({ morphTargetInfluences: w }) => w && weights.forEach((weight, i) => (w[i] = weight)));
+}
+
+// Puts a clone in its place, whose mixer blends a clip for each weight.
+export function blend({ scene }, weights) {
+  const [original] = scene.children, copy = original.clone(), mixer = new THREE.AnimationMixer(copy);
+  scene.remove(original);
+  scene.add(copy);
+  weights.forEach((weight, k) => {
+    const tracks = [];
+    copy.traverse(({ name, morphTargetInfluences: w }) => {
+      if (!w) return;
+      const values = w.map((_, i) => (i === k ? weight * weights.length : 0));
+      tracks.push(new THREE.NumberKeyframeTrack(`${name}.morphTargetInfluences`, [0], values));
+    });
+    mixer.clipAction(new THREE.AnimationClip(`clip ${k}`, 1, tracks)).setEffectiveWeight(1 / weights.length).play();
+  });
+  mixer.update(0.1);
+}
+
+export const drive = ({ scene }) => driveThree(scene);
+export const attach = ({ scene }) => live.attach(scene);
+export const detach = ({ scene }) => live.detach(scene);
+
+export function dispose({ scene }) {
+  scene.traverse(({ geometry }) => geometry?.dispose());
+}
+
+export function cameraOf({ eye, at, degrees, near, far }, size) {
+  const camera = new THREE.PerspectiveCamera(degrees, size.width / size.height, near, far);
+  camera.position.fromArray(eye);
+  camera.lookAt(...at);
+  return camera;
+}
+
+// View-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
+export async function drawNormals(model, view, size) {
+  model.scene.traverse((object) => {
+    if (!object.isMesh || object.material.isMeshNormalMaterial) return;
+    const { flatShading, side } = object.material;
+    object.material = new THREE.MeshNormalMaterial({ flatShading, side });
+  });
+  const target = new THREE.WebGLRenderTarget(size.width, size.height, { type: THREE.FloatType });
+  const pixels = new Float32Array(4 * size.width * size.height);
+  const drawing = rendererOf(size);
+  drawing.setClearColor(0, 0);
+  drawing.setRenderTarget(target);
+  drawing.clear();
+  drawing.render(model.scene, cameraOf(view, size));
+  drawing.readRenderTargetPixels(target, 0, 0, size.width, size.height, pixels);
+  drawing.setRenderTarget(null);
+  target.dispose();
+  return pixels;
+}
