@@ -105,11 +105,12 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   return how;
 }
 
-// Whether some mesh has no form within what was asked for.
+// Whether some mesh has no candidate within what was asked for.
 bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
   return std::any_of(bake.meshes.begin(), bake.meshes.end(), [&how](const BakedMesh& mesh) {
-    return mesh.left_tangents > 0 || std::any_of(mesh.choices.begin(), mesh.choices.end(), [&](const auto& choice) {
+    return mesh.left_tangents > 0 ||
+           std::any_of(mesh.candidates.begin(), mesh.candidates.end(), [&](const auto& choice) {
              return choice.chosen && (!choice.within || is_beyond_by_rounding(choice, how));
            });
   });
@@ -447,7 +448,8 @@ Command bake_command() {
       "  chronormal bake avatar.vrm -o avatar.right.vrm\n"
       "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
       "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 written, but no form is within the --tolerance,\n"
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 written, but no candidate is within the "
+      "--tolerance,\n"
       "--max-targets or --max-bytes that were asked for",
       [options] { return run(*options); },
       refused};

@@ -89,10 +89,10 @@ void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
   all.poses += of_mesh.poses;
 }
 
-// The form that an optimiser chose for a mesh has deltas that are fitted to the animations.
+// The candidate that was chosen for a mesh has deltas that are fitted to the animations.
 bool is_of_animations(const BakedMesh& mesh) {
-  return std::any_of(mesh.choices.begin(), mesh.choices.end(),
-                     [](const BakeChoice& choice) { return choice.chosen && choice.animations_only; });
+  return std::any_of(mesh.candidates.begin(), mesh.candidates.end(),
+                     [](const BakedCandidate& choice) { return choice.chosen && choice.animations_only; });
 }
 
 // Errors of one viewer over all samples.
@@ -236,7 +236,7 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
 std::string left_over(const GltfBake& bake) {
   double worst = 0;
   for (const BakedMesh& mesh : bake.meshes)
-    for (const BakeChoice& choice : mesh.choices)
+    for (const BakedCandidate& choice : mesh.candidates)
       for (const ViewerChange& change : choice.viewers)
         if (choice.chosen && !choice.within && change.is_named && change.is_better)
           worst = std::max(worst, change.poses[0].after.worst);
@@ -258,11 +258,11 @@ std::string left_text(const GltfBake& bake) {
   return text;
 }
 
-// Whether an optimiser found for every mesh a form that is near enough.
+// Whether an optimiser found for every mesh a candidate that is near enough.
 bool are_all_within(const GltfBake& bake) {
   return std::all_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
-    return std::any_of(mesh.choices.begin(), mesh.choices.end(),
-                       [](const BakeChoice& choice) { return choice.chosen && choice.within; });
+    return std::any_of(mesh.candidates.begin(), mesh.candidates.end(),
+                       [](const BakedCandidate& choice) { return choice.chosen && choice.within; });
   });
 }
 
@@ -272,11 +272,11 @@ std::string title_of_viewer(const std::string& name) {
   return name;
 }
 
-std::string form_words(const BakeChoice& choice) {
-  return std::string(choice.form) + (choice.animations_only ? ", animations only" : "");
+std::string name_of(const BakedCandidate& choice) {
+  return std::string(choice.name) + (choice.animations_only ? ", animations only" : "");
 }
 
-// Prints a row for each viewer and candidate whose deltas are fitted to the animations, or each other form.
+// Prints a row for each viewer and candidate whose deltas are fitted to the animations, or each other candidate.
 std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
@@ -287,11 +287,11 @@ std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   table.add_column("worst", "", Table::Align::kRight);
   bool any = false;
   for (const BakedMesh& mesh : bake.meshes) {
-    for (const BakeChoice& choice : mesh.choices) {
+    for (const BakedCandidate& choice : mesh.candidates) {
       if (choice.animations_only != of_animations) continue;
       for (const ViewerChange& viewer : choice.viewers) {
         const ShownErrors& errors = viewer.poses[0].after;
-        table.add_row({mesh_name(mesh), form_words(choice), title_of_viewer(viewer.viewer), four_decimals(errors.mean),
+        table.add_row({mesh_name(mesh), name_of(choice), title_of_viewer(viewer.viewer), four_decimals(errors.mean),
                        four_decimals(errors.most), four_decimals(errors.worst)});
         any = true;
       }
@@ -419,9 +419,9 @@ std::string plan_text(const GltfBake& bake, const BakeReport& report) {
   table.add_column("worst", "", Table::Align::kRight);
   table.add_column("", "", Table::Align::kLeft);
   for (const BakedMesh& mesh : bake.meshes) {
-    for (const BakeChoice& choice : mesh.choices) {
+    for (const BakedCandidate& choice : mesh.candidates) {
       const bool is_smallest = choice.chosen && choice.within;
-      table.add_row({mesh_name(mesh), form_words(choice), grouped(choice.targets), grouped(choice.bytes),
+      table.add_row({mesh_name(mesh), name_of(choice), grouped(choice.targets), grouped(choice.bytes),
                      four_decimals(choice.played.mean), four_decimals(choice.played.worst),
                      is_smallest     ? "recommended"
                      : choice.chosen ? "the nearest"

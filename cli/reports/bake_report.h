@@ -18,7 +18,7 @@ namespace chronormal::cli {
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// Lists the targets, bytes and errors that each form of each mesh would have, as the choice among them compares them.
+/// Lists the targets, bytes and errors that each candidate for each mesh would have, as the choice among them compares them.
 [[nodiscard]] std::string plan_text(const GltfBake& bake, const BakeReport& report);
 
 }  // namespace chronormal::cli

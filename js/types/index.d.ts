@@ -87,7 +87,7 @@ export interface BakeOptions extends ReadOptions {
   animationsOnly?: boolean;
   /** 'random', or a name among `resources`. */
   poses?: string;
-  /** Says what each form would come to, and makes no file. */
+  /** Says what each candidate would come to, and makes no file. */
   plan?: boolean;
   denseZeros?: boolean;
   tolerance?: number;

@@ -78,13 +78,13 @@ void add_rows(const std::string& path, Rows& rows) {
   const GltfDocument document = value_of(GltfDocument::open(path));
   const Baked after = baked(document, {});
   std::size_t targets = 0;
-  std::string forms;
+  std::string chosen;
   for (const BakedMesh& mesh : after.report.meshes) {
     targets += document.meshes()[mesh.mesh].target_count;
-    for (const BakeChoice& choice : mesh.choices)
-      if (choice.chosen) forms.append(forms.empty() ? "" : ", ").append(choice.form);
+    for (const BakedCandidate& choice : mesh.candidates)
+      if (choice.chosen) chosen.append(chosen.empty() ? "" : ", ").append(choice.name);
   }
-  rows.sizes.push_back({name, forms, std::to_string(targets), std::to_string(after.report.added_targets),
+  rows.sizes.push_back({name, chosen, std::to_string(targets), std::to_string(after.report.added_targets),
                         std::to_string(after.report.added_bytes), fmt::format("{:.1f}", after.processor_seconds)});
   const auto add_errors = [&](const char* state, const std::vector<ViewerAudit>& viewers) {
     Cells& line = rows.errors.emplace_back(Cells{name, state});
@@ -105,9 +105,10 @@ Cells row_of_curve(const GltfDocument& document, std::size_t extras) {
     options.most_targets = document.meshes()[0].target_count + extras;
     options.animations_only = animations_only;
     const Baked after = baked(document, options);
-    const std::vector<BakeChoice>& choices = after.report.meshes.at(0).choices;
-    const auto chosen = std::find_if(choices.begin(), choices.end(), [](const auto& choice) { return choice.chosen; });
-    if (chosen == choices.end()) throw std::runtime_error("no form was chosen");
+    const std::vector<BakedCandidate>& candidates = after.report.meshes.at(0).candidates;
+    const auto chosen =
+        std::find_if(candidates.begin(), candidates.end(), [](const auto& choice) { return choice.chosen; });
+    if (chosen == candidates.end()) throw std::runtime_error("no candidate was chosen");
     const ShownErrors& played = chosen->played;
     row.insert(row.end(), {std::to_string(chosen->bytes), three_degrees(played.mean, played.most, played.worst),
                            fmt::format("{:.0f}", after.seconds)});
@@ -116,7 +117,7 @@ Cells row_of_curve(const GltfDocument& document, std::size_t extras) {
 }
 
 // A row of the table of speed: a file, the options in the words of the command line, what that took before there was a
-// choice of forms, and what it takes now.
+// choice of candidates, and what it takes now.
 Cells row_of_speed(const std::string& file, const std::string& words, const std::string& before,
                    const GltfDocument& document, const BakeOptions& options) {
   const Baked after = baked(document, options);
@@ -160,7 +161,7 @@ std::string files_part(const fs::path& data, Extent extent, const std::string& f
   if (extent == Extent::kAll) add_rows((data / kCapture).string(), rows);
   Page files("rigs/files.md.in", folder);
   files.set("samples", std::to_string(kSamples));
-  files.table("sizes", {"file", "form", "targets", "extra targets", "bytes added", "seconds"}, rows.sizes, 2);
+  files.table("sizes", {"file", "candidate", "targets", "extra targets", "bytes added", "seconds"}, rows.sizes, 2);
   Cells header = {"file", ""};
   for (const Viewer& viewer : kViewers) header.emplace_back(viewer.title);
   files.table("errors", header, rows.errors, 2);

@@ -1,6 +1,6 @@
 /// Writes right normals into ordinary glTF files.
 ///
-///     smallest   the default: of all these forms and more, the one of fewest bytes whose worst error along the
+///     smallest   the default: of all these candidates and more, the one of fewest bytes whose worst error along the
 ///                animations is within a tolerance in every viewer that is named: what the file has, deltas of its
 ///                targets alone, extra targets that products of weights drive, or extra targets of low rank that only
 ///                the animations of the file drive (docs/theory.md, section 17); nowhere worse than before
@@ -80,7 +80,7 @@ struct BakeOptions {
   /// targets may be fitted to these, and mean nothing alone.
   bool animations_only = false;
   /// Of smallest: how many bytes of arrays of deltas and tangents a mesh may have, and its tracks may grow by; the
-  /// nearest form that keeps to it is taken.
+  /// nearest candidate that keeps to it is taken.
   std::optional<std::size_t> most_delta_bytes = {};
   /// Of smallest: a program poses the meshes that no animation drives, and drives their extra targets as the file says,
   /// so that they may get some. Without it they get none.
@@ -88,7 +88,7 @@ struct BakeOptions {
   /// The poses that these meshes are made for, by the names of targets or in their order; a mesh
   /// of which they name no target, or none of its number, takes no part. None: random poses (docs/cli.md).
   std::vector<RigPose> poses = {};
-  bool plan = false;  ///< of smallest: look at all forms, also where one is found to be the smallest
+  bool plan = false;  ///< of smallest: look at all candidates, also where one is found to be the smallest
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
@@ -124,30 +124,30 @@ struct ViewerChange {
   std::array<Errors, 3> poses;
 };
 
-/// A form of a mesh that smallest looked at.
-struct BakeChoice {
+/// A candidate for a mesh that smallest looked at.
+struct BakedCandidate {
   /// "as it is", "own deltas", "products", "quadratics" or "low rank"
-  std::string_view form;
+  std::string_view name;
   std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas and tangents, and those by which tracks grow
   /// In the worst of the named viewers, along the animations of the file, between its keys, and in its standing weights,
   /// or where it has no animation of weights, each target alone and in poses that the mesh is made for, which nothing
   /// was fitted to: over pairs of a vertex and a pose where n(w) is longer than a thousandth of n(0). They are seen
   /// through the skins of the nodes that show the mesh.
   ShownErrors played;
-  /// What each named viewer shows. It is empty where bake looked at no other form than "as it is", and for the numbers of
+  /// What each named viewer shows. It is empty where bake looked at no other candidate than "as it is", and for the numbers of
   /// "quadratics" that bake tried on all vertices alike.
   std::vector<ViewerChange> viewers;
   bool within = false;  ///< its worst is within the tolerance, and it within the limits
   bool chosen = false;
   bool animations_only = false;  ///< its deltas are fitted to the animations, and mean nothing alone
   bool skinned = false;  ///< some skin does more than turn and scale evenly, so that played is other than without
-  /// Degrees, of the chosen form: the worst where compressors among the named viewers round what they keep, which no form
+  /// Degrees, of the chosen candidate: the worst where compressors among the named viewers round what they keep, which no candidate
   /// can help and no choice looks at; 0 where none of them does.
   double rounded = 0;
 };
 
 /// Returns whether a candidate misses the tolerance that was asked for only by what compressors round.
-[[nodiscard]] inline bool is_beyond_by_rounding(const BakeChoice& choice, const BakeOptions& options) {
+[[nodiscard]] inline bool is_beyond_by_rounding(const BakedCandidate& choice, const BakeOptions& options) {
   return options.tolerance && choice.within && choice.rounded > *options.tolerance;
 }
 
@@ -175,10 +175,10 @@ struct BakedMesh {
   std::size_t fitted_elements = 0;    ///< of endpoint: with deltas by least squares, for targets active together
   double resampling_error = 0;        ///< degrees, of cubic splines and left-out pairs, along the animations
   bool has_lone_weight = false;       ///< KHR_animation_pointer drives a weight alone: no extra targets, but of exact
-  bool already_baked = false;         ///< nothing was changed; `choices` has what smallest finds it to be
+  bool already_baked = false;         ///< nothing was changed; `candidates` has what smallest finds it to be
   std::vector<ViewerChange> viewers;  ///< but of exact: what each named viewer shows, where the mesh changed
-  std::vector<BakeChoice> choices;    ///< of smallest: the forms that were looked at
-  std::size_t left_out = 0;           ///< extra targets that the viewers have no room for
+  std::vector<BakedCandidate> candidates;  ///< of smallest: those that were looked at
+  std::size_t left_out = 0;                ///< extra targets that the viewers have no room for
   /// Nodes that carry the mesh and whose extras are no object: what drives extra targets does not stand there.
   std::vector<std::size_t> unmarked_nodes;
 };

@@ -68,7 +68,7 @@ struct BakeReport {
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// Lists the targets, bytes and errors that each form of each mesh would have, as --encode smallest compares them.
+/// Lists the targets, bytes and errors that each candidate for each mesh would have, as --encode smallest compares them.
 [[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
 
 /// input is the name of what was asked about. Columns are arrays, named as in a .npz file.

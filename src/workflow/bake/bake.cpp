@@ -139,7 +139,7 @@ MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, 
   ChosenCandidate chosen = choose_candidate(source, weights, options, tangent_bytes);
   const auto candidate = std::make_shared<Candidate>(std::move(chosen.candidate));
   report.viewers = std::move(chosen.viewers);
-  if (source.plan.encoding == BakeEncoding::kSmallest) report.choices = std::move(chosen.choices);
+  if (source.plan.encoding == BakeEncoding::kSmallest) report.candidates = std::move(chosen.candidates);
   report.left_out = candidate->left_out;
   report.resampling_error = candidate->track_error * kDegreesPerRadian;
   report.largest_error = candidate->fit_error * kDegreesPerRadian;
@@ -163,7 +163,7 @@ std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>
   return bytes;
 }
 
-// How far a bake is: each target of a mesh counts once when its form is chosen, and once when it is written.
+// How far a bake is: each target of a mesh counts once when its candidate is chosen, and once when it is written.
 class Course {
  public:
   using Tell = std::function<void(std::size_t done, std::size_t total)>;
@@ -176,7 +176,7 @@ class Course {
     targets_ = targets;
     reach(first_);
   }
-  // While a form is chosen.
+  // While a candidate is chosen.
   [[nodiscard]] Tell of_choice() {
     return [this](std::size_t done, std::size_t total) { reach(first_ + targets_ * done / total); };
   }
@@ -302,7 +302,7 @@ Status judge_again(const GltfDocument& document, const BakeOptions& options, Glt
   if (!plan) return plan.error();
   const DeltaSource source{shading, terms, plan.value(), shading.normals};
   read_skins(document, shading, judged_vertices(source, stored_deltas(shading)), weights.value());
-  baked.report.choices.push_back(judge_baked(source, weights.value(), options));
+  baked.report.candidates.push_back(judge_baked(source, weights.value(), options));
   warn_of_choice(document.meshes()[shading.mesh], options, baked.report, baked.warnings);
   return Success{};
 }

@@ -9,7 +9,7 @@
 namespace chronormal {
 namespace {
 
-// 3: `viewers` for `hosts` and `candidates` for choices of forms; kinds of poses; torn edges.
+// 3: `viewers` for `hosts` and `candidates` for `choices`; kinds of poses; torn edges.
 constexpr int kSchema = 3;
 
 Json common_json(const BakeReport& report) {
@@ -60,8 +60,8 @@ Json viewers_json(const std::vector<ViewerChange>& changes) {
 
 Json candidates_json(const BakedMesh& mesh) {
   Json candidates = Json::array();
-  for (const BakeChoice& choice : mesh.choices) {
-    candidates.push_back({{"name", choice.form},
+  for (const BakedCandidate& choice : mesh.candidates) {
+    candidates.push_back({{"name", choice.name},
                           {"targets", choice.targets},
                           {"bytes", choice.bytes},
                           {"played", shown_json(choice.played)},

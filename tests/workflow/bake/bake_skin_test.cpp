@@ -39,11 +39,11 @@ BakeOptions smallest(double tolerance = kTolerance, std::vector<Viewer> viewers 
   return options;
 }
 
-const BakeChoice& chosen(const Baked& baked) {
-  for (const BakeChoice& choice : baked.report.meshes.at(0).choices)
+const BakedCandidate& chosen(const Baked& baked) {
+  for (const BakedCandidate& choice : baked.report.meshes.at(0).candidates)
     if (choice.chosen) return choice;
   ADD_FAILURE() << "nothing is chosen";
-  return baked.report.meshes.at(0).choices.at(0);
+  return baked.report.meshes.at(0).candidates.at(0);
 }
 
 // Hills whose targets are played at once, from one of these weights to the next in a second.
@@ -198,8 +198,8 @@ TEST(BakeSkin, figures_of_forms_are_those_of_the_oracle_behind_the_skin) {
     options.plan = true;
     const Baked baked = test::bake_document(builder, options);
     ASSERT_TRUE(baked.ok()) << baked.error;
-    const BakeChoice& before = baked.report.meshes[0].choices.front();
-    ASSERT_EQ(before.form, "as it is");
+    const BakedCandidate& before = baked.report.meshes[0].candidates.front();
+    ASSERT_EQ(before.name, "as it is");
     // The poses are the three keys and the weights of the mesh, which are zero.
     double mean = 0, worst = 0;
     for (const Viewer& viewer : viewers) {
@@ -261,7 +261,7 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
         worst = std::max(worst, static_cast<double>(test::degrees_between(seen(stored), seen(right))));
       }
     }
-    EXPECT_NEAR(baked.report.meshes[0].choices.front().played.worst, worst, 1e-3) << name;
+    EXPECT_NEAR(baked.report.meshes[0].candidates.front().played.worst, worst, 1e-3) << name;
   }
 }
 
@@ -299,11 +299,11 @@ TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
   }
 }
 
-// Describes the choices that were looked at, and what became of the deltas.
+// Describes the candidates that were looked at, and what became of the deltas.
 std::string choices_of(const Baked& baked) {
   std::string text;
-  for (const BakeChoice& c : baked.report.meshes.at(0).choices)
-    text += std::string(c.form) + " " + std::to_string(c.targets) + " " + std::to_string(c.bytes) + " " +
+  for (const BakedCandidate& c : baked.report.meshes.at(0).candidates)
+    text += std::string(c.name) + " " + std::to_string(c.targets) + " " + std::to_string(c.bytes) + " " +
             std::to_string(c.played.judged) + " " + std::to_string(c.played.mean) + " " + std::to_string(c.chosen) +
             "\n";
   for (const auto& target : baked.mesh()["primitives"][0]["targets"])
@@ -443,8 +443,8 @@ TEST(BakeSkin, says_where_the_skin_leaves_no_form_within) {
   EXPECT_NE(baked.report.warnings.front().find("is within 2 degrees throughout, as its skin shows it, and the nearest"),
             std::string::npos)
       << baked.report.warnings.front();
-  const auto& choices = baked.report.meshes[0].choices;
-  EXPECT_EQ(std::count_if(choices.begin(), choices.end(), [](const BakeChoice& c) { return c.chosen; }), 1);
+  const auto& candidates = baked.report.meshes[0].candidates;
+  EXPECT_EQ(std::count_if(candidates.begin(), candidates.end(), [](const BakedCandidate& c) { return c.chosen; }), 1);
 }
 
 TEST(BakeSkin, file_that_was_baked_before_is_judged_behind_its_skin) {

@@ -46,11 +46,11 @@ GltfBuilder driven_hills(const char* interpolation, unsigned seed) {
   return test::with_misleading_normals(std::move(builder));
 }
 
-const BakeChoice& chosen(const Baked& baked) {
-  for (const BakeChoice& choice : baked.report.meshes.at(0).choices)
+const BakedCandidate& chosen(const Baked& baked) {
+  for (const BakedCandidate& choice : baked.report.meshes.at(0).candidates)
     if (choice.chosen) return choice;
   ADD_FAILURE() << "nothing is chosen";
-  return baked.report.meshes.at(0).choices.at(0);
+  return baked.report.meshes.at(0).candidates.at(0);
 }
 
 TEST(BakeSmallest, is_within_the_tolerance_between_the_keys_of_every_kind_of_track_with_fewer_targets_than_pairs) {
@@ -68,7 +68,7 @@ TEST(BakeSmallest, is_within_the_tolerance_between_the_keys_of_every_kind_of_tra
 TEST(BakeSmallest, extra_targets_of_curves_have_no_terms_and_are_at_rest_where_the_file_is) {
   const Baked baked = test::bake_document(driven_hills("LINEAR", 4), smallest(0.5));
   ASSERT_TRUE(baked.ok()) << baked.error;
-  ASSERT_EQ(chosen(baked).form, "low rank");
+  ASSERT_EQ(chosen(baked).name, "low rank");
   for (const GltfExtraTarget& extra : baked.report.meshes[0].extras) {
     EXPECT_TRUE(extra.linear.empty());
     EXPECT_TRUE(extra.quadratic.empty());
@@ -109,7 +109,7 @@ TEST(BakeSmallest, mends_normals_that_add_up_to_zero_at_the_end_of_a_target_alon
   builder.json["nodes"] = {{{"mesh", 0}}};
   const Baked baked = test::bake_document(builder, smallest(0.5));
   ASSERT_TRUE(baked.ok()) << baked.error;
-  EXPECT_NE(chosen(baked).form, "as it is");
+  EXPECT_NE(chosen(baked).name, "as it is");
   const std::vector<float> deltas = baked.numbers(baked.mesh()["primitives"][0]["targets"][0]["NORMAL"]);
   for (std::size_t v = 0; v < 3; ++v) EXPECT_GT(1 + deltas[3 * v + 2], 0.5F) << "at weight 1, vertex " << v;
 }
@@ -120,7 +120,7 @@ TEST(BakeSmallest, leaves_a_file_alone_that_is_within_the_tolerance) {
   const Baked baked = test::bake_document(builder, smallest(0.5));
   ASSERT_TRUE(baked.ok()) << baked.error;
   EXPECT_FALSE(baked.report.changed);
-  EXPECT_EQ(chosen(baked).form, "as it is");
+  EXPECT_EQ(chosen(baked).name, "as it is");
 }
 
 // Two targets that move only between two of very many keys.
@@ -149,7 +149,7 @@ TEST(BakeSmallest, sees_one_wink_in_a_long_animation_and_in_one_of_many) {
   for (const GltfBuilder* file : {&one, &many}) {
     const Baked baked = test::bake_document(*file, smallest(0.5));
     ASSERT_TRUE(baked.ok()) << baked.error;
-    const BakeChoice& as_it_is = baked.report.meshes[0].choices.front();
+    const BakedCandidate& as_it_is = baked.report.meshes[0].candidates.front();
     EXPECT_GT(as_it_is.played.worst, 10) << "else nothing is judged here";
     EXPECT_FALSE(as_it_is.within);
     EXPECT_TRUE(chosen(baked).within);
@@ -256,7 +256,7 @@ TEST(BakeSmallest, fits_to_animations_alone_are_taken_only_where_they_are_better
       animations_only.animations_only = true;
       const Baked plain = test::bake_document(builder, options), fitted = test::bake_document(builder, animations_only);
       ASSERT_TRUE(plain.ok() && fitted.ok()) << plain.error << fitted.error;
-      const BakeChoice &of_plain = chosen(plain), &of_fitted = chosen(fitted);
+      const BakedCandidate &of_plain = chosen(plain), &of_fitted = chosen(fitted);
       EXPECT_GE(of_fitted.within, of_plain.within) << viewers << " viewers, seed " << seed;
       if (of_plain.within) {
         EXPECT_LE(of_fitted.bytes, of_plain.bytes) << viewers << " viewers, seed " << seed;
@@ -337,7 +337,7 @@ TEST(BakeSmallest, says_where_a_compressor_that_is_named_rounds_by_more_than_the
   options.viewers = find_viewers("meshopt").value();
   const Baked rounded = test::bake_document(driven_hills("LINEAR", 3), options);
   ASSERT_TRUE(rounded.ok()) << rounded.error;
-  const BakeChoice& choice = chosen(rounded);
+  const BakedCandidate& choice = chosen(rounded);
   EXPECT_GT(choice.rounded, 0.1) << "eight bits are half a degree";
   EXPECT_EQ(is_beyond_by_rounding(choice, options), choice.within);
   options.viewers = {kViewers[0]};

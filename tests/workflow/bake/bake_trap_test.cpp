@@ -598,15 +598,15 @@ TEST(BakeTraps, what_a_bake_says_of_expressions_is_what_an_audit_finds_in_the_fi
       ASSERT_EQ(baked.error, "");
       const test::GltfFixture after(baked.bytes);
       ASSERT_TRUE(after.ok()) << after.error();
-      for (const BakeChoice& choice : baked.report.meshes[0].choices) {
+      for (const BakedCandidate& choice : baked.report.meshes[0].candidates) {
         if (!choice.chosen) continue;
-        forms.insert(choice.form);
+        forms.insert(choice.name);
         const double expression = worst_of(*after, AuditSubject::Kind::kExpression),
                      track = worst_of(*after, AuditSubject::Kind::kTrack);
         // Both look at other instants of the track, and at the same pose of the expression.
-        EXPECT_GE(choice.played.worst, expression - 1e-3) << choice.form;
+        EXPECT_GE(choice.played.worst, expression - 1e-3) << choice.name;
         if (expression > 1.2 * track) {
-          EXPECT_NEAR(choice.played.worst, expression, 1e-3) << choice.form;
+          EXPECT_NEAR(choice.played.worst, expression, 1e-3) << choice.name;
           ++compared;
         }
       }

@@ -123,9 +123,9 @@ TEST(BakeUndriven, a_plan_says_what_more_and_more_extra_targets_gain) {
   options.plan = true;
   const Baked baked = test::bake_document(rig(6), options);
   ASSERT_TRUE(baked.ok()) << baked.error;
-  std::vector<const BakeChoice*> tried;
-  for (const BakeChoice& choice : baked.report.meshes.at(0).choices)
-    if (choice.form == "quadratics") tried.push_back(&choice);
+  std::vector<const BakedCandidate*> tried;
+  for (const BakedCandidate& choice : baked.report.meshes.at(0).candidates)
+    if (choice.name == "quadratics") tried.push_back(&choice);
   ASSERT_GE(tried.size(), 3U);
   for (std::size_t n = 0; n + 1 < tried.size(); ++n) EXPECT_LT(tried[n]->targets, tried[n + 1]->targets);
   EXPECT_LT(tried.back()->played.mean, 0.2 * tried.front()->played.mean);

@@ -61,7 +61,7 @@ bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance
 
 // A candidate as it was judged.
 struct Judged {
-  BakeChoice choice;
+  BakedCandidate choice;
   std::size_t better = 0, unharmed = 0;  // of the named viewers and of the others, as chooser.h has it
   bool is_affordable = true, is_bearable = true;
   double mean = 0, mean_of_spared = 0;  // of the worst of the named viewers, and of the others
@@ -104,8 +104,8 @@ class Chooser {
   std::size_t consider(Candidate candidate) {
     const std::size_t targets = source_.shading.set.targets.size();
     Judged judged;
-    BakeChoice& choice = judged.choice;
-    choice.form = candidate.name;
+    BakedCandidate& choice = judged.choice;
+    choice.name = candidate.name;
     choice.targets = targets + candidate.drivers.size();
     const std::size_t bytes = bytes_of(source_.shading, weights_, candidate);
     choice.bytes = bytes + tangent_bytes_;
@@ -120,8 +120,8 @@ class Chooser {
     const std::vector<ErrorsOfKinds> after = judge_->measure(candidate, Judge::Depth::kAll);
     judge(after, judged);
     const bool is_best = !best_ || is_better(judged, of_best_);
-    if (is_best) of_choice_ = choices_.size();
-    choices_.push_back(choice);
+    if (is_best) of_choice_ = candidates_.size();
+    candidates_.push_back(choice);
     if (is_best) {
       best_ = std::move(candidate);
       of_best_ = std::move(judged);
@@ -178,8 +178,8 @@ class Chooser {
   [[nodiscard]] ChosenCandidate take() {
     if (!best_) consider(stored_);
     ChosenCandidate result;
-    choices_[of_choice_].chosen = true;
-    choices_[of_choice_].rounded = rounded_worst();
+    candidates_[of_choice_].chosen = true;
+    candidates_[of_choice_].rounded = rounded_worst();
     result.viewers = of_best_.choice.viewers;
     const bool is_rounding = std::any_of(viewers_.begin(), viewers_.end(),
                                          [](const Viewer& viewer) { return viewer.normals == NormalRule::kClamped; });
@@ -187,7 +187,7 @@ class Chooser {
       result.viewers = changes(judge_->measure(stored_, Judge::Depth::kGlance, true),
                                judge_->measure(*best_, Judge::Depth::kGlance, true), result.viewers);
     result.candidate = std::move(*best_);
-    result.choices = std::move(choices_);
+    result.candidates = std::move(candidates_);
     return result;
   }
 
@@ -216,7 +216,7 @@ class Chooser {
   }
 
   void judge(const std::vector<ErrorsOfKinds>& after, Judged& judged) const {
-    BakeChoice& choice = judged.choice;
+    BakedCandidate& choice = judged.choice;
     choice.viewers.resize(viewers_.size());
     for (std::size_t v = 0; v < viewers_.size(); ++v) {
       ViewerChange& change = choice.viewers[v];
@@ -258,7 +258,7 @@ class Chooser {
 
   [[nodiscard]] bool is_better(const Judged& judged, const Judged& than) const {
     // What is stored gives way to whatever is better in some viewer, unless it is near enough.
-    const bool is_stored = judged.choice.form == stored_.name, was_stored = than.choice.form == stored_.name;
+    const bool is_stored = judged.choice.name == stored_.name, was_stored = than.choice.name == stored_.name;
     if (was_stored && !is_stored)
       return judged.is_affordable && judged.better > 0 && !(than.choice.within && prefers_bytes_);
     if (is_stored && !was_stored) return false;
@@ -299,9 +299,9 @@ class Chooser {
   std::vector<ErrorsOfKinds> before_;
   std::optional<Candidate> best_;
   Judged of_best_;
-  std::size_t of_choice_ = 0;  // of the best, in choices_
+  std::size_t of_choice_ = 0;  // of the best, in candidates_
   double best_glance_ = 0;
-  std::vector<BakeChoice> choices_;
+  std::vector<BakedCandidate> candidates_;
 };
 
 // Looks at extra targets of low rank: as many as the tolerance needs and the file bears, and fewer where these take too
@@ -409,7 +409,7 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
   return chooser.take();
 }
 
-BakeChoice judge_baked(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
+BakedCandidate judge_baked(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options) {
   constexpr std::size_t kSteps = 8;
   const GltfShading& shading = source.shading;
   MeshWeights played = weights;
@@ -424,7 +424,7 @@ BakeChoice judge_baked(const DeltaSource& source, const MeshWeights& weights, co
   BakeOptions without_alone = options;
   without_alone.animations_only = true;  // so that no extra target is judged alone
   Chooser chooser(source, played, without_alone, 0);
-  return chooser.take().choices.front();
+  return chooser.take().candidates.front();
 }
 
 }  // namespace chronormal::inline internal

@@ -28,8 +28,8 @@ namespace chronormal::inline internal {
 struct ChosenCandidate {
   Candidate candidate;
   std::vector<ViewerChange>
-      viewers;                      ///< what each viewer shows before and after: those that are named, then the others
-  std::vector<BakeChoice> choices;  ///< every candidate that was looked at
+      viewers;  ///< what each viewer shows before and after: those that are named, then the others
+  std::vector<BakedCandidate> candidates;  ///< every candidate that was looked at
 };
 
 /// Chooses by the encoding of the plan. tangent_bytes are those that new tangents take beside any candidate.
@@ -38,7 +38,8 @@ struct ChosenCandidate {
 
 /// Judges what a mesh shows that an earlier bake wrote, by the tolerance and the limits of options; extra targets that
 /// nothing drives are given the weights that their formulas have.
-[[nodiscard]] BakeChoice judge_baked(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options);
+[[nodiscard]] BakedCandidate judge_baked(const DeltaSource& source, const MeshWeights& weights,
+                                         const BakeOptions& options);
 
 }  // namespace chronormal::inline internal
 

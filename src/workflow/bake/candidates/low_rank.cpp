@@ -41,7 +41,7 @@ constexpr double kLeastRidge = 1e-9;
 constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14, 16, 20, 24,
                                                  28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128};
 
-struct LowRankForm {
+struct LowRank {
   std::vector<VertexVectors> own;     // of each target of the mesh
   std::vector<VertexVectors> extras;  // of any length, for weights from -1 to 1
   TrackCurves curves;                 // of the extra targets, for each track
@@ -253,18 +253,18 @@ struct FittedVertex {
   std::size_t point;
 };
 
-LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights,
-                          std::span<const std::uint32_t> vertices, std::span<const std::uint32_t> element_of_vertex,
-                          std::vector<VertexVectors> own, const LowRankLimits& asked) {
+LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, std::span<const std::uint32_t> vertices,
+                      std::span<const std::uint32_t> element_of_vertex, std::vector<VertexVectors> own,
+                      const LowRankLimits& asked) {
   const std::size_t targets = rights.targets();
-  LowRankForm form;
-  form.own = std::move(own);
+  LowRank found;
+  found.own = std::move(own);
   std::vector<PointVertices> points = points_of(rights, vertices, element_of_vertex);
   const FileInstants instants(weights);
   LowRankLimits limits = asked;
   limits.most_extras =
       std::min(limits.most_extras, rights.are_by_area() ? products_of(instants.poses) : instants.poses.size());
-  if ((limits.most_extras == 0 && !limits.refits_own) || points.empty() || weights.tracks.empty()) return form;
+  if ((limits.most_extras == 0 && !limits.refits_own) || points.empty() || weights.tracks.empty()) return found;
 
   const std::size_t room = kBytes / (6 * sizeof(float) * points.size());
   const Rows rows = choose_rows(instants, weights.tracks, std::clamp(room, kFewestRows, kMostRows));
@@ -272,13 +272,13 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
     std::vector<std::uint32_t> first;
     for (const PointVertices& point : of) first.push_back(point.front());
     std::vector<const VertexVectors*> columns;
-    for (const VertexVectors& column : form.own) columns.push_back(&column);
+    for (const VertexVectors& column : found.own) columns.push_back(&column);
     return by_vertex(columns, first);
   };
   MissingNormals missing(rights, points, element_of_vertex, columns_of_points(points),
                          poses_of(instants, rows.instants), limits.keeps_across);
   missing.keep_beyond(kPartOfNeed * limits.tolerance);
-  if (missing.points() == 0) return form;
+  if (missing.points() == 0) return found;
   std::vector<PointVertices> fitted;
   for (std::size_t p = 0; p < missing.points(); ++p) fitted.push_back(std::move(points[missing.number(p)]));
 
@@ -286,7 +286,7 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
   const std::vector<float> more_own = limits.refits_own ? refitted_own(missing, targets) : std::vector<float>();
   LowRankFit fit(missing, rows.places, rows.unseen);
   fit_few(fit, limits, limits.refits_own ? own_weights(missing.poses()) : std::vector<float>(), own_targets);
-  form.worst = fit.worst();
+  found.worst = fit.worst();
 
   // The deltas, point by point and then vertex by vertex.
   std::vector<FittedVertex> all;
@@ -305,7 +305,7 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
         column.vectors.push_back(delta);
       };
       std::size_t at = 0;
-      const VertexVectors& before = form.own[i];
+      const VertexVectors& before = found.own[i];
       for (const auto& [vertex, p] : all) {
         for (; at < before.vertices.size() && before.vertices[at] < vertex; ++at)
           append(before.vertices[at], before.vectors[at]);
@@ -317,7 +317,7 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
         at += had ? 1 : 0;
       }
       for (; at < before.vertices.size(); ++at) append(before.vertices[at], before.vectors[at]);
-      form.own[i] = std::move(column);
+      found.own[i] = std::move(column);
     }
   }
 
@@ -364,7 +364,7 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
     }
     if (column.vertices.empty()) continue;
     kept.push_back(k);
-    form.extras.push_back(std::move(column));
+    found.extras.push_back(std::move(column));
   }
   const auto weights_of = [&](std::size_t instant) {
     std::vector<double> result;
@@ -373,15 +373,15 @@ LowRankForm low_rank_form(const RightNormals& rights, const MeshWeights& weights
     return result;
   };
   for (std::size_t t = 0; t < weights.tracks.size(); ++t) {
-    ExtraCurves& of_track = form.curves[weights.names[t]];
+    ExtraCurves& of_track = found.curves[weights.names[t]];
     of_track.extras = kept.size();
     for (std::size_t node = 0; node < instants.tracks[t].size(); ++node) {
       const std::vector<double> values = weights_of(instants.first[t] + node);
       of_track.values.insert(of_track.values.end(), values.begin(), values.end());
     }
   }
-  for (std::size_t n = 0; n < weights.stored_poses; ++n) form.rest.push_back(weights_of(instants.first.back() + n));
-  return form;
+  for (std::size_t n = 0; n < weights.stored_poses; ++n) found.rest.push_back(weights_of(instants.first.back() + n));
+  return found;
 }
 
 }  // namespace
@@ -392,18 +392,18 @@ Candidate low_rank_candidate(const Making& making, Candidate own) {
   result.animations_only = making.animations_only;
   const bool refits_own = making.animations_only && making.lengths == Lengths::kFree && making.source.plan.products_fit;
   const std::size_t for_each = making.lengths == Lengths::kUnit ? 2 : 1;
-  LowRankForm form =
-      low_rank_form(making.rights, making.weights, making.judge.vertices(), making.source.shading.element_of_vertex,
+  LowRank found =
+      find_low_rank(making.rights, making.weights, making.judge.vertices(), making.source.shading.element_of_vertex,
                     result.own, {making.most_extras / for_each, making.tolerance, making.keeps_across, refits_own});
-  const std::size_t extras = form.extras.size();
+  const std::size_t extras = found.extras.size();
   // What goes along N turns normals by more than a right angle where deltas are added up, and wrongly elsewhere.
   const bool keeps_along = std::none_of(making.viewers.begin(), making.viewers.end(),
                                         [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
-  std::vector<Share> shares = shares_of(making.rights, std::move(form.extras), making.lengths,
+  std::vector<Share> shares = shares_of(making.rights, std::move(found.extras), making.lengths,
                                         {making.keeps_across && making.lengths == Lengths::kShort, keeps_along});
   ExtraDrivers& drivers = result.drivers;
-  drivers.curves = std::move(form.curves);
-  drivers.rest = std::move(form.rest);
+  drivers.curves = std::move(found.curves);
+  drivers.rest = std::move(found.rest);
   for (auto& [name, curves] : drivers.curves) {
     take_shares(shares, extras, curves.values);
     curves.extras = shares.size();
@@ -412,7 +412,7 @@ Candidate low_rank_candidate(const Making& making, Candidate own) {
   for (Share& share : shares) result.extras.push_back(std::move(share.vectors));
   drivers.formulas.assign(shares.size(), ExtraWeight{0, 0, 0, 0});
   if (shares.empty()) drivers = ExtraDrivers();
-  if (refits_own) result.own = std::move(form.own);
+  if (refits_own) result.own = std::move(found.own);
   cut_tracks(making.rights, making.weights, making.viewers, making.judge.vertices(),
              kPartOfTracks * making.tolerance / kDegreesPerRadian, result);
   return result;

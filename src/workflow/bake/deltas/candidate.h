@@ -19,7 +19,7 @@
 namespace chronormal::inline internal {
 
 struct Candidate {
-  std::string_view name;              ///< as BakeChoice::form has it
+  std::string_view name;              ///< as BakedCandidate::name has it
   std::vector<VertexVectors> own;     ///< of each target of the mesh: the deltas of all vertices that show a normal
   std::vector<VertexVectors> extras;  ///< of each extra target
   ExtraDrivers drivers;               ///< of the extra targets

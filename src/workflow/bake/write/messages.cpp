@@ -102,8 +102,9 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                    : "the tangents of " + std::to_string(baked.left_tangents) + " targets lean") +
              " on the right normals and stay as they are, because --max-bytes has no room for new ones"});
   }
-  const auto chosen = std::find_if(baked.choices.begin(), baked.choices.end(), [](const auto& c) { return c.chosen; });
-  if (chosen == baked.choices.end()) return;
+  const auto chosen =
+      std::find_if(baked.candidates.begin(), baked.candidates.end(), [](const auto& c) { return c.chosen; });
+  if (chosen == baked.candidates.end()) return;
   if (chosen->within) {
     if (!is_beyond_by_rounding(*chosen, options)) return;
     std::string names;

@@ -28,7 +28,7 @@ struct MeshWarning {
 void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<MeshWarning>& warnings);
 /// Adds a sentence where float32 cannot hold what drives the extra targets of a mesh; error is that of its tracks.
 void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, std::vector<MeshWarning>& warnings);
-/// Adds a sentence where no form of a mesh is within the tolerance and the limits.
+/// Adds a sentence where no candidate for a mesh is within the tolerance and the limits.
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,
                     std::vector<MeshWarning>& warnings);
 /// Adds a sentence for everything else that was baked otherwise than somebody might think.
