@@ -9,7 +9,7 @@
 
 #include "chronormal/analysis/quality.h"
 #include "tests/support/bake_fixture.h"
-#include "workflow/bake/candidates/products.h"
+#include "workflow/bake/candidates/makers.h"
 
 namespace chronormal::bake_harmless_test {
 namespace {

@@ -7,11 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "workflow/bake/candidates/low_rank.h"
-#include "workflow/bake/candidates/making.h"
-#include "workflow/bake/candidates/own.h"
-#include "workflow/bake/candidates/products.h"
-#include "workflow/bake/candidates/quadratics.h"
+#include "workflow/bake/candidates/makers.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -36,6 +32,11 @@ constexpr double kWorthIt = 0.9;
 
 bool has_new_base(const DeltaSource& source) {
   return !source.base_normals.empty() && source.base_normals.data() != source.shading.normals.data();
+}
+
+bool has_unit(std::span<const Viewer> viewers) {
+  return std::any_of(viewers.begin(), viewers.end(),
+                     [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
 }
 
 // Returns how many extra targets all viewers and the options have room for.
@@ -96,8 +97,7 @@ class Chooser {
             made_within_.value_or(tolerance_),
             most_extras(options_, source_.shading.set.targets.size()),
             animations_only,
-            std::any_of(options_.viewers.begin(), options_.viewers.end(),
-                        [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; })};
+            has_unit(options_.viewers)};
   }
 
   // Looks at a candidate, and returns the bytes that it takes.
@@ -332,6 +332,20 @@ void look_at_quadratics(const Making& making, const Candidate& own, Chooser& cho
   });
 }
 
+// Whether pairs of targets are few enough to be worth a look each.
+bool has_few_products(const Making& making, const MeshWeights& weights) {
+  const MeshPlan& plan = making.source.plan;
+  return making.most_extras > 0 && (plan.is_driven || weights.rig) && plan.products_fit &&
+         count_products(making, kMostProducts) <= kMostProducts;
+}
+
+// Looks at deltas of any length, which viewers that add up show right, and the others no worse than before in many files.
+void look_at_any_lengths(Making making, const MeshWeights& weights, Chooser& chooser) {
+  making.lengths = Lengths::kFree;
+  if (making.rights.are_by_area()) chooser.consider(own_candidate(making.source, making.rights, making.lengths));
+  if (!chooser.is_found() && has_few_products(making, weights)) chooser.consider(products_candidate(making));
+}
+
 void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Making& making, Chooser& chooser,
                  const std::function<void(std::size_t)>& reach) {
   Candidate own = own_candidate(source, making.rights, making.lengths);
@@ -342,10 +356,11 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   if (!waits) chooser.consider(own);
   const std::size_t bytes = bytes_of(source.shading, weights, own);
   reach(20);
-  if (chooser.is_found() || making.most_extras == 0) return;
-  if ((source.plan.is_driven || weights.rig) && source.plan.products_fit &&
-      count_products(making, kMostProducts) <= kMostProducts)
-    chooser.consider(products_candidate(making));
+  if (chooser.is_found()) return;
+  if (has_few_products(making, weights)) chooser.consider(products_candidate(making));
+  if (!chooser.is_found() && making.lengths == Lengths::kShort && !has_unit(making.viewers))
+    look_at_any_lengths(making, weights, chooser);
+  if (making.most_extras == 0) return;
   reach(40);
   if (weights.rig && !chooser.is_found() && source.plan.products_fit) look_at_quadratics(making, own, chooser);
   if (has_extras) {

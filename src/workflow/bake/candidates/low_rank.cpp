@@ -1,6 +1,15 @@
+// Extra targets of low rank: what the deltas of a mesh's own targets lack along the animations of a file, as the sum
+// of a few deltas whose weights are curves in time (docs/theory.md, section 17).
+//
+//     n(w(t)) / |n(0)|  =  N + sum_i w_i(t) D_i + sum_k s_k(t) E_k, nearly
+//
+// The s_k are the leading left singular vectors of what is missing, in which points where n(w) gets short count more;
+// the E_k are the right ones. Where that leaves a point far off, its own E_k are fitted again by least squares of the
+// angles, in which the length of n(w) is free at every instant and bad instants count more.
+//
 // Rows are the nodes of the curves (extra_curves.h), or where there are too many of them, those of some gaps between
 // keys, and of some tracks; the curves at all other nodes follow from the deltas by least squares.
-#include "workflow/bake/candidates/low_rank.h"
+#include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +23,8 @@
 #include "core/cholesky.h"
 #include "core/portable_math.h"
 #include "workflow/bake/candidates/cut_tracks.h"
-#include "workflow/bake/candidates/shares.h"
 #include "workflow/bake/deltas/unit_targets.h"
+#include "workflow/bake/deltas/vertex_columns.h"
 #include "workflow/bake/fits/low_rank_fit.h"
 #include "workflow/bake/fits/missing_normals.h"
 #include "workflow/bake/poses/played_poses.h"
@@ -40,6 +49,20 @@ constexpr double kPartOfEntry = 1.0 / 2000;
 constexpr double kLeastRidge = 1e-9;
 constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14, 16, 20, 24,
                                                  28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128};
+
+// One extra target made of another: its weight is `factor` times that one's, or what of this is above zero.
+struct Share {
+  std::size_t of = 0;
+  double factor = 1;
+  bool above_zero = false;
+  VertexVectors vectors;
+};
+
+// What short shares are like.
+struct ShortShares {
+  bool are_units = false;   // N + E is as long as N, but for what goes along N: viewers that keep directions keep it
+  bool keep_along = false;  // and what goes along N stays
+};
 
 struct LowRank {
   std::vector<VertexVectors> own;     // of each target of the mesh
@@ -382,6 +405,54 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
   }
   for (std::size_t n = 0; n < weights.stored_poses; ++n) found.rest.push_back(weights_of(instants.first.back() + n));
   return found;
+}
+
+// Multiplies vectors, and makes N + E as long as N where that is asked for; the part of E along N stays where it is asked
+// for, too.
+void shorten(const RightNormals& rights, double factor, bool is_unit, bool keeps_along, VertexVectors& vectors) {
+  for (std::size_t n = 0; n < vectors.vertices.size(); ++n) {
+    Vec3f& vector = vectors.vectors[n];
+    if (!is_unit) {
+      vector = static_cast<float>(factor) * vector;
+      continue;
+    }
+    const BaseNormal base(rights.stored(vectors.vertices[n]));
+    const Vec3d part = (factor / base.length) * to_double(vector);
+    const Vec3d along = keeps_along ? dot(part, base.direction) * base.direction : Vec3d{};
+    vector = to_float(base.length * (unit_delta(base.direction, part) + along));
+  }
+}
+
+// Makes targets of these lengths that add up to the given ones: one for each, or two of unit length.
+std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras, Lengths lengths,
+                             const ShortShares& how) {
+  std::vector<Share> shares;
+  const double factor = weight_factor(lengths);
+  for (std::size_t k = 0; k < extras.size(); ++k) {
+    if (lengths == Lengths::kUnit) {
+      for (const double sign : {1.0, -1.0}) {
+        Share share{k, sign, true, extras[k]};
+        shorten(rights, sign, true, false, share.vectors);
+        shares.push_back(std::move(share));
+      }
+      continue;
+    }
+    shorten(rights, 1 / factor, how.are_units, how.keep_along, extras[k]);
+    shares.push_back({k, factor, false, std::move(extras[k])});
+  }
+  return shares;
+}
+
+// Replaces the weights of so many extra targets, (poses, extras), by those of shares.
+void take_shares(std::span<const Share> shares, std::size_t extras, std::vector<double>& values) {
+  std::vector<double> result;
+  for (std::size_t first = 0; first < values.size(); first += extras) {
+    for (const Share& share : shares) {
+      const double value = share.factor * values[first + share.of];
+      result.push_back(share.above_zero ? std::fmax(value, 0) : value);
+    }
+  }
+  values = std::move(result);
 }
 
 }  // namespace

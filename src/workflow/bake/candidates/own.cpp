@@ -1,10 +1,9 @@
-#include "workflow/bake/candidates/own.h"
+// New deltas for the targets of a mesh, without any extra target.
+#include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "workflow/bake/candidates/products.h"
 
 namespace chronormal::inline internal {
 

@@ -1,7 +1,19 @@
+// A candidate with extra targets that products of weights drive (docs/theory.md, section 16).
+//
+// Each target of the mesh gets the delta to the right normal at its weight 1. What this leaves wrong on the way, and
+// where targets meet, extra targets correct; they move no vertex, and their weights follow from those of the targets:
+//
+//     turn      w_i            where a turn to weight 1 is so large that a delta of unit length would not fit; two
+//     self      4 w_i (1-w_i)  right at w_i = 1/2 as well
+//     pair      s w_i w_j      right where both are strongest in the file; one or two
+//
+// Where lengths are not free, every one of them is a unit normal beside N, with a weight from 0 to 1 where those of the
+// file are: what a viewer leaves of it, be it the direction or 8 bits, is the same.
+//
 // Corrections are made one after the other, each so that the sum of all before it and itself has the right direction in
 // one pose: in what order is therefore part of the form. Which of them are worth a target is measured at poses of the
 // file: by how far the lack of one would turn a normal.
-#include "workflow/bake/candidates/products.h"
+#include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 // What a weight does to the vectors is linear, so that where viewers keep directions alone each vector becomes two: one
 // with the terms above zero, and one with those below.
-#include "workflow/bake/candidates/quadratics.h"
+
+#include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
 #include <array>
