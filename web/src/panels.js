@@ -99,13 +99,21 @@ export function weightSliders(player) {
   };
 }
 
+const TORN = '99.9 % of all errors are below that column. Over a torn edge the error jumps by more than 10 degrees: a fold is seen that the surface does not have. They are counted at a moment, on average.';
+
+// How many edges are torn at a moment, on average; nothing where edges are not known.
+const tornText = ({ torn_edges: torn }) => (torn?.[0] === undefined ? '' : torn[0] > 0 && torn[0] < 10 ? torn[0].toFixed(1) : count(Math.round(torn[0])));
+
 /** What each viewer shows of the file, the whole audit in a row. */
 export function viewerTable({ audit }) {
   if (!audit?.viewers?.length) return null;
-  const row = (title, { worst_degrees: worst, percentile_99_9_degrees: most, mean_degrees: mean }) =>
-    ({ cells: [title, degreesText(mean), degreesText(most), degreesText(worst)] });
+  const row = (title, error) => {
+    const { worst_degrees: worst, percentile_99_9_degrees: most, mean_degrees: mean } = error;
+    return { cells: [title, degreesText(mean), degreesText(most), degreesText(worst), tornText(error)] };
+  };
   const rows = [row('glTF to the letter', audit), ...audit.viewers.map((viewer) => row(viewer.title, viewer))];
-  return panel('What viewers show', false, table('Errors in each viewer', ['viewer', 'mean ', '99.9 % below ', 'worst '], rows));
+  return panel('What viewers show', false, table('Errors in each viewer', ['viewer', 'average ', '99.9\u00a0% ', 'worst ', 'torn '], rows),
+    h('p', { className: 'note' }, TORN));
 }
 
 /** What a bake would come to, by candidate: the table of `bake --plan`. */
@@ -142,7 +150,11 @@ export const notes = ({ thinned }) =>
 export function verdict({ audit }) {
   if (!audit) return '';
   const { worst_degrees: worst, mean_degrees: mean, judged } = audit;
-  if (judged === 0) return 'Nothing in this file moves by morph targets.';
+  if (judged === 0 && !audit.cancelled) return 'Nothing in this file moves by morph targets.';
+  if (audit.cancelled > 0 && worst < 0.5) {
+    return `Normals of ${plural(audit.cancelled, 'drawn vertex', 'drawn vertices')} cancel at some moment, so that nothing is right there; all others are right within ${degreesText(worst)}.`;
+  }
   if (worst < 0.5) return `Normals are right within ${degreesText(worst)} wherever this file moves.`;
-  return `Normals are wrong by up to ${degreesText(worst)} while this moves, and by ${degreesText(mean)} in the mean.`;
+  const torn = tornText(audit);
+  return `Normals are wrong by ${degreesText(mean)} on average and by up to ${degreesText(worst)} while this moves${torn && torn !== '0' ? `, and ${torn} edges are torn` : ''}.`;
 }
