@@ -15,7 +15,7 @@ clang       28  clang             ^cmake/compiler
 tidy        14  clang             ^\.clang-tidy
 fuzz        26  clang             ^fuzz/
 viewers       20  web,node,wasm     ^tests/viewers/.*_page
-pipelines   15  web,node,blender  ^tests/viewers/(pipelines|blender)
+pipelines   18  web,node,blender  ^tests/viewers/(pipelines|blender)|^blender/
 machines    14  machines,node     ^src/simd/|/kernels/|^tools/(machines|two_files)|^tests/install/two_files
 exact       20  -                 ^tests/support/exact_|^src/normals/control/exact
 faults      20  -                 ^tests/faults/

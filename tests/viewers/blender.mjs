@@ -4,12 +4,20 @@ import { spawnSync } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 
 export function runBlender(script, ...args) {
-  const path = fileURLToPath(new URL(script, import.meta.url));
-  const options = ['--background', '--factory-startup', '--python-exit-code', '1', '--python', path];
+  return runBlenderAs({}, fileURLToPath(new URL(script, import.meta.url)), ...args);
+}
+
+// Runs the script at a path, with options of spawnSync() such as `env` and `uid`, and returns what Blender printed. On one
+// thread: on several, the sums of normals of the same mesh, and so the bytes of its exports, are not always the same.
+export function runBlenderAs(how, path, ...args) {
+  const options = ['--background', '--factory-startup', '--threads', '1', '--python-exit-code', '1', '--python', path];
   const { status, stdout, stderr, error } = spawnSync('blender', [...options, '--', ...args], {
     encoding: 'utf8',
     maxBuffer: 1 << 28,
+    ...how,
+    env: { ...process.env, PYTHONDONTWRITEBYTECODE: '1', ...how.env },
   });
   if (error) throw error;
   assert.equal(status, 0, stderr + stdout);
+  return stdout;
 }

@@ -325,40 +325,59 @@ def evaluated(o):
     return loops[:, [0, 2, 1, 3, 5, 4]] * numpy.float32([1, 1, -1, 1, 1, -1])
 
 
-def write(folder, seed, name):
+class Truth:
+    """What Blender shows of an object at instants, which are noted one by one."""
+
+    def __init__(self, o, keys):
+        self.object, self.keys, self.instants, self.loops = o, keys, [], []
+
+    def note(self, **more):
+        self.loops.append(evaluated(self.object))
+        self.instants.append({**more, "weights": [key.value for key in self.keys]})
+
+    def write(self, path):
+        """Writes PATH.json and PATH.bin."""
+        numpy.concatenate(self.loops).astype("<f4").tofile(path + ".bin")
+        with open(path + ".json", "w", encoding="utf-8") as file:
+            json.dump({"loops": len(self.loops[0]), "instants": self.instants}, file)
+
+
+def make(seed, name):
+    """Makes a model in an empty scene, and notes what Blender shows of it: (truth, how its animation is written)."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.fps, scene.frame_start, scene.frame_end = FRAMES_PER_SECOND, KEYFRAMES[0], KEYFRAMES[-1]
     scene.frame_set(KEYFRAMES[0])
-    make, deformations, how = MODELS[name]
+    make_object, deformations, how = MODELS[name]
     draw = random.Random(f"{seed} {name}")
-    o = make(draw)
+    o = make_object(draw)
     o.name = o.data.name = name
     keys = add_keys(o, draw, deformations)
-
-    instants, loops = [], []
-
-    def note(**more):
-        loops.append(evaluated(o))
-        instants.append({**more, "weights": [key.value for key in keys]})
-
+    truth = Truth(o, keys)
     for alone in [None, *keys]:
         for key in keys:
             key.value = float(key == alone)
-        note(key=alone.name if alone else None)
+        truth.note(key=alone.name if alone else None)
     animate(o, keys, draw, how)
     for frame in INSTANTS:
         scene.frame_set(frame)
-        note(time=frame / FRAMES_PER_SECOND)
+        truth.note(time=frame / FRAMES_PER_SECOND)
     scene.frame_set(KEYFRAMES[0])
-
-    numpy.concatenate(loops).astype("<f4").tofile(os.path.join(folder, name + ".bin"))
-    with open(os.path.join(folder, name + ".json"), "w", encoding="utf-8") as file:
-        json.dump({"loops": len(loops[0]), "instants": instants}, file)
-    bpy.ops.export_scene.gltf(filepath=os.path.join(folder, name + ".glb"), export_format="GLB",
-                              export_morph_normal=True, export_force_sampling=how == SAMPLED, export_nla_strips=False)
+    return truth, how
 
 
-output, seed_text, *names = sys.argv[sys.argv.index("--") + 1:]
-for model in names or MODELS:
-    write(output, int(seed_text), model)
+def export(path, how, form="GLB"):
+    bpy.ops.export_scene.gltf(filepath=path, export_format=form, export_morph_normal=True,
+                              export_force_sampling=how == SAMPLED, export_nla_strips=False)
+
+
+def main():
+    folder, seed, *names = sys.argv[sys.argv.index("--") + 1:]
+    for name in names or MODELS:
+        truth, how = make(int(seed), name)
+        truth.write(os.path.join(folder, name))
+        export(os.path.join(folder, name + ".glb"), how)
+
+
+if __name__ == "__main__":
+    main()

@@ -3,14 +3,14 @@
 //
 //   CHRONORMAL_SEED  another seed for the models; the one that is used is printed
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { basename, join } from 'node:path';
+import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { runBlender } from './blender.mjs';
-import { angle } from './exact.mjs';
+import { errors, readModel } from './blender_truth.mjs';
 import { chronormal } from './program.mjs';
-import { nodeWeights, read, shownNormals } from './reader.mjs';
+import { read } from './reader.mjs';
 
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 
@@ -18,78 +18,6 @@ const SEED = process.env.CHRONORMAL_SEED ?? '51';
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
-
-// The largest distance at which two places are one; models are about two units wide.
-const ROUNDING = 1e-5;
-
-// Reads what blender_truth.py wrote: {loops, instants, place(instant, loop), normal(instant, loop)}.
-function readTruth(path) {
-  const { loops, instants } = JSON.parse(readFileSync(`${path}.json`, 'utf8'));
-  const bytes = readFileSync(`${path}.bin`);
-  const numbers = new Float32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
-  assert.equal(numbers.length, 6 * loops * instants.length);
-  const from = (instant, loop, first) => numbers.subarray(6 * (instant * loops + loop) + first).subarray(0, 3);
-  return {
-    loops,
-    instants,
-    place: (instant, loop) => from(instant, loop, 0),
-    normal: (instant, loop) => from(instant, loop, 3),
-  };
-}
-
-const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);
-const near = (a, b) => a.every((x, c) => Math.abs(x - b[c]) < ROUNDING);
-const plus = (array, delta, v) => vector(array, v).map((x, c) => x + (delta?.[3 * v + c] ?? 0));
-
-// Finds the loop of Blender's mesh that each vertex of an exported primitive was made from: it is where the vertex is
-// in the base and at each key, and has the nearest normals there.
-function loopsOf(primitive, truth) {
-  const stills = truth.instants.flatMap(({ time }, i) => (time === undefined ? [i] : []));
-  const deltas = [null, ...primitive.targets];
-  return Uint32Array.from({ length: primitive.positions.length / 3 }, (_, v) => {
-    let [best, apart] = [-1, Infinity];
-    for (let loop = 0; loop < truth.loops; ++loop) {
-      if (!near(vector(primitive.positions, v), truth.place(0, loop))) continue;
-      const here = stills.every((i) => near(plus(primitive.positions, deltas[i]?.positions, v), truth.place(i, loop)));
-      if (!here) continue;
-      const errors = stills.map((i) => angle(plus(primitive.normals, deltas[i]?.normals, v), truth.normal(i, loop)));
-      if (Math.max(...errors) < apart) [best, apart] = [loop, Math.max(...errors)];
-    }
-    assert.ok(best >= 0, `vertex ${v} is nowhere in Blender`);
-    return best;
-  });
-}
-
-// Reads {name, path, truth, exported, loops}: `path` lacks the ending, `loops` has an array for each primitive.
-async function readModel(path) {
-  const [truth, exported] = [readTruth(path), await read(`${path}.glb`)];
-  const loops = exported.meshes[0].primitives.map((primitive) => loopsOf(primitive, truth));
-  return { name: basename(path), path, truth, exported, loops };
-}
-
-// Returns the degrees between the normals of a file that was baked from a model and those of Blender: {stills, times},
-// each {mean, worst}. The stills are the base and the keys.
-function errors(file, { truth, exported, loops }) {
-  const result = { stills: { sum: 0, count: 0, worst: 0 }, times: { sum: 0, count: 0, worst: 0 } };
-  file.meshes[0].primitives.forEach((primitive, p) => {
-    assert.deepEqual(primitive.positions, exported.meshes[0].primitives[p].positions);
-    truth.instants.forEach(({ time, weights }, i) => {
-      const still = time === undefined;
-      // A bake adds targets, which are 0 where a key is set alone.
-      const alone = file.meshes[0].weights.map((_, k) => weights[k] ?? 0);
-      const normals = shownNormals(primitive, still ? alone : nodeWeights(file, 0, file.animations[0], time));
-      const kind = still ? result.stills : result.times;
-      loops[p].forEach((loop, v) => {
-        const degrees = angle(vector(normals, v), truth.normal(i, loop));
-        kind.sum += degrees;
-        kind.worst = Math.max(kind.worst, degrees);
-        ++kind.count;
-      });
-    });
-  });
-  for (const kind of Object.values(result)) kind.mean = kind.sum / kind.count;
-  return result;
-}
 
 const text = ({ stills, times }) =>
   [stills, times].map(({ mean, worst }) => `${mean.toFixed(4)} / ${worst.toFixed(3)}`).join(', at times ');

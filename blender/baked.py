@@ -1,0 +1,111 @@
+"""Recognises meshes that were baked before they were imported.
+
+A bake adds morph targets that move no vertex, and says in `extras.chronormal` which ones (docs/extras.md). Blender makes shape
+keys of them, which turn nothing, since Blender computes normals by itself. Here they become idle: named so, without animation,
+and muted, so that the exporter leaves them out. The mark goes as well, so that the next export bakes the author's keys anew.
+"""
+# SPDX-License-Identifier: MIT
+
+from __future__ import annotations
+
+from typing import Any, Iterable
+
+import bpy
+
+from .say import say
+
+MARK = "chronormal"
+IDLE = "idle correction"
+
+
+def mark_of(thing: bpy.types.ID) -> dict[str, Any] | None:
+    """Returns the mark that a bake left on a mesh or an object."""
+    value = thing.get(MARK)
+    if hasattr(value, "to_dict"):
+        value = value.to_dict()
+    return value if isinstance(value, dict) and "version" in value and "extras" in value else None
+
+
+def _moves_nothing(key: bpy.types.ShapeKey) -> bool:
+    return all(a.co == b.co for a, b in zip(key.data, key.relative_key.data))
+
+
+def _actions_of(keys: bpy.types.Key) -> Iterable[bpy.types.Action]:
+    data = keys.animation_data
+    if data is None:
+        return
+    if data.action is not None:
+        yield data.action
+    for track in data.nla_tracks:
+        for strip in track.strips:
+            if strip.action is not None:
+                yield strip.action
+
+
+def make_idle(mesh: bpy.types.Mesh, names: list[str | None] | None = None) -> int:
+    """Makes the correction keys of a baked mesh idle, and takes its mark away; returns how many there were.
+
+    `names` are those of the keys that the importer made of the targets, None where it made none.
+    """
+    mark = mark_of(mesh)
+    if mark is None:
+        return 0
+    count = 0
+    keys = mesh.shape_keys
+    blocks = list(keys.key_blocks) if keys else []
+    for extra in mark["extras"]:
+        target = int(extra["target"])
+        if names is not None:
+            key = keys.key_blocks.get(names[target]) if keys and target < len(names) and names[target] else None
+        else:
+            key = blocks[target + 1] if target + 1 < len(blocks) else None
+        if key is None or not _moves_nothing(key):
+            continue
+        path = f'key_blocks["{bpy.utils.escape_identifier(key.name)}"].value'
+        for action in set(_actions_of(keys)):
+            for curve in [curve for curve in action.fcurves if curve.data_path == path]:
+                action.fcurves.remove(curve)
+        count += 1
+        key.name = f"{IDLE} {count} (chronormal)"
+        key.value = 0
+        key.mute = True
+    for thing in [mesh, *(o for o in bpy.data.objects if o.data == mesh)]:
+        if mark_of(thing) is not None:
+            del thing[MARK]
+    return count
+
+
+def _names_of_keys(gltf: Any, node: Any) -> list[str | None] | None:
+    """Returns the name of the key that each target of a node's mesh became, if this importer says that."""
+    index = getattr(node, "mesh_node_idx", None)
+    if index is None:
+        return None
+    return getattr(gltf.data.meshes[gltf.data.nodes[index].mesh], "shapekey_names", None)
+
+
+class RecogniseBakedFiles:
+    """What Blender's importer of glTF calls. It swallows exceptions, so that a file is imported whatever happens here."""
+
+    def gather_import_scene_after_animation_hook(self, _gltf_scene: Any, _blender_scene: Any, gltf: Any) -> None:
+        meshes = count = 0
+        objects = [(node, getattr(node, "blender_object", None)) for node in gltf.vnodes.values()]
+        for node, o in objects:
+            if o is not None and o.type == "MESH" and mark_of(o.data) is not None:
+                meshes += 1
+                count += make_idle(o.data, _names_of_keys(gltf, node))
+        # A node above has the mark after gltfpack.
+        for _, o in objects:
+            if o is not None and mark_of(o) is not None:
+                del o[MARK]
+        if meshes:
+            what = "1 mesh was" if meshes == 1 else f"{meshes} meshes were"
+            say("INFO", f"{what} baked by chronormal. The correction keys ({count}) are muted and named \"{IDLE} ...\": export with "
+                        "Right normals for shape keys to bake the author's keys again.")
+
+
+def register() -> None:
+    pass
+
+
+def unregister() -> None:
+    pass

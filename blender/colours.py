@@ -1,0 +1,75 @@
+"""The error of each corner of a mesh, as attributes: a colour to look at, and a number of degrees."""
+# SPDX-License-Identifier: MIT
+
+from __future__ import annotations
+
+import bpy
+import numpy
+
+COLOUR = "Normal error"
+DEGREES = "Normal error in degrees"
+
+# Colours from no error to the largest one of the scale, as they look on the screen (sRGB).
+RAMP = ((0.80, 0.82, 0.84), (0.97, 0.87, 0.35), (0.96, 0.55, 0.16), (0.84, 0.15, 0.12), (0.45, 0.02, 0.25))
+
+# What hide() took away: the name of a mesh, and the degrees of its corners.
+_hidden: list[tuple[str, numpy.ndarray]] = []
+
+# The number of degrees that has the last colour.
+_top = 10.0
+
+# The colour attribute that was active before ours, by the name of the mesh.
+_active_before: dict[str, str] = {}
+
+
+def ramp(shares: numpy.ndarray) -> numpy.ndarray:
+    """Returns a colour for each share of the scale, (n, 4)."""
+    knots = numpy.linspace(0, 1, len(RAMP))
+    channels = [numpy.interp(shares, knots, [colour[c] for colour in RAMP]) for c in range(3)]
+    return numpy.stack([*channels, numpy.ones_like(shares)], axis=1).astype(numpy.float32)
+
+
+def paint(mesh: bpy.types.Mesh, degrees: numpy.ndarray, top: float) -> None:
+    """Gives every corner of a mesh its error and a colour for it."""
+    global _top
+    _top = top
+    clear(mesh)
+    if mesh.color_attributes.active_color is not None:
+        _active_before[mesh.name] = mesh.color_attributes.active_color.name
+    colour = mesh.color_attributes.new(COLOUR, "BYTE_COLOR", "CORNER")
+    colour.data.foreach_set("color_srgb", ramp(numpy.clip(degrees / top, 0, 1)).ravel())
+    mesh.attributes.new(DEGREES, "FLOAT", "CORNER").data.foreach_set("value", degrees.astype(numpy.float32))
+    mesh.color_attributes.active_color = mesh.color_attributes[COLOUR]
+    mesh.update()
+
+
+def clear(mesh: bpy.types.Mesh) -> bool:
+    """Takes the attributes away; returns whether there were some."""
+    names = [name for name in (COLOUR, DEGREES) if name in mesh.attributes]
+    for name in names:
+        mesh.attributes.remove(mesh.attributes[name])
+    active = mesh.color_attributes.get(_active_before.pop(mesh.name, ""))
+    if names and active is not None:
+        mesh.color_attributes.active_color = active
+    return bool(names)
+
+
+def hide() -> None:
+    """Takes the attributes of all meshes away for an export, which would write them into the file."""
+    _hidden.clear()
+    for mesh in bpy.data.meshes:
+        attribute = mesh.attributes.get(DEGREES)
+        if attribute is not None:
+            degrees = numpy.empty(len(attribute.data), numpy.float32)
+            attribute.data.foreach_get("value", degrees)
+            _hidden.append((mesh.name, degrees))
+        clear(mesh)
+
+
+def show() -> None:
+    """Puts back what hide() took away."""
+    for name, degrees in _hidden:
+        mesh = bpy.data.meshes.get(name)
+        if mesh is not None and len(mesh.loops) == len(degrees):
+            paint(mesh, degrees, _top)
+    _hidden.clear()

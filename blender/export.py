@@ -1,0 +1,202 @@
+"""Bakes right normals into a glTF file as soon as Blender's exporter has written it.
+
+The exporter calls glTF2_post_export_callback before it writes the file, so there is no hook for what comes after. Therefore
+before_export() puts a function in the place of the one that writes, for one export and only if baking is switched on;
+that function takes itself out again as the first thing it does. While baking is off, the exporter is not touched at all.
+"""
+# SPDX-License-Identifier: MIT
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Callable
+
+import bpy
+
+from . import colours, program, settings
+from .say import say
+
+# The modules that have the function that writes: of Blender 3.4, and by its later name.
+_WRITERS = ("io_scene_gltf2.io.exp.gltf2_io_export", "io_scene_gltf2.io.exp.export")
+_WRITE = "save_gltf"
+_PARAMETERS = ["gltf", "export_settings", "encoder", "glb_buffer"]
+
+# The module whose function is replaced at the moment, that function, and ours.
+_replaced: tuple[ModuleType, Callable[..., Any], Callable[..., Any]] | None = None
+
+# True while the add-on itself exports, to look at the result.
+is_paused = False
+
+
+def writer() -> ModuleType | None:
+    """Returns the exporter's module that writes files, or None if its function is not as this add-on knows it."""
+    for name in _WRITERS:
+        try:
+            module = importlib.import_module(name)
+        except ImportError:
+            continue
+        function = getattr(module, _WRITE, None)
+        if inspect.isfunction(function) and list(inspect.signature(function).parameters) == _PARAMETERS:
+            return module
+    return None
+
+
+def _put_back() -> None:
+    """Gives the exporter its own function back, unless another add-on has replaced it since."""
+    global _replaced
+    if _replaced is None:
+        return
+    module, original, ours = _replaced
+    if getattr(module, _WRITE) is ours:
+        setattr(module, _WRITE, original)
+    _replaced = None
+
+
+def before_export(export_settings: dict[str, Any]) -> None:
+    """Prepares one export. The exporter calls this before anything else."""
+    global _replaced
+    _put_back()  # An earlier export may have failed before it wrote.
+    colours.hide()
+    if is_paused or not settings.get().use:
+        return
+    module = writer()
+    if module is None:
+        say("WARNING", "Normals were not corrected: this version of the glTF exporter is unknown to the add-on. The plain file "
+                       "stands; correct it with the program: chronormal bake FILE")
+        return
+    original = getattr(module, _WRITE)
+
+    def write_and_bake(gltf: Any, export_settings_then: dict[str, Any], encoder: Any, glb_buffer: Any) -> Any:
+        _put_back()
+        result = original(gltf, export_settings_then, encoder, glb_buffer)
+        if export_settings_then is export_settings:
+            level, text = bake_in_place(Path(export_settings["gltf_filepath"]))
+            say(level, text)
+        return result
+
+    _replaced = (module, original, write_and_bake)
+    setattr(module, _WRITE, write_and_bake)
+
+
+def before_writing(_export_settings: dict[str, Any]) -> None:
+    """Ends what before_export() did to the scene. The exporter calls this when it has read the scene."""
+    colours.show()
+
+
+def bake_in_place(path: Path) -> tuple[str, str]:
+    """Bakes a file that stands, and returns what to report. Whatever fails, the file is left as it is."""
+    try:
+        found = program.find(settings.program_path())
+        outcome = program.bake(found, path, path, settings.get().options())
+    except program.Unavailable as error:
+        return "WARNING", f"Normals were not corrected; the plain file stands. {error}"
+    if not outcome.wrote:
+        why = " ".join(outcome.said) or f"the program ended with exit code {outcome.code}"
+        return "WARNING", f"Normals were not corrected; the plain file stands: {why}"
+    level = "INFO" if outcome.code == 0 else "WARNING"
+    return level, " ".join([verdict(outcome.report), *(said + "." for said in outcome.said)])
+
+
+def verdict(report: dict[str, Any]) -> str:
+    """Puts the report of `chronormal bake --json` into a sentence."""
+    meshes = report.get("meshes", [])
+    if any(mesh["already_baked"] for mesh in meshes):
+        return "Normals were left alone: this file was baked before."
+    if not report.get("changed"):
+        return "Normals are right as they are: nothing was changed." if meshes else "The file has no shape keys: nothing was changed."
+    audit = report.get("audit")
+    corrections = sum(len(mesh["extra_targets"]) for mesh in meshes)
+    targets = f"{corrections} correction target" + ("" if corrections == 1 else "s")
+    if not audit:
+        return f"Normals were corrected, with {targets}."
+    return (f"Normals were corrected: error on average {audit['mean_degrees_before']:.3g} -> {audit['mean_degrees_after']:.3g} degrees, "
+            f"at worst {audit['worst_degrees_before']:.3g} -> {audit['worst_degrees_after']:.3g}, with {targets}.")
+
+
+def draw_settings(layout: bpy.types.UILayout) -> None:
+    preferences = settings.get()
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    try:
+        program.find(settings.program_path())
+        reason = "" if writer() else "This glTF exporter is unknown to the add-on."
+    except program.Unavailable as error:
+        reason = str(error)
+    if reason:
+        column = layout.column(align=True)
+        column.alert = True
+        for n, line in enumerate(_lines(reason, 44)):
+            column.label(text=line, icon="ERROR" if n == 0 else "BLANK1")
+    column = layout.column()
+    column.active = preferences.use
+    column.column(align=True).prop(preferences, "viewers", expand=True)
+    if not preferences.viewers:
+        _hint(column, "None chosen: right in the first four, worse in none")
+    column.separator()
+    column.prop(preferences, "tolerance")
+    column.prop(preferences, "most_targets")
+    column.prop(preferences, "most_kilobytes")
+    _hint(column, "0: no limit")
+
+
+def _hint(layout: bpy.types.UILayout, text: str) -> None:
+    """Writes a text below a setting, in the column of values."""
+    columns = layout.split(factor=0.4)
+    columns.label(text="")
+    lines = columns.column(align=True)
+    lines.scale_y = 0.8
+    for line in _lines(text, 20):
+        lines.label(text=line)
+
+def _lines(text: str, width: int) -> list[str]:
+    """Breaks a text into lines, which Blender's labels do not do."""
+    lines = [""]
+    for word in text.split():
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {word}".strip()
+    return lines
+
+
+class CHRONORMAL_PT_export(bpy.types.Panel):
+    bl_space_type = "FILE_BROWSER"
+    bl_region_type = "TOOL_PROPS"
+    bl_label = "Right normals for shape keys"
+    bl_parent_id = "FILE_PT_operator"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        operator = context.space_data.active_operator
+        return operator is not None and operator.bl_idname == "EXPORT_SCENE_OT_gltf"
+
+    def draw_header(self, _context: bpy.types.Context) -> None:
+        self.layout.prop(settings.get(), "use", text="")
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        draw_settings(self.layout)
+
+
+def draw_in_exporter(_context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+    """Draws the settings where exporters since 4.2 have room for them."""
+    header, body = layout.panel("CHRONORMAL_export", default_closed=False)
+    header.prop(settings.get(), "use")
+    if body is not None:
+        draw_settings(body)
+
+
+class NoFurtherHooks:
+    """Tells exporters since 4.2 that this add-on extends them, so that they call draw_export()."""
+
+
+def register() -> None:
+    if bpy.app.version < (4, 2, 0):
+        bpy.utils.register_class(CHRONORMAL_PT_export)
+
+
+def unregister() -> None:
+    _put_back()
+    if bpy.app.version < (4, 2, 0):
+        bpy.utils.unregister_class(CHRONORMAL_PT_export)

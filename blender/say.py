@@ -1,0 +1,33 @@
+"""Tells the user what happened, in the report of the operator that is running."""
+# SPDX-License-Identifier: MIT
+
+from __future__ import annotations
+
+import sys
+
+import bpy
+
+# The last sentence and its level, for scripts.
+last: tuple[str, str] = ("", "")
+
+
+def _running_operator() -> bpy.types.Operator | None:
+    """Finds the operator on whose behalf this code is called: the exporter hands it to none of its hooks."""
+    frame = sys._getframe(1)  # pylint: disable=protected-access
+    while frame is not None:
+        owner = frame.f_locals.get("self")
+        if isinstance(owner, bpy.types.Operator):
+            return owner
+        frame = frame.f_back
+    return None
+
+
+def say(level: str, text: str) -> None:
+    """Reports a sentence. The level is INFO or WARNING: an ERROR would make scripts believe that no file was written."""
+    global last
+    last = (level, text)
+    operator = _running_operator()
+    if operator is not None:
+        operator.report({level}, text)
+    else:
+        print(f"{level.title()}: {text}")

@@ -1,0 +1,90 @@
+"""The preferences of the add-on, which hold the settings of the export as well.
+
+Properties of a scene would be written into glTF files as custom properties, even while the add-on is off; preferences never are.
+"""
+# SPDX-License-Identifier: MIT
+
+import bpy
+
+VIEWERS = (
+    ("three", "three.js", "Most pages that show 3D in a browser; model-viewer too"),
+    ("babylon", "Babylon.js", "Pages and games in a browser"),
+    ("playcanvas", "PlayCanvas", "Pages and games in a browser"),
+    ("bevy", "Bevy", "Games made with Bevy"),
+    ("godot", "Godot", "Games made with Godot 4, which keeps a unit normal for each key"),
+    ("filament", "Filament", "Android's Scene Viewer and others, which keep a unit normal for each key"),
+)
+
+
+class Preferences(bpy.types.AddonPreferences):
+    bl_idname = __package__
+
+    program: bpy.props.StringProperty(
+        name="Program",
+        description="The chronormal program to run. Leave it empty to use the one that ships with the add-on",
+        subtype="FILE_PATH",
+    )
+    use: bpy.props.BoolProperty(
+        name="Right normals for shape keys",
+        description="After a glTF file is written, correct the normals of its shape keys",
+        default=False,
+    )
+    viewers: bpy.props.EnumProperty(
+        name="Viewers",
+        description="The viewers that the file is made for. With none, it is made for those that add up deltas, and gets "
+                    "worse in no other",
+        items=[(name, title, what, 1 << n) for n, (name, title, what) in enumerate(VIEWERS)],
+        options={"ENUM_FLAG"},
+        default=set(),
+    )
+    tolerance: bpy.props.FloatProperty(
+        name="Tolerance",
+        description="The largest error in degrees. At 0 the file stays at most 2.5 times as large, whatever error that leaves",
+        min=0, max=180, soft_max=5, precision=2, default=0,
+    )
+    most_targets: bpy.props.IntProperty(
+        name="Most targets",
+        description="The most morph targets that a mesh may have, its shape keys among them. 0: as many as the viewers bear",
+        min=0, soft_max=64, default=0,
+    )
+    most_kilobytes: bpy.props.IntProperty(
+        name="Most KB",
+        description="The most kilobytes that the normals of a mesh's shape keys may take. 0: no limit",
+        min=0, soft_max=100_000, default=0,
+    )
+
+    def options(self) -> list[str]:
+        """Returns these settings as options of `chronormal bake`."""
+        result: list[str] = []
+        if self.viewers:
+            result += ["--for", ",".join(name for name, _, _ in VIEWERS if name in self.viewers)]
+        if self.tolerance > 0:
+            result += ["--tolerance", f"{self.tolerance:g}"]
+        if self.most_targets > 0:
+            result += ["--max-targets", str(self.most_targets)]
+        if self.most_kilobytes > 0:
+            result += ["--max-bytes", str(1000 * self.most_kilobytes)]
+        return result
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "program")
+        layout.label(text="The settings of the export are in the panel of File > Export > glTF 2.0.", icon="INFO")
+
+
+def get() -> Preferences:
+    return bpy.context.preferences.addons[__package__].preferences
+
+
+def program_path() -> str:
+    path = get().program
+    return bpy.path.abspath(path) if path else ""
+
+
+def register() -> None:
+    bpy.utils.register_class(Preferences)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(Preferences)
