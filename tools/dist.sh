@@ -1,7 +1,7 @@
 # Sourced by ./run: makes what a release has, in dist/.
 
 # The steps in order. Each may be named alone: ./run dist program sums.
-dist_steps=(source program wheel deb npm page core sbom sums)
+dist_steps=(source program wheel deb npm page core blender sbom sums)
 
 # dist STEP...: all steps where none is named.
 dist() {
@@ -124,6 +124,25 @@ dist_page() {
 
 # The library as two files.
 dist_core() { /usr/bin/python3 "$root/tools/two_files.py" "$dist"; }
+
+# blender_system ARCHITECTURE: what the Blender add-on calls this kind of machine.
+blender_system() { case $1 in x86_64) echo linux-x64 ;; aarch64) echo linux-arm64 ;; *) echo "linux-$1" ;; esac; }
+
+# The add-on for Blender, with the program in it for each kind of machine whose archive is in dist/: this one, and those
+# that others have built.
+dist_blender() {
+  local archive machine folder unpacked=$root/build/dist/blender
+  local programs=()
+  [ -e "$dist/chronormal-$version-linux-$(uname -m).tar.gz" ] || dist_program
+  rm -rf "$unpacked" && mkdir -p "$unpacked"
+  for archive in "$dist/chronormal-$version-linux-"*.tar.gz; do
+    tar -C "$unpacked" -xzf "$archive"
+    folder=$unpacked/$(basename "$archive" .tar.gz)
+    machine=${folder##*-linux-}
+    programs+=("$(blender_system "$machine")=$folder")
+  done
+  /usr/bin/python3 "$root/tools/dist/blender_addon.py" "$dist/chronormal-blender-$version.zip" "${programs[@]}"
+}
 
 # Whose work is in these files.
 dist_sbom() {

@@ -208,6 +208,41 @@ class Deb(Unpacked):
             self.assertIn(run("dpkg", "-S", f"*/x86_64-linux-gnu/{file}").split(":")[0], needs)
 
 
+class Blender(Unpacked):
+    """The zip of the add-on, which tests/viewers/blender_addon.test.mjs uses in Blender."""
+
+    def setUp(self):
+        super().setUp()
+        with zipfile.ZipFile(artefact(f"chronormal-blender-{VERSION}.zip")) as archive:
+            self.names = set(archive.namelist())
+            archive.extractall(self.folder)
+        self.addon = self.folder / "chronormal_blender"
+
+    def test_is_one_folder_with_the_files_of_the_repository(self):
+        for path in (ROOT / "blender").iterdir():
+            if path.suffix in (".py", ".toml"):
+                self.assertEqual((self.addon / path.name).read_bytes(), path.read_bytes(), path.name)
+        outside = {name for name in self.names if not name.startswith("chronormal_blender/")}
+        self.assertEqual(outside, set())
+        self.assertFalse([name for name in self.names if "__pycache__" in name])
+        self.assertEqual((self.addon / "LICENSE").read_bytes(), (ROOT / "LICENSE").read_bytes())
+
+    def test_has_the_released_program_and_whose_work_is_in_it(self):
+        with tarfile.open(artefact("chronormal-*-linux-x86_64.tar.gz")) as archive:
+            archive.extractall(self.folder / "program")
+        (released,) = (self.folder / "program").iterdir()
+        shipped = self.addon / "bin/linux-x64"
+        self.assertEqual((shipped / "chronormal").read_bytes(), (released / "chronormal").read_bytes())
+        licences = {path.name for path in (released / "THIRD_PARTY").iterdir()}
+        self.assertEqual({path.name for path in (shipped / "THIRD_PARTY").iterdir()}, licences)
+        (shipped / "chronormal").chmod(0o755)
+        self.assertEqual(run(shipped / "chronormal", "--version").split()[1], VERSION)
+
+    def test_has_the_version_of_the_project(self):
+        self.assertIn(f'version = "{VERSION}"\n', (self.addon / "blender_manifest.toml").read_text())
+        self.assertIn(f'"version": ({VERSION.replace(".", ", ")})', (self.addon / "__init__.py").read_text())
+
+
 class Wheel(Unpacked):
     def test_is_for_other_linuxes_by_what_it_needs(self):
         wheel = artefact("*.whl")

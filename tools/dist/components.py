@@ -32,11 +32,12 @@ ARTEFACTS = {
     "deb": ("chronormal_*.deb", "source/*/build/program", [*LIBRARIES, "chronormal_cli", "chronormal_c"], "INSTALL"),
     "npm": ("chronormal-*.tgz", "wasm", [*LIBRARIES, "chronormal_cli"], "LIBRARY"),
     "page": ("chronormal-*.html", "wasm", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
+    "blender": ("chronormal-blender-*.zip", "dist", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
     "header": ("chronormal_core.h", None, [], "SOURCE"),
     "core": ("chronormal_core.cpp", None, [], "SOURCE"),
     "source": ("chronormal-*.tar.gz", None, [], "SOURCE"),
 }
-WITH_PAGE = ("program", "deb", "npm", "page")  # with what the pages of web/ are made of
+WITH_PAGE = ("program", "deb", "npm", "page", "blender")  # with what the pages of web/ are made of
 
 # Debian's names of licences, as SPDX has them; and the packages whose `copyright` names none for all of their files.
 SPDX_NAMES = {
