@@ -103,9 +103,25 @@ class RecogniseBakedFiles:
                         "Right normals for shape keys to bake the author's keys again.")
 
 
+class CHRONORMAL_OT_make_idle(bpy.types.Operator):
+    """Mute the correction keys of this mesh, which was baked and imported without the add-on"""
+
+    bl_idname = "chronormal.make_idle"
+    bl_label = "Mute correction keys"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.object is not None and context.object.type == "MESH" and mark_of(context.object.data) is not None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        self.report({"INFO"}, f"{make_idle(context.object.data)} correction keys are muted and named \"{IDLE} ...\"")
+        return {"FINISHED"}
+
+
 def register() -> None:
-    pass
+    bpy.utils.register_class(CHRONORMAL_OT_make_idle)
 
 
 def unregister() -> None:
-    pass
+    bpy.utils.unregister_class(CHRONORMAL_OT_make_idle)

@@ -73,8 +73,7 @@ def before_export(export_settings: dict[str, Any]) -> None:
         _put_back()
         result = original(gltf, export_settings_then, encoder, glb_buffer)
         if export_settings_then is export_settings:
-            level, text = bake_in_place(Path(export_settings["gltf_filepath"]))
-            say(level, text)
+            say(*_bake_or_say_why(Path(export_settings["gltf_filepath"]).absolute()))
         return result
 
     _replaced = (module, original, write_and_bake)
@@ -84,6 +83,14 @@ def before_export(export_settings: dict[str, Any]) -> None:
 def before_writing(_export_settings: dict[str, Any]) -> None:
     """Ends what before_export() did to the scene. The exporter calls this when it has read the scene."""
     colours.show()
+
+
+def _bake_or_say_why(path: Path) -> tuple[str, str]:
+    """Bakes a file that stands. No error may get to the exporter, whose file is written and whole."""
+    try:
+        return bake_in_place(path)
+    except Exception as error:  # pylint: disable=broad-except
+        return "WARNING", f"Normals were not corrected; the plain file stands. {type(error).__name__}: {error}"
 
 
 def bake_in_place(path: Path) -> tuple[str, str]:
@@ -103,7 +110,7 @@ def bake_in_place(path: Path) -> tuple[str, str]:
 def verdict(report: dict[str, Any]) -> str:
     """Puts the report of `chronormal bake --json` into a sentence."""
     meshes = report.get("meshes", [])
-    if any(mesh["already_baked"] for mesh in meshes):
+    if meshes and all(mesh["already_baked"] for mesh in meshes):
         return "Normals were left alone: this file was baked before."
     if not report.get("changed"):
         return "Normals are right as they are: nothing was changed." if meshes else "The file has no shape keys: nothing was changed."

@@ -10,13 +10,13 @@ import json
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
-from typing import Callable, Iterator
+from typing import Iterable, Iterator
 
 import bpy
 import numpy
 from mathutils import Vector
 
-from . import colours, program, settings, shown, truth
+from . import baked, colours, program, settings, shown, truth
 
 # How much is looked at, and how much is listed.
 MOST_FRAMES, MOST_PAIRS = 250, 100
@@ -28,18 +28,29 @@ VISIBLE = 0.1
 
 
 @dataclass
-class Sample:
-    """One pose, and the error of every corner in it."""
+class Pose:
+    """Values of the keys to look at, and what they are called."""
 
     kind: str  # as in Finding.kind
     name: str
     weights: numpy.ndarray
-    errors: numpy.ndarray
     frame: int | None = None
+    time: float | None = None  # in the exported file
+    mean: float = 0
+    worst: float = 0
+
+
+@dataclass
+class Found:
+    """Poses with their errors in degrees, and of every corner the worst of them: how large, and in which pose."""
+
+    poses: list[Pose]
+    worst: numpy.ndarray
+    which: numpy.ndarray
 
     @property
-    def worst(self) -> float:
-        return float(self.errors.max(initial=0))
+    def mean(self) -> float:
+        return sum(pose.mean for pose in self.poses) / len(self.poses)
 
 
 class Judge:
@@ -61,6 +72,17 @@ class Judge:
         """Returns the error of every corner in degrees where the author's keys have these weights."""
         normals = self.file.normals_at(self.file.weights(weights, time))
         return shown.degrees_between(normals[self.vertices], shown.unit(self.subject.normals(weights)))
+
+    def judge(self, poses: Iterable[Pose]) -> Found:
+        """Judges poses one by one. Only the worst error of each corner is kept, as there may be many of both."""
+        found = Found([], numpy.full(len(self.vertices), -1, numpy.float32), numpy.zeros(len(self.vertices), numpy.int32))
+        for pose in poses:
+            errors = self.errors(pose.weights, pose.time)
+            pose.mean, pose.worst = float(errors.mean()), float(errors.max())
+            is_worse = errors > found.worst
+            found.worst[is_worse], found.which[is_worse] = errors[is_worse], len(found.poses)
+            found.poses.append(pose)
+        return found
 
     def time_of(self, frame: int) -> float | None:
         """Returns the time of a frame in the file."""
@@ -99,34 +121,34 @@ def play(scene: bpy.types.Scene, o: bpy.types.Object, frames: list[int]) -> nump
     return numpy.array(values)
 
 
-def samples_now(judge: Judge, scene: bpy.types.Scene, now: numpy.ndarray) -> Iterator[Sample]:
-    """Judges the sliders as they are: at the time of the current frame, if its animation puts them there."""
+def poses_now(judge: Judge, scene: bpy.types.Scene, now: numpy.ndarray) -> Iterator[Pose]:
+    """Returns the sliders as they are: at the time of the current frame, if its animation puts them there."""
     time = judge.time_of(scene.frame_current)
     if time is not None and not numpy.allclose(judge.plain.track.at(time), now, atol=1e-4):
         time = None
-    yield Sample("NOW", "the sliders now", now, judge.errors(now, time), scene.frame_current)
+    yield Pose("NOW", "the sliders now", now, scene.frame_current, time)
 
 
-def samples_over_time(judge: Judge, values: numpy.ndarray) -> Iterator[Sample]:
+def poses_over_time(judge: Judge, values: numpy.ndarray) -> Iterator[Pose]:
     for frame, weights in zip(judge.frames, values):
-        yield Sample("FRAME", f"frame {frame}", weights, judge.errors(weights, judge.time_of(frame)), frame)
+        yield Pose("FRAME", f"frame {frame}", weights, frame, judge.time_of(frame))
 
 
-def samples_of_keys(judge: Judge) -> Iterator[Sample]:
-    """Judges each key alone, and pairs of keys that turn the same normals."""
+def poses_of_keys(judge: Judge) -> Iterator[Pose]:
+    """Returns each key alone, and pairs of keys that turn the same normals."""
     keys = judge.subject.keys
     for k, key in enumerate(keys):
         for weight in (0.25, 0.5, 0.75, 1.0):
             weights = numpy.zeros(len(keys))
             weights[k] = weight
-            yield Sample("KEY", f"{key.name} at {weight:g}", weights, judge.errors(weights))
+            yield Pose("KEY", f"{key.name} at {weight:g}", weights)
     turned = numpy.linalg.norm(judge.plain.normal_deltas, axis=2)
     shared = turned @ turned.T
     pairs = sorted((pair for pair in combinations(range(len(keys)), 2) if shared[pair] > 0), key=lambda pair: -shared[pair])
     for i, j in pairs[:MOST_PAIRS]:
         weights = numpy.zeros(len(keys))
         weights[[i, j]] = 1
-        yield Sample("PAIR", f"{keys[i].name} + {keys[j].name}", weights, judge.errors(weights))
+        yield Pose("PAIR", f"{keys[i].name} + {keys[j].name}", weights)
 
 
 class Finding(bpy.types.PropertyGroup):
@@ -190,44 +212,42 @@ def _add(state: State, kind: str, label: str, degrees: float, weights: numpy.nda
     finding.weights = "" if weights is None else json.dumps(weights.tolist())
 
 
-def _list_samples(state: State, samples: list[Sample]) -> None:
+def _list_poses(state: State, poses: list[Pose]) -> None:
     """Lists the worst frames, none near another one, and the worst keys and pairs; of a key the weight at which it is worst."""
-    near = APART * sum(sample.kind == "FRAME" for sample in samples)
+    near = APART * sum(pose.kind == "FRAME" for pose in poses)
     for kind, most in (("FRAME", LISTED_FRAMES), ("KEY", LISTED_KEYS), ("PAIR", LISTED_PAIRS)):
         seen: set[tuple[int, ...]] = set()
-        for sample in sorted((s for s in samples if s.kind == kind), key=lambda s: -s.worst):
-            subject = (sample.frame,) if kind == "FRAME" else tuple(numpy.flatnonzero(sample.weights))
-            if sample.worst < VISIBLE or len(seen) == most:
+        for pose in sorted((p for p in poses if p.kind == kind), key=lambda p: -p.worst):
+            subject = (pose.frame,) if kind == "FRAME" else tuple(numpy.flatnonzero(pose.weights))
+            if pose.worst < VISIBLE or len(seen) == most:
                 break
-            is_near = kind == "FRAME" and any(abs(sample.frame - frame) <= near for frame, in seen)
+            is_near = kind == "FRAME" and any(abs(pose.frame - frame) <= near for frame, in seen)
             if subject not in seen and not is_near:
                 seen.add(subject)
-                _add(state, kind, sample.name, sample.worst, None if kind == "FRAME" else sample.weights, sample.frame)
+                _add(state, kind, pose.name, pose.worst, None if kind == "FRAME" else pose.weights, pose.frame)
 
 
-def _list_places(state: State, mesh: bpy.types.Mesh, samples: list[Sample]) -> None:
+def _list_places(state: State, mesh: bpy.types.Mesh, found: Found) -> None:
     """Lists the vertices with the largest errors, none near another one."""
     vertices = numpy.empty(len(mesh.loops), numpy.int32)
     mesh.loops.foreach_get("vertex_index", vertices)
     places = truth.places(mesh.vertices)
     size = float(numpy.linalg.norm(places.max(axis=0) - places.min(axis=0)))
-    errors = numpy.stack([sample.errors for sample in samples])
-    worst, which = errors.max(axis=0), errors.argmax(axis=0)
     taken: list[numpy.ndarray] = []
-    for corner in numpy.argsort(-worst):
-        if worst[corner] < VISIBLE or len(taken) == LISTED_PLACES:
+    for corner in numpy.argsort(-found.worst):
+        if found.worst[corner] < VISIBLE or len(taken) == LISTED_PLACES:
             break
         place = places[vertices[corner]]
         if all(numpy.linalg.norm(place - other) > APART * size for other in taken):
             taken.append(place)
-            sample = samples[which[corner]]
-            moved = sample.weights if sample.kind in ("KEY", "PAIR") else None
-            label = sample.name if len(samples) > 1 else f"vertex {vertices[corner]}"
-            _add(state, "PLACE", label, float(worst[corner]), moved,
-                 sample.frame if sample.kind == "FRAME" else None, int(vertices[corner]))
+            pose = found.poses[found.which[corner]]
+            moved = pose.weights if pose.kind in ("KEY", "PAIR") else None
+            label = pose.name if len(found.poses) > 1 else f"vertex {vertices[corner]}"
+            _add(state, "PLACE", label, float(found.worst[corner]), moved,
+                 pose.frame if pose.kind == "FRAME" else None, int(vertices[corner]))
 
 
-def look(context: bpy.types.Context, o: bpy.types.Object, over: str) -> list[Sample]:
+def look(context: bpy.types.Context, o: bpy.types.Object, over: str) -> Found:
     """Judges an object NOW, over TIME, or its KEYS and pairs of them."""
     state, scene = context.window_manager.chronormal, context.scene
     is_baked = state.judged == "BAKED"
@@ -236,18 +256,15 @@ def look(context: bpy.types.Context, o: bpy.types.Object, over: str) -> list[Sam
     now = truth.values_now(o)
     with truth.Subject(o) as subject:
         judge = Judge(subject, is_baked, frames, values)
-        samplers: dict[str, Callable[[], Iterator[Sample]]] = {
-            "NOW": lambda: samples_now(judge, scene, now),
-            "TIME": lambda: samples_over_time(judge, values),
-            "KEYS": lambda: samples_of_keys(judge),
-        }
-        return list(samplers[over]())
+        if over == "NOW":
+            return judge.judge(poses_now(judge, scene, now))
+        return judge.judge(poses_over_time(judge, values) if over == "TIME" else poses_of_keys(judge))
 
 
-def paint(context: bpy.types.Context, o: bpy.types.Object, samples: list[Sample]) -> None:
+def paint(context: bpy.types.Context, o: bpy.types.Object, found: Found) -> None:
     """Colours every corner by its worst error."""
     state = context.window_manager.chronormal
-    colours.paint(o.data, numpy.stack([sample.errors for sample in samples]).max(axis=0), state.top)
+    colours.paint(o.data, found.worst, state.top)
     space = context.space_data
     if space is not None and space.type == "VIEW_3D":
         if not state.shading:
@@ -265,10 +282,12 @@ class _Looking:
         o = context.object
         return o is not None and o.type == "MESH" and o.mode == "OBJECT" and o.data.shape_keys is not None
 
-    def look(self, context: bpy.types.Context, over: str) -> list[Sample] | None:
+    def look(self, context: bpy.types.Context, over: str) -> Found | None:
         try:
             context.window_manager.progress_begin(0, 1)
-            return look(context, context.object, over)
+            found = look(context, context.object, over)
+            paint(context, context.object, found)
+            return found
         except (truth.Refused, shown.Unreadable, program.Unavailable) as error:
             self.report({"WARNING"}, str(error))
             return None
@@ -290,18 +309,16 @@ class CHRONORMAL_OT_look(_Looking, bpy.types.Operator):
     )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        samples = self.look(context, self.over)
-        if samples is None:
+        found = self.look(context, self.over)
+        if found is None:
             return {"CANCELLED"}
         o, state = context.object, context.window_manager.chronormal
-        paint(context, o, samples)
         state.findings.clear()
         state.active, state.object = 0, o.name
-        _list_samples(state, samples)
-        _list_places(state, o.data, samples)
-        mean = float(numpy.mean([sample.errors.mean() for sample in samples]))
-        worst = max(samples, key=lambda sample: sample.worst)
-        state.average = f"On average {mean:.2f}\N{DEGREE SIGN}"
+        _list_poses(state, found.poses)
+        _list_places(state, o.data, found)
+        worst = max(found.poses, key=lambda pose: pose.worst)
+        state.average = f"On average {found.mean:.2f}\N{DEGREE SIGN}"
         state.worst = f"At worst {worst.worst:.2f}\N{DEGREE SIGN}" + ("" if self.over == "NOW" else f", {worst.name}")
         self.report({"INFO"}, f"Error of the normals of {o.name}: {state.average.lower()}, {state.worst.lower()}")
         return {"FINISHED"}
@@ -328,10 +345,8 @@ class CHRONORMAL_OT_jump(_Looking, bpy.types.Operator):
             for key, weight in zip(truth.exported_keys(o.data), json.loads(finding.weights)):
                 key.value = weight
         if finding.frame != NO_FRAME or finding.weights:
-            samples = self.look(context, "NOW")
-            if samples is None:
+            if self.look(context, "NOW") is None:
                 return {"CANCELLED"}
-            paint(context, o, samples)
         if finding.vertex >= 0:
             _show_vertex(context, o, finding.vertex)
         return {"FINISHED"}
@@ -397,6 +412,8 @@ class CHRONORMAL_PT_look(bpy.types.Panel):
         if o.mode != "OBJECT":
             layout.label(text="Leave edit mode to check normals.", icon="INFO")
             return
+        if baked.mark_of(o.data) is not None:
+            layout.operator(baked.CHRONORMAL_OT_make_idle.bl_idname, icon="INFO")
         layout.row().prop(state, "judged", expand=True)
         column = layout.column(align=True)
         for over, text, icon in (("NOW", "At the sliders now", "RESTRICT_VIEW_OFF"), ("TIME", "Over the timeline", "TIME"),

@@ -43,12 +43,12 @@ def looked_at(o, over, judged):
     select(o)
     state = bpy.context.window_manager.chronormal
     state.judged = judged
-    samples = part("look").look(bpy.context, o, over)
+    found = part("look").look(bpy.context, o, over)
     assert bpy.ops.chronormal.look(over=over) == {"FINISHED"}
     degrees = numpy.empty(len(o.data.loops), numpy.float32)
     o.data.attributes["Normal error in degrees"].data.foreach_get("value", degrees)
-    return {"mean": float(numpy.mean([s.errors.mean() for s in samples])), "worst": max(s.worst for s in samples),
-            "painted": float(degrees.max()), "average": state.average, "samples": len(samples),
+    return {"mean": found.mean, "worst": max(pose.worst for pose in found.poses),
+            "painted": float(degrees.max()), "average": state.average, "poses": len(found.poses),
             "findings": [[f.kind, f.label, f.degrees] for f in state.findings]}
 
 
@@ -175,6 +175,19 @@ def leaves(folder, program):
     return {"before": before, "during": during, "after": state()}
 
 
+def by_hand(path, program):
+    """Imports a file without the add-on, and mutes its corrections by the button: how many are muted."""
+    bpy.ops.preferences.addon_disable(module=ADDON)
+    bpy.ops.import_scene.gltf(filepath=path)
+    switch_on(program)
+    o = bpy.context.object
+    if bpy.ops.chronormal.make_idle.poll():
+        assert bpy.ops.chronormal.make_idle() == {"FINISHED"}
+    muted = sum(key.mute for key in o.data.shape_keys.key_blocks)
+    is_marked = "chronormal" in o or "chronormal" in o.data
+    return [muted, is_marked]
+
+
 def imports(folder, program, *names):
     """Imports files and exports them again: NAME.glb as NAME.again.glb, and with the add-on switched off as NAME.again_off.glb."""
     result = {}
@@ -195,6 +208,7 @@ def imports(folder, program, *names):
         preferences.use = True
         bpy.ops.export_scene.gltf(filepath=path + ".again.glb", **options)
         found["again"] = part("say").last
+        found["by_hand"] = by_hand(path + ".glb", program)
         result[name] = found
     return result
 
