@@ -135,7 +135,7 @@ def draw_settings(layout: bpy.types.UILayout) -> None:
     if reason:
         column = layout.column(align=True)
         column.alert = True
-        for n, line in enumerate(_lines(reason, 44)):
+        for n, line in enumerate(_lines(reason, 26)):
             column.label(text=line, icon="ERROR" if n == 0 else "BLANK1")
     column = layout.column()
     column.active = preferences.use

@@ -421,7 +421,10 @@ class CHRONORMAL_PT_look(bpy.types.Panel):
             column.operator(CHRONORMAL_OT_look.bl_idname, text=text, icon=icon).over = over
         left_out = [m.name for m in o.modifiers if m.show_viewport and m.type != "ARMATURE"]
         if left_out:
-            layout.label(text="glTF leaves out: " + ", ".join(left_out), icon="INFO")
+            column = layout.column(align=True)
+            column.label(text="The exporter leaves out:", icon="INFO")
+            for name in left_out:
+                column.label(text=name, icon="BLANK1")
         if state.object == o.name and state.average:
             self.draw_result(state)
 
