@@ -25,8 +25,8 @@
 /// Degenerate n(w) below its own rounding error, and an element without faces, gives (0, 0, 0), which is counted.
 ///            Weights that are not finite, or so large that n(w) is not, give (0, 0, 0), at least where they act.
 /// Ownership  the set and the groups are moved in, and are kept. What was moved from may only be destroyed or assigned.
-/// Threads    unit_normals() uses scratch of the object: one call at a time. The same bits on any number of threads and
-///            every instruction set.
+/// Threads    const functions may run at the same time. The same bits on any number of threads, in ranges of any size,
+///            and on every instruction set.
 #ifndef CHRONORMAL_NORMALS_BLEND_NORMALS_H_
 #define CHRONORMAL_NORMALS_BLEND_NORMALS_H_
 
@@ -115,7 +115,16 @@ class BlendNormals {
   BlendNormals& operator=(BlendNormals&&) noexcept;
   ~BlendNormals();
 
-  /// Writes n(w) / |n(w)| of every element. On one thread it does not allocate or throw.
+  /// Chooses the path of some weights, and moves points where it needs any: what all elements share. On one thread it
+  /// does not allocate or throw. At first all weights are 0.
+  /// weights must have one for each target
+  BlendChoice set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
+  /// Writes n(w) / |n(w)| of a range of elements at the weights that are set, and counts what it did. Does not
+  /// allocate.
+  /// elements.first must be a multiple of 64, result have as many elements as the range
+  BlendEvaluation unit_normals(IndexRange elements, VectorView<float> result) const noexcept;
+
+  /// Does both for all elements. On one thread it does not allocate or throw.
   /// weights must have one for each target, result size() elements
   BlendEvaluation unit_normals(std::span<const double> weights, VectorView<float> result,
                                Threads threads = Threads::kOne);

@@ -1,7 +1,6 @@
 #include "normals/blend/blend_call.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -17,8 +16,10 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlockOfWords = 256;  // for a thread: 16,384 elements
-constexpr std::size_t kBlockOfVertices = 16384, kBlockOfLargeFaces = 64, kBlockOfSlices = 256;
+constexpr std::size_t kBlockOfVertices = 16384, kBlockOfLargeFaces = 64;
+constexpr std::size_t kTileWords = 8, kTileElements = kTileWords * kBitsOfWord;  // 16 KiB of sums on the stack
+constexpr std::size_t kSlicesOfWord = kBitsOfWord / kRingLanes;
+constexpr std::size_t kMostRows = kMostRingPoints + 2;
 constexpr std::size_t kNearVertices = 4096;  // 128 KiB of points in double
 
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
@@ -41,11 +42,12 @@ constexpr double kWholeInFloat32 = 0.4;   // of the time that the whole mesh tak
 
 // What of an ascending list lies inside a range of indices.
 IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
+  if (list.empty() || list.back() < range.first || list.front() >= range.end()) return {};
   const auto place = [list](std::size_t index) {
     return static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), index) - list.begin());
   };
   const std::size_t first = range.first == 0 ? 0 : place(range.first);
-  const std::size_t end = list.empty() || list.back() < range.end() ? list.size() : place(range.end());
+  const std::size_t end = list.back() < range.end() ? list.size() : place(range.end());
   return {first, end - first};
 }
 
@@ -67,181 +69,88 @@ std::span<const std::uint32_t> in(IndexRange part, std::span<const std::uint32_t
 // The weights of the four lanes of a coefficient, of which the last is a bound.
 RowWeights row_weights(double weight) { return {weight, weight, weight, std::fabs(weight)}; }
 
+// Calls body for vertices whose points stay in a cache near the core while all targets move them.
+template <class Body>
+void for_near(IndexRange vertices, const Body& body) {
+  for (std::size_t first = vertices.first; first < vertices.end(); first += kNearVertices)
+    body(IndexRange{first, std::min(kNearVertices, vertices.end() - first)});
+}
+
+// Calls body(i, target, part) for the part of each active target in a range of vertices.
+template <class Body>
+void for_moved(const BlendSet& set, const BlendPose& pose, IndexRange vertices, const Body& body) {
+  for (const std::uint32_t i : pose.active) {
+    const BlendTarget& target = set.targets[i];
+    body(i, target, part_of(target.vertices, vertices));
+  }
+}
+
+void blend_float_points(const BlendInput& source, BlendPose& pose, Threads threads) {
+  float* const points = pose.float_points.data();
+  blocks_on(threads, source.set.topology.vertex_count(), kBlockOfVertices, [&](IndexRange all) {
+    for_near(all, [&](IndexRange vertices) {
+      reset_points(source.set.base, vertices, points);
+      for_moved(source.set, pose, vertices, [&](std::size_t i, const BlendTarget& target, IndexRange part) {
+        move_points(in(part, target.vertices), target.deltas.data() + 3 * part.first,
+                    static_cast<float>(pose.weights[i]), points);
+      });
+    });
+  });
+}
+
+void blend_points(const BlendInput& source, BlendPose& pose, Threads threads) {
+  blocks_on(threads, source.set.topology.vertex_count(), kBlockOfVertices, [&](IndexRange all) {
+    for_near(all, [&](IndexRange vertices) {
+      for_moved(source.set, pose, vertices, [&](std::size_t i, const BlendTarget& target, IndexRange part) {
+        move_points(in(part, target.vertices), target.deltas.data() + 3 * part.first, pose.weights[i],
+                    pose.points.data());
+      });
+    });
+  });
+  pose.has_points = true;
+}
+
+// Puts the points back to the base. Those that many targets moved are put back faster in order.
+void restore_points(const BlendInput& source, BlendPose& pose, Threads threads) {
+  blocks_on(threads, source.set.topology.vertex_count(), kBlockOfVertices, [&](IndexRange vertices) {
+    std::size_t moved = 0;
+    for_moved(source.set, pose, vertices,
+              [&moved](std::size_t, const BlendTarget&, IndexRange part) { moved += part.count; });
+    if (moved >= vertices.count) return reset_points(source.set.base, vertices, pose.points.data());
+    for_moved(source.set, pose, vertices, [&](std::size_t, const BlendTarget& target, IndexRange part) {
+      for (const std::uint32_t v : in(part, target.vertices)) {
+        for (std::size_t k = 0; k < 3; ++k)
+          pose.points[kBlendLanes * v + k] = static_cast<double>(source.set.base[3 * std::size_t{v} + k]);
+      }
+    });
+  });
+  pose.has_points = false;
+}
+
+// The normals of a range of elements at the weights of a pose. Reads, and writes nothing but results.
 class Call {
  public:
-  Call(const BlendInput& source, std::span<const double> weights, BlendScratch& scratch, VectorView<float> result,
-       Threads threads)
-      : source_(source), weights_(weights), scratch_(scratch), result_(result), threads_(threads) {}
+  Call(const BlendInput& source, const BlendPose& pose) : source_(source), pose_(pose) {}
 
-  BlendEvaluation run() {
-    BlendEvaluation done{choose_path(source_, weights_, scratch_)};
-    if (done.path == BlendPath::kWhole && source_.in_float32) {
-      recompute_in_float32();
-      done.recomputed_elements = result_.count;
-      done.zeros = zeros_;
-      return done;
-    }
-    if (done.path == BlendPath::kWhole) {
-      scratch_.again.fill(result_.count);
-    } else {
-      if (done.path == BlendPath::kTouched) scratch_.again.add(scratch_.touched);
-      in_blocks(scratch_.touched.words().size(), kBlockOfWords, [this](IndexRange words) { add_terms(words); });
-    }
-    done.recomputed_elements = scratch_.again.count();
-    if (done.recomputed_elements > 0) recompute();
-    done.zeros = zeros_;
-    done.uncertain_elements = uncertain_;
-    return done;
-  }
-
- private:
-  template <class Body>
-  void in_blocks(std::size_t count, std::size_t block, const Body& body) const {
-    blocks_on(threads_, count, block, body);
-  }
-
-  [[nodiscard]] IndexRange elements_of(IndexRange words) const {
-    const std::size_t first = words.first * kBitsOfWord, end = std::min(words.end() * kBitsOfWord, result_.count);
-    return {first, end - first};
-  }
-
-  // Everything but what is to be made again.
-  void add_terms(IndexRange words) {
-    const IndexRange elements = elements_of(words);
-    copy_base(elements);
-    const auto touched = scratch_.touched.words(), again = scratch_.again.words();
-    const auto base_zeros = source_.base.zeros.words();
-    std::size_t zeros = 0, left = 0;
-    for (std::size_t i = words.first; i < words.end(); ++i) {
-      zeros += static_cast<std::size_t>(std::popcount(base_zeros[i] & ~touched[i]));
-      left += static_cast<std::size_t>(std::popcount(touched[i] & ~again[i]));
-    }
-    zeros_ += zeros;
-    if (left == 0) return;
-    double* const sums = scratch_.sums.data();
-    for_bits(touched, words, [&](std::size_t e) {
-      std::memcpy(sums + kBlendLanes * e, source_.base.sums.data() + kBlendLanes * e, kBlendLanes * sizeof(double));
-    });
-    for (const std::uint32_t i : scratch_.active) {
-      const StoredTarget& target = source_.storage.targets()[i];
-      if (!target.term.is_stored) continue;
-      const double weight = weights_[i];
-      const double linear = weight * target.term.scale, square = weight * weight * target.term.scale;
-      IndexRange part = part_of(target.term.elements, elements);
-      add_target_rows(in(part, target.term.elements), target.term.lanes.data() + 2 * kBlendLanes * part.first,
-                      row_weights(linear), row_weights(square), sums);
-      for (const StoredPair& pair : target.pairs) {
-        if (!scratch_.is_active[pair.other] || !pair.term.is_stored) continue;
-        part = part_of(pair.term.elements, elements);
-        add_pair_rows(in(part, pair.term.elements), pair.term.lanes.data() + kBlendLanes * part.first,
-                      row_weights(weight * weights_[pair.other] * pair.term.scale), sums);
+  // The first element must be that of a word. result begins with it.
+  BlendEvaluation run(IndexRange elements, VectorView<float> result) {
+    if (pose_.choice.path == BlendPath::kWhole && source_.in_float32) {
+      const IndexRange slices{elements.first / kRingLanes, (elements.count + kRingLanes - 1) / kRingLanes};
+      if (elements.count > 0) {
+        const RingSlices rings = rings_from(slices.first);
+        done_.zeros = ring_unit_normals({pose_.float_points.data(), false}, rings, {0, slices.count}, result, false);
       }
+      done_.recomputed_elements = elements.count;
+      return done_;
     }
-    for (std::size_t i = words.first; i < words.end(); ++i)
-      again[i] |= unit_normals_of_rows(touched[i] & ~again[i], i, sums, kLimitsOfTerms, result_);
-  }
-
-  void copy_base(IndexRange elements) const {
-    const float* const units = source_.base.units.data();
-    if (result_.is_packed()) {
-      std::memcpy(result_.x + 3 * elements.first, units + 3 * elements.first, 3 * sizeof(float) * elements.count);
-      return;
+    for (std::size_t i = 0; i < elements.count; i += kTileElements) {
+      const std::size_t count = std::min(kTileElements, elements.count - i);
+      write_tile({elements.first + i, count}, result.part({i, count}));
     }
-    for (std::size_t e = elements.first; e < elements.end(); ++e)
-      result_.set(e, {units[3 * e], units[3 * e + 1], units[3 * e + 2]});
+    return done_;
   }
 
-  void recompute() {
-    blend_points();
-    const auto large = source_.storage.large_faces();
-    in_blocks(large.size(), kBlockOfLargeFaces, [this, large](IndexRange faces) {
-      for (std::size_t i = faces.first; i < faces.end(); ++i) scratch_.large[i] = make_face(large[i]);
-    });
-    const RingSlices rings = source_.storage.rings().view();
-    in_blocks(scratch_.again.words().size(), kBlockOfWords, [this, rings](IndexRange words) {
-      std::size_t zeros = 0, uncertain = 0;
-      for (std::size_t i = words.first; i < words.end(); ++i) {
-        const std::uint64_t doubtful = unit_normals_of_rings(
-            rings, scratch_.again.words()[i], i, scratch_.points.data(), 4 * point_noise_, kLimitsOfPoints, result_);
-        for_bits(doubtful, i, [&](std::size_t e) { make_element(e, zeros, uncertain); });
-      }
-      zeros_ += zeros;
-      uncertain_ += uncertain;
-    });
-    restore_points();
-  }
-
-  void recompute_in_float32() {
-    float* const points = scratch_.float_points.data();
-    in_blocks(source_.set.topology.vertex_count(), kBlockOfVertices, [this, points](IndexRange all) {
-      for_near(all, [this, points](IndexRange vertices) {
-        reset_points(source_.set.base, vertices, points);
-        for_moved(vertices, [this, points](std::size_t i, const BlendTarget& target, IndexRange part) {
-          move_points(in(part, target.vertices), target.deltas.data() + 3 * part.first, static_cast<float>(weights_[i]),
-                      points);
-        });
-      });
-    });
-    const RingSlices rings = source_.storage.rings().view();
-    in_blocks(rings.count, kBlockOfSlices, [this, points, rings](IndexRange slices) {
-      const std::size_t first = kRingLanes * slices.first, end = std::min(kRingLanes * slices.end(), result_.count);
-      zeros_ += ring_unit_normals({points, false}, rings, slices, result_.part({first, end - first}), false);
-    });
-  }
-
-  // Calls body for vertices whose points stay in a cache near the core while all targets move them.
-  template <class Body>
-  static void for_near(IndexRange vertices, const Body& body) {
-    for (std::size_t first = vertices.first; first < vertices.end(); first += kNearVertices)
-      body(IndexRange{first, std::min(kNearVertices, vertices.end() - first)});
-  }
-
-  // Points at the weights, with the rounding of each in point_noise_.
-  void blend_points() {
-    double reach = source_.base.reach;
-    for (const std::uint32_t i : scratch_.active) reach += std::fabs(weights_[i]) * source_.storage.targets()[i].reach;
-    point_noise_ = kUnitRoundoff * static_cast<double>(1 + 2 * scratch_.active.size()) * reach;
-    in_blocks(source_.set.topology.vertex_count(), kBlockOfVertices, [this](IndexRange all) {
-      for_near(all, [this](IndexRange vertices) {
-        for_moved(vertices, [this](std::size_t i, const BlendTarget& target, IndexRange part) {
-          move_points(in(part, target.vertices), target.deltas.data() + 3 * part.first, weights_[i],
-                      scratch_.points.data());
-        });
-      });
-    });
-  }
-
-  // Points that many targets moved are put back faster in order.
-  void restore_points() {
-    in_blocks(source_.set.topology.vertex_count(), kBlockOfVertices, [this](IndexRange vertices) {
-      std::size_t moved = 0;
-      for_moved(vertices, [&moved](std::size_t, const BlendTarget&, IndexRange part) { moved += part.count; });
-      if (moved >= vertices.count) return reset_points(source_.set.base, vertices, scratch_.points.data());
-      for_moved(vertices, [this](std::size_t, const BlendTarget& target, IndexRange part) {
-        for (const std::uint32_t v : in(part, target.vertices)) {
-          for (std::size_t k = 0; k < 3; ++k)
-            scratch_.points[kBlendLanes * v + k] = static_cast<double>(source_.set.base[3 * std::size_t{v} + k]);
-        }
-      });
-    });
-  }
-
-  // Calls body(i, target, part) for the part of each active target in a range of vertices.
-  template <class Body>
-  void for_moved(IndexRange vertices, const Body& body) const {
-    for (const std::uint32_t i : scratch_.active) {
-      const BlendTarget& target = source_.set.targets[i];
-      body(i, target, part_of(target.vertices, vertices));
-    }
-  }
-
-  [[nodiscard]] Vec3d point(std::uint32_t v) const {
-    const double* const p = scratch_.points.data() + kBlendLanes * std::size_t{v};
-    return {p[0], p[1], p[2]};
-  }
-
-  // The vector area over a fan. Edges and both products of a component are within 10 u of the absolute products,
-  // each triangle adds a rounding, and points bring their own.
+  // Each corner of a large face asks for it.
   [[nodiscard]] BlendedFace make_face(std::size_t f) const {
     const auto face = source_.set.topology.face(f);
     struct Edge {
@@ -253,6 +162,8 @@ class Call {
       const Vec3d edge = point(face[c]) - a;
       return Edge{edge, sum_abs(edge)};
     };
+    // The vector area over a fan. Edges and both products of a component are within 10 u of the absolute products,
+    // each triangle adds a rounding, and points bring their own.
     BlendedFace result;
     double products = 0, edges = edge_to(1).size;
     for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& g) {
@@ -261,16 +172,142 @@ class Call {
       edges += 2 * g.size;
     });
     const auto corners = static_cast<double>(face.size());
-    const double moved = 4 * point_noise_;
+    const double moved = 4 * pose_.point_noise;
     result.noise = kUnitRoundoff * (10 + corners) * products + moved * (edges + corners * moved);
     return result;
   }
 
-  // Each corner of a large face asks for it.
+ private:
+  [[nodiscard]] RingSlices rings_from(std::size_t slice) const {
+    const RingSlices all = source_.storage.rings().view();
+    return {all.indices, all.first_row + slice, all.count - slice};
+  }
+
+  void write_tile(IndexRange elements, const VectorView<float>& result) {
+    const IndexRange words{elements.first / kBitsOfWord, words_of(elements.count)};
+    const auto touched = pose_.touched.words().subspan(words.first, words.count);
+    std::uint64_t again[kTileWords];
+    std::copy_n(pose_.again.words().begin() + static_cast<std::ptrdiff_t>(words.first), words.count, again);
+    if (pose_.choice.path != BlendPath::kWhole) add_terms(elements, words, touched, again, result);
+    for (std::size_t i = 0; i < words.count; ++i) {
+      if (i + 1 == words.count && elements.count % kBitsOfWord != 0)  // a range may end within a word
+        again[i] &= (std::uint64_t{1} << (elements.count % kBitsOfWord)) - 1;
+      if (again[i] == 0) continue;
+      done_.recomputed_elements += static_cast<std::size_t>(std::popcount(again[i]));
+      const std::uint64_t doubtful =
+          pose_.has_points ? unit_normals_of_rings(rings_from(words.first * kSlicesOfWord), again[i], i,
+                                                   pose_.points.data(), 4 * pose_.point_noise, kLimitsOfPoints, result)
+                           : make_rings(again[i], words.first, i, result);
+      for_bits(doubtful, i, [&](std::size_t e) { make_element(elements.first + e, e, result); });
+    }
+  }
+
+  // Everything but what is to be made again: adds to that what float32 terms promise nothing of.
+  void add_terms(IndexRange elements, IndexRange words, std::span<const std::uint64_t> touched, std::uint64_t* again,
+                 const VectorView<float>& result) {
+    copy_base(elements, result);
+    const auto base_zeros = source_.base.zeros.words().subspan(words.first, words.count);
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < words.count; ++i) {
+      const std::size_t behind = std::min(kBitsOfWord, elements.count - i * kBitsOfWord);
+      const std::uint64_t inside = behind == kBitsOfWord ? ~std::uint64_t{0} : (std::uint64_t{1} << behind) - 1;
+      done_.zeros += static_cast<std::size_t>(std::popcount(base_zeros[i] & ~touched[i] & inside));
+      left += static_cast<std::size_t>(std::popcount(touched[i] & ~again[i] & inside));
+    }
+    if (left == 0) return;
+    alignas(64) double sums[kBlendLanes * kTileElements];
+    const std::size_t first = elements.first;
+    std::memcpy(sums, source_.base.sums.data() + kBlendLanes * first, kBlendLanes * elements.count * sizeof(double));
+    for (const std::uint32_t i : pose_.active) {
+      const StoredTarget& target = source_.storage.targets()[i];
+      if (!target.term.is_stored) continue;
+      const double weight = pose_.weights[i];
+      const double linear = weight * target.term.scale, square = weight * weight * target.term.scale;
+      IndexRange part = part_of(target.term.elements, elements);
+      // Who shares a face with the target is one of its elements, too.
+      if (part.count == 0) continue;
+      add_target_rows(in(part, target.term.elements), target.term.lanes.data() + 2 * kBlendLanes * part.first,
+                      row_weights(linear), row_weights(square), first, sums);
+      for (const StoredPair& pair : target.pairs) {
+        if (!pose_.is_active[pair.other] || !pair.term.is_stored) continue;
+        part = part_of(pair.term.elements, elements);
+        if (part.count == 0) continue;
+        add_pair_rows(in(part, pair.term.elements), pair.term.lanes.data() + kBlendLanes * part.first,
+                      row_weights(weight * pose_.weights[pair.other] * pair.term.scale), first, sums);
+      }
+    }
+    for (std::size_t i = 0; i < words.count; ++i) {
+      std::uint64_t wanted = touched[i] & ~again[i];
+      if (i + 1 == words.count && elements.count % kBitsOfWord != 0)
+        wanted &= (std::uint64_t{1} << (elements.count % kBitsOfWord)) - 1;
+      again[i] |= unit_normals_of_rows(wanted, i, sums, kLimitsOfTerms, result);
+    }
+  }
+
+  void copy_base(IndexRange elements, const VectorView<float>& result) const {
+    const float* const units = source_.base.units.data() + 3 * elements.first;
+    if (result.is_packed()) {
+      std::memcpy(result.x, units, 3 * sizeof(float) * elements.count);
+      return;
+    }
+    for (std::size_t i = 0; i < elements.count; ++i) result.set(i, {units[3 * i], units[3 * i + 1], units[3 * i + 2]});
+  }
+
+  // unit_normals_of_rings() for a few elements whose points nobody has blended: blends those of their paths, four
+  // elements at a time, as the kernel takes them.
+  std::uint64_t make_rings(std::uint64_t elements, std::size_t first_word, std::size_t word,
+                           const VectorView<float>& result) const {
+    constexpr std::size_t kLanes = 4;
+    const RingSlices rings = rings_from((first_word + word) * kSlicesOfWord);
+    std::uint64_t doubtful = 0;
+    for (std::size_t lane = 0; lane < kBitsOfWord; lane += kLanes) {
+      const std::uint64_t some = elements & (std::uint64_t{(1U << kLanes) - 1} << lane);
+      if (some == 0) continue;
+      const std::size_t slice = lane / kRingLanes, row_count = rings.first_row[slice + 1] - rings.first_row[slice];
+      if (row_count > kMostRows) {
+        doubtful |= some;
+        continue;
+      }
+      alignas(64) double points[kBlendLanes * kLanes * kMostRows];
+      alignas(64) std::uint32_t indices[kRingLanes * kMostRows] = {};
+      for (std::size_t r = 0; r < row_count; ++r) {
+        for (std::size_t k = 0; k < kLanes; ++k) {
+          const std::size_t column = lane % kRingLanes + k, local = r * kLanes + k;
+          const std::uint32_t vertex = rings.indices[kRingLanes * (rings.first_row[slice] + r) + column];
+          indices[kRingLanes * r + column] = static_cast<std::uint32_t>(local);
+          const Vec3d p = point(vertex);
+          double* const row = points + kBlendLanes * local;
+          row[0] = p.x, row[1] = p.y, row[2] = p.z, row[3] = 0;
+        }
+      }
+      // One slice, at the place of this one among those of the tile.
+      std::size_t first_row[kTileElements / kRingLanes + 1] = {};
+      std::fill(std::begin(first_row) + static_cast<std::ptrdiff_t>(word * kSlicesOfWord + slice) + 1,
+                std::end(first_row), row_count);
+      doubtful |= unit_normals_of_rings({indices, first_row, kTileElements / kRingLanes}, some, word, points,
+                                        4 * pose_.point_noise, kLimitsOfPoints, result);
+    }
+    return doubtful;
+  }
+
+  [[nodiscard]] Vec3d point(std::uint32_t v) const {
+    const double* const p = pose_.points.data() + kBlendLanes * std::size_t{v};
+    Vec3d result{p[0], p[1], p[2]};
+    if (pose_.has_points) return result;
+    for (const std::uint32_t i : pose_.active) {  // as move_points() does
+      const BlendTarget& target = source_.set.targets[i];
+      const auto at = std::lower_bound(target.vertices.begin(), target.vertices.end(), v);
+      if (at == target.vertices.end() || *at != v) continue;
+      const float* const delta = target.deltas.data() + 3 * (at - target.vertices.begin());
+      result = result + pose_.weights[i] * to_double(Vec3f{delta[0], delta[1], delta[2]});
+    }
+    return result;
+  }
+
   [[nodiscard]] BlendedFace face_at(std::size_t f) const {
     if (source_.set.topology.face(f).size() <= kMostRingPoints) return make_face(f);
     const auto large = source_.storage.large_faces();
-    return scratch_.large[static_cast<std::size_t>(std::lower_bound(large.begin(), large.end(), f) - large.begin())];
+    return pose_.large[static_cast<std::size_t>(std::lower_bound(large.begin(), large.end(), f) - large.begin())];
   }
 
   template <class Body>
@@ -280,7 +317,7 @@ class Call {
   }
 
   // An element that lanes promise nothing of, with a bound of its own for each face.
-  void make_element(std::size_t e, std::size_t& zeros, std::size_t& uncertain) {
+  void make_element(std::size_t e, std::size_t place, const VectorView<float>& result) {
     Vec3d n;
     double noise = 0, count = 0;
     for_faces_of(e, [&](std::size_t f) {
@@ -294,63 +331,59 @@ class Call {
     noise *= 1 + count / 6;
     const double square = dot(n, n);
     if (square >= kSmallestSquare && square <= kLargestSquare && square > noise * noise) {
-      result_.set(e, to_float(1 / std::sqrt(square) * n));
-      if (noise * noise > kLargestAngle * kLargestAngle * square) ++uncertain;
+      result.set(place, to_float(1 / std::sqrt(square) * n));
+      if (noise * noise > kLargestAngle * kLargestAngle * square) ++done_.uncertain_elements;
       return;
     }
     // Very small, very large, nothing but rounding, or not finite.
     const double largest = max_abs(n);
     if (sum_abs(n) <= std::numeric_limits<double>::max() && largest > noise) {
-      result_.set(e, to_float(unit(n)));
-      if (noise > kLargestAngle * largest) ++uncertain;
+      result.set(place, to_float(unit(n)));
+      if (noise > kLargestAngle * largest) ++done_.uncertain_elements;
       return;
     }
-    result_.set(e, {});
-    ++zeros;
+    result.set(place, {});
+    ++done_.zeros;
   }
 
   const BlendInput& source_;
-  std::span<const double> weights_;
-  BlendScratch& scratch_;
-  VectorView<float> result_;
-  Threads threads_;
-  double point_noise_ = 0;
-  std::atomic<std::size_t> zeros_ = 0, uncertain_ = 0;
+  const BlendPose& pose_;
+  BlendEvaluation done_{};
 };
 
 }  // namespace
 
-BlendChoice choose_path(const BlendInput& source, std::span<const double> weights, BlendScratch& scratch) noexcept {
+BlendChoice choose_path(const BlendInput& source, std::span<const double> weights, BlendPose& pose) noexcept {
   const auto targets = source.storage.targets();
-  scratch.active.clear();
-  scratch.touched.clear();
-  scratch.again.clear();
+  pose.active.clear();
+  pose.touched.clear();
+  pose.again.clear();
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    scratch.is_active[i] = weights[i] != 0;
-    if (weights[i] != 0) scratch.active.push_back(static_cast<std::uint32_t>(i));
+    pose.is_active[i] = weights[i] != 0;
+    if (weights[i] != 0) pose.active.push_back(static_cast<std::uint32_t>(i));
   }
   BlendChoice choice;
-  choice.active_targets = scratch.active.size();
+  choice.active_targets = pose.active.size();
   std::size_t target_elements = 0, pair_elements = 0, moved_vertices = 0;
-  for (const std::uint32_t i : scratch.active) {
+  for (const std::uint32_t i : pose.active) {
     const StoredTarget& target = targets[i];
     moved_vertices += source.set.targets[i].vertices.size();
-    scratch.touched.add(target.elements);
+    pose.touched.add(target.elements);
     if (!target.term.is_stored) {
-      scratch.again.add(target.elements);
+      pose.again.add(target.elements);
       continue;
     }
     target_elements += target.element_count;
     for (const StoredPair& pair : target.pairs) {
-      if (!scratch.is_active[pair.other]) continue;
+      if (!pose.is_active[pair.other]) continue;
       if (pair.term.is_stored)
         pair_elements += pair.term.elements.size();
       else
-        scratch.again.add_common(target.elements, targets[pair.other].elements);
+        pose.again.add_common(target.elements, targets[pair.other].elements);
     }
   }
-  choice.touched_elements = scratch.touched.count();
-  choice.unstored_elements = scratch.again.count();
+  choice.touched_elements = pose.touched.count();
+  choice.unstored_elements = pose.again.count();
 
   const auto of = [](std::size_t count) { return static_cast<double>(count); };
   const Rings& rings = source.storage.rings();
@@ -360,8 +393,8 @@ BlendChoice choose_path(const BlendInput& source, std::span<const double> weight
   const double copied = kCopiedElement * of(elements), moved = kMovedVertex * of(moved_vertices);
   choice.terms_ns = copied + kTargetElement * of(target_elements) + kPairElement * of(pair_elements) +
                     kFinishedElement * of(choice.touched_elements - choice.unstored_elements);
-  if (choice.unstored_elements > 0) choice.terms_ns += moved + anew * of(lanes_of(scratch.again));
-  choice.touched_ns = copied + moved + anew * of(lanes_of(scratch.touched));
+  if (choice.unstored_elements > 0) choice.terms_ns += moved + anew * of(lanes_of(pose.again));
+  choice.touched_ns = copied + moved + anew * of(lanes_of(pose.touched));
   choice.whole_ns = (source.in_float32 ? kWholeInFloat32 : 1) * (moved + whole);
   if (source.forced)
     choice.path = *source.forced;
@@ -372,9 +405,34 @@ BlendChoice choose_path(const BlendInput& source, std::span<const double> weight
   return choice;
 }
 
-BlendEvaluation evaluate(const BlendInput& source, std::span<const double> weights, BlendScratch& scratch,
-                         VectorView<float> result, Threads threads) {
-  return Call(source, weights, scratch, result, threads).run();
+BlendChoice set_weights(const BlendInput& source, std::span<const double> weights, BlendPose& pose, Threads threads) {
+  if (pose.has_points) restore_points(source, pose, threads);
+  pose.choice = choose_path(source, weights, pose);
+  std::copy(weights.begin(), weights.end(), pose.weights.begin());
+  double reach = source.base.reach;
+  for (const std::uint32_t i : pose.active) reach += std::fabs(weights[i]) * source.storage.targets()[i].reach;
+  pose.point_noise = kUnitRoundoff * static_cast<double>(1 + 2 * pose.active.size()) * reach;
+  const BlendPath path = pose.choice.path;
+  if (path == BlendPath::kWhole && source.in_float32) {
+    blend_float_points(source, pose, threads);
+    return pose.choice;
+  }
+  if (path == BlendPath::kWhole) pose.again.fill(source.storage.terms().size());
+  if (path == BlendPath::kTouched) pose.again.add(pose.touched);
+  const auto large = source.storage.large_faces();
+  if (path == BlendPath::kTerms && pose.choice.unstored_elements == 0 && large.empty()) return pose.choice;
+  blend_points(source, pose, threads);
+  blocks_on(threads, large.size(), kBlockOfLargeFaces, [&](IndexRange faces) {
+    for (std::size_t i = faces.first; i < faces.end(); ++i) pose.large[i] = Call(source, pose).make_face(large[i]);
+  });
+  return pose.choice;
+}
+
+BlendEvaluation evaluate(const BlendInput& source, const BlendPose& pose, IndexRange elements,
+                         VectorView<float> result) noexcept {
+  BlendEvaluation done = Call(source, pose).run(elements, result);
+  static_cast<BlendChoice&>(done) = pose.choice;
+  return done;
 }
 
 }  // namespace chronormal::inline internal

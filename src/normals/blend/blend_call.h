@@ -1,4 +1,4 @@
-/// One evaluation of BlendNormals.
+/// Evaluation of BlendNormals: what is done once for some weights, and what is done for each range of elements.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 
@@ -24,12 +24,17 @@ struct BlendInput {
   bool in_float32;  ///< whether the path kWhole is one in float32
 };
 
-/// Which path the weights take. Leaves the active targets, the touched elements, and those without their terms in the
-/// scratch.
-BlendChoice choose_path(const BlendInput& input, std::span<const double> weights, BlendScratch& scratch) noexcept;
+/// Chooses the path of some weights. Leaves the active targets, the touched elements, and those without their terms in
+/// the pose, and nothing else.
+BlendChoice choose_path(const BlendInput& input, std::span<const double> weights, BlendPose& pose) noexcept;
 
-BlendEvaluation evaluate(const BlendInput& input, std::span<const double> weights, BlendScratch& scratch,
-                         VectorView<float> result, Threads threads);
+/// Makes everything that all elements need at these weights.
+BlendChoice set_weights(const BlendInput& input, std::span<const double> weights, BlendPose& pose, Threads threads);
+
+/// Writes the normals of a range of elements; what the evaluation counts is that of the range. Any thread may do this.
+/// elements.first must be a multiple of 64, result must have as many as the range
+BlendEvaluation evaluate(const BlendInput& input, const BlendPose& pose, IndexRange elements,
+                         VectorView<float> result) noexcept;
 
 }  // namespace chronormal::inline internal
 

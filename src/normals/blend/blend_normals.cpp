@@ -1,14 +1,21 @@
 #include "chronormal/normals/blend_normals.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <utility>
 
+#include "core/blocks.h"
 #include "normals/blend/blend_call.h"
 #include "normals/blend/blend_scratch.h"
 #include "normals/blend/blend_storage.h"
 
 namespace chronormal {
+namespace {
+
+constexpr std::size_t kBlockOfElements = 16384;  // for a thread; whole words
+
+}  // namespace
 
 std::string_view name_of(BlendPath path) noexcept {
   switch (path) {
@@ -37,7 +44,7 @@ struct BlendNormals::Parts {
         options(the_options),
         storage(set, groups ? &*groups : nullptr, options.max_bytes),
         base(make_blend_base(set, storage.terms())),
-        scratch(set, shape()) {
+        pose(set, shape()) {
     storage.fill();
   }
 
@@ -55,7 +62,7 @@ struct BlendNormals::Parts {
   BlendNormalsOptions options;
   BlendStorage storage;
   BlendBase base;
-  BlendScratch scratch;
+  BlendPose pose;
 };
 
 BlendNormals::BlendNormals(std::unique_ptr<Parts> parts) noexcept : parts_(std::move(parts)) {}
@@ -71,9 +78,30 @@ BlendNormals BlendNormals::of_groups(BlendSet set, NormalGroups groups, const Bl
   return BlendNormals(std::make_unique<Parts>(std::move(set), std::move(groups), options));
 }
 
+BlendChoice BlendNormals::set_weights(std::span<const double> weights, Threads threads) {
+  assert(weights.size() == set().targets.size());
+  return internal::set_weights(parts_->source(), weights, parts_->pose, threads);
+}
+
+BlendEvaluation BlendNormals::unit_normals(IndexRange elements, VectorView<float> result) const noexcept {
+  assert(elements.first % kBitsOfWord == 0 && elements.end() <= size() && result.count == elements.count);
+  return evaluate(parts_->source(), parts_->pose, elements, result);
+}
+
 BlendEvaluation BlendNormals::unit_normals(std::span<const double> weights, VectorView<float> result, Threads threads) {
-  assert(weights.size() == set().targets.size() && result.count == size());
-  return evaluate(parts_->source(), weights, parts_->scratch, result, threads);
+  assert(result.count == size());
+  BlendEvaluation done{set_weights(weights, threads)};
+  std::atomic<std::size_t> recomputed = 0, zeros = 0, uncertain = 0;
+  blocks_on(threads, size(), kBlockOfElements, [&](IndexRange elements) {
+    const BlendEvaluation part = unit_normals(elements, result.part(elements));
+    recomputed += part.recomputed_elements;
+    zeros += part.zeros;
+    uncertain += part.uncertain_elements;
+  });
+  done.recomputed_elements = recomputed;
+  done.zeros = zeros;
+  done.uncertain_elements = uncertain;
+  return done;
 }
 
 std::vector<BlendEvaluation> BlendNormals::unit_normals(std::span<const double> weights,
@@ -82,14 +110,16 @@ std::vector<BlendEvaluation> BlendNormals::unit_normals(std::span<const double> 
   assert(weights.size() == results.size() * targets);
   std::vector<BlendEvaluation> done(results.size());
   const BlendInput source = parts_->source();
-  // Each thread takes every so many rows, with scratch of its own.
+  // Each thread takes every so many rows, with a pose of its own.
   const std::size_t hands = threads == Threads::kOne ? 1 : std::min(thread_count(), results.size());
-  std::vector<BlendScratch> scratch;
-  for (std::size_t hand = 1; hand < hands; ++hand) scratch.emplace_back(set(), parts_->shape());
+  std::vector<BlendPose> poses;
+  for (std::size_t hand = 1; hand < hands; ++hand) poses.emplace_back(set(), parts_->shape());
   const auto work = [&](std::size_t hand) {
-    BlendScratch& own = hand == 0 ? parts_->scratch : scratch[hand - 1];
-    for (std::size_t row = hand; row < results.size(); row += hands)
-      done[row] = evaluate(source, weights.subspan(row * targets, targets), own, results[row], Threads::kOne);
+    BlendPose& own = hand == 0 ? parts_->pose : poses[hand - 1];
+    for (std::size_t row = hand; row < results.size(); row += hands) {
+      internal::set_weights(source, weights.subspan(row * targets, targets), own, Threads::kOne);
+      done[row] = evaluate(source, own, {0, size()}, results[row]);
+    }
   };
   if (hands <= 1)
     work(0);
@@ -101,16 +131,17 @@ std::vector<BlendEvaluation> BlendNormals::unit_normals(std::span<const double> 
 BlendChoice BlendNormals::choose(std::span<const double> weights) const {
   assert(weights.size() == set().targets.size());
   const BlendShape shape = parts_->shape();
-  BlendScratch scratch({}, {shape.elements, 0, shape.targets, 0, false});
-  return choose_path(parts_->source(), weights, scratch);
+  BlendPose pose({}, {shape.elements, 0, shape.targets, 0, false});
+  return choose_path(parts_->source(), weights, pose);
 }
 
 Status BlendNormals::add_target(BlendTarget target) {
   if (Status status = validate(target, set().topology, set().targets.size()); !status) return status;
   parts_->set.targets.push_back(std::move(target));
   parts_->storage.target_added();
-  parts_->scratch.is_active.resize(set().targets.size());
-  parts_->scratch.active.reserve(set().targets.size());
+  parts_->pose.is_active.resize(set().targets.size());
+  parts_->pose.active.reserve(set().targets.size());
+  parts_->pose.weights.resize(set().targets.size());
   return Success{};
 }
 
@@ -119,7 +150,7 @@ const BlendSet& BlendNormals::set() const noexcept { return parts_->set; }
 const BlendCost& BlendNormals::cost() const noexcept { return parts_->storage.cost(); }
 
 std::size_t BlendNormals::bytes() const noexcept {
-  return parts_->storage.bytes() + base_bytes(parts_->shape()) + scratch_bytes(parts_->shape());
+  return parts_->storage.bytes() + base_bytes(parts_->shape()) + pose_bytes(parts_->shape());
 }
 
 }  // namespace chronormal

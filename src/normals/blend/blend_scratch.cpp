@@ -39,8 +39,8 @@ std::size_t base_bytes(const BlendShape& shape) noexcept {
   return shape.elements * (kBlendLanes * sizeof(double) + 3 * sizeof(float)) + bits_bytes(shape.elements);
 }
 
-BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
-    : sums(kBlendLanes * shape.elements),
+BlendPose::BlendPose(const BlendSet& set, const BlendShape& shape)
+    : weights(shape.targets),
       large(shape.large_faces),
       points(kBlendLanes * shape.vertices),
       float_points(shape.in_float32 ? kBlendLanes * shape.vertices : 0),
@@ -51,11 +51,10 @@ BlendScratch::BlendScratch(const BlendSet& set, const BlendShape& shape)
   reset_points(set.base, {0, shape.vertices}, points.data());
 }
 
-std::size_t scratch_bytes(const BlendShape& shape) noexcept {
+std::size_t pose_bytes(const BlendShape& shape) noexcept {
   const std::size_t in_float32 = shape.in_float32 ? kBlendLanes * shape.vertices * sizeof(float) : 0;
-  return in_float32 + kBlendLanes * (shape.elements + shape.vertices) * sizeof(double) +
-         2 * bits_bytes(shape.elements) + shape.large_faces * sizeof(BlendedFace) +
-         shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
+  return in_float32 + (kBlendLanes * shape.vertices + shape.targets) * sizeof(double) + 2 * bits_bytes(shape.elements) +
+         shape.large_faces * sizeof(BlendedFace) + shape.targets * sizeof(std::uint32_t) + bits_bytes(shape.targets);
 }
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,5 @@
-/// What BlendNormals keeps beside its terms: normals of the base, and memory to work in.
+/// What BlendNormals keeps beside its terms: normals of the base, and what is the same for all elements at some
+/// weights.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_SCRATCH_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_SCRATCH_H_
 
@@ -8,6 +9,7 @@
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/blend_set.h"
+#include "chronormal/normals/blend_normals.h"
 #include "core/memory.h"
 #include "normals/blend/index_bits.h"
 
@@ -36,12 +38,16 @@ struct BlendedFace {
   double noise = 0;
 };
 
-struct BlendScratch {
-  BlendScratch(const BlendSet& set, const BlendShape& shape);
+/// The weights that are set, and what they move.
+struct BlendPose {
+  BlendPose(const BlendSet& set, const BlendShape& shape);
 
-  std::vector<double> sums;           ///< of terms, as those of the base
-  std::vector<BlendedFace> large;     ///< large_faces() of the storage
-  std::vector<double> points;         ///< rows of vertices, those of the base between two calls
+  BlendChoice choice;
+  std::vector<double> weights;
+  double point_noise = 0;             ///< what a point may be off by
+  bool has_points = false;            ///< whether points are those of the weights; else they are those of the base
+  std::vector<BlendedFace> large;     ///< large_faces() of the storage, if has_points
+  std::vector<double> points;         ///< rows of vertices
   AlignedArray<float> float_points;   ///< rows of vertices in float32; empty where nobody asks for them
   IndexBits touched;                  ///< elements that active targets touch
   IndexBits again;                    ///< elements that are made from positions
@@ -49,7 +55,7 @@ struct BlendScratch {
   std::vector<bool> is_active;
 };
 
-[[nodiscard]] std::size_t scratch_bytes(const BlendShape& shape) noexcept;
+[[nodiscard]] std::size_t pose_bytes(const BlendShape& shape) noexcept;
 
 }  // namespace chronormal::inline internal
 

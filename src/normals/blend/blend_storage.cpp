@@ -257,7 +257,7 @@ void BlendStorage::update_cost() {
       add_work(work_of(target, pair));
     }
   }
-  cost_.least_bytes = list_bytes() + base_bytes(shape) + scratch_bytes(shape);
+  cost_.least_bytes = list_bytes() + base_bytes(shape) + pose_bytes(shape);
   cost_.bytes = cost_.least_bytes + terms;
   const std::size_t counting =
       terms_.counting_bytes(cost_.overlapping_pairs) + (cost_.overlapping_pairs + targets_.size()) * sizeof(Candidate);

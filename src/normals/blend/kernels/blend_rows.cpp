@@ -21,10 +21,10 @@ HWY_INLINE double* RowAt(double* rows, std::size_t i) { return rows + kBlendLane
 HWY_INLINE const double* RowAt(const double* rows, std::size_t i) { return rows + kBlendLanes * i; }
 
 void AddTargetRows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& linear,
-                   const RowWeights& square, double* rows) {
+                   const RowWeights& square, std::size_t first, double* rows) {
   const DoubleRow a = LoadDoubleRow(linear.data()), c = LoadDoubleRow(square.data());
   for (const std::uint32_t e : elements) {
-    double* const row = RowAt(rows, e);
+    double* const row = RowAt(rows, e - first);
     const DoubleRow term = a * LoadDoubleRow(coefficients) + c * LoadDoubleRow(coefficients + kBlendLanes);
     StoreDoubleRow(LoadDoubleRow(row) + term, row);
     coefficients += 2 * kBlendLanes;
@@ -32,10 +32,10 @@ void AddTargetRows(std::span<const std::uint32_t> elements, const float* coeffic
 }
 
 void AddPairRows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& weight,
-                 double* rows) {
+                 std::size_t first, double* rows) {
   const DoubleRow c = LoadDoubleRow(weight.data());
   for (const std::uint32_t e : elements) {
-    double* const row = RowAt(rows, e);
+    double* const row = RowAt(rows, e - first);
     StoreDoubleRow(LoadDoubleRow(row) + c * LoadDoubleRow(coefficients), row);
     coefficients += kBlendLanes;
   }
@@ -220,13 +220,13 @@ HWY_EXPORT(UnitNormalsOfRows);
 HWY_EXPORT(UnitNormalsOfRings);
 
 void add_target_rows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& linear,
-                     const RowWeights& square, double* rows) noexcept {
-  HWY_DYNAMIC_DISPATCH(AddTargetRows)(elements, coefficients, linear, square, rows);
+                     const RowWeights& square, std::size_t first, double* rows) noexcept {
+  HWY_DYNAMIC_DISPATCH(AddTargetRows)(elements, coefficients, linear, square, first, rows);
 }
 
 void add_pair_rows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& weight,
-                   double* rows) noexcept {
-  HWY_DYNAMIC_DISPATCH(AddPairRows)(elements, coefficients, weight, rows);
+                   std::size_t first, double* rows) noexcept {
+  HWY_DYNAMIC_DISPATCH(AddPairRows)(elements, coefficients, weight, first, rows);
 }
 
 void move_points(std::span<const std::uint32_t> vertices, const float* deltas, double weight, double* points) noexcept {

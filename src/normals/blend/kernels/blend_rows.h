@@ -20,12 +20,13 @@ inline constexpr std::size_t kBlendLanes = 4;
 using RowWeights = std::array<double, kBlendLanes>;
 
 /// Adds to the row of each element of a target `linear` times its first four coefficients and `square` times the other
-/// four. coefficients must have eight for each element
+/// four. rows begin with that of element `first`.
+/// coefficients must have eight for each element
 void add_target_rows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& linear,
-                     const RowWeights& square, double* rows) noexcept;
+                     const RowWeights& square, std::size_t first, double* rows) noexcept;
 /// Adds to the row of each element of a pair `weight` times its four coefficients.
 void add_pair_rows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& weight,
-                   double* rows) noexcept;
+                   std::size_t first, double* rows) noexcept;
 
 /// Adds to the point of each vertex `weight` times its delta. deltas must have three floats for each vertex
 void move_points(std::span<const std::uint32_t> vertices, const float* deltas, double weight, double* points) noexcept;
