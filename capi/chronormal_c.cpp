@@ -94,8 +94,8 @@ Result<Topology> topology_of(const chronormal_mesh* mesh) {
 }
 
 // Errors: kUsage with the name of the field.
-Result<ElementCurvesOptions> options_of(const chronormal_options* given) {
-  ElementCurvesOptions options;
+Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
+  MeshNormalsOptions options;
   if (given == nullptr) return options;
   if (given->size < sizeof(chronormal_options)) {
     return Error{ErrorCode::kUsage, "options.size",
@@ -121,13 +121,13 @@ Result<ElementCurvesOptions> options_of(const chronormal_options* given) {
 }  // namespace
 
 struct chronormal_curves {
-  ElementCurves curves;
+  MeshNormals curves;
   Threads threads;
   std::vector<float> exact;  // (size, 3), of chronormal_curves_errors()
 };
 
 struct chronormal_blend {
-  ElementBlend blend;
+  MeshNormals blend;
   std::size_t targets;
   Threads threads;
 };
@@ -153,16 +153,17 @@ chronormal_status chronormal_curves_create(const chronormal_mesh* mesh, chronorm
                                            const chronormal_options* options, chronormal_curves** result) {
   if (result == nullptr) return misuse("result", "the pointer is NULL");
   return guarded([&] {
-    const Result<ElementCurvesOptions> chosen = options_of(options);
+    const Result<MeshNormalsOptions> chosen = options_of(options);
     if (!chosen) return fail(chosen.error());
     Result<Topology> topology = topology_of(mesh);
     if (!topology) return fail(topology.error());
     const auto first = view_of(from, mesh->vertex_count, "from"), last = view_of(to, mesh->vertex_count, "to");
     if (!first) return fail(first.error());
     if (!last) return fail(last.error());
-    Result<ElementCurves> curves =
-        ElementCurves::make(std::move(topology).value(), first.value(), last.value(), chosen.value());
+    Result<MeshNormals> curves = MeshNormals::make(std::move(topology).value(), chosen.value());
     if (!curves) return fail(curves.error());
+    if (const Status status = curves.value().set_segment(first.value(), last.value()); !status)
+      return fail(status.error());
     *result = new chronormal_curves{std::move(curves).value(), chosen.value().threads, {}};
     return CHRONORMAL_DONE;
   });
@@ -175,7 +176,7 @@ chronormal_status chronormal_curves_next(chronormal_curves* curves, chronormal_v
     const auto first = view_of(from, vertices, "from"), last = view_of(to, vertices, "to");
     if (!first) return fail(first.error());
     if (!last) return fail(last.error());
-    const Status status = curves->curves.next(first.value(), last.value());
+    const Status status = curves->curves.set_segment(first.value(), last.value());
     return status ? CHRONORMAL_DONE : fail(status.error());
   });
 }
@@ -183,7 +184,7 @@ chronormal_status chronormal_curves_next(chronormal_curves* curves, chronormal_v
 size_t chronormal_curves_size(const chronormal_curves* curves) { return curves != nullptr ? curves->curves.size() : 0; }
 
 size_t chronormal_curves_bytes(const chronormal_curves* curves) {
-  return curves != nullptr ? curves->curves.curves().bytes() : 0;
+  return curves != nullptr ? curves->curves.bytes() : 0;
 }
 
 chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t, chronormal_result normals,
@@ -224,7 +225,7 @@ chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronorma
   if (result == nullptr) return misuse("result", "the pointer is NULL");
   if (targets == nullptr && target_count > 0) return misuse("targets", "the pointer is NULL");
   return guarded([&] {
-    const Result<ElementCurvesOptions> chosen = options_of(options);
+    const Result<MeshNormalsOptions> chosen = options_of(options);
     if (!chosen) return fail(chosen.error());
     if (chosen.value().weighting != Weighting::kArea)
       return misuse("options.weighting", "blend shapes have area alone");
@@ -251,8 +252,9 @@ chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronorma
               ? BlendTarget::from_dense(values)
               : BlendTarget{"", {target.vertices, target.vertices + target.count}, std::move(values)});
     }
-    Result<ElementBlend> blend = ElementBlend::make(std::move(set), chosen.value().elements);
+    Result<MeshNormals> blend = MeshNormals::make(set.topology, {.elements = chosen.value().elements});
     if (!blend) return fail(blend.error());
+    if (const Status status = blend.value().set_targets(std::move(set)); !status) return fail(status.error());
     *result = new chronormal_blend{std::move(blend).value(), target_count, chosen.value().threads};
     return CHRONORMAL_DONE;
   });
@@ -267,7 +269,8 @@ chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const d
   return guarded([&] {
     const auto view = view_of(normals, blend->blend.size());
     if (!view) return fail(view.error());
-    const std::size_t count = blend->blend.unit_normals({weights, blend->targets}, view.value(), blend->threads);
+    const std::size_t count =
+        blend->blend.unit_normals(std::span(weights, blend->targets), view.value(), blend->threads);
     if (zeros != nullptr) *zeros = count;
     return CHRONORMAL_DONE;
   });
@@ -281,7 +284,7 @@ chronormal_status chronormal_motion_read(const char* const* files, size_t file_c
   if (files == nullptr || std::find(files, files + file_count, nullptr) != files + file_count)
     return misuse("files", "the pointer is NULL");
   return guarded([&] {
-    const Result<ElementCurvesOptions> chosen = options_of(options);
+    const Result<MeshNormalsOptions> chosen = options_of(options);
     if (!chosen) return fail(chosen.error());
     InputOptions reading;
     reading.files.assign(files, files + file_count);

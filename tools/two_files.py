@@ -15,8 +15,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ROOTS = [
-    "chronormal/normals/control_normals.h", "chronormal/normals/curve_preparation.h", "chronormal/normals/playback.h",
-    "chronormal/normals/element_curves.h", "chronormal/normals/element_blend.h"
+    "chronormal/normals/control_normals.h", "chronormal/normals/mesh_normals.h"
 ]
 # Headers that no other includes, whose sources define what those declare.
 MORE = ["normals/groups/weld.h"]

@@ -9,7 +9,6 @@
 
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/normals/normal_curves.h"
-#include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
 #include "groups/groups.h"
 
@@ -17,12 +16,11 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kSamples = 20, kQuickSamples = 3;  // steps of t
-constexpr std::size_t kPlayed = 16;                      // steps of a playback from sample to sample
 constexpr std::size_t kGridFaces = 20000;
 constexpr float kFar = 1000;  // how far from the origin, in radii of the ring
 
-// The bounds of normals/encodings.h and normals/playback.h.
-constexpr double kOctahedralBound = 7e-5, kRgb10A2Bound = 1.7e-3, kPlaybackBound = 5e-5;
+// The bounds of normals/encodings.h.
+constexpr double kOctahedralBound = 7e-5, kRgb10A2Bound = 1.7e-3;
 
 // Unit normals of all elements, sample after sample.
 struct Path {
@@ -98,13 +96,6 @@ std::vector<Path> make_paths(const Subject& subject) {
   paths.push_back(
       float_path(subject, "recompute", kExactTolerance, 0,
                  [rival](std::size_t, double t, VectorView<float> result) { (void)rival->unit_normals(t, result); }));
-  const auto playback =
-      std::make_shared<NormalPlayback>(*exact, 0.0, 1.0 / static_cast<double>(kPlayed * subject.samples));
-  paths.push_back(float_path(subject, "playback to float3", kPlaybackBound, bytes + per_element(playback->bytes()),
-                             [exact, playback](std::size_t sample, double, VectorView<float> result) {
-                               for (std::size_t i = 0; i < (sample == 0 ? 1 : kPlayed); ++i)
-                                 (void)playback->next(result);
-                             }));
   return paths;
 }
 

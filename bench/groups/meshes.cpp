@@ -15,7 +15,6 @@
 
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/io/input.h"
-#include "chronormal/normals/segment_normals.h"
 #include "groups/groups.h"
 #include "paths/rivals.h"
 
@@ -67,19 +66,6 @@ Mesh of_file(const std::string& path) {
   return middle_of(*motion.value());
 }
 
-// Notes how long SegmentNormals expects each of these ways to take, which is how it chooses between them.
-void predict(const MeshShape& shape, std::vector<Case>& cases) {
-  const StrategyCosts exact = model_costs(shape, kExactTolerance), compact = model_costs(shape, kCompactTolerance);
-  const std::pair<const char*, double> predictions[] = {
-      {"recompute", exact.recompute},      {"recompute in float32", exact.in_float32},
-      {"prepare exact", exact.prepare},    {"prepare compact", compact.prepare},
-      {"exact to float3", exact.evaluate}, {"compact to float3", compact.evaluate}};
-  for (Case& one : cases) {
-    for (const auto& [name, ns] : predictions)
-      if (one.name == name) one.predicted_ns = ns;
-  }
-}
-
 void run_mesh(Suite& suite, const std::string& name, const std::function<Mesh()>& make) {
   std::optional<Mesh> mesh;
   for (const Elements elements : {Elements::kFaces, Elements::kVertices}) {
@@ -96,9 +82,7 @@ void run_mesh(Suite& suite, const std::string& name, const std::function<Mesh()>
     if (elements == Elements::kVertices)
       groups = NormalGroups::of_vertices(mesh->topology(), separate_points(mesh->topology().vertex_count()));
     add_ours(list, mesh->segment(), groups ? &*groups : nullptr, 0, kFloatLimit);
-    std::vector<Case> cases = list.take();
-    predict(groups ? shape_of(mesh->segment(), *groups) : shape_of(mesh->segment()), cases);
-    suite.run(group, size, mesh->count(elements), oracle, std::move(cases));
+    suite.run(group, size, mesh->count(elements), oracle, list.take());
   }
 }
 

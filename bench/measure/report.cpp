@@ -116,7 +116,6 @@ std::string json_of(const Report& report) {
                 {"verified_error_rad", rounded(row.verified_error)},
                 {"limit_rad", rounded(row.limit)},
                 {"verified_elements", row.verified_elements}};
-    if (row.predicted_ns > 0) one["predicted_ns"] = rounded(row.predicted_ns);
     json["rows"].push_back(std::move(one));
   }
   json["qualities"] = Json::array();

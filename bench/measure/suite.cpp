@@ -87,7 +87,6 @@ void Suite::run(const std::string& group, const Size& size, std::size_t element_
     row.least_ns = *std::min_element(times.begin(), times.end()) / each;
     row.spread = spread(times);
     row.repetitions = times.size();
-    row.predicted_ns = one.predicted_ns;
     const double read = static_cast<double>(one.bytes_read), written = static_cast<double>(one.bytes_written);
     row.bytes_read = read / each;
     row.bytes_written = written / each;

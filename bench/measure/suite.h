@@ -45,7 +45,6 @@ struct Case {
   Rule rule = Rule::kArea;
   std::size_t bytes_read = 0;     ///< in a run, at least; 0: not known
   std::size_t bytes_written = 0;  ///< likewise
-  double predicted_ns = 0;        ///< what the model of SegmentNormals says it takes; 0: it says nothing
 };
 
 struct Row {
@@ -57,7 +56,6 @@ struct Row {
   double share_of_bandwidth = 0;             ///< what the memory would take / least_ns; 0: not known
   double verified_error = 0, limit = 0;      ///< radians
   std::size_t verified_elements = 0;
-  double predicted_ns = 0;  ///< as in its case
 };
 
 struct SuiteOptions {

@@ -7,7 +7,6 @@
 
 #include "chronormal/normals/float_recompute.h"
 #include "chronormal/normals/normal_curves.h"
-#include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
 #include "memory/bare_loop.h"
 
@@ -15,7 +14,6 @@ namespace chronormal::bench {
 namespace {
 
 constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;  // of normals/encodings.h
-constexpr double kPlaybackError = 5e-5;                            // of normals/playback.h
 constexpr std::size_t kManyTimesBytes = std::size_t{3} << 30;      // of results; more are not asked for
 
 Vector to_vector(const Vec3f& v) { return {double{v.x}, double{v.y}, double{v.z}}; }
@@ -174,34 +172,6 @@ Case bare_case(BareLoop::Reads reads, std::size_t count, std::size_t evaluations
   return one;
 }
 
-Case playback_case(const SharedPointer& shared) {
-  constexpr std::size_t kSteps = 1024;  // from the first frame to the last, and again
-  struct Played {
-    std::optional<NormalPlayback> playback;
-    std::size_t step = kSteps;
-  };
-  const NormalCurves& curves = shared->curves(kExactTolerance);
-  auto played = std::make_shared<Played>();
-  const auto step = [shared, played, &curves] {
-    if (played->step == kSteps) {
-      played->playback.emplace(curves, 0.0, 1.0 / kSteps);
-      played->step = 0;
-    }
-    (void)played->playback->next(shared->packed());
-    ++played->step;
-  };
-  // A run goes from where it is made anew to the last step before the next time; that one is verified.
-  Case one;
-  one.evaluations = kDefaultAnchorInterval;
-  one.run = [step] {
-    for (std::size_t i = 0; i < kDefaultAnchorInterval; ++i) step();
-  };
-  one.checks = {packed_check(static_cast<double>(kDefaultAnchorInterval - 1) / kSteps, shared->result())};
-  one.limit = kPlaybackError;
-  one.note = "steps of 1/1024";
-  return one;
-}
-
 }  // namespace
 
 Check packed_check(double t, const float* normals) {
@@ -260,7 +230,6 @@ void add_ours(CaseList& list, const Segment& segment, const NormalGroups* groups
     list.add("bare loop that writes" + suffix,
              [&] { return bare_case(BareLoop::Reads::kNothing, shared->count, evaluations, Threads::kOne); });
   }
-  list.add("playback to float3", [&] { return playback_case(shared); });
 }
 
 }  // namespace chronormal::bench

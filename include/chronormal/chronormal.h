@@ -16,21 +16,17 @@
 #include "chronormal/motion/paths.h"          // curves through keyframes, cut into straight pieces
 #include "chronormal/motion/topology.h"       // which vertices make which face
 
-#include "chronormal/normals/blend_normals.h"      // exact normals of blend shapes at any weights
-#include "chronormal/normals/control_normals.h"    // n(t) as three control normals, in double
-#include "chronormal/normals/curve_preparation.h"  // curves of normals, prepared a little at a time
-#include "chronormal/normals/element_blend.h"      // the normals of blend shapes for every face, vertex or corner
-#include "chronormal/normals/element_curves.h"     // the normals of a segment for every face, vertex or corner
-#include "chronormal/normals/elements.h"           // faces, vertices, corners, and who shares a normal
-#include "chronormal/normals/encodings.h"          // unit normals in four bytes: octahedral, 10-10-10-2
-#include "chronormal/normals/float_recompute.h"    // the fastest rival: in float32, without a promise
-#include "chronormal/normals/normal_curves.h"      // curves of normals: prepared once, evaluated at the speed of memory
-#include "chronormal/normals/normal_groups.h"      // which corners share a normal, and the sums of those that do
-#include "chronormal/normals/playback.h"           // curves of normals, played at equal steps
-#include "chronormal/normals/recompute.h"          // the rival: the cross product anew at every t
-#include "chronormal/normals/segment_normals.h"    // the cheaper of curves and recompute, by a model of their costs
-#include "chronormal/normals/transform.h"          // rigid and affine motion: normals of meshes that move as a whole
-#include "chronormal/normals/weighting.h"          // area, angle, uniform ...: the weightings that tools use, and fits
+#include "chronormal/normals/blend_normals.h"    // exact normals of blend shapes at any weights
+#include "chronormal/normals/control_normals.h"  // n(t) as three control normals, in double
+#include "chronormal/normals/elements.h"         // faces, vertices, corners, and who shares a normal
+#include "chronormal/normals/encodings.h"        // unit normals in four bytes: octahedral, 10-10-10-2
+#include "chronormal/normals/float_recompute.h"  // the fastest rival: in float32, without a promise
+#include "chronormal/normals/mesh_normals.h"     // begin here: unit normals between keyframes, at weights
+#include "chronormal/normals/normal_curves.h"    // curves of normals: prepared once, evaluated at the speed of memory
+#include "chronormal/normals/normal_groups.h"    // which corners share a normal, and the sums of those that do
+#include "chronormal/normals/recompute.h"        // the rival: the cross product anew at every t
+#include "chronormal/normals/transform.h"        // rigid and affine motion: normals of meshes that move as a whole
+#include "chronormal/normals/weighting.h"        // area, angle, uniform ...: the weightings that tools use, and fits
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
 

@@ -25,7 +25,7 @@ class Curves : public ZeroedObject {
          const Array<std::uint32_t>& corners, const std::string& elements, std::optional<double> crease,
          const std::string& weighting, double tolerance, bool weld, int threads) {
     const auto first = vectors_of(from, "p0"), last = vectors_of(to, "p1");
-    ElementCurvesOptions options;
+    MeshNormalsOptions options;
     options.elements = element_options(elements, crease, weld);
     options.weighting = value_or_raise(make_weighting(weighting));
     require(std::isfinite(tolerance) && tolerance > 0, "tolerance", "it must be a positive number of radians");
@@ -33,7 +33,12 @@ class Curves : public ZeroedObject {
     const ChosenThreads chosen(threads);
     options.threads = chosen.threads();
     Topology topology = topology_of(first.count, offsets, corners);
-    curves_.emplace(without_gil([&] { return ElementCurves::make(std::move(topology), first, last, options); }));
+    curves_.emplace(without_gil([&]() -> Result<MeshNormals> {
+      Result<MeshNormals> made = MeshNormals::make(std::move(topology), options);
+      if (!made) return made;
+      if (const Status status = made.value().set_segment(first, last); !status) return status.error();
+      return made;
+    }));
   }
 
   void next(const AnyArray<float>& from, const AnyArray<float>& to) {
@@ -44,7 +49,7 @@ class Curves : public ZeroedObject {
     {
       const py::gil_scoped_release released;  // and no Interruption, which would leave half of a segment
       const std::lock_guard turn(turns);
-      status = curves_->next(first, last);
+      status = curves_->set_segment(first, last);
     }
     value_or_raise(std::move(status));
   }
@@ -85,7 +90,7 @@ class Curves : public ZeroedObject {
   }
 
   [[nodiscard]] std::size_t size() const { return curves().size(); }
-  [[nodiscard]] std::size_t bytes() const { return curves().curves().bytes(); }
+  [[nodiscard]] std::size_t bytes() const { return curves().bytes(); }
   [[nodiscard]] double fit_bound() const { return curves().fit_bound(); }
   [[nodiscard]] std::string elements() const {
     return std::string(element_kind_name(curves().options().elements.kind));
@@ -94,7 +99,7 @@ class Curves : public ZeroedObject {
     std::array<char, 32> tolerance{};
     (void)std::snprintf(tolerance.data(), tolerance.size(), "%.3g", curves().options().tolerance);
     const ElementKind kind = curves().options().elements.kind;
-    return "<chronormal.Curves: normals of " + counted(size(), kind) + ", " + std::to_string(curves().curves().size()) +
+    return "<chronormal.Curves: normals of " + counted(size(), kind) + ", " + std::to_string(curves().element_count()) +
            " of them different, weighting " + std::string(weighting_name(curves().options().weighting)) +
            ", tolerance " + tolerance.data() + ", " + std::to_string(bytes()) + " bytes>";
   }
@@ -110,12 +115,12 @@ class Curves : public ZeroedObject {
     }
   }
 
-  [[nodiscard]] const ElementCurves& curves() const {
+  [[nodiscard]] const MeshNormals& curves() const {
     require_made(curves_.has_value());
     return *curves_;
   }
 
-  std::optional<ElementCurves> curves_;
+  std::optional<MeshNormals> curves_;
   Turns turns_;
 };
 
@@ -142,7 +147,12 @@ class Blend : public ZeroedObject {
     }
     const ElementOptions options = element_options(elements, crease, weld);
     kind_ = options.kind;
-    blend_.emplace(without_gil([&] { return ElementBlend::make(std::move(set), options); }));
+    blend_.emplace(without_gil([&]() -> Result<MeshNormals> {
+      Result<MeshNormals> made = MeshNormals::make(set.topology, {.elements = options});
+      if (!made) return made;
+      if (const Status status = made.value().set_targets(std::move(set)); !status) return status.error();
+      return made;
+    }));
   }
 
   py::array unit_normals(const Array<double>& weights, const py::object& out, int threads) {
@@ -161,30 +171,30 @@ class Blend : public ZeroedObject {
     const Computation computing(turns_);
     for (std::size_t r = 0; r < rows; ++r) {
       check_interruption();
-      blend_->unit_normals({values + r * targets_, targets_}, VectorView<float>::packed(data + 3 * count * r, count),
-                           chosen.threads());
+      blend_->unit_normals(std::span(values + r * targets_, targets_),
+                           VectorView<float>::packed(data + 3 * count * r, count), chosen.threads());
     }
     return result;
   }
 
   [[nodiscard]] std::size_t size() const { return blend().size(); }
   [[nodiscard]] std::size_t targets() const { return targets_; }
-  [[nodiscard]] std::size_t bytes() const { return blend().normals().bytes(); }
+  [[nodiscard]] std::size_t bytes() const { return blend().bytes(); }
   [[nodiscard]] std::string text() const {
-    return "<chronormal.Blend: normals of " + counted(size(), kind_) + ", " + std::to_string(blend().normals().size()) +
+    return "<chronormal.Blend: normals of " + counted(size(), kind_) + ", " + std::to_string(blend().element_count()) +
            " of them different, " + std::to_string(targets_) + (targets_ == 1 ? " target, " : " targets, ") +
            std::to_string(bytes()) + " bytes>";
   }
 
  private:
-  [[nodiscard]] const ElementBlend& blend() const {
+  [[nodiscard]] const MeshNormals& blend() const {
     require_made(blend_.has_value());
     return *blend_;
   }
 
   std::size_t targets_;
   ElementKind kind_ = ElementKind::kVertices;
-  std::optional<ElementBlend> blend_;
+  std::optional<MeshNormals> blend_;
   Turns turns_;
 };
 

@@ -169,9 +169,10 @@ TEST(Layers, a_planted_violation_is_found) {
   EXPECT_EQ(violations("src/normals/stray/x.cpp", "").size(), 1u);
   EXPECT_EQ(violations("src/normals/groups/x.cpp", "#include \"normals/curves/outputs.h\"\n").size(), 1u);
   EXPECT_EQ(violations("src/normals/groups/kernels/x.cpp", "#include \"normals/curves/kernels/pack.h\"\n").size(), 1u);
-  EXPECT_EQ(violations("src/normals/groups/x.cpp", "#include \"chronormal/normals/normal_curves.h\"\n").size(), 1u);
+  EXPECT_EQ(violations("src/normals/groups/x.cpp", "#include \"chronormal/normals/elements.h\"\n").size(), 1u);
   EXPECT_EQ(
-      violations("include/chronormal/normals/normal_groups.h", "#include \"chronormal/normals/playback.h\"\n").size(),
+      violations("include/chronormal/normals/normal_groups.h", "#include \"chronormal/normals/normal_curves.h\"\n")
+          .size(),
       1u);
   EXPECT_EQ(violations("src/io/json/x.cpp", "#include \"io/gltf/glb.h\"\n").size(), 1u);
   EXPECT_EQ(violations("cli/terminal/x.cpp", "#include \"cli/options/help.h\"\n").size(), 1u);

@@ -21,12 +21,10 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/blend_set.h"
 #include "chronormal/normals/blend_normals.h"
-#include "chronormal/normals/curve_preparation.h"
+#include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/playback.h"
 #include "chronormal/normals/recompute.h"
-#include "chronormal/normals/segment_normals.h"
 #include "chronormal_c.h"
 #include "io/mesh/obj.h"
 #include "simd/targets.h"
@@ -85,24 +83,6 @@ Way all_together(NormalCurves made, Threads threads) {
     std::vector<VectorView<float>> views;
     for (Normals& normals : results) views.push_back(VectorView<float>::packed(normals.data(), curves->size()));
     curves->unit_normals(times, views, threads);
-    return results;
-  };
-}
-
-// Each time begins a playback of its own, whose first step has not drifted.
-Way played(NormalCurves made) {
-  const auto curves = std::make_shared<NormalCurves>(std::move(made));
-  return [curves](const std::vector<double>& times) {
-    std::vector<Normals> results(times.size(), Normals(3 * curves->size()));
-    std::vector<NormalPlayback> playbacks;
-    for (const double t : times) playbacks.emplace_back(*curves, t, (1 - t) / 4);
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      const auto view = VectorView<float>::packed(results[i].data(), curves->size());
-      for (const int steps : {1, 2}) {  // of the second, which has drifted, only that it disturbs no other
-        Normals drifted(3 * curves->size());
-        playbacks[i].next(steps == 1 ? view : VectorView<float>::packed(drifted.data(), curves->size()));
-      }
-    }
     return results;
   };
 }
@@ -196,11 +176,32 @@ Way motion_in_c(const MeshInC& in, const std::shared_ptr<test::TemporaryFolder>&
   });
 }
 
+MeshNormals mesh_normals(const Motion& motion, const Elements& elements, double tolerance, bool in_slices) {
+  MeshNormalsOptions options;
+  options.elements = {static_cast<ElementKind>(elements.kind), false, elements.crease_angle};
+  options.tolerance = tolerance;
+  MeshNormals normals = MeshNormals::make(motion.topology, options).value();
+  const Segment segment = motion.segment(0);
+  if (!in_slices) {
+    EXPECT_TRUE(normals.set_segment(segment));
+    return normals;
+  }
+  EXPECT_TRUE(normals.begin_segment(segment.from, segment.to));
+  while (!normals.prepare(0.3)) {
+  }
+  normals.finish_segment();
+  return normals;
+}
+
 // Adds the ways of the interface for C: to the curves of C++ where they have the same elements, one for one.
-void add_ways_of_c(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
-                   std::vector<Kin>& all) {
+void add_ways_of_outputs(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
+                         std::vector<Kin>& all) {
   Kin own{std::numeric_limits<double>::infinity(), {}};  // that of corners has a normal for each of them
   Kin& kin = elements.kind == CHRONORMAL_CORNERS ? own : curves;
+  for (const bool in_slices : {false, true})
+    kin.ways.push_back({"the normals of a mesh", [=, &motion] {
+                          return one_by_one(mesh_normals(motion, elements, tolerance, in_slices), Threads::kOne);
+                        }});
   for (const Threads threads : {Threads::kOne, Threads::kAll}) {
     for (const bool is_next : {false, true}) {
       kin.ways.push_back({is_next ? "the next curves in C" : "curves in C", [=, &motion] {
@@ -274,24 +275,8 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const El
       kin.ways.push_back({"curves", [=] { return one_by_one(made(threads), threads); }});
       kin.ways.push_back({"curves, all times together", [=] { return all_together(made(threads), threads); }});
     }
-    kin.ways.push_back({"curves in slices", [=, &segment] {
-                          CurvePreparation slices = groups == nullptr ? CurvePreparation(segment, options)
-                                                                      : CurvePreparation(segment, *groups, options);
-                          while (!slices.prepare(0.3)) {
-                          }
-                          return one_by_one(slices.take(), Threads::kOne);
-                        }});
-    kin.ways.push_back({"curves as the strategy", [=, &segment] {
-                          StrategyOptions strategy{.tolerance = tolerance};
-                          strategy.forced = NormalStrategy::kPolynomial;
-                          return one_by_one(groups == nullptr ? SegmentNormals(segment, strategy)
-                                                              : SegmentNormals(segment, *groups, strategy),
-                                            Threads::kOne);
-                        }});
-    add_ways_of_c(motion, elements, tolerance, kin, all);
+    add_ways_of_outputs(motion, elements, tolerance, kin, all);
     all.push_back(std::move(kin));
-    Kin& playback = all.emplace_back(Kin{tolerance, {}});
-    playback.ways.push_back({"playback", [=] { return played(made(Threads::kOne)); }});
   }
   Kin& anew = all.emplace_back(Kin{kExactTolerance, {}});
   for (const Threads threads : {Threads::kOne, Threads::kAll}) {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "chronormal/motion/paths.h"
+#include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/recompute.h"
-#include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/compare.h"
@@ -66,9 +66,10 @@ std::vector<Way> ways() {
                    const NormalGroups groups = vertices_of(motion);
                    evaluate(NormalRecompute(motion.segment(0), groups), 0.3);
                  }});
-  all.push_back({"the strategy", [](const Motion& motion) {
-                   const NormalGroups groups = vertices_of(motion);
-                   evaluate(SegmentNormals(motion.segment(0), groups, StrategyOptions{.evaluations = 20}), 0.3);
+  all.push_back({"the normals of a mesh", [](const Motion& motion) {
+                   MeshNormals normals = MeshNormals::make(motion.topology).value();
+                   ASSERT_TRUE(normals.set_segment(motion.segment(0)));
+                   evaluate(std::move(normals), 0.3);
                  }});
   all.push_back({"sums of control normals", [](const Motion& motion) {
                    (void)all_group_control_normals(motion.segment(0), vertices_of(motion));

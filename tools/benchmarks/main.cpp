@@ -54,7 +54,6 @@ std::string machine_part(const Results& results, const std::string& folder) {
        {"quick", results.quick ? " **Repetitions were few and short in this quick run; its figures are rough.**" : ""},
        {"meshes", meshes_part(results, folder)},
        {"frames", frames_part(results, folder)},
-       {"predicted", predicted_part(results, folder)},
        {"blend", blend_part(results, folder)},
        {"commands", commands_part(results, folder)},
        {"uses", uses_part(results, folder)}});

@@ -94,31 +94,6 @@ std::string meshes_part(const Results& results, const std::string& folder) {
   return part.markdown();
 }
 
-std::string predicted_part(const Results& results, const std::string& folder) {
-  std::vector<Cells> rows;
-  Cells header = {"predicted, ns (off by)"};
-  for (const std::string& mesh : other_meshes()) header.push_back(mesh);
-  for (const std::string group : {"faces of meshes", "vertices of meshes"}) {
-    for (const char* path : {"recompute", "recompute in float32", "prepare exact", "prepare compact", "exact to float3",
-                             "compact to float3"}) {
-      Cells cells = {fmt::format("{}: {}", group.starts_with("faces") ? "faces" : "vertices", path)};
-      for (const std::string& mesh : other_meshes()) {
-        const Row* const row = results.find(group, mesh, kGrid, path);
-        const bool is_known = row != nullptr && row->predicted > 0;
-        cells.push_back(
-            is_known ? fmt::format("{} ({:+.0f} %)", nanoseconds(row->predicted), 100 * (row->predicted / row->ns - 1))
-                     : "-");
-      }
-      if (std::any_of(cells.begin() + 1, cells.end(), [](const std::string& one) { return one != "-"; }))
-        rows.push_back(std::move(cells));
-    }
-  }
-  if (rows.empty()) return "";
-  Page part("benchmarks/predicted.md.in", folder);
-  part.table("predicted", header, rows);
-  return part.markdown();
-}
-
 std::string frames_part(const Results& results, const std::string& folder) {
   struct Mesh {
     std::string title, group, size;

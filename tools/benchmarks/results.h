@@ -14,7 +14,6 @@ struct Row {
   std::string group, size, order, name, library, note;
   double elements = 0, ns = 0, spread = 0, share = 0;  // ns: median; share: of what the memory allows, 0: not known
   int threads = 1, evaluations = 1;
-  double predicted = 0;  // ns; 0: not known
 };
 
 struct Bandwidth {

@@ -19,10 +19,9 @@ void add_accuracy(Page& page, const Results& results);  ///< every path against 
 /// The part on blend shapes; empty where no run measured them.
 [[nodiscard]] std::string blend_part(const Results& results, const std::string& folder);
 
-/// The parts on other meshes, on what the model of costs says of them, and on the cost of a frame by the number of
-/// frames in a segment; each is empty where no run measured it.
+/// The parts on other meshes, and on the cost of a frame by the number of frames in a segment; each is empty where no
+/// run measured it.
 [[nodiscard]] std::string meshes_part(const Results& results, const std::string& folder);
-[[nodiscard]] std::string predicted_part(const Results& results, const std::string& folder);
 [[nodiscard]] std::string frames_part(const Results& results, const std::string& folder);
 
 /// The part on answers for whole intervals of time; it is empty where no run measured them.

@@ -187,7 +187,7 @@ void measure_drift(Page& page) {
     for (const auto& of_scheme : drifts[m].anchored) anchored[m] = std::max(anchored[m], worst_angle(of_scheme));
     everywhere.push_back(fmt::format("{} on {}", scientific(anchored[m], 1), morphs()[m].name));
   }
-  require(largest(anchored) < 5e-6, "anchored drift stays below 5e-6 rad, as normals/playback.h says");
+  require(largest(anchored) < 5e-6, "anchored drift stays below 5e-6 rad, as schemes/scheme.h says");
   const Drift &slerp_last = twist.free[4][last], &slerp_before = twist.free[4][at(5000)];
   require(slerp_last.length > slerp_before.length && slerp_last.angle < slerp_before.angle,
           "slerp trades angle for length");

@@ -49,6 +49,14 @@ struct VectorView {
     return packed(xyz.data(), xyz.size() / 3);
   }
 
+  /// Names vectors in records of `bytes` bytes each, as in a vertex buffer: xyz is the first component of the first.
+  /// bytes must be a multiple of the size of a scalar, and at least three of them
+  [[nodiscard]] static VectorView strided(T* xyz, std::size_t count, std::size_t bytes) noexcept {
+    if (count == 0) return {};
+    assert(bytes % sizeof(T) == 0 && bytes >= 3 * sizeof(T));
+    return {xyz, xyz + 1, xyz + 2, count, bytes / sizeof(T)};
+  }
+
   [[nodiscard]] Vec3<Scalar> operator[](std::size_t i) const noexcept {
     assert(i < count);
     return {x[i * stride], y[i * stride], z[i * stride]};

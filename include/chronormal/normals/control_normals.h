@@ -68,7 +68,7 @@ struct UnitNormal {
 
 /// n(t) / |n(t)| in double, with every degenerate case defined as named by Direction. At t = 0 the limit is taken from
 /// after, elsewhere from before. Inside a segment n(t) counts as zero below 8 rounding errors of its control normals:
-/// who has positions and must know better asks NormalCurves or unit_normals_at() in recompute.h, which decide it
+/// who has positions and must know better asks MeshNormals or NormalCurves, which decide it
 /// exactly.
 [[nodiscard]] UnitNormal unit_normal_at(const ControlNormals& normals, double t) noexcept;
 

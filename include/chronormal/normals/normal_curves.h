@@ -126,8 +126,7 @@ class NormalCurves {
   [[nodiscard]] std::vector<ByteCount> byte_counts() const;
 
  private:
-  friend class CurvePreparation;
-  friend class NormalPlayback;
+  friend class MeshNormals;
 
   explicit NormalCurves(std::unique_ptr<CurveData> data) noexcept;
   [[nodiscard]] const CurveData& data() const noexcept;

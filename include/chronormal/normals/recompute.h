@@ -23,10 +23,8 @@
 
 #include <cstddef>
 #include <memory>
-#include <vector>
 
 #include "chronormal/core/parallel.h"
-#include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
@@ -38,13 +36,6 @@ namespace chronormal {
 /// result must have faces.count elements; faces must lie inside the topology
 std::size_t unit_normals_at(const Segment& segment, IndexRange faces, const LocalTime& t,
                             VectorView<float> result) noexcept;
-
-/// The easy way from a motion and a time in seconds to normals: finds the segment of the time, and returns the unit
-/// normals of all faces, (F, 3), or those of all outputs of groups, (V, 3) or (corners, 3). On all cores. Everything is
-/// made anew in each call; for many times keep a SegmentNormals for each segment, and ask find_instant() for its t.
-/// The motion must be valid, the groups of its topology. Errors: those of find_instant().
-[[nodiscard]] Result<std::vector<float>> unit_normals_at(const Motion& motion, double time);
-[[nodiscard]] Result<std::vector<float>> unit_normals_at(const Motion& motion, const NormalGroups& groups, double time);
 
 class NormalRecompute {
  public:

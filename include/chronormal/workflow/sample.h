@@ -7,8 +7,8 @@
 ///     neither    of a mesh that stands still: one keyframe and no segment
 ///
 /// Area-weighted normals are within 1e-6 rad of exact arithmetic, however thin, small or mixed in size the faces are:
-/// at times by curves of the segment or from its positions, whichever costs less for as many times as are asked for
-/// there (normals/segment_normals.h), areas themselves and a mesh that stands still from positions. At weights that
+/// at times from positions, or by curves of the segment where kCurvesFrom times or more are asked for there
+/// (normals/mesh_normals.h), areas themselves and a mesh that stands still from positions. At weights that
 /// holds for positions before they are rounded to float32. Other weightings, which are no polynomials, are
 /// computed anew in double.
 ///
@@ -43,8 +43,8 @@
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
 #include "chronormal/normals/elements.h"
+#include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/peers.h"
 #include "chronormal/workflow/shard.h"
@@ -121,9 +121,9 @@ class NormalSampler {
   MotionStream* stream_;
   const Motion* motion_;  // of the stream
   SampleOptions options_;
-  std::unique_ptr<const NormalGroups> groups_;     // but for faces; prepared normals refer to them
-  std::optional<SegmentNormals> segment_normals_;  // of one segment
-  std::size_t segment_ = 0;                        // which
+  std::unique_ptr<const NormalGroups> groups_;  // but for faces
+  NormalCurves curves_;                         // of one segment
+  std::optional<std::size_t> segment_;          // which
 };
 
 /// For each of some times, how many from it on lie in the same segment without a break: the evaluations that

@@ -30,8 +30,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, CurveData* reuse);
 
-/// Builds the same curves on one thread in slices, with the same bits: see CurvePreparation. The segment and the groups
-/// must outlive the object.
+/// Builds the same curves on one thread in slices, with the same bits, for MeshNormals::prepare(). The segment and the
+/// groups must outlive the object.
 class CurveSlices {
  public:
   CurveSlices(const Segment& segment, const NormalGroups* groups, const CurveOptions& options, CurveData* reuse);

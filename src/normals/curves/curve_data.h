@@ -1,7 +1,7 @@
 /// What NormalCurves keeps: its elements in blocks of 16, in runs of neighbouring blocks of one kind, and beside them
 /// the elements that float32 cannot carry.
 ///
-///     build_curves (curve_builder.h) --CurveData--> NormalCurves, NormalPlayback
+///     build_curves (curve_builder.h) --CurveData--> NormalCurves, MeshNormals
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_
 
@@ -62,10 +62,6 @@ struct CurveData {
     exact_digits.clear();
   }
 };
-
-/// Writes the unit normals of the flagged elements at t, and returns how many have no direction.
-/// result must have as many elements as the curves
-std::size_t write_flagged(const CurveData& curves, const LocalTime& t, VectorView<float> result) noexcept;
 
 }  // namespace chronormal::inline internal
 

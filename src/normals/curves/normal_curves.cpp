@@ -18,8 +18,8 @@
 #include "normals/curves/curve_builder.h"
 #include "normals/curves/curve_count.h"
 #include "normals/curves/curve_data.h"
+#include "normals/curves/curve_evaluation.h"
 #include "normals/curves/kernels/curve_blocks.h"
-#include "normals/curves/kernels/flagged_normals.h"
 #include "normals/curves/outputs.h"
 
 namespace chronormal {
@@ -40,14 +40,6 @@ float clamped_to_float(double value) {
 
 Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_to_float(v.y), clamped_to_float(v.z)}; }
 
-// The digits of a flagged element for which double is not enough at every t, or nothing.
-const std::int32_t* digits_of(const CurveData& curves, std::size_t element) {
-  const auto at = std::lower_bound(curves.exact.begin(), curves.exact.end(), element,
-                                   [](const CurveData::ExactElement& e, std::size_t i) { return e.element < i; });
-  const bool is_exact = at != curves.exact.end() && at->element == element;
-  return is_exact ? curves.exact_digits.data() + at->digits : nullptr;
-}
-
 // Whether double is certain of the direction of n(t), or that there is none, if the control normals are exact.
 bool has_certain_direction(const ControlNormals& c, double t) {
   const double s = 1 - t;
@@ -55,84 +47,11 @@ bool has_certain_direction(const ControlNormals& c, double t) {
   return largest_component(c) == 0 || max_abs(normal_at(c, t)) > smallest_certain(0) * size;
 }
 
-// How many of the flagged elements [first, last) are neighbours, from the first one on.
-std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t first, std::size_t last) noexcept {
-  if (flagged[last - 1] - flagged[first] == last - 1 - first) return last - first;
-  std::size_t count = 1;
-  while (first + count < last && flagged[first + count] == flagged[first] + count) ++count;
-  return count;
-}
-
-// Calls write(element, xyz, count) for neighbouring flagged elements of a range, with what double makes of them at t, and
-// then settle(index, element) for those that it cannot carry; `index` is that among the flagged.
-template <class Write, class Settle>
-void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, const Write& write,
-                 const Settle& settle) {
-  const auto index_of = [&flagged = curves.flagged.numbers](std::size_t element) {
-    return static_cast<std::size_t>(std::lower_bound(flagged.begin(), flagged.end(), element) - flagged.begin());
-  };
-  constexpr std::size_t kBatch = 4;  // tiles
-  const std::size_t begin = index_of(range.first), end = index_of(range.end());
-  FlaggedUnits batch[kBatch];
-  for (std::size_t tile = begin / kTile; tile * kTile < end; tile += kBatch) {
-    const std::size_t count = std::min(kBatch, curves.flagged.tiles.size() - tile);
-    flagged_unit_normals(std::span(curves.flagged.tiles).subspan(tile, count), t, batch);
-    for (std::size_t i = 0; i < count; ++i) {
-      const FlaggedUnits& units = batch[i];
-      const std::size_t first = (tile + i) * kTile, last = std::min(first + kTile, end);
-      for (std::size_t k = std::max(first, begin); k < last;) {
-        const std::size_t run = run_from(curves.flagged.numbers, k, last);
-        write(curves.flagged.numbers[k], units.xyz + 3 * (k - first), run);
-        k += run;
-      }
-      if (units.uncertain == 0) continue;
-      for (std::size_t k = std::max(first, begin); k < last; ++k)
-        if ((units.uncertain >> (k - first) & 1) != 0) settle(k, curves.flagged.numbers[k]);
-    }
-  }
-}
-
-// Writes the flagged elements of a range. Returns how many have no direction.
-template <class Output>
-std::size_t write_flagged_range(const CurveData& curves, IndexRange range, const LocalTime& t,
-                                const Output& output) noexcept {
-  std::size_t without_direction = 0;
-  for_flagged(
-      curves, range, t,
-      [&output](std::size_t element, const float* xyz, std::size_t count) { set_run(output, element, xyz, count); },
-      [&](std::size_t index, std::size_t element) {
-        const std::int32_t* const digits = digits_of(curves, element);
-        const UnitNormal u = digits != nullptr ? ExactCurve::of_kept(digits).unit_normal_at(t)
-                                               : unit_normal_at(curves.flagged.scaled_normals(index), t);
-        output.set(element, to_float(u.vector));
-        if (u.direction == Direction::kNone) ++without_direction;
-      });
-  return without_direction;
-}
-
 // There is no normal at a time that is none.
 template <class Output>
 std::size_t write_zeros(std::size_t size, const Output& output) {
   for (std::size_t i = 0; i < size; ++i) output.set(i, {});
   return size;
-}
-
-// One pass over the elements of a range, at one t. Returns how many have no direction.
-template <class Output>
-std::size_t evaluate_range(const CurveData& curves, IndexRange range, const LocalTime& t, const CurveWeights& weights,
-                           const Output& output) noexcept {
-  const std::size_t first_block = range.first / kTile;
-  auto run = std::upper_bound(curves.runs.begin(), curves.runs.end(), first_block,
-                              [](std::size_t block, const CurveData::Run& r) { return block < r.first_block; });
-  std::size_t element = range.first;
-  for (--run; element < range.end(); ++run) {
-    const IndexRange of_run = run->elements(range.end());
-    const std::size_t skipped = element - of_run.first;
-    const std::byte* const blocks = curves.blocks.data() + run->offset + skipped * bytes_of(run->kind);
-    output.write({blocks, run->kind, of_run.end() - element}, weights, element);
-    element = of_run.end();
-  }
-  return write_flagged_range(curves, range, t, output);
 }
 
 // Calls body(range) over all elements, on one thread as a whole or on all in pieces; returns the sum of the results.
@@ -190,14 +109,6 @@ std::size_t evaluate_many(const CurveData& curves, std::span<const double> times
 }
 
 }  // namespace
-
-inline namespace internal {
-
-std::size_t write_flagged(const CurveData& curves, const LocalTime& t, VectorView<float> result) noexcept {
-  return write_flagged_range(curves, {0, curves.size}, local_time(t), PlanesOutput(result, MemoryAccess{}));
-}
-
-}  // namespace internal
 
 NormalCurves::NormalCurves() noexcept = default;
 NormalCurves::NormalCurves(NormalCurves&&) noexcept = default;

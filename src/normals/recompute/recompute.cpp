@@ -405,27 +405,6 @@ std::size_t unit_normals_at(const Segment& segment, IndexRange faces, const Loca
   return Call(segment, local_time(t), result, faces.first).faces(faces);
 }
 
-Result<std::vector<float>> unit_normals_at(const Motion& motion, double time) {
-  const Result<Instant> instant = find_instant(motion, time);
-  if (!instant) return instant.error();
-  std::vector<float> normals(3 * motion.topology.face_count());
-  NormalRecompute recompute(motion.segment(instant.value().segment));
-  recompute.unit_normals(instant.value().t, VectorView<float>::packed(normals.data(), recompute.size()), Threads::kAll);
-  return normals;
-}
-
-Result<std::vector<float>> unit_normals_at(const Motion& motion, const NormalGroups& groups, double time) {
-  const Result<Instant> instant = find_instant(motion, time);
-  if (!instant) return instant.error();
-  const std::size_t outputs = groups.element_of_output().size();
-  std::vector<float> different(3 * groups.size()), normals(3 * outputs);
-  const auto elements = VectorView<float>::packed(different.data(), groups.size());
-  NormalRecompute(motion.segment(instant.value().segment), groups)
-      .unit_normals(instant.value().t, elements, Threads::kAll);
-  groups.copy_to_outputs(elements, VectorView<float>::packed(normals.data(), outputs));
-  return normals;
-}
-
 struct NormalRecompute::Parts {
   explicit Parts(const Segment& of_segment, const NormalGroups* of_groups = nullptr);
 

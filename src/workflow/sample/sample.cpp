@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "chronormal/core/parallel.h"
+#include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_groups.h"
+#include "chronormal/normals/recompute.h"
 #include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
 #include "core/twofold.h"
@@ -119,15 +121,15 @@ std::vector<float> NormalSampler::normals_of_outputs(const Pose& pose) const {
 }
 
 std::vector<float> NormalSampler::unit_normals(const Segment& segment, const LocalTime& t, double evaluations) {
-  if (!segment_normals_ || segment_ != segment.index) {
-    const StrategyOptions strategy{.evaluations = evaluations};
-    segment_normals_ = are_faces() ? SegmentNormals(segment, strategy, Threads::kAll)
-                                   : SegmentNormals(segment, *groups_, strategy, Threads::kAll);
+  if (segment_ != segment.index) {
+    if (!(evaluations >= kCurvesFrom)) return normals_anew(segment, t);
+    curves_ = are_faces() ? NormalCurves::of_faces(segment, {}, Threads::kAll, &curves_)
+                          : NormalCurves::of_groups(segment, *groups_, {}, Threads::kAll, &curves_);
     segment_ = segment.index;
   }
   std::vector<float> normals(3 * element_count());
   // Who writes them counts those without a direction.
-  segment_normals_->unit_normals(t, VectorView<float>::packed(normals.data(), element_count()), Threads::kAll);
+  curves_.unit_normals(t, VectorView<float>::packed(normals.data(), element_count()), Threads::kAll);
   return normals;
 }
 

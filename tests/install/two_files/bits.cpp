@@ -87,35 +87,34 @@ Mesh grid(std::uint32_t cells, std::mt19937_64& random) {
   return mesh;
 }
 
-void add_curves(const Mesh& mesh, const ElementCurvesOptions& options) {
-  ElementCurves made = ElementCurves::make(mesh.topology, VectorView<const float>::packed(mesh.from),
-                                           VectorView<const float>::packed(mesh.to), options)
-                           .value();
-  const NormalCurves& curves = made.curves();
+void add_curves(const Mesh& mesh, const MeshNormalsOptions& options) {
+  const auto from = VectorView<const float>::packed(mesh.from), to = VectorView<const float>::packed(mesh.to);
+  MeshNormals made = MeshNormals::make(mesh.topology, options).value();
+  add(made.set_segment(from, to) ? 1 : 0);
   add(made.size());
-  add(curves.flagged_count());
-  for (const auto& count : curves.byte_counts()) add(count.bytes), add(count.elements);
-  std::vector<float> normals(3 * made.size()), elements(3 * curves.size());
-  std::vector<Octahedral> octahedral(curves.size());
-  std::vector<Rgb10A2> rgb(curves.size());
+  add(made.element_count());
+  add(made.bytes());
+  std::vector<float> normals(3 * made.size());
+  std::vector<Octahedral> octahedral(made.size());
+  std::vector<Rgb10A2> rgb(made.size());
   for (const double t : {0.0, 0.25, 1.0 / 3, 0.5, 0.8125, 1.0}) {
     add(made.unit_normals(t, VectorView<float>::packed(normals), options.threads));
     add(normals);
-    curves.unit_normals(t, octahedral, options.threads);
+    add(made.unit_normals(t, std::span(octahedral)));
     add(octahedral);
-    curves.unit_normals(t, rgb, options.threads);
+    add(made.unit_normals(t, std::span(rgb)));
     add(rgb);
-    if (curves.keeps_lengths()) {
-      curves.normals(t, VectorView<float>::packed(elements));
-      add(elements);
-    }
   }
-  NormalPlayback playback(curves, 0.125, 0.03125, 8);
-  for (int step = 0; step < 20; ++step) {
-    add(playback.next(VectorView<float>::packed(elements)));
-    add(elements);
+  std::vector<std::byte> buffer(36 * made.size());
+  if (made.fill_vertex_buffer(ControlFormat::kFloat32, buffer)) {
+    std::vector<float> values(9 * made.size());
+    std::memcpy(values.data(), buffer.data(), buffer.size());
+    add(values);
   }
-  add(made.next(VectorView<const float>::packed(mesh.to), VectorView<const float>::packed(mesh.from)) ? 1 : 0);
+  add(made.begin_segment(to, from) ? 1 : 0);
+  while (!made.prepare(0.3)) {
+  }
+  made.finish_segment();
   add(made.unit_normals(0.375, VectorView<float>::packed(normals)));
   add(normals);
 }
@@ -131,12 +130,14 @@ void add_blend(const Mesh& mesh, const ElementOptions& options, std::mt19937_64&
     }
     set.targets.push_back(BlendTarget::from_dense(deltas));
   }
-  ElementBlend blend = ElementBlend::make(std::move(set), options).value();
+  MeshNormals blend = MeshNormals::make(set.topology, {.elements = options}).value();
+  add(blend.set_targets(std::move(set)) ? 1 : 0);
   std::vector<float> normals(3 * blend.size());
   for (int pose = 0; pose < 4; ++pose) {
     std::vector<double> weights(5);
     for (double& weight : weights) weight = static_cast<double>(random() % 33) / 16 - 0.5;
-    add(blend.unit_normals(weights, VectorView<float>::packed(normals), pose % 2 == 0 ? Threads::kOne : Threads::kAll));
+    add(blend.unit_normals(std::span<const double>(weights), VectorView<float>::packed(normals),
+                           pose % 2 == 0 ? Threads::kOne : Threads::kAll));
     add(normals);
   }
 }

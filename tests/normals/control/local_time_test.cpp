@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "chronormal/normals/encodings.h"
+#include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/recompute.h"
-#include "chronormal/normals/segment_normals.h"
 #include "chronormal/normals/weighting.h"
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
@@ -156,12 +156,14 @@ TEST(LocalTime, is_a_quotient_without_rounding) {
     expect("recomputed groups", all_groups, [&](View view) { NormalRecompute(segment, groups).unit_normals(t, view); });
     expect("faces anew", all_faces, [&](View view) { unit_normals_at(segment, {0, view.count}, t, view); });
     expect("a motion and a time", all_groups, [&](View view) {
-      const std::vector<float> of_vertices = unit_normals_at(motion, groups, times.time).value();
+      std::vector<float> of_vertices(3 * motion.topology.vertex_count());
+      MeshNormals normals = MeshNormals::make(motion).value();
+      const Instant instant = find_instant(motion, times.time).value();
+      ASSERT_TRUE(normals.set_segment(motion.segment(instant.segment)));
+      normals.unit_normals(instant.t, View::packed(of_vertices));
       for (std::size_t v = 0; v < groups.element_of_output().size(); ++v)
         view.set(groups.element_of_output()[v], {of_vertices[3 * v], of_vertices[3 * v + 1], of_vertices[3 * v + 2]});
     });
-    expect("the normals of a segment", all_groups,
-           [&](View view) { SegmentNormals(segment, groups, {.evaluations = 9}).unit_normals(t, view); });
     const auto as_units = [](const std::vector<Vec3d>& normals, View view) {
       for (std::size_t e = 0; e < normals.size(); ++e) view.set(e, to_float(unit(normals[e])));
     };
@@ -227,8 +229,11 @@ std::vector<Door> doors(const Motion& motion, const NormalGroups& groups) {
   all.push_back({"recomputed groups", groups.size(), [=, &groups](double t, VectorView<float> result) {
                    return NormalRecompute(segment, groups).unit_normals(t, result);
                  }});
-  all.push_back({"the normals of a segment", faces,
-                 [=](double t, VectorView<float> result) { return SegmentNormals(segment).unit_normals(t, result); }});
+  all.push_back({"the normals of a mesh", faces, [=](double t, VectorView<float> result) {
+                   MeshNormals normals = MeshNormals::make(*segment.topology, {{ElementKind::kFaces}}).value();
+                   EXPECT_TRUE(normals.set_segment(segment));
+                   return normals.unit_normals(t, result);
+                 }});
   return all;
 }
 

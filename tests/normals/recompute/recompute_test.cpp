@@ -574,25 +574,6 @@ TEST(Recompute, any_range_of_faces_and_the_scheme_have_the_same_bits) {
   }
 }
 
-TEST(UnitNormalsAt, a_time_has_the_normals_of_its_segment_for_every_face_and_output) {
-  Motion motion = fixtures::smooth_morph(8);
-  motion.keyframes.push_back(motion.keyframes[0]);
-  for (std::size_t k = 0; k < 3; ++k) motion.keyframes[k].time = 2.0 * static_cast<double>(k);
-  motion.connect_as_sequence();
-  const auto as_vectors = [](const Result<std::vector<float>>& normals) {
-    return vectors(VectorView<float>::packed(const_cast<float*>(normals.value().data()), normals.value().size() / 3));
-  };
-  EXPECT_EQ(as_vectors(unit_normals_at(motion, 3.5)), of_faces(motion.segment(1), 0.75));
-
-  const NormalGroups vertices = vertices_of(motion);
-  EXPECT_EQ(as_vectors(unit_normals_at(motion, vertices, 0.5)), of_groups(motion.segment(0), vertices, 0.25));
-  const NormalGroups corners = NormalGroups::by_crease_angle(motion, separate_points(vertices.size()), 180).value();
-  EXPECT_EQ(unit_normals_at(motion, corners, 0.5).value().size(), 3 * motion.topology.corner_count());
-
-  EXPECT_EQ(unit_normals_at(motion, 4.5).error().code, ErrorCode::kUsage);
-  EXPECT_EQ(unit_normals_at(motion, vertices, -1).error().code, ErrorCode::kUsage);
-}
-
 TEST(Recompute, nothing_is_no_trouble) {
   NormalRecompute none;
   EXPECT_EQ(none.size(), 0u);

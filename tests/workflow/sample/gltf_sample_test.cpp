@@ -14,9 +14,9 @@
 
 #include "chronormal/analysis/quality.h"
 #include "chronormal/normals/control_normals.h"
+#include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/recompute.h"
-#include "chronormal/normals/segment_normals.h"
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/sample.h"
 #include "io/gltf/gltf_motion.h"
@@ -300,12 +300,11 @@ TEST(GltfSamples, are_the_same_on_every_way_that_the_library_has) {
       judge.add("recomputed faces", result, faces);
       NormalRecompute(segment, groups).unit_normals(t, group_view);
       judge.add("recomputed groups", of_groups, vertices);
-      for (const NormalStrategy strategy : {NormalStrategy::kPolynomial, NormalStrategy::kRecompute}) {
-        StrategyOptions options;
-        options.forced = strategy;
-        SegmentNormals(segment, groups, options).unit_normals(t, group_view, Threads::kOne);
-        judge.add("segment normals", of_groups, vertices);
-      }
+      MeshNormals of_mesh =
+          MeshNormals::make(*segment.topology, {{.kind = ElementKind::kVertices, .weld = false}}).value();
+      ASSERT_TRUE(of_mesh.set_segment(segment));
+      of_mesh.unit_normals(t, group_view);
+      judge.add("normals of the mesh", of_groups, vertices);
       std::vector<ControlNormals> control(faces.size());
       face_control_normals(segment, {0, faces.size()}, control);
       std::vector<Vec3d> reference(faces.size());

@@ -37,7 +37,7 @@ HWY_INLINE Lanes3 PointsAt(const float* rows, const IndexOf& index) {
 
 // The sum over a path of row_count - 1 points. index(row, lane) is the number of a point; row 0 has the centres.
 template <class IndexOf>
-HWY_INLINE Lanes3 RingSum(const float* rows, const IndexOf& index, std::size_t row_count) {
+HWY_INLINE Lanes3 SumOfRing(const float* rows, const IndexOf& index, std::size_t row_count) {
   const auto row = [&](std::size_t r)
                        HWY_ATTR { return PointsAt(rows, [&](std::size_t lane) HWY_ATTR { return index(r, lane); }); };
   const Lanes3 centre = row(0);
@@ -88,7 +88,7 @@ std::size_t RingUnitNormals(const RingPoints& points, const RingSlices& all, Ind
       for (std::size_t lane = 0; lane < kRingLanes; lane += kLanes) {
         const auto index = [=](std::size_t r, std::size_t i) HWY_ATTR { return indices[kRingLanes * r + lane + i]; };
         zeros +=
-            WriteUnit<layout()>(RingSum(points.rows, index, count), kRingLanes * (s - slices.first) + lane, result);
+            WriteUnit<layout()>(SumOfRing(points.rows, index, count), kRingLanes * (s - slices.first) + lane, result);
       }
     }
     return zeros;
@@ -113,7 +113,7 @@ std::size_t TriangleUnitNormals(const RingPoints& points, const std::uint32_t* c
       }
       for (std::size_t lane = 0; lane < kRingLanes; lane += kLanes) {
         const auto index = [=](std::size_t r, std::size_t l) HWY_ATTR { return of_faces[3 * (lane + l) + r]; };
-        zeros += WriteUnit<layout()>(RingSum(points.rows, index, 3), i + lane, result);
+        zeros += WriteUnit<layout()>(SumOfRing(points.rows, index, 3), i + lane, result);
       }
     }
     return zeros;
