@@ -407,8 +407,8 @@ Command bake_command() {
          "where several are active at once; keys: of sequences, the fewest keys between which\n"
          "straight lines are within the tolerance at every instant"},
         {"--weighting NAME", &options->weighting,
-         "how faces count: area (exact), angle, uniform, area-angle, max (default: as in the\n"
-         "base normals of each mesh, else area)"},
+         "how faces count: area (exact), angle, uniform, area-angle, max, inverse-edges,\n"
+         "inverse-roots (default: as in the base normals of each mesh, else area)"},
         {"--crease DEG", &options->crease_angle,
          "of sequences, and with --smooth: edges between faces that differ by\n"
          "more than this are hard (default 180: none)"},

@@ -63,8 +63,8 @@ std::string morph_names() {
 
 std::vector<Option> JudgeArguments::table(const std::string& of_viewers) {
   return {{"--weighting NAME", &weighting,
-           "how faces count in the right normals: area, angle, uniform, area-angle, max\n"
-           "(default: as in the base normals of the file, else area)"},
+           "how faces count in the right normals: area, angle, uniform, area-angle, max,\n"
+           "inverse-edges, inverse-roots (default: as in the base normals of the file, else area)"},
           {"--for VIEWER,...", &viewers,
            of_viewers + ": three, babylon,\n"
                         "playcanvas, godot, filament, bevy; after compression: gltfpack, quantize,\n"

@@ -63,7 +63,7 @@ std::string change_words(const BeforeAndAfter& audit) {
 // Which meshes were baked for normals that are not weighted by area.
 std::string weighting_lines(const GltfBake& bake) {
   std::string text;
-  for (const WeightingInfo& info : kWeightings) {
+  for (const WeightingInfo& info : kAllWeightings) {
     std::string names;
     std::size_t count = 0;
     constexpr std::size_t kMostNamed = 4;

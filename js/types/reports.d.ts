@@ -3,7 +3,7 @@
  * Angles are degrees. Vertices, faces, targets, nodes and so on are counted from 0, and null is where one does not exist.
  */
 
-export type Weighting = 'area' | 'angle' | 'uniform' | 'area-angle' | 'max';
+export type Weighting = 'area' | 'angle' | 'uniform' | 'area-angle' | 'max' | 'inverse-edges' | 'inverse-roots';
 export type PathName = 'linear' | 'catmull-rom' | 'hermite';
 export type Elements = 'faces' | 'vertices' | 'corners';
 
@@ -323,6 +323,8 @@ interface ComparedInput {
 export interface SchemesReport extends Head<'compare', 1> {
   input: ComparedInput & CurvedPath & { segments: number };
   elements: Elements;
+  /** Of vertices and corners. */
+  weighting?: Weighting;
   samples: number;
   schemes: SchemeReport[];
   tolerance_degrees?: number;

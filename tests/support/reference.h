@@ -28,6 +28,7 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -156,8 +157,10 @@ template <std::size_t N>
   return scaled(1 / std::sin(theta), add(scaled(std::sin((1 - t) * theta), from), scaled(std::sin(t * theta), to)));
 }
 
-/// Exact unit normals at `count` equidistant times from 0 to 1.
-[[nodiscard]] inline std::optional<std::vector<Vector>> exact_nodes(const Triangle& triangle, std::size_t count) {
+/// Exact unit normals at `count` equidistant times from 0 to 1. What moves is a Triangle, or anything else that
+/// exact_unit_normal() takes.
+template <class Moving>
+[[nodiscard]] std::optional<std::vector<Vector>> exact_nodes(const Moving& triangle, std::size_t count) {
   std::vector<Vector> nodes;
   for (std::size_t i = 0; i < count; ++i) {
     const auto node = exact_unit_normal(triangle, static_cast<Real>(i) / static_cast<Real>(count - 1));
@@ -168,7 +171,8 @@ template <std::size_t N>
 }
 
 /// Lagrange interpolation of degree `degree` through exact unit normals, by Neville's recursion, normalised.
-[[nodiscard]] inline std::optional<Vector> lagrange(const Triangle& triangle, std::size_t degree, Real t) {
+template <class Moving>
+[[nodiscard]] std::optional<Vector> lagrange(const Moving& triangle, std::size_t degree, Real t) {
   auto nodes = exact_nodes(triangle, degree + 1);
   if (!nodes) return std::nullopt;
   const auto time = [degree](std::size_t i) { return static_cast<Real>(i) / static_cast<Real>(degree); };
@@ -439,7 +443,8 @@ struct Circle {
 }
 
 /// `circle` and `circle:timed`.
-[[nodiscard]] inline std::optional<Vector> circle_normal(const Triangle& triangle, bool timed, Real t) {
+template <class Moving>
+[[nodiscard]] std::optional<Vector> circle_normal(const Moving& triangle, bool timed, Real t) {
   const auto u0 = exact_unit_normal(triangle, 0);
   const auto uh = exact_unit_normal(triangle, Real(0.5L));
   const auto u1 = exact_unit_normal(triangle, 1);
@@ -494,9 +499,10 @@ struct SchemeName {
 /// For searched schemes, `observed_middle` is what the scheme under test gave at t = 1/2: it fixes the one number that
 /// was searched for, and every other t must then follow from it. Without it they have no answer here; the search
 /// itself is judged by optimal_circle_error() and scaled_linear_error().
-[[nodiscard]] inline std::optional<Vector> unit_normal(std::string_view name, const Triangle& triangle, Real t,
-                                                       const Place& place = {},
-                                                       const std::optional<Vector>& observed_middle = {}) {
+template <class Moving>
+[[nodiscard]] std::optional<Vector> unit_normal(std::string_view name, const Moving& triangle, Real t,
+                                                const Place& place = {},
+                                                const std::optional<Vector>& observed_middle = {}) {
   const auto scheme = parse_scheme(name);
   if (!scheme) return std::nullopt;
   const auto kind = scheme->kind;
@@ -531,8 +537,11 @@ struct SchemeName {
     const auto circle = circle_through(ends->front(), normalised(*observed_middle), ends->back());
     return circle ? std::optional(circle->at(t * circle->end)) : std::nullopt;
   }
-  const auto pair = frames(kind.substr(kind.find(':') + 1), triangle, scheme->number, place);
-  return pair ? quaternion_slerp(pair->first, pair->second, t) : std::nullopt;
+  if constexpr (std::is_same_v<Moving, Triangle>) {
+    const auto pair = frames(kind.substr(kind.find(':') + 1), triangle, scheme->number, place);
+    return pair ? quaternion_slerp(pair->first, pair->second, t) : std::nullopt;
+  }
+  return std::nullopt;  // frames are those of faces
 }
 
 // ---- errors and dense searches -------------------------------------------------------------------------------------

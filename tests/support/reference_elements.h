@@ -77,6 +77,11 @@ struct Corner {
     return squares > 0 ? scaled(1 / squares, cross(next, previous)) : Vector{};
   }
   if (weighting == "uniform") return normalised(area);
+  if (weighting == "inverse-edges" || weighting == "inverse-roots") {
+    const Real edges = length(next) * length(previous);
+    if (!(edges > 0)) return {};
+    return scaled(std::pow(edges, weighting == "inverse-edges" ? Real(-1) : Real(-0.5L)), normalised(area));
+  }
   // The angle by the half-angle formula of Kahan, not by a cross product.
   Real corner_angle = 0;
   if (length(next) > 0 && length(previous) > 0) {
@@ -92,6 +97,19 @@ struct Corner {
   Vector sum{};
   for (const Corner& corner : corners) sum = add(sum, contribution(mesh, corner, weighting, t));
   return sum;
+}
+
+/// The corners that share a normal, for the schemes of reference.h.
+struct MovingElement {
+  const Mesh& mesh;
+  const std::vector<Corner>& corners;
+  std::string weighting = "area";
+};
+
+[[nodiscard]] inline std::optional<Vector> exact_unit_normal(const MovingElement& element, Real t) {
+  const Vector normal = element_normal(element.mesh, element.corners, element.weighting, t);
+  if (!(length(normal) > 0)) return std::nullopt;
+  return normalised(normal);
 }
 
 /// Numbers the classes of the relation that `related` generates on 0 ... count - 1, in the order of their first

@@ -135,6 +135,8 @@ class ReportFile {
     if (weighting == "uniform") return unit(area);
     if (weighting == "angle") return scaled(unit(area), angle(e, f));
     if (weighting == "area-angle") return scaled(area, angle(e, f));
+    if (weighting == "inverse-edges") return scaled(unit(area), 1 / std::sqrt(dot(e, e) * dot(f, f)));
+    if (weighting == "inverse-roots") return scaled(unit(area), std::pow(dot(e, e) * dot(f, f), -0.25));
     if (weighting == "max") return scaled(cross(e, f), 1 / (dot(e, e) * dot(f, f)));
     throw std::logic_error("a weighting of no name");
   }

@@ -8,13 +8,15 @@ export const NONE = 0xffffffff;
 // What is left of terms that cancel is their rounding, and no direction.
 const ROUNDING = 1e-13;
 
-// What a corner adds where the vector area of its face is n: n itself times the result. dot is e.f of its edges; ee and ff are
-// their squares, and area is |n|.
+// What a corner adds where the vector area of its face is n: n itself times the result. dot is e.f of its edges, sine the length
+// of e x f, squares the product of e.e and f.f, and area is |n|.
 const WEIGHTS = {
   area: () => 1,
   uniform: (area) => 1 / area,
   angle: (area, dot, sine) => Math.atan2(sine, dot) / area,
   'area-angle': (area, dot, sine) => Math.atan2(sine, dot),
+  'inverse-edges': (area, dot, sine, squares) => 1 / (Math.sqrt(squares) * area),
+  'inverse-roots': (area, dot, sine, squares) => 1 / (Math.sqrt(Math.sqrt(squares)) * area),
 };
 
 // Polygons: the triangles of one face follow each other as its fan.
@@ -73,12 +75,13 @@ function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, norm
       const fx = p[c] - p[h], fy = p[c + 1] - p[h + 1], fz = p[c + 2] - p[h + 2];
       const cx = ey * fz - ez * fy, cy = ez * fx - ex * fz, cz = ex * fy - ey * fx;
       let tx = x, ty = y, tz = z, weight;
+      const squares = (ex * ex + ey * ey + ez * ez) * (fx * fx + fy * fy + fz * fz);
       if (weighting === 'max') {
-        const squares = (ex * ex + ey * ey + ez * ez) * (fx * fx + fy * fy + fz * fz);
         if (squares === 0) continue;
         (tx = cx), (ty = cy), (tz = cz), (weight = 1 / squares);
       } else {
-        weight = weightOf(area, ex * fx + ey * fy + ez * fz, Math.sqrt(cx * cx + cy * cy + cz * cz));
+        weight = weightOf(area, ex * fx + ey * fy + ez * fz, Math.sqrt(cx * cx + cy * cy + cz * cz), squares);
+        if (weight === Infinity) continue; // an edge without length
       }
       tx *= weight;
       ty *= weight;

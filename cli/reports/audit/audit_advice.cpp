@@ -78,7 +78,7 @@ Remedy remedy_of(const Audited& input) {
 // "angle-weighted", "angle- and max-weighted": of the motions that are off.
 std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
   std::string text;
-  for (const WeightingInfo& info : kWeightings) {
+  for (const WeightingInfo& info : kAllWeightings) {
     const auto has = [&](const AuditSubject* subject) { return subject->weighting == info.weighting; };
     if (std::any_of(subjects.begin(), subjects.end(), has))
       text += (text.empty() ? "" : "- and ") + std::string(info.name);

@@ -4,12 +4,14 @@
 /// vector area n of the face (length: twice its area), its unit normal u, and the edges e to the next and f to the
 /// previous corner,
 ///
-///     name         adds                         used by
-///     area         n                            trimesh, PyTorch3D; the default of chronormal
-///     angle        angle(e, f) u                3ds Max, MeshLab (Thuermer, Wuethrich 1998)
-///     uniform      u                            Gouraud 1971
-///     area-angle   angle(e, f) n                Maya, Marvelous Designer
-///     max          e x f / (|e|^2 |f|^2)        N. Max 1999, exact on spheres
+///     name           adds                       used by
+///     area           n                          trimesh, PyTorch3D; the default of chronormal
+///     angle          angle(e, f) u              3ds Max, MeshLab (Thuermer, Wuethrich 1998)
+///     uniform        u                          Gouraud 1971
+///     area-angle     angle(e, f) n              Maya, Marvelous Designer
+///     max            e x f / (|e|^2 |f|^2)      N. Max 1999, exact on spheres
+///     inverse-edges  u / (|e| |f|)              Jin, Lewis, West 2005
+///     inverse-roots  u / sqrt(|e| |f|)          Jin, Lewis, West 2005
 ///
 /// Area is the default because it is the only one whose sum is a polynomial in time: exact by three control normals.
 /// The others are evaluated here anew for each t, or *fitted*: replaced, element by element and segment by segment, by
@@ -33,7 +35,9 @@
 ///            the bound 0.
 /// Threads    Everything here but the fit is pure. Angles go through std::atan2: the last bit may differ between C
 ///            libraries.
-/// Source     Moore, Interval Analysis (1966), for Taylor coefficients in intervals.
+/// Source     Jin, Lewis, West, A comparison of algorithms for vertex normal computation, The Visual Computer 21 (2005):
+///            uniform, angle, area, max and the last two.
+///            Moore, Interval Analysis (1966), for Taylor coefficients in intervals.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_H_
 
@@ -51,7 +55,7 @@
 
 namespace chronormal {
 
-enum class Weighting { kArea, kAngle, kUniform, kAreaAngle, kMax };
+enum class Weighting { kArea, kAngle, kUniform, kAreaAngle, kMax, kInverseEdges, kInverseRoots };
 
 struct WeightingInfo {
   Weighting weighting;
@@ -60,13 +64,19 @@ struct WeightingInfo {
 };
 
 /// All weightings, in the order of the table above.
-inline constexpr std::array<WeightingInfo, 5> kWeightings = {{
+inline constexpr std::array<WeightingInfo, 7> kAllWeightings = {{
     {Weighting::kArea, "area", "the area of the face; the only one that is exact at every time"},
     {Weighting::kAngle, "angle", "the angle of the face at the vertex"},
     {Weighting::kUniform, "uniform", "all faces alike"},
     {Weighting::kAreaAngle, "area-angle", "area times angle"},
     {Weighting::kMax, "max", "the sine of the angle over the lengths of both edges (Max 1999)"},
+    {Weighting::kInverseEdges, "inverse-edges", "the reciprocals of the lengths of both edges"},
+    {Weighting::kInverseRoots, "inverse-roots", "the square roots of these reciprocals"},
 }};
+
+/// The first of them, by which tools shade: those among which the weighting of stored normals is looked for.
+inline constexpr std::array<WeightingInfo, 5> kWeightings = {kAllWeightings[0], kAllWeightings[1], kAllWeightings[2],
+                                                             kAllWeightings[3], kAllWeightings[4]};
 
 [[nodiscard]] std::string_view weighting_name(Weighting weighting) noexcept;
 

@@ -58,6 +58,10 @@ inline constexpr double kCrossError = 32 * kUnitRoundoff;
     const Vec3d product = without_rounding(cross(e.vector, f.vector), kCrossError * (e.size * f.size));
     return (1 / (dot(e.vector, e.vector) * dot(f.vector, f.vector))) * product;
   }
+  if (weighting == Weighting::kInverseEdges || weighting == Weighting::kInverseRoots) {
+    const double product = length(e.vector) * length(f.vector);
+    return (1 / (weighting == Weighting::kInverseEdges ? product : std::sqrt(product))) * unit(n);
+  }
   const double angle = angle_between(e.vector, f.vector);
   return angle * (weighting == Weighting::kAngle ? unit(n) : n);
 }

@@ -8,6 +8,7 @@
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 #include "core/rounding.h"
 #include "normals/weighting/corner_terms.h"
@@ -39,6 +40,23 @@ template <class NormalOfFace>
   result.normal = without_rounding(result.normal, kCrossError * terms);
   result.to_area = terms > 0 ? areas / terms : 0;
   return result;
+}
+
+/// The quadratic that has the weighted direction of an element at t = 0, 1/2 and 1, with the length by area there.
+[[nodiscard]] inline ControlNormals quadratic_through(const Vec3d& start, const Vec3d& middle,
+                                                      const Vec3d& end) noexcept {
+  return {start, 2.0 * middle - 0.5 * (start + end), end};
+}
+
+/// The weighted normal of an element at t, from positions alone.
+[[nodiscard]] inline SampledNormal sample_normal(const Segment& segment, const NormalGroups& groups,
+                                                 std::size_t element, Weighting weighting, double t) {
+  const auto normal_of_face = [&](std::uint32_t f) {
+    Vec3d n;
+    face_normals_at(segment, t, {f, 1}, {&n, 1});
+    return n;
+  };
+  return sample_normal(segment, normal_of_face, groups.corners(element), groups.faces(element), weighting, t);
 }
 
 }  // namespace chronormal::inline internal

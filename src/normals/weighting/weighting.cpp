@@ -37,21 +37,21 @@ Vec3d face_normal_at(const Segment& segment, std::span<const std::uint32_t> face
 }  // namespace
 
 std::string_view weighting_name(Weighting weighting) noexcept {
-  for (const WeightingInfo& info : kWeightings) {
+  for (const WeightingInfo& info : kAllWeightings) {
     if (info.weighting == weighting) return info.name;
   }
   return "";
 }
 
 Result<Weighting> make_weighting(std::string_view name) {
-  for (const WeightingInfo& info : kWeightings) {
+  for (const WeightingInfo& info : kAllWeightings) {
     if (info.name == name) return info.weighting;
   }
   std::string message = "there is no weighting '";
   message += name;
   message += "'; there are";
-  for (const WeightingInfo& info : kWeightings) {
-    message += info.weighting == kWeightings.front().weighting ? " " : ", ";
+  for (const WeightingInfo& info : kAllWeightings) {
+    message += info.weighting == kAllWeightings.front().weighting ? " " : ", ";
     message += info.name;
   }
   return Error{ErrorCode::kUsage, "", std::move(message)};

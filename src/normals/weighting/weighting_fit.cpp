@@ -171,6 +171,18 @@ TermSeries term_series(const Segment& segment, const IntervalNormals& of_face, c
     return {term(kHere), term(piece)};
   }
 
+  if (weighting == Weighting::kInverseEdges || weighting == Weighting::kInverseRoots) {
+    const bool of_roots = weighting == Weighting::kInverseRoots;
+    const auto term = [&](const Interval& around) {
+      const Series<5> lengths = product<5>(squared_length(e, around), squared_length(f, around));
+      const Interval root = square_root(lengths[0]);
+      const Series<kTerms> weight =
+          power<kTerms>(lengths, of_roots ? -0.25 : -0.5, reciprocal(of_roots ? square_root(root) : root));
+      return scaled_by<kTerms>(weight, unit_series(n, around));
+    };
+    return {term(kHere), term(piece)};
+  }
+
   Series<kTerms> angle_here = angle_series(e, f, kHere), angle_around = angle_series(e, f, piece);
   const bool by_area = weighting == Weighting::kAreaAngle;
   double slack = 0;
@@ -331,7 +343,7 @@ WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, W
         truth[i] = sampled.normal;
         if (i % (kSamples / 2) == 0) node[i / (kSamples / 2)] = sampled.with_area_length();
       }
-      element.fit = {node[0], 2.0 * node[1] - 0.5 * (node[0] + node[2]), node[2]};
+      element.fit = quadratic_through(node[0], node[1], node[2]);
       fit.normals[e] = element.fit;
 
       bool anything = false;

@@ -77,7 +77,7 @@ bool differ(const Vec3d& a, const Vec3d& b) {
 
 // What blocks add up to.
 struct Distances {
-  std::array<WeightingDistance, kWeightings.size()> of_weightings;
+  std::array<WeightingDistance, kAllWeightings.size()> of_weightings;
   std::array<std::vector<float>, kWeightings.size()> told;  // degrees, of the normals that tell
   std::size_t telling = 0;
 
@@ -93,7 +93,7 @@ struct Distances {
 
   void add(const Distances& other) {
     telling += other.telling;
-    for (std::size_t w = 0; w < kWeightings.size(); ++w) {
+    for (std::size_t w = 0; w < kAllWeightings.size(); ++w) {
       WeightingDistance& distance = of_weightings[w];
       const WeightingDistance& more = other.of_weightings[w];
       distance.count += more.count;
@@ -102,26 +102,26 @@ struct Distances {
         distance.worst = more.worst;
         distance.worst_at = more.worst_at;
       }
-      told[w].insert(told[w].end(), other.told[w].begin(), other.told[w].end());
+      if (w < told.size()) told[w].insert(told[w].end(), other.told[w].begin(), other.told[w].end());
     }
   }
 };
 
 Distances distances_of(const Block& block, Stored stored) {
   Distances result;
-  std::array<std::vector<Vec3d>, kWeightings.size()> normals;
-  for (std::size_t w = 0; w < kWeightings.size(); ++w) normals[w] = block.normals(kWeightings[w].weighting);
+  std::array<std::vector<Vec3d>, kAllWeightings.size()> normals;
+  for (std::size_t w = 0; w < normals.size(); ++w) normals[w] = block.normals(kAllWeightings[w].weighting);
   for (std::size_t i = 0; i < stored.size(); ++i) {
     bool tells = false;
     for (std::size_t w = 1; w < kWeightings.size(); ++w) tells = tells || differ(normals[w][i], normals[0][i]);
     result.telling += tells ? 1U : 0U;
-    for (std::size_t w = 0; w < kWeightings.size(); ++w) {
+    for (std::size_t w = 0; w < normals.size(); ++w) {
       if (normals[w][i] == Vec3d{}) continue;
       // An author may show the other side: that is no offset.
       const double angle = angle_between(stored[i].normal, normals[w][i]) * kDegreesPerRadian;
       const double degrees = std::fmin(angle, 180 - angle);
       result.add(w, stored[i], degrees);
-      if (tells) result.told[w].push_back(static_cast<float>(degrees));
+      if (tells && w < result.told.size()) result.told[w].push_back(static_cast<float>(degrees));
     }
   }
   return result;

@@ -49,13 +49,13 @@ struct AuthoredWeighting {
     return distances[static_cast<std::size_t>(weighting)];
   }
 
-  std::array<WeightingDistance, kWeightings.size()> distances;  ///< in the order of kWeightings
+  std::array<WeightingDistance, kAllWeightings.size()> distances;  ///< in the order of kAllWeightings
   std::size_t telling = 0;
-  Weighting detected = Weighting::kArea;
+  Weighting detected = Weighting::kArea;  ///< one of kWeightings
 };
 
 /// Holds stored normals against all weightings of the geometry. groups must be those of the topology, with corners.
-/// O(corners), five times; on all cores, and in little memory beside the stored normals. The same bits on any number of
+/// O(corners), seven times; on all cores, and in little memory beside the stored normals. The same bits on any number of
 /// threads.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
                                                         const NormalGroups& groups, std::vector<StoredNormal> stored);

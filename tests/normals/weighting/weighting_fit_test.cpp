@@ -94,8 +94,8 @@ Summary check_bounds(const Motion& motion, Weighting weighting, std::size_t samp
   return summary;
 }
 
-constexpr std::array<Weighting, 4> kFitted = {Weighting::kAngle, Weighting::kUniform, Weighting::kAreaAngle,
-                                              Weighting::kMax};
+constexpr std::array<Weighting, 6> kFitted = {Weighting::kAngle, Weighting::kUniform,      Weighting::kAreaAngle,
+                                              Weighting::kMax,   Weighting::kInverseEdges, Weighting::kInverseRoots};
 
 // ---- the bound -----------------------------------------------------------------------------------------------------
 

@@ -48,14 +48,16 @@ void expect_near(const Vec3d& found, const Vec3d& expected, double tolerance = 1
 // ---- names ---------------------------------------------------------------------------------------------------------
 
 TEST(Weighting, names_lead_there_and_back) {
-  for (const WeightingInfo& info : kWeightings) {
+  for (const WeightingInfo& info : kAllWeightings) {
     EXPECT_EQ(make_weighting(info.name).value(), info.weighting);
     EXPECT_EQ(weighting_name(info.weighting), info.name);
   }
   const auto unknown = make_weighting("areal");
   ASSERT_FALSE(unknown.ok());
   EXPECT_EQ(unknown.error().code, ErrorCode::kUsage);
-  EXPECT_EQ(unknown.error().text(), "there is no weighting 'areal'; there are area, angle, uniform, area-angle, max");
+  EXPECT_EQ(unknown.error().text(),
+            "there is no weighting 'areal'; there are area, angle, uniform, area-angle, max, "
+            "inverse-edges, inverse-roots");
 }
 
 // ---- definitions ---------------------------------------------------------------------------------------------------
@@ -70,6 +72,8 @@ TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
   expect_near(weighted(corner, Weighting::kAngle)[0], {-kQuarter, -kQuarter, -kQuarter});
   expect_near(weighted(corner, Weighting::kAreaAngle)[0], {-2 * yz * kQuarter, -2 * zx * kQuarter, -2 * xy * kQuarter});
   expect_near(weighted(corner, Weighting::kMax)[0], {-1 / 3.0, -1 / 6.0, -1 / 2.0});
+  expect_near(weighted(corner, Weighting::kInverseEdges)[0], {-1 / 3.0, -1 / 6.0, -1 / 2.0});
+  expect_near(weighted(corner, Weighting::kInverseRoots)[0], {-1 / std::sqrt(3), -1 / std::sqrt(6), -1 / std::sqrt(2)});
 }
 
 TEST(Weighting, max_is_exact_on_a_sphere) {
@@ -97,7 +101,7 @@ RC_GTEST_PROP(Weighting, equals_the_definition_at_every_t, ()) {
   const NormalGroups groups = vertices_of(motion);
   const auto corners = test::reference_corners(mesh, groups);
   const double t = *rc::gen::inRange(0, 65) / 64.0;
-  for (const WeightingInfo& info : kWeightings) {
+  for (const WeightingInfo& info : kAllWeightings) {
     const auto found = weighted(motion, info.weighting, t);
     for (std::size_t e = 0; e < groups.size(); ++e) {
       reference::Real size = 0;
@@ -122,7 +126,7 @@ RC_GTEST_PROP(Weighting, shuffled_faces_give_the_same_bits, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   const Motion motion = fixtures::shaken(fixtures::box_grid(3), 0.5, seed);
   const Motion shuffled = test::with_faces_in_order(motion, test::shuffled_order(motion.topology.face_count(), seed));
-  for (const WeightingInfo& info : kWeightings)
+  for (const WeightingInfo& info : kAllWeightings)
     RC_ASSERT(weighted(shuffled, info.weighting, 0.3) == weighted(motion, info.weighting, 0.3));
 }
 
@@ -217,7 +221,7 @@ TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
   // A cube of quads: all weightings are symmetric at its corners, which they are not on its triangles.
   const fixtures::ClosedMesh cube = fixtures::box_grid(1);
   const Motion motion = test::still(cube.topology, cube.points);
-  for (const WeightingInfo& info : kWeightings) {
+  for (const WeightingInfo& info : kAllWeightings) {
     const auto normals = weighted(motion, info.weighting);
     for (std::size_t v = 0; v < normals.size(); ++v) {
       const Vec3d outwards{cube.points[v][0], cube.points[v][1], cube.points[v][2]};
@@ -233,7 +237,7 @@ TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
   const Motion plain = test::still(fixtures::make_triangles(6, {0, 1, 2}), points);
   // On a line, twice the same vertex, a point, and a line that is only nearly one at these coordinates.
   const Motion more = test::still(fixtures::make_triangles(6, {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 0, 0, 1, 3, 2}), points);
-  for (const WeightingInfo& info : kWeightings) {
+  for (const WeightingInfo& info : kAllWeightings) {
     const auto expected = weighted(plain, info.weighting), found = weighted(more, info.weighting);
     for (std::size_t v = 0; v < 3; ++v) EXPECT_EQ(found[v], expected[v]) << info.name;
     for (std::size_t v = 3; v < 6; ++v) EXPECT_EQ(found[v], Vec3d{}) << info.name;
@@ -244,7 +248,8 @@ TEST(Weighting, a_corner_at_an_edge_without_length_adds_nothing_by_angle) {
   // A quad with two vertices at one place.
   const Motion motion =
       test::still(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}), {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}});
-  for (const Weighting weighting : {Weighting::kAngle, Weighting::kAreaAngle, Weighting::kMax}) {
+  for (const Weighting weighting : {Weighting::kAngle, Weighting::kAreaAngle, Weighting::kMax, Weighting::kInverseEdges,
+                                    Weighting::kInverseRoots}) {
     EXPECT_EQ(weighted(motion, weighting)[1], Vec3d{});
     EXPECT_GT(weighted(motion, weighting)[0].z, 0);
   }
@@ -256,7 +261,8 @@ TEST(Weighting, a_corner_at_an_edge_without_length_takes_nothing_from_the_faces_
   const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 3, 2}};
   const Motion alone = test::still(fixtures::make_triangles(5, {1, 4, 3, 2, 4, 0}), points);
   const Motion both = test::still(fixtures::make_polygons(5, {0, 3, 6, 10}, {1, 4, 3, 2, 4, 0, 0, 1, 2, 3}), points);
-  for (const Weighting weighting : {Weighting::kAngle, Weighting::kAreaAngle, Weighting::kMax}) {
+  for (const Weighting weighting : {Weighting::kAngle, Weighting::kAreaAngle, Weighting::kMax, Weighting::kInverseEdges,
+                                    Weighting::kInverseRoots}) {
     const auto expected = weighted(alone, weighting), found = weighted(both, weighting);
     for (const std::size_t v : {std::size_t{1}, std::size_t{2}}) {
       EXPECT_GT(max_abs(expected[v]), 0.1);
@@ -269,7 +275,7 @@ TEST(Weighting, both_sides_of_a_sheet_cancel_to_zero) {
   Motion sheet = test::still(fixtures::make_triangles(3, {0, 1, 2, 2, 1, 0}),
                              {{0.1, 0.7, 0.2}, {1.3, 0.1, -0.4}, {0.3, 1.9, 0.6}});
   for (float& p : sheet.keyframes[1].positions) p = p * p + 0.3F;
-  for (const WeightingInfo& info : kWeightings) {
+  for (const WeightingInfo& info : kAllWeightings) {
     for (const Vec3d& n : weighted(sheet, info.weighting, 0.37)) EXPECT_EQ(n, Vec3d{}) << info.name;
   }
 }
@@ -284,7 +290,7 @@ TEST(Weighting, a_duplicate_face_adds_twice) {
 TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
   for (const double size : {1e-30, 1e30}) {
     const Motion motion = test::still(fixtures::make_triangles(3, {0, 1, 2}), {{0, 0, 0}, {size, 0, 0}, {0, size, 0}});
-    for (const WeightingInfo& info : kWeightings)
+    for (const WeightingInfo& info : kAllWeightings)
       expect_near(unit(weighted(motion, info.weighting, 0.5)[0]), {0, 0, 1}, 1e-15);
   }
 }

@@ -134,7 +134,7 @@ TEST_F(Residuals, leave_control_normals_and_their_curves_as_they_are_at_the_orig
                                    twins.far, separate_points(twins.near.topology.vertex_count()), 40);
     EXPECT_TRUE(std::equal(creased.value().element_of_output().begin(), creased.value().element_of_output().end(),
                            creased_far.value().element_of_output().begin()));
-    for (const WeightingInfo& info : kWeightings) {
+    for (const WeightingInfo& info : kAllWeightings) {
       const auto at_near = all_weighted_normals_at(near, groups, info.weighting, t),
                  at_far = all_weighted_normals_at(far, groups, info.weighting, t);
       for (std::size_t v = 0; v < groups.size(); ++v) expect_close(at_near[v], at_far[v], 1e-12);

@@ -171,7 +171,7 @@ TEST(Report, numbers_of_a_gltf_file_follow_from_the_report_alone) {
 }
 
 TEST(Report, numbers_of_another_weighting_follow_from_the_report_alone) {
-  for (const WeightingInfo& weighting : kWeightings) {
+  for (const WeightingInfo& weighting : kAllWeightings) {
     ReportOptions options = without_plan();
     options.weighting = weighting.weighting;
     const Result<Report> found = report_of_glb(sheet_file(12, 0.1).glb(), options);

@@ -202,7 +202,7 @@ TEST(NormalSampler, normals_at_a_time_are_right_whatever_is_asked_beside_it) {
 TEST(NormalSampler, every_weighting_is_computed_anew_at_each_time) {
   for (const Motion& motion : motions()) {
     const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
-    for (const WeightingInfo& weighting : kWeightings) {
+    for (const WeightingInfo& weighting : kAllWeightings) {
       NormalSampler sampler = sampler_of(motion, options_of(ElementKind::kVertices, weighting.weighting));
       const auto outputs = corners_of_outputs(mesh, ElementKind::kVertices, true, 180);
       for (const double t : {0.0, 0.4, 1.0}) {
@@ -249,7 +249,7 @@ TEST(NormalSampler, poses_of_weights_are_those_of_the_positions_in_double) {
     const Motion motion = star(offset);
     const reference::Mesh to_first = test::reference_mesh(motion.segment(0));
     const reference::Mesh to_second = test::reference_mesh(motion.segment(1));
-    for (const WeightingInfo& weighting : kWeightings) {
+    for (const WeightingInfo& weighting : kAllWeightings) {
       for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices}) {
         if (kind == ElementKind::kFaces && weighting.weighting != Weighting::kArea) continue;
         NormalSampler sampler = sampler_of(motion, options_of(kind, weighting.weighting));
