@@ -12,7 +12,9 @@
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/table.h"
+#include "core/text.h"
 #include "workflow/sample/continued_samples.h"
+#include "workflow/sample/scheme_normals.h"
 
 namespace chronormal::cli {
 namespace {
@@ -24,6 +26,7 @@ struct SampleArguments {
   ElementArguments elements = {"vertices"};
   std::string weighting = "area";
   std::string length = "unit";
+  std::string scheme;      // empty: exact normals
   std::string hard_edges;  // empty: by the crease angle
   std::string format;      // empty: by the extension
   ShardArgument shard;
@@ -32,8 +35,11 @@ struct SampleArguments {
 
 std::string sample_footer() {
   std::string text = "Weightings:\n";
-  for (const WeightingInfo& weighting : kWeightings)
+  for (const WeightingInfo& weighting : kAllWeightings)
     text += formatted("  {:<12}{}\n", weighting.name, weighting.summary);
+  text += "\nSchemes:\n";
+  for (const SchemeDescription& scheme : scheme_descriptions())
+    text += formatted("  {:<24}{}\n", scheme.name, scheme.summary);
   return text +
          "\nOUT is chosen by its extension: .npy, an array (times, elements, 3) of float32; .npz, normals with times,\n"
          "positions and faces; .ply or .obj, the mesh with its normals, a file per time, where %d in the name stands\n"
@@ -44,6 +50,8 @@ std::string sample_footer() {
          "  chronormal sample face.glb --weights jawOpen=0.5,smile=1 -o talking.npz\n"
          "  chronormal sample face.glb --animation Smile --times keys -o keys.npz\n"
          "  chronormal sample face.glb --weights 1,0,0 --weights 0.5,0.5,0 --weighting angle -o 'face_%d.ply'\n"
+         "  chronormal sample walk/ --scheme quaternion:matrix --elements faces --times 0:0.1:12 -o matrix.npz\n"
+         "  chronormal sample walk/ --scheme quadratic --step 100 -o played.npy\n"
          "  chronormal sample maya.obj --elements corners --weighting area-angle --hard-edges groups -o same.obj\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid";
 }
@@ -56,7 +64,10 @@ std::vector<std::vector<Option>> tables(SampleArguments& options) {
       {{"--weighting NAME", &options.weighting, "how the faces around a vertex count (listed below)"},
        {"--length KIND", &options.length,
         "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
-        "around a vertex (with --weighting area)"}},
+        "around a vertex (with --weighting area)"},
+       {"--scheme NAME", &options.scheme,
+        "interpolate between the normals at the ends of each segment, as compare does (listed\n"
+        "below); without it normals are exact"}},
       {{"--hard-edges KIND", &options.hard_edges,
         "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
         "file, by its smoothing groups (groups) or its own normals (normals)"},
@@ -85,6 +96,14 @@ Result<SampleOptions> sample_options(const SampleArguments& options) {
   if (options.length == "area" && !by_area) return misuse("--length", "the area is a length of --weighting area alone");
   if (kind == ElementKind::kFaces && !by_area)
     return misuse("--weighting", "faces are not weighted: it goes with vertices or corners");
+  if (!options.scheme.empty()) {
+    if (!by_area) return misuse("--weighting", "schemes interpolate area-weighted normals: leave it out");
+    if (options.length == "area") return misuse("--length", "schemes interpolate unit normals: leave it out");
+    if (const auto scheme = scheme_for(options.scheme, kind); !scheme)
+      return misuse("--scheme", scheme.error().message);
+  } else if (!options.moments.step.empty()) {
+    return misuse("--step", "it plays a scheme: name one with --scheme");
+  }
   if (!options.hard_edges.empty()) {
     if (options.hard_edges != "groups" && options.hard_edges != "normals")
       return misuse("--hard-edges", "it must be groups or normals");
@@ -96,7 +115,7 @@ Result<SampleOptions> sample_options(const SampleArguments& options) {
       return misuse("--hard-edges", "a built-in morph stores no hard edges: give an OBJ or glTF file");
   }
   return SampleOptions{elements.value(), weighting.value(),
-                       options.length == "area" ? NormalLength::kArea : NormalLength::kUnit};
+                       options.length == "area" ? NormalLength::kArea : NormalLength::kUnit, options.scheme};
 }
 
 Result<SampleFormat> format_of(const SampleArguments& options) {
@@ -117,6 +136,9 @@ Result<Request> understand(const SampleArguments& options) {
   if (!format) return format.error();
   Result<AskedMoments> asked = understand(options.moments);
   if (!asked) return asked.error();
+  sample.value().stepping = asked.value().stepping;
+  if (sample.value().stepping && !make_scheme(options.scheme).value()->sequential_operations())
+    return misuse("--step", options.scheme + " has no sequential form: give --times instead");
   const Result<std::optional<Shard>> shard = options.shard.read();
   if (!shard) return shard.error();
   if (const Status divisible = check_ranks(options.shard.text     ? "--shard"
@@ -130,6 +152,7 @@ Result<Request> understand(const SampleArguments& options) {
   request.output.peers = ranks_as_peers();
   if (const Status status = check_input(options.input); !status) return status.error();
   if (options.resume.asked) {
+    if (request.sample.stepping) return misuse("--resume", "the drift of steps is that of one run: leave out --step");
     if (format.value() != SampleFormat::kNpy)
       return misuse("--resume", "only .npy files can be continued: write one, or give the times in several runs");
     if (const Status output = options.resume.check_output(options.common); !output) return output.error();
@@ -228,6 +251,12 @@ Result<int> run(const SampleArguments& options) {
         formatted("{} of {} normals of {} are (0, 0, 0): there is no area to give them one", written.value().zeros,
                   written.value().normals, options.elements.kind()),
         Tone::kWarning);
+  if (request.sample.stepping && !options.common.quiet) {
+    const Drift& drift = written.value().drift;
+    say_text(formatted("{} played step by step drifts by up to {} degrees from random access: {} {} at {}\n",
+                       options.scheme, with_digits(drift.largest * kDegreesPerRadian, 3),
+                       one_element(request.sample.elements.kind), grouped(drift.output), with_digits(drift.time, 6)));
+  }
   say_written(options.common, counted(written.value().normals, "normal", "normals"));
   return kExitDone;
 }

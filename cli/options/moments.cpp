@@ -141,6 +141,20 @@ Result<AskedMoments::Pose> parse_pose(const std::string& list) {
   return pose;
 }
 
+// N or N:M.
+Result<Stepping> parse_step(const std::string& text) {
+  Stepping stepping;
+  const std::vector<std::string_view> parts = split(text, ':');
+  const auto read = [](std::string_view part, std::size_t& number) {
+    const auto [end, code] = from_chars(part.data(), part.data() + part.size(), number);
+    return !part.empty() && code == std::errc{} && end == part.data() + part.size() && number <= kMostTimes;
+  };
+  if (parts.size() > 2 || !read(parts[0], stepping.steps) || stepping.steps == 0 ||
+      (parts.size() == 2 && !read(parts[1], stepping.anchor_interval)))
+    return misuse("--step", formatted("'{}' is neither N nor N:M, whole numbers up to 1,000,000, N at least 1", text));
+  return stepping;
+}
+
 std::string range_of(const Motion& motion) {
   double first = motion.keyframes.front().time, last = first;
   for (const auto& keyframe : motion.keyframes) {
@@ -200,7 +214,12 @@ std::vector<Option> MomentArguments::table() {
            "keyframes; none where a mesh does not move"},
           {"--weights LIST", &weights,
            "a pose of blend shapes: W1,W2,... with a weight for each target, or\n"
-           "NAME=W,... for those that are not 0; repeat it for more poses"}};
+           "NAME=W,... for those that are not 0; repeat it for more poses"},
+          {"--step N",
+           &step,
+           "with --scheme: every segment in N equal steps, each made from the one before by\n"
+           "additions, and anew every 64; N:M for every M, N:0 for never. Says how far it drifts",
+           {.excludes = "--times"}}};
 }
 
 std::size_t AskedMoments::count() const noexcept {
@@ -209,6 +228,13 @@ std::size_t AskedMoments::count() const noexcept {
 
 Result<AskedMoments> understand(const MomentArguments& arguments) {
   AskedMoments asked;
+  if (!arguments.step.empty()) {
+    if (!arguments.weights.empty()) return misuse("--step", "it goes through all targets: leave out --weights");
+    const Result<Stepping> stepping = parse_step(arguments.step);
+    if (!stepping) return stepping.error();
+    asked.stepping = stepping.value();
+    return asked;
+  }
   if (!arguments.times.empty() && !arguments.weights.empty())
     return misuse("--weights", "a motion has times, or targets with weights, not both");
   asked.at_keys = arguments.times == "keys";
@@ -229,6 +255,12 @@ Result<Moments> moments_of(Input& input, const AskedMoments& asked) {
   const Result<MotionStream*> stream = input.stream();
   if (!stream) return stream.error();
   const Motion& motion = stream.value()->motion();
+  if (asked.stepping) {
+    const std::size_t steps = asked.stepping->steps, segments = motion.segments.size();
+    if (segments == 0) return misuse("--step", "the mesh does not move: there is nothing to step through");
+    if (steps >= kMostTimes / segments) return misuse("--step", "these are more than 1,000,000 moments");
+    return step_moments(motion, steps);
+  }
   if (const Status status = check_kind(motion, asked); !status) return status.error();
   Moments moments;
   if (motion.segments.empty()) return moments;

@@ -5,12 +5,15 @@
 ///     --times keys               the times at which the input has keyframes
 ///     --weights 0.5,0,1          a weight for each target
 ///     --weights jawOpen=0.5,3=1  weights by the names or numbers of targets; all others are 0
+///     --step 100                 every segment in 100 equal steps, each from the one before
+///     --step 100:0               the same, and nothing is made anew on the way
 ///
 /// A weight stands behind the last '=', so that names may have one; a name with a comma, or with blanks at its ends,
 /// stands in double quotes, in which "" is a quote.
 #ifndef CLI_OPTIONS_MOMENTS_H_
 #define CLI_OPTIONS_MOMENTS_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +28,7 @@ namespace chronormal::cli {
 struct MomentArguments {
   std::string times;                 ///< empty: none
   std::vector<std::string> weights;  ///< a list for each pose
+  std::string step;                  ///< empty: none
 
   [[nodiscard]] std::vector<Option> table();
 };
@@ -40,6 +44,7 @@ struct AskedMoments {
   bool at_keys = false;
   std::vector<double> times;
   std::vector<Pose> poses;
+  std::optional<Stepping> stepping;
 
   /// How many moments there are; 1 where only the input can tell.
   [[nodiscard]] std::size_t count() const noexcept;

@@ -328,6 +328,67 @@ TEST_F(SampleCli, elements_without_a_normal_are_counted_on_stderr) {
   EXPECT_EQ(row(test::parse_npy(result.out).as<float>(), 3), (std::array<float, 3>{0, 0, 0}));
 }
 
+// The second face turns by a quarter turn, which exact normals and linear ones do as its edge goes straight, and slerp
+// evenly.
+TEST_F(SampleCli, a_scheme_is_written_in_every_format) {
+  const auto tangent_of = [&](const std::string& scheme) {
+    const std::vector<float> normals =
+        array_of("a.obj b.obj --elements faces --times 0.25 --scheme " + scheme).as<float>();
+    return normals.size() == 6 ? std::fabs(normals[3] / normals[5]) : 0;
+  };
+  EXPECT_NEAR(tangent_of("polynomial"), 1 / 3.0, 1e-6);
+  EXPECT_NEAR(tangent_of("linear"), 1 / 3.0, 1e-6);
+  EXPECT_NEAR(tangent_of("slerp"), std::tan(22.5 / kDegreesPerRadian), 1e-6);
+
+  const std::string of_vertices = "a.obj b.obj --times 0.25 --scheme slerp";
+  const std::vector<float> expected = array_of(of_vertices).as<float>();
+  ASSERT_EQ(expected.size(), 24U);
+  ASSERT_EQ(run(of_vertices + " -o v.npz").exit_code, 0);
+  std::istringstream obj(run(of_vertices + " --format obj -o -").out), ply(run(of_vertices + " --format ply -o -").out);
+  std::vector<float> found;
+  for (std::string word; obj >> word;) {
+    float n = 0;
+    for (int c = 0; word == "vn" && c < 3 && obj >> n; ++c) found.push_back(n);
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_NE(ply.str().find("property float nx"), std::string::npos);
+  for (std::size_t v = 0; v < 8; ++v) {
+    const std::string bytes(reinterpret_cast<const char*>(&expected[3 * v]), 3 * sizeof(float));
+    EXPECT_NE(ply.str().find(bytes), std::string::npos) << v;
+  }
+}
+
+TEST_F(SampleCli, steps_say_how_far_they_drift) {
+  const ProcessResult played = run("a.obj b.obj a.obj --elements faces --scheme linear --step 100:0 -o played.npy");
+  EXPECT_EQ(played.exit_code, 0);
+  EXPECT_NE(played.err.find("linear played step by step drifts by up to "), std::string::npos) << played.err;
+  EXPECT_NE(played.err.find(" degrees from random access: face 1 at "), std::string::npos) << played.err;
+  const test::ArrayFile array = array_of("a.obj b.obj a.obj --scheme slerp --step 8 -q");
+  EXPECT_EQ(array.shape, (std::vector<std::size_t>{17, 8, 3}));
+  const test::ArrayFile of_targets = array_of("--base a.obj b.obj --scheme slerp --step 8 -q");
+  EXPECT_EQ(of_targets.shape, (std::vector<std::size_t>{9, 8, 3}));
+  // Two shards are what one run writes.
+  const std::string steps = "a.obj b.obj a.obj --scheme slerp --step 100 ";
+  ASSERT_EQ(run(steps + "-o all.npy").exit_code, 0);
+  for (const char* const shard : {"1", "2"})
+    ASSERT_EQ(run(steps + "--shard " + shard + "/2 -o " + shard + ".npy").exit_code, 0);
+  const auto shell = [&](const std::string& command) { return run_shell(command, folder_.path()).exit_code; };
+  EXPECT_EQ(shell(std::string(kProgram) + " merge 1.npy 2.npy -o merged.npy && cmp merged.npy all.npy"), 0);
+
+  const std::string two = "a.obj b.obj -o - ";
+  expect_error(two + "--step 4", 2, "name one with --scheme");
+  expect_error(two + "--step 4 --scheme circle:timed", 2, "circle:timed has no sequential form");
+  expect_error(two + "--step 0 --scheme linear", 2, "'0' is neither N nor N:M");
+  expect_error(two + "--step 4:x --scheme linear", 2, "neither N nor N:M");
+  expect_error(two + "--step 1000000 --scheme linear", 2, "more than 1,000,000 moments");
+  expect_error(two + "--step 4 --times 0.5 --scheme linear", 2, "--times");
+  expect_error(two + "--scheme linear --times 0.5 --weighting angle", 2, "area-weighted");
+  expect_error(two + "--scheme linear --times 0.5 --length area", 2, "unit normals");
+  expect_error(two + "--scheme quaternion:edge --times 0.5", 2, "has no meaning for vertices");
+  expect_error(two + "--scheme bicubic --times 0.5", 2, "there is no scheme 'bicubic'");
+  expect_error("a.obj -o - --scheme linear", 2, "does not move");
+}
+
 TEST_F(SampleCli, help_lists_weightings_and_examples) {
   const ProcessResult help = run("--help");
   EXPECT_EQ(help.exit_code, 0);

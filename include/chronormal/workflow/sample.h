@@ -17,6 +17,9 @@
 /// Degenerate An element without a normal has (0, 0, 0). Where n(t) is zero at one time only, area-weighted unit
 ///            normals at times are the limit (Direction in normals/control_normals.h), and the others (0, 0, 0).
 ///
+/// Schemes    With a scheme the normals are those that it gives, and only those at the ends of a segment are exact. At
+///            weights it goes from the base to one target: the other weights must be 0, and that of the target in [0, 1].
+///
 /// Files      write_samples() writes them as
 ///     npy    an array (moments, outputs, 3) of float32
 ///     npz    `normals` as above; `times` (moments) or `weights` (moments, targets) of float64; `positions` (moments,
@@ -51,20 +54,53 @@
 
 namespace chronormal {
 
+inline namespace internal {
+class SchemeNormals;
+}
+
 enum class NormalLength {
   kUnit,  ///< 1
   kArea,  ///< n itself: for a face, twice its area; for a vertex or corner, that of the sum
+};
+
+/// Sequential access (section 3 of the paper): the normals at t = 0, 1/steps, ..., 1 of each segment, each made from
+/// the ones before it by additions or by a rotation.
+struct Stepping {
+  std::size_t steps = 1;  ///< of a segment, 1 or more
+  /// The state is made anew at every so many steps; 0: never, as in the paper.
+  std::size_t anchor_interval = kDefaultAnchorInterval;
 };
 
 struct SampleOptions {
   ElementOptions elements = {ElementKind::kVertices};
   Weighting weighting = Weighting::kArea;
   NormalLength length = NormalLength::kUnit;  ///< kArea for the weighting kArea only
+  /// Interpolates by this scheme (schemes/scheme.h) between the exact normals at the ends of a segment; empty: exact
+  /// normals. For the weighting kArea and the length kUnit only.
+  std::string scheme = {};
+  std::optional<Stepping> stepping = {};  ///< plays the scheme, at the times of step_moments() only
 };
 
 /// Whether a pose can have these weights. Errors: kUsage for a motion that is not blend shapes; where there is not one
 /// weight for each target, or one that is not finite.
 [[nodiscard]] Status check_weights(const Motion& motion, std::span<const double> weights);
+
+/// Moments in the order of the output. One list at most; where both are empty, the mesh stands still.
+struct Moments {
+  std::vector<double> times;
+  std::vector<std::vector<double>> weights;
+
+  [[nodiscard]] std::size_t count() const noexcept {
+    return times.empty() && weights.empty() ? 1 : times.size() + weights.size();
+  }
+};
+
+/// How far the normals that were played are off those of the same scheme at random access, at the same t.
+struct Drift {
+  double largest = 0;      ///< radians
+  std::size_t output = 0;  ///< the first one that shows it
+  double time = 0;         ///< or the weight of the target
+};
 
 /// A mesh at one moment.
 struct Pose {
@@ -75,18 +111,20 @@ struct Pose {
 class NormalSampler {
  public:
   /// The motion must be valid or stand still, and outlive the sampler.
-  /// Errors: of make_groups(); kUsage for faces with another weighting than area, and for the length kArea with one.
+  /// Errors: of make_groups() and make_scheme(); kUsage for faces with another weighting than area, for the length
+  /// kArea with one, for a scheme with either, with elements that it has no meaning for, or of a mesh that stands still,
+  /// and for stepping without a scheme or with one that has no sequential form.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
   /// The same for a stream: a pose at a time reads the two keyframes around it, and a pose of
   /// weights reads all keyframes. Errors: also those of the stream, here and for each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
   /// The pose at a time. evaluations says how many times of its segment will follow each other, this one included; what
-  /// is prepared for the first of them serves all. Errors: of find_instant()
+  /// is prepared for the first of them serves all. Errors: of find_instant(); kUsage where no step leads to the time.
   [[nodiscard]] Result<Pose> at_time(double time, double evaluations = 1);
 
   /// The pose of weights. Errors: of check_weights(); kUsage for weights with which a vertex leaves the range of
-  /// float32.
+  /// float32, and for those that are not between the base and one target, where there is a scheme.
   [[nodiscard]] Result<Pose> at_weights(std::span<const double> weights);
 
   /// The pose of keyframe 0, the only one of a mesh that stands still. A stream must hold that keyframe.
@@ -101,6 +139,9 @@ class NormalSampler {
   /// The normals of a pose for every output: (outputs, 3).
   [[nodiscard]] std::vector<float> normals_of_outputs(const Pose& pose) const;
 
+  /// The largest drift of all poses so far; zero without stepping.
+  [[nodiscard]] const Drift& drift() const noexcept { return drift_; }
+
  private:
   NormalSampler(MotionStream& stream, const SampleOptions& options)
       : stream_(&stream), motion_(&stream.motion()), options_(options) {}
@@ -111,6 +152,8 @@ class NormalSampler {
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, const LocalTime& t, double evaluations);
   // Anew, and for this moment only.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, const LocalTime& t) const;
+  // By the scheme; time is what a drift is reported with.
+  [[nodiscard]] Result<std::vector<float>> scheme_normals(const Segment& segment, double t, double time);
   // Makes them units, where the options ask for that.
   [[nodiscard]] std::vector<float> as_asked(std::span<const Vec3d> exact) const;
   [[nodiscard]] bool are_exact_units() const noexcept {
@@ -121,10 +164,17 @@ class NormalSampler {
   MotionStream* stream_;
   const Motion* motion_;  // of the stream
   SampleOptions options_;
-  std::unique_ptr<const NormalGroups> groups_;  // but for faces
-  NormalCurves curves_;                         // of one segment
-  std::optional<std::size_t> segment_;          // which
+  std::unique_ptr<const NormalGroups> groups_;     // but for faces; prepared normals refer to them
+  NormalCurves curves_;                            // of one segment
+  std::shared_ptr<SchemeNormals> scheme_normals_;  // likewise, where there is a scheme
+  std::optional<std::size_t> segment_;             // which
+  Drift drift_;
 };
+
+/// Returns the moments at which stepping goes through a motion: times of a sequence, in which the end of a segment is
+/// the beginning of the next one; for targets, each of them from weight 0 to 1. Errors: kUsage where the motion has no
+/// segment.
+[[nodiscard]] Result<Moments> step_moments(const Motion& motion, std::size_t steps);
 
 /// For each of some times, how many from it on lie in the same segment without a break: the evaluations that
 /// NormalSampler::at_time() wants to know of. Errors: of find_instant()
@@ -140,16 +190,6 @@ enum class SampleFormat { kNpy, kNpz, kPly, kObj };
 
 /// The most bytes that the arrays of a .npz file may have that goes to a pipe: they are in memory until it is written.
 inline constexpr std::size_t kMostSampleBytes = addressable(std::uint64_t{4} << 30);
-
-/// Moments in the order of the output. One list at most; where both are empty, the mesh stands still.
-struct Moments {
-  std::vector<double> times;
-  std::vector<std::vector<double>> weights;
-
-  [[nodiscard]] std::size_t count() const noexcept {
-    return times.empty() && weights.empty() ? 1 : times.size() + weights.size();
-  }
-};
 
 struct SampleOutput {
   std::string path;  ///< "-" is the standard output; %d or %0Nd in a name of .ply or .obj is the number of the moment
@@ -173,6 +213,7 @@ struct SampleOutput {
 struct SampleSummary {
   std::size_t normals = 0;  ///< that were written: moments x outputs
   std::size_t zeros = 0;    ///< how many of them are (0, 0, 0)
+  Drift drift = {};         ///< of those that were computed by this call, with stepping
 };
 
 /// Computes the poses and writes each at once, so that only one is in memory. Only a .npz file for a pipe is gathered

@@ -17,6 +17,7 @@
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/compare.h"
 #include "normals/control/shared_faces.h"
+#include "workflow/sample/scheme_normals.h"
 
 namespace chronormal {
 namespace {
@@ -196,12 +197,7 @@ Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOpti
   const ElementKind kind = options.elements.kind;
   const std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
   for (const std::string& name : names) {
-    const auto scheme = make_scheme(name);
-    if (!scheme) return scheme.error();
-    if (kind != ElementKind::kFaces && scheme.value()->needs_faces())
-      return Error{
-          ErrorCode::kUsage, "",
-          name + " looks at the edges of faces; it has no meaning for " + std::string(element_kind_name(kind))};
+    if (const auto scheme = scheme_for(name, kind); !scheme) return scheme.error();
   }
   std::optional<NormalGroups> groups;
   if (kind != ElementKind::kFaces) {

@@ -16,14 +16,17 @@
 #include "chronormal/normals/recompute.h"
 #include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
+#include "core/text.h"
 #include "core/twofold.h"
 #include "motion/segment_end.h"
 #include "normals/weighting/shared_weighting.h"
+#include "workflow/sample/scheme_normals.h"
 
 namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
+constexpr double kLargestStepError = 1e-7;  // of a local t; there are at most a million steps
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
 Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
@@ -63,6 +66,39 @@ std::vector<Vec3d> all_face_normals_at(const Segment& segment, const LocalTime& 
 
 }  // namespace
 
+Result<TargetWeight> internal::one_target_of(std::span<const double> weights) {
+  TargetWeight own;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] == 0) continue;
+    if (own.weight != 0 || !(weights[i] > 0 && weights[i] <= 1))
+      return misuse("a scheme goes from the base to one target: give it a weight from 0 to 1, and the others 0");
+    own = {i, weights[i]};
+  }
+  return own;
+}
+
+Result<Moments> step_moments(const Motion& motion, std::size_t steps) {
+  if (motion.segments.empty()) return misuse("a mesh that does not move takes no steps");
+  if (steps == 0) return misuse("a segment takes a step or more");
+  Moments moments;
+  const bool are_targets = motion.kind == MotionKind::kTargets;
+  for (std::size_t s = 0; s < motion.segments.size(); ++s) {
+    const double start = motion.keyframes[motion.segments[s].from].time;
+    const double end = motion.keyframes[motion.segments[s].to].time;
+    const bool is_joined =
+        !are_targets && s + 1 < motion.segments.size() && motion.keyframes[motion.segments[s + 1].from].time == end;
+    for (std::size_t i = 0; i < steps + (is_joined ? 0U : 1U); ++i) {
+      const double t = static_cast<double>(i) / static_cast<double>(steps);
+      if (are_targets) {
+        moments.weights.emplace_back(motion.segments.size(), 0.0)[s] = t;
+      } else {
+        moments.times.push_back(i == steps ? end : (1 - t) * start + t * end);
+      }
+    }
+  }
+  return moments;
+}
+
 Status check_weights(const Motion& motion, std::span<const double> weights) {
   if (motion.kind != MotionKind::kTargets)
     return misuse("only blend shapes have weights; give times, where there is motion");
@@ -88,6 +124,18 @@ Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOpti
   const bool by_area = options.weighting == Weighting::kArea;
   if (options.length == NormalLength::kArea && !by_area)
     return misuse("only sums of areas have a length that means something: weigh by area, or take unit normals");
+  if (options.stepping && options.scheme.empty()) return misuse("steps are those of a scheme: name one");
+  if (!options.scheme.empty()) {
+    const auto scheme = scheme_for(options.scheme, options.elements.kind);
+    if (!scheme) return scheme.error();
+    if (options.length == NormalLength::kArea || !by_area)
+      return misuse("schemes interpolate area-weighted unit normals");
+    if (stream.motion().segments.empty())
+      return misuse("a mesh that does not move has nothing to interpolate between: leave out the scheme");
+    if (options.stepping && options.stepping->steps == 0) return misuse("a segment takes a step or more");
+    if (options.stepping && !scheme.value()->sequential_operations())
+      return misuse(options.scheme + " has no sequential form: every normal is computed on its own");
+  }
   NormalSampler sampler(stream, options);
   if (options.elements.kind == ElementKind::kFaces) {
     if (!by_area) return misuse("faces are not weighted: they have one normal");
@@ -133,6 +181,48 @@ std::vector<float> NormalSampler::unit_normals(const Segment& segment, const Loc
   return normals;
 }
 
+Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment, double t, double time) {
+  if (!scheme_normals_ || segment_ != segment.index) {
+    scheme_normals_.reset();  // before the next one takes as much memory
+    scheme_normals_ = std::make_shared<SchemeNormals>(segment, groups_.get(), options_.scheme);
+    segment_ = segment.index;
+  }
+  std::vector<float> normals(3 * element_count());
+  const auto result = VectorView<float>::packed(normals.data(), element_count());
+  if (!options_.stepping) {
+    scheme_normals_->unit_normals(t, result);
+    return normals;
+  }
+  const auto& [steps, anchor_interval] = *options_.stepping;
+  const auto index = static_cast<std::size_t>(std::llround(t * static_cast<double>(steps)));
+  if (!(std::fabs(t - static_cast<double>(index) / static_cast<double>(steps)) <= kLargestStepError))
+    return misuse("no step leads to " + rounded_text(time, {0, 1}));
+  std::vector<float> at_random(normals.size());
+  const auto expected = VectorView<float>::packed(at_random.data(), element_count());
+  scheme_normals_->unit_normals(static_cast<double>(index) * (1 / static_cast<double>(steps)), expected);
+  scheme_normals_->played_normals(index, steps, anchor_interval, result);
+  // No drift is below zero: the first element of all is the worst until another one is worse.
+  struct Worst {
+    double angle = 0;
+    std::size_t element = 0;
+  };
+  const Worst worst = parallel_fold<Worst>(
+      element_count(), kBlock,
+      [&](std::size_t i, Worst& of_block) {
+        const double angle = angle_between(to_double(expected[i]), to_double(result[i]));
+        if (angle > of_block.angle) of_block = {angle, i};
+      },
+      [](Worst& all, const Worst& of_block) {
+        if (of_block.angle > all.angle) all = of_block;
+      });
+  if (worst.angle > drift_.largest) {
+    const auto outputs = element_of_output();
+    const auto first = std::find(outputs.begin(), outputs.end(), worst.element) - outputs.begin();
+    drift_ = {worst.angle, are_faces() ? worst.element : static_cast<std::size_t>(first), time};
+  }
+  return normals;
+}
+
 std::vector<float> NormalSampler::normals_anew(const Segment& segment, const LocalTime& t) const {
   if (are_exact_units()) {
     std::vector<float> normals(3 * element_count());
@@ -162,12 +252,19 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
   const std::size_t here = instant.value().segment;
   if (const Status status = stream_->hold_segment(here); !status) return status.error();
   const Segment segment = motion_->segment(here);
+  if (!options_.scheme.empty()) {
+    Result<std::vector<float>> normals = scheme_normals(segment, t, time);
+    if (!normals) return normals.error();
+    return Pose{positions_at(segment, t), std::move(normals).value()};
+  }
   return Pose{positions_at(segment, t),
               are_exact_units() ? unit_normals(segment, t, evaluations) : normals_anew(segment, t)};
 }
 
 Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   if (Status status = check_weights(*motion_, weights); !status) return status.error();
+  const Result<TargetWeight> own = options_.scheme.empty() ? TargetWeight{} : one_target_of(weights);
+  if (!own) return own.error();
   if (Status status = stream_->hold_all(); !status) return status.error();
   // base + sum of w (target - base), in an order in which nothing is lost where these are far apart: what is left of the
   // base is 1 - sum of w, which is nothing for a single target of weight 1.
@@ -186,6 +283,12 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
 
   Result<Motion::Keyframe> pose = pose_of(positions, "these weights move");
   if (!pose) return pose.error();
+  if (!options_.scheme.empty()) {
+    const auto [target, weight] = own.value();
+    Result<std::vector<float>> normals = scheme_normals(motion_->segment(target), weight, weight);
+    if (!normals) return normals.error();
+    return Pose{std::move(pose.value().positions), std::move(normals).value()};
+  }
   const std::vector<float> normals = normals_anew(still_segment(motion_->topology, pose.value()), 0.0);
   return Pose{std::move(pose.value().positions), normals};
 }

@@ -21,6 +21,7 @@
 #include "io/mesh/ply.h"
 #include "workflow/sample/continued_samples.h"
 #include "workflow/sample/sample_part.h"
+#include "workflow/sample/scheme_normals.h"
 
 namespace chronormal {
 namespace {
@@ -53,13 +54,15 @@ Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments
 }
 
 // What can be known about the moments before anything is computed.
-Status check_moments(const Motion& motion, const Moments& moments) {
+Status check_moments(const Motion& motion, const SampleOptions& options, const Moments& moments) {
   assert(moments.times.empty() || moments.weights.empty());
   for (const double time : moments.times) {
     if (const Result<Instant> instant = find_instant(motion, time); !instant) return instant.error();
   }
   for (const auto& weights : moments.weights) {
     if (Status status = check_weights(motion, weights); !status) return status;
+    if (options.scheme.empty()) continue;
+    if (const Result<TargetWeight> own = one_target_of(weights); !own) return own.error();
   }
   return Success{};
 }
@@ -231,16 +234,20 @@ struct Written {
 
   [[nodiscard]] std::string text() const {
     std::string numbers;
-    for (const std::uint64_t number : {std::uint64_t{summary.normals}, std::uint64_t{summary.zeros}, positions,
-                                       std::uint64_t{checksums[0]}, std::uint64_t{checksums[1]}})
+    for (const std::uint64_t number :
+         {std::uint64_t{summary.normals}, std::uint64_t{summary.zeros}, positions, std::uint64_t{checksums[0]},
+          std::uint64_t{checksums[1]}, std::bit_cast<std::uint64_t>(summary.drift.largest),
+          std::uint64_t{summary.drift.output}, std::bit_cast<std::uint64_t>(summary.drift.time)})
       numbers += std::to_string(number) + ' ';
     return numbers;
   }
   [[nodiscard]] static Written read(const std::string& text) {
-    std::array<std::uint64_t, 5> numbers{};
+    std::array<std::uint64_t, 8> numbers{};
     const char* at = text.data();
     for (std::uint64_t& number : numbers) at = from_chars(at, text.data() + text.size(), number).ptr + 1;
-    return {{static_cast<std::size_t>(numbers[0]), static_cast<std::size_t>(numbers[1])},
+    const Drift drift{std::bit_cast<double>(numbers[5]), static_cast<std::size_t>(numbers[6]),
+                      std::bit_cast<double>(numbers[7])};
+    return {{static_cast<std::size_t>(numbers[0]), static_cast<std::size_t>(numbers[1]), drift},
             numbers[2],
             {static_cast<std::uint32_t>(numbers[3]), static_cast<std::uint32_t>(numbers[4])}};
   }
@@ -259,6 +266,7 @@ Result<SampleSummary> finish_with_peers(const SampleOutput& output, Written own,
     const Written other = Written::read(all[i]);
     own.summary.normals += other.summary.normals;
     own.summary.zeros += other.summary.zeros;
+    if (other.summary.drift.largest > own.summary.drift.largest) own.summary.drift = other.summary.drift;
     if (arrays != nullptr) arrays->add(other.checksums, other.summary.normals, other.positions);
   }
   if (arrays != nullptr && is_first) {
@@ -298,7 +306,7 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
   if (journal != nullptr) checked.force = true;  // an interrupted run may have written it just before its end
   const Result<std::vector<std::string>> names = sample_files(checked, kind, count);
   if (!names) return names.error();
-  if (Status status = check_moments(motion, moments); !status) return status.error();
+  if (Status status = check_moments(motion, options, moments); !status) return status.error();
   const bool is_part = output.format == SampleFormat::kNpy && output.peers == nullptr && !output.shard.is_all();
   KeyframeChecksums seen(stream);
   if (Status status = is_part ? seen.begin() : Success{}; !status) return status.error();
@@ -378,6 +386,7 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
     }
     if (progress) progress(i + 1 - share.first, share.count);
   }
+  summary.drift = sampler.drift();
   if (output.peers != nullptr) {
     const Written own{summary, std::uint64_t{share.count} * vertices, {}};
     return finish_with_peers(output, own, arrays ? &*arrays : nullptr, meshes);

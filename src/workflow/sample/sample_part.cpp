@@ -47,6 +47,10 @@ std::uint32_t checksum_of_options(const SampleOptions& options, const Moments& m
         static_cast<std::uint64_t>(options.length), std::uint64_t{moments.times.size()},
         std::uint64_t{moments.weights.size()}})
     sum.add(number);
+  if (!options.scheme.empty()) sum.add(options.scheme);
+  if (options.stepping)
+    for (const std::size_t number : {options.stepping->steps, options.stepping->anchor_interval})
+      sum.add(std::uint64_t{number});
   for (const double time : moments.times) sum.add(time);
   for (const std::vector<double>& weights : moments.weights)
     for (const double weight : weights) sum.add(weight);

@@ -1,0 +1,63 @@
+/// The normals that a scheme gives for all elements of a segment, at random access or played step by step. Private to
+/// workflow.
+#ifndef CHRONORMAL_WORKFLOW_SAMPLE_SCHEME_NORMALS_H_
+#define CHRONORMAL_WORKFLOW_SAMPLE_SCHEME_NORMALS_H_
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/views.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/control_normals.h"
+#include "chronormal/normals/normal_groups.h"
+#include "chronormal/schemes/scheme.h"
+
+namespace chronormal::inline internal {
+
+/// Refuses a scheme that does not exist, or that looks at edges where elements are no faces. Errors: kUsage.
+[[nodiscard]] Result<std::unique_ptr<Scheme>> scheme_for(const std::string& name, ElementKind kind);
+
+/// The target that a scheme goes to, and its weight.
+struct TargetWeight {
+  std::size_t target = 0;
+  double weight = 0;
+};
+
+/// Returns the one target of a pose; the first one, where all weights are 0. Errors: kUsage where there are several, or
+/// the weight is beyond [0, 1].
+[[nodiscard]] Result<TargetWeight> one_target_of(std::span<const double> weights);
+
+class SchemeNormals {
+ public:
+  /// Prepares the scheme on all cores. groups is nullptr for faces. The name must be known, and the positions, the
+  /// topology and the groups must outlive the object.
+  SchemeNormals(const Segment& segment, const NormalGroups* groups, const std::string& name);
+  SchemeNormals(const SchemeNormals&) = delete;
+  SchemeNormals& operator=(const SchemeNormals&) = delete;
+
+  /// Writes the unit normals at t in [0, 1]. result must have as many elements as the segment.
+  void unit_normals(double t, VectorView<float> result) const;
+
+  /// Writes those at t = index / steps as they come out of `index` steps from t = 0, of which every
+  /// anchor_interval-th is made anew (0: none). The scheme must have a sequential form. Going back begins again.
+  void played_normals(std::size_t index, std::size_t steps, std::size_t anchor_interval, VectorView<float> result);
+
+ private:
+  struct Block {
+    IndexRange elements;
+    std::unique_ptr<Scheme> scheme;
+    std::unique_ptr<SchemePlayback> playback;
+  };
+
+  Segment segment_;
+  std::vector<ControlNormals> control_normals_;
+  std::vector<Block> blocks_;
+  std::size_t played_ = 0;  // steps, since the playbacks began; 0: there are none
+};
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_SAMPLE_SCHEME_NORMALS_H_
