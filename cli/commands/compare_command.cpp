@@ -30,7 +30,9 @@ struct CompareArguments {
   std::optional<std::string> schemes;  // a list; nothing: those that are usual for the elements
   std::optional<std::size_t> samples;
   ElementArguments elements{"faces"};
-  std::string access;  // empty: random
+  std::string weighting;  // empty: area
+  std::string access;     // empty: random
+  std::string table;      // empty: text
   bool each = false;
   bool json = false;
   bool csv = false;
@@ -74,6 +76,8 @@ std::string option_of_schemes(const CompareArguments& options) {
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   if (options.input.is_curved()) return "--path";
+  if (!options.weighting.empty()) return "--weighting";
+  if (!options.table.empty()) return "--table";
   return options.each ? "--each" : "";
 }
 
@@ -88,6 +92,7 @@ std::string compare_footer() {
          "  chronormal compare --each walk/ run/ --sample twist\n"
          "  chronormal compare --base face.obj targets/\n"
          "  chronormal compare face.glb --elements vertices\n"
+         "  chronormal compare --each walk/ run/ --table latex -o tables.tex\n"
          "  chronormal compare walk/ --tolerance 0.5\n"
          "  chronormal compare face.glb --blend 100\n"
          "  chronormal compare walk/ --truth 2\n"
@@ -98,6 +103,10 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
   const auto check_access = [](const std::string& value) {
     return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
   };
+  const auto check_table = [](const std::string& value) {
+    return value == "text" || value == "operations" || value == "latex" ? ""
+                                                                        : value + " not in {text,operations,latex}";
+  };
   return {
       input_table(options.input),
       {{"--each", &options.each, "compare motions side by side: every INPUT and --sample is one of its own"},
@@ -107,7 +116,10 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
         "how many moments of each segment are compared, its ends included (default 21)",
         {.check = check_whole(2, kMostSamples)}}},
       options.elements.table(),
-      {{"--access KIND",
+      {{"--weighting NAME", &options.weighting,
+        "how the faces around a vertex count, with --elements vertices or corners: area\n"
+        "(default) or another one that sample --help lists"},
+       {"--access KIND",
         &options.access,
         "random (default): each moment on its own; sequential: each from the one before",
         {.check = check_access}}},
@@ -125,6 +137,11 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
        options.resume.option(),
        {"--json", &options.json, "print one JSON object, for programs"},
        {"--csv", &options.csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
+       {"--table KIND",
+        &options.table,
+        "text (default); operations: with what an evaluation takes; latex: both tables of the\n"
+        "paper for your meshes, with --each of several side by side",
+        {.excludes = "--json", .check = check_table}},
        {"--no-times", &options.no_times, "leave out measured times: the same output on every run"}},
       options.common.table(false)};
 }
@@ -137,8 +154,9 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
                                  options.sample_count(),
                                  options.access == "sequential" ? Access::kSequential : Access::kRandom,
                                  {},
-                                 options.elements.options().value(),
-                                 options.errors.has_value()};
+                                 options.elements.options().value()};
+  compare_options.keep_errors = options.errors.has_value();
+  if (!options.weighting.empty()) compare_options.weighting = make_weighting(options.weighting).value();
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
   compare_options.shard = has_ranks() ? own_shard() : options.shard.read().value();
@@ -257,6 +275,8 @@ std::string option_of_samples(const CompareArguments& options) {
   if (options.shard.text) return "--shard";
   if (options.resume.asked) return "--resume";
   if (options.input.is_curved()) return "--path";
+  if (!options.weighting.empty()) return "--weighting";
+  if (!options.table.empty()) return "--table";
   return options.each ? "--each" : "";
 }
 
@@ -287,6 +307,15 @@ Result<int> run(const CompareArguments& options) {
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   }
   if (const auto elements = options.elements.options(); !elements) return elements.error();
+  if (!options.weighting.empty()) {
+    const auto weighting = make_weighting(options.weighting);
+    if (!weighting) return misuse("--weighting", weighting.error().message);
+    const bool by_area = weighting.value() == Weighting::kArea;
+    if (!by_area && options.elements.options().value().kind == ElementKind::kFaces)
+      return misuse("--weighting", "faces are not weighted: add --elements vertices or corners");
+    if (!by_area && (options.certify || options.tolerance))
+      return misuse(options.certify ? "--certify" : "--tolerance", "it is about area-weighted normals alone");
+  }
   if (const Status distinct = check_files(options); !distinct) return distinct.error();
   if (options.truth.every) return run_truth(options);
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
@@ -303,6 +332,8 @@ Result<int> run(const CompareArguments& options) {
   if (options.shard.text && (options.json || options.csv))
     return misuse(options.json ? "--json" : "--csv",
                   "OUT of a shard is a part, of which chronormal merge makes the JSON");
+  if (!options.table.empty() && (options.csv || options.shard.text))
+    return misuse("--table", options.csv ? "it is another form than --csv" : "OUT of a shard is a part");
   if (options.resume.asked && (options.each || options.errors))
     return misuse("--resume", "it keeps the sums of one motion: leave out --each and --errors");
   if (options.errors) {
@@ -339,10 +370,12 @@ Result<int> run(const CompareArguments& options) {
     text = compare_json(comparisons.value(), options.each, with_times);
   else if (options.csv)
     text = compare_csv(comparisons.value(), with_times);
+  else if (options.table == "latex")
+    text = compare_latex(comparisons.value());
   else if (options.each)
     text = compare_tables_side_by_side(comparisons.value());
   else
-    text = compare_table(comparisons.value().front(), with_times);
+    text = compare_table(comparisons.value().front(), {with_times, options.table == "operations"});
   const Status written = options.resume.asked ? resumed.value()->finish(text, options.common.force)
                                               : print_to(options.common.output, text, options.common.force);
   if (!written) return written.error();

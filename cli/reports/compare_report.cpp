@@ -1,8 +1,12 @@
 // Prints the result of `compare` as a table and as CSV.
 #include "cli/reports/compare_report.h"
 
+#include <array>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
+#include "chronormal/schemes/scheme.h"
 #include "cli/options/command.h"
 #include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
@@ -26,8 +30,11 @@ std::string headline(const NamedComparison& input) {
              c.samples) +
          (c.kind == ElementKind::kFaces
               ? std::string()
-              : formatted("{} of {}\n", counted(c.elements, "different normal", "different normals"),
-                          element_kind_name(c.kind)));
+              : formatted("{} of {}{}\n", counted(c.elements, "different normal", "different normals"),
+                          element_kind_name(c.kind),
+                          c.weighting == Weighting::kArea
+                              ? std::string()
+                              : ", faces weighted by " + std::string(weighting_name(c.weighting))));
 }
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
@@ -84,6 +91,68 @@ std::string segment_cell(const NamedComparison& input, std::size_t segment) {
   return segment < input.targets.size() ? printable(target_label(input.targets, segment), kLongest) : grouped(segment);
 }
 
+// The columns of Table 2.
+struct OperationColumn {
+  int OperationCounts::*count;
+  const char* short_name;  // as in the text table
+  const char* latex;
+};
+
+constexpr std::array<OperationColumn, 5> kOperations = {{
+    {&OperationCounts::add, "add", "$+$"},
+    {&OperationCounts::multiply, "mul", "$\\times$"},
+    {&OperationCounts::divide, "div", "$\\div$"},
+    {&OperationCounts::sqrt, "sqrt", "$\\surd$"},
+    {&OperationCounts::trigonometric, "trig", "trig"},
+}};
+
+// A text in LaTeX, of characters that need no package.
+std::string latex_text(const std::string& text) {
+  std::string result;
+  for (const char c : printable(text)) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code >= 0xC0 || code == '?') {
+      result += '?';  // the first byte of a character, of which the others follow
+    } else if (code >= 0x80 || code < 0x20) {
+      continue;
+    } else if (std::string_view("{}$&#%_").find(c) != std::string_view::npos) {
+      result += {'\\', c};
+    } else if (std::string_view("\\^~<>|\"").find(c) != std::string_view::npos) {
+      // The digits end the number, whatever follows.
+      result += formatted("{{\\ttfamily\\char{}}}", code);
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+// The row of the paper's tables, or the name of the scheme.
+std::string latex_scheme(const std::string& scheme) {
+  struct Row {
+    std::string_view scheme, name;
+  };
+  constexpr std::array<Row, 7> kRows = {{{"linear", "Linear"},
+                                         {"quadratic", "Quadratic"},
+                                         {"cubic", "Cubic"},
+                                         {"polynomial", "$t$-variant cross product"},
+                                         {"slerp", "Vector SLERP"},
+                                         {"decasteljau:4", "Spherical deCasteljau"},
+                                         {"quaternion:matrix", "Quaternion SLERP"}}};
+  for (const Row& row : kRows)
+    if (row.scheme == scheme) return std::string(row.name);
+  return "\\texttt{" + latex_text(scheme) + "}";
+}
+
+// A table with its caption; `columns` is the preamble of the tabular, and rows end with \\\\.
+std::string latex_table(const std::string& columns, const std::string& rows, const std::string& caption,
+                        const char* label) {
+  return formatted(
+      "\\begin{{table}}\n\\centering\n\\begin{{tabular}}{{{}}}\n\\hline\n{}\\hline\n\\end{{tabular}}\n"
+      "\\caption{{{}}}\n\\label{{{}}}\n\\end{{table}}\n",
+      columns, rows, caption, label);
+}
+
 std::string ratio_cell(const std::optional<double>& ratio) { return ratio ? four_decimals(*ratio) : "-"; }
 
 }  // namespace
@@ -99,7 +168,7 @@ std::string csv_field(const std::string& field) {
   return quoted + '"';
 }
 
-std::string compare_table(const NamedComparison& input, bool with_times) {
+std::string compare_table(const NamedComparison& input, TableColumns columns) {
   Table table;
   table.add_column("scheme", "", Align::kLeft);
   table.add_column("sum", "degrees", Align::kRight);
@@ -121,7 +190,11 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
     table.add_column("", "at most", Align::kRight);
   }
   table.add_column("memory", "B/" + element, Align::kRight);
-  if (with_times) {
+  if (columns.operations) {
+    table.add_column("operations", kOperations[0].short_name, Align::kRight);
+    for (std::size_t i = 1; i < kOperations.size(); ++i) table.add_column("", kOperations[i].short_name, Align::kRight);
+  }
+  if (columns.times) {
     table.add_column("prepare", "ns/" + element, Align::kRight);
     table.add_column("evaluate", "ns/" + element, Align::kRight);
   }
@@ -142,7 +215,9 @@ std::string compare_table(const NamedComparison& input, bool with_times) {
       cells.push_back(rounded_up(in_degrees(row.certified->upper)));
     }
     cells.push_back(formatted("{:.0f}", row.bytes));
-    if (with_times) {
+    for (std::size_t i = 0; columns.operations && i < kOperations.size(); ++i)
+      cells.push_back(grouped(static_cast<std::size_t>(row.operations.*kOperations[i].count)));
+    if (columns.times) {
       cells.push_back(formatted("{:.0f}", row.prepare_ns));
       cells.push_back(formatted("{:.1f}", row.evaluate_ns));
     }
@@ -177,6 +252,61 @@ std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inpu
   for (const NamedComparison& input : inputs)
     remarks += notes(input.comparison, printable(short_name(input.name)) + ": ");
   return text + '\n' + table.text() + (remarks.empty() ? "" : "\n" + remarks);
+}
+
+std::string compare_latex(const std::vector<NamedComparison>& inputs) {
+  const Comparison& first = inputs.front().comparison;
+  const std::string elements(element_kind_name(first.kind));
+  std::string columns = "l", names, titles, rows;
+  for (const NamedComparison& input : inputs) {
+    columns += "rr";
+    names += formatted(" & \\multicolumn{{2}}{{r}}{{{}}}", latex_text(short_name(input.name)));
+    titles += " & sum & ratio";
+  }
+  for (std::size_t r = 0; r < first.schemes.size(); ++r) {
+    rows += latex_scheme(first.schemes[r].scheme);
+    for (const NamedComparison& input : inputs) {
+      const SchemeComparison& row = input.comparison.schemes[r];
+      rows += formatted(" & {} & {}", grouped_sum(in_degrees(row.quality.sum)), ratio_cell(row.relative_to_linear));
+    }
+    rows += " \\\\\n";
+  }
+  std::string counts;
+  for (const NamedComparison& input : inputs)
+    counts += formatted("{}{} with {} in {}", counts.empty() ? "" : ", ", latex_text(short_name(input.name)),
+                        grouped(input.comparison.elements), counted(input.comparison.segments, "segment", "segments"));
+  std::string text = latex_table(
+      columns, names + " \\\\\n" + titles + " \\\\\n\\hline\n" + rows,
+      formatted("Sums of the angles in degrees between interpolated and exact normals of {}, over {} samples of each "
+                "segment, and their ratios to linear ({}).",
+                elements, first.samples, counts),
+      "tab:quality");
+
+  columns = "l";
+  titles.clear();
+  rows.clear();
+  for (int access = 0; access < 2; ++access) {
+    columns += "rrrrr";
+    for (const OperationColumn& operation : kOperations) titles += std::string(" & ") + operation.latex;
+  }
+  for (const SchemeComparison& row : first.schemes) {
+    const auto scheme = make_scheme(row.scheme).value();
+    rows += latex_scheme(row.scheme);
+    for (const std::optional<OperationCounts>& counts_of :
+         {std::optional(scheme->operations()), scheme->sequential_operations()})
+      for (const OperationColumn& operation : kOperations)
+        rows += counts_of ? formatted(" & {}", (*counts_of).*operation.count) : std::string(" & --");
+    rows += formatted(" & {:.0f} \\\\\n", row.bytes);
+  }
+  return text + '\n' +
+         latex_table(columns + "r",
+                     " & \\multicolumn{5}{c}{random access} & \\multicolumn{5}{c}{sequential access} & \\\\\n" +
+                         titles + " & bytes \\\\\n\\hline\n" + rows,
+                     formatted("Elementary operations for each of the {} and time, and the bytes that an evaluation "
+                               "reads. What all share at one time is not counted, and a sine with its cosine is one "
+                               "trigonometric operation.",
+                               elements),
+                     "tab:cost");
 }
 
 std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times) {

@@ -106,6 +106,7 @@ export interface CompareOptions extends MotionOptions {
   elements?: Elements;
   crease?: number;
   noWeld?: boolean;
+  weighting?: Weighting;
   access?: 'random' | 'sequential';
   certify?: boolean;
   tolerance?: number;

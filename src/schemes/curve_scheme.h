@@ -55,6 +55,8 @@ class ElementMotion {
         element_(block.elements.first + i),
         is_face_(block.are_faces),
         normals_(block.normals[i]),
+        block_(block),
+        index_(i),
         start_(unit_normal_at(normals_, 0)),
         end_(unit_normal_at(normals_, 1)) {}
 
@@ -68,6 +70,8 @@ class ElementMotion {
 
   /// The exact unit normal inside. A collapse exactly there counts as a fallback: the limit from before is taken.
   [[nodiscard]] Vec3d node(double t) {
+    const Vec3d exact = block_.exact ? unit(block_.exact(index_, t)) : Vec3d{};
+    if (exact != Vec3d{}) return exact;
     const UnitNormal u = unit_normal_at(normals_, t);
     if (u.direction == Direction::kDiscontinuous) use_fallback();
     return u.vector;
@@ -82,6 +86,8 @@ class ElementMotion {
   std::size_t element_;
   bool is_face_;
   const ControlNormals& normals_;
+  const ElementBlock& block_;
+  std::size_t index_;
   UnitNormal start_, end_;
   bool used_fallback_ = false;
 };
@@ -281,7 +287,8 @@ class CurveScheme final : public Scheme {
   [[nodiscard]] std::vector<float> example_coefficients() const {
     const ControlNormals turning{{1, 0, 0}, {0.7, 0.6, 0.2}, {0, 1, 0}};
     const Segment segment = example_segment();
-    ElementMotion element({&segment, {0, 1}, {&turning, 1}}, 0);
+    const ElementBlock block{&segment, {0, 1}, {&turning, 1}};
+    ElementMotion element(block, 0);
     std::vector<double> c(policy_.plane_count());
     policy_.fit(element, c.data());
     return {c.begin(), c.end()};

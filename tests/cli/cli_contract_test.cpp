@@ -256,14 +256,18 @@ const std::map<std::string, std::string> kUses = {
     {"--sample", "--sample twist"},
     {"--samples", "a.obj b.obj --samples 3"},
     {"--shard", "a.obj b.obj --shard 1/1"},
+    {"--scheme", "a.obj b.obj --scheme linear"},
     {"--schemes", "a.obj b.obj --schemes linear"},
     {"--seed", "--base a.obj b.obj --blend 2 --seed 7"},
     {"--smooth", "face.glb --smooth"},
+    {"--step", "a.obj b.obj --scheme linear --step 4"},
+    {"--table", "a.obj b.obj --table latex"},
     {"--template", "a.obj b.obj --template page.html"},
     {"--times", "a.obj b.obj --times 0.5"},
     {"--tolerance", "a.obj b.obj --tolerance 1"},
     {"--truth", "a.obj b.obj a.obj --truth 2"},
     {"--weighting", "a.obj b.obj --weighting angle"},
+    {"compare --weighting", "a.obj b.obj --elements vertices --weighting inverse-edges"},
     {"--tears", "shaded.glb --tears 9"},
     {"--weights", "--base a.obj b.obj --weights 0.5"},
     {"--world", "face.glb --world"},
@@ -277,7 +281,9 @@ std::string needs_of(const std::string& command, const std::string& use) {
   if (command == "query") return use.find("--json") != std::string::npos ? " -o out.txt" : " -o out.npz";
   if (command == "report") return use.find("--template") != std::string::npos ? " -o out.html" : " -o out.bin";
   if (command != "sample") return " -o out.txt";
-  const bool has_moments = use.find("--times") != std::string::npos || use.find("--weights") != std::string::npos;
+  bool has_moments = false;
+  for (const char* const option : {"--times", "--weights", "--step"})
+    has_moments = has_moments || use.find(option) != std::string::npos;
   const bool has_weights = use.find("--base") != std::string::npos ||
                            (use.find("face.glb") != std::string::npos && use.find("--animation") == std::string::npos);
   return std::string(" -o out.npy") + (has_moments ? "" : has_weights ? " --weights 0=1" : " --times 0");

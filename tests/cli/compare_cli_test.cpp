@@ -89,6 +89,33 @@ TEST_F(CompareFigures, errors_of_several_motions_or_in_the_place_of_the_output_a
   EXPECT_EQ(exit_code_of("--errors e.npz"), 0);
 }
 
+TEST_F(CompareFigures, operations_stand_in_the_table_where_they_are_asked_for) {
+  const std::string text = output("--table operations");
+  for (const char* const line : {"operations", "add  mul  div  sqrt  trig", "     5   12    1     1     0\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\nin\n" << text;
+  EXPECT_EQ(output("--table text"), output(""));
+  EXPECT_EQ(output("").find("operations"), std::string::npos);
+}
+
+TEST_F(CompareFigures, latex_has_the_figures_of_both_tables) {
+  const std::string text = output("--table latex");
+  for (const char* const line : {"\nLinear & 198.4 & 1.0000 \\\\\n", "\nVector SLERP & ", "\\label{tab:quality}",
+                                 "\nLinear & 5 & 12 & 1 & 1 & 0 & ", "\\label{tab:cost}"})
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\nin\n" << text;
+  for (const char* const wrong : {"--table pdf", "--table latex --json", "--table latex --csv",
+                                  "--table latex --shard 1/1", "--table latex --truth 2"})
+    EXPECT_EQ(exit_code_of(wrong), 2) << wrong;
+}
+
+TEST_F(CompareFigures, weightings_are_named_and_are_of_vertices) {
+  const std::string of_vertices = "--elements vertices --weighting inverse-edges ";
+  EXPECT_NE(output(of_vertices).find("vertices, faces weighted by inverse-edges\n"), std::string::npos);
+  EXPECT_NE(output(of_vertices + "--json").find("\"weighting\": \"inverse-edges\""), std::string::npos);
+  for (const char* const wrong : {"--weighting angle", "--elements vertices --weighting sine",
+                                  "--elements vertices --weighting angle --certify", "--weighting area --truth 2"})
+    EXPECT_EQ(exit_code_of(wrong), 2) << wrong;
+}
+
 TEST_F(CompareFigures, table_counts_shares_in_pairs_of_all_segments) {
   const std::string text = output("");
   for (const char* const line :

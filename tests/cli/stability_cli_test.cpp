@@ -92,14 +92,26 @@ TEST_F(Stability, no_key_of_json_vanishes) {
   moving.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0, 1, 0, 0, 1});
   folder_.write("face.glb", moving.glb());
   Names found;
-  for (const std::string arguments :
-       {"audit a.obj b.obj", "audit face.glb --for all --tolerance 1", "audit face.glb face.glb missing.glb",
-        "bake a.obj b.obj -o ab.glb", "bake face.glb -o right.glb", "bake face.glb -o exact.glb --encode exact",
-        "compare a.obj b.obj", "compare --each --base a.obj b.obj", "compare --base a.obj b.obj --blend 2",
-        "compare face.glb --blend 2", "inspect a.obj b.obj", "inspect face.glb", "inspect a.obj",
-        "query collapse a.obj b.obj", "query facing a.obj b.obj --eye 1,2,3 --silhouettes",
-        "query contain closed.obj closed.obj --points points.npy", "query cones a.obj b.obj --meshlets 8",
-        "query shutter a.obj b.obj a.obj", "report face.glb -o face.bin"}) {
+  for (const std::string arguments : {"audit a.obj b.obj",
+                                      "audit face.glb --for all --tolerance 1",
+                                      "audit face.glb face.glb missing.glb",
+                                      "bake a.obj b.obj -o ab.glb",
+                                      "bake face.glb -o right.glb",
+                                      "bake face.glb -o exact.glb --encode exact",
+                                      "compare a.obj b.obj",
+                                      "compare a.obj b.obj --elements vertices",
+                                      "compare --each --base a.obj b.obj",
+                                      "compare --base a.obj b.obj --blend 2",
+                                      "compare face.glb --blend 2",
+                                      "inspect a.obj b.obj",
+                                      "inspect face.glb",
+                                      "inspect a.obj",
+                                      "query collapse a.obj b.obj",
+                                      "query facing a.obj b.obj --eye 1,2,3 --silhouettes",
+                                      "query contain closed.obj closed.obj --points points.npy",
+                                      "query cones a.obj b.obj --meshlets 8",
+                                      "query shutter a.obj b.obj a.obj",
+                                      "report face.glb -o face.bin"}) {
     const ProcessResult result = run(arguments + " --json");
     const Json json = Json::parse(result.out, nullptr, false);
     ASSERT_FALSE(json.is_discarded()) << arguments << '\n' << result.err;

@@ -18,7 +18,7 @@ const REPORTS = { audit: 'AuditReport', bake: 'BakeReport', compare: 'CompareRep
 
 // What a call is for, and not the program; and what the program has for people and for files of a system.
 const CALL = ['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit'];
-const FOR_PEOPLE = ['help', 'json', 'csv', 'output', 'force', 'quiet', 'sample', 'each', 'errors', 'drivers', 'shard', 'resume'];
+const FOR_PEOPLE = ['help', 'json', 'csv', 'output', 'force', 'quiet', 'sample', 'each', 'errors', 'drivers', 'shard', 'resume', 'table'];
 
 const listed = (name) => readFileSync(new URL(`../cli/${name}`, import.meta.url), 'utf8').trim().split('\n').map((line) => line.split(' '));
 const optionsOf = (command) => listed('stable_options.txt').filter(([of, option]) => of === command && !FOR_PEOPLE.includes(option.slice(2)))

@@ -19,6 +19,7 @@
 #define CHRONORMAL_SCHEMES_SCHEME_H_
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -42,6 +43,9 @@ struct ElementBlock {
   IndexRange elements;                      ///< which; schemes that need faces look at those of these indices
   std::span<const ControlNormals> normals;  ///< one per element; `recompute` does not read them
   bool are_faces = true;                    ///< or vertices or corners, which have no edges
+  /// Returns the exact normal of the i-th of these elements at t, of any length, where it is no quadratic and control
+  /// normals are only fitted to it; empty: that of the control normals. These are exact at both ends and at t = 1/2.
+  std::function<Vec3d(std::size_t i, double t)> exact = {};
 };
 
 /// Elementary operations of one evaluation of one element. What all elements of a block share at one t

@@ -82,9 +82,13 @@ struct CompareOptions {
   /// Told how much of the work is done, from the calling thread; may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
   ElementOptions elements = {};  ///< of which normals
-  bool keep_errors = false;      ///< every single one, in Comparison::errors
-  bool keep_samples = false;     ///< those of each sample together, in SchemeComparison::samples
-  bool certify = false;          ///< bound the largest error at any time, in SchemeComparison::certified
+  /// How faces count in the normals of vertices and corners. With another weighting than area these are no quadratics:
+  /// schemes are prepared from the exact weighted normals, and `polynomial` is the quadratic through three of them.
+  /// `quaternion:optimal` and `linear:scaled` look for what is best for that quadratic.
+  Weighting weighting = Weighting::kArea;
+  bool keep_errors = false;   ///< every single one, in Comparison::errors
+  bool keep_samples = false;  ///< those of each sample together, in SchemeComparison::samples
+  bool certify = false;       ///< bound the largest error at any time, in SchemeComparison::certified
   /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
   std::optional<double> tolerance = {};
   /// Compares this share of the segments only, and keeps the results of each in Comparison::compared.
@@ -129,6 +133,7 @@ struct Comparison {
   std::vector<ErrorTable> errors = {};         ///< with keep_errors: one for each scheme that was asked for
   std::optional<double> tolerance = {};        ///< degrees, where it was given
   std::optional<std::size_t> cheapest = {};    ///< of those judged: within the tolerance for certain; nothing: none is
+  Weighting weighting = Weighting::kArea;      ///< of vertices and corners
   std::array<double, 2> span = {};             ///< the times of the first and the last keyframe
   std::optional<CutPath> cut = {};             ///< of curves, set by who has cut them: for reports
   std::vector<ComparedSegment> compared = {};  ///< of a shard: one for each of its segments; the rows cover these alone
@@ -138,7 +143,7 @@ struct Comparison {
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
-///            tolerance, certificates of sequential access, errors to keep that take more than kMostErrorBytes, single
+///            tolerance, another weighting than area with faces or certificates, certificates of sequential access, errors to keep that take more than kMostErrorBytes, single
 ///            errors of a shard or beside known segments, and known segments of another comparison; those of
 ///            options.keep.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.

@@ -22,8 +22,10 @@
 #include "io/bytes/checksum.h"
 #include "normals/control/shared_faces.h"
 #include "normals/groups/group_sum.h"
+#include "normals/weighting/sampled_normal.h"
 #include "workflow/compare/compared.h"
 #include "workflow/errors/error_rows.h"
+#include "workflow/sample/scheme_normals.h"
 #include "workflow/sample/task_checksums.h"
 
 namespace chronormal {
@@ -72,8 +74,9 @@ double time_of_sample(std::size_t i, std::size_t samples) {
 class Elements {
  public:
   explicit Elements(const Topology& topology) : count_(topology.face_count()) {}
-  Elements(const Topology& topology, NormalGroups groups, std::size_t samples)
+  Elements(const Topology& topology, NormalGroups groups, Weighting weighting, std::size_t samples)
       : groups_(std::move(groups)),
+        weighting_(weighting),
         count_(groups_->size()),
         samples_(samples),
         many_corners_(std::max<std::size_t>(32, samples / 16)) {
@@ -97,7 +100,7 @@ class Elements {
 
   // Makes ready for segments first to last: the control normals of faces are shared by many groups.
   void enter(const Motion& motion, std::size_t first, std::size_t last) {
-    if (!groups_) return;
+    if (!groups_ || !by_area()) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
     of_large_.erase(of_large_.begin(), of_large_.lower_bound(first));
     shared_.erase(shared_.begin(), shared_.lower_bound(first));
@@ -117,11 +120,29 @@ class Elements {
   }
   // What the faces of a segment cost one thread, for each of the elements that share them.
   [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
-  void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const noexcept {
-    if (groups_)
+  // Those of another weighting are fitted.
+  void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const {
+    if (!by_area()) {
+      for (std::size_t i = 0; i < range.count; ++i) {
+        const auto node = [&](double t) {
+          return sample_normal(segment, *groups_, range.first + i, weighting_, t).with_area_length();
+        };
+        result[i] = quadratic_through(node(0), node(0.5), node(1));
+      }
+    } else if (groups_)
       group_control_normals(shared(segment), *groups_, of_faces_.find(segment.index)->second, range, result);
     else
       face_control_normals(segment, range, result);
+  }
+  // The elements of a range for schemes to be prepared from. All arguments must outlive it.
+  [[nodiscard]] ElementBlock block(const Segment& segment, IndexRange range,
+                                   std::span<const ControlNormals> normals) const {
+    ElementBlock block{&segment, range, normals, are_faces()};
+    if (!by_area())
+      block.exact = [this, &segment, first = range.first](std::size_t i, double t) {
+        return sample_normal(segment, *groups_, first + i, weighting_, t).normal;
+      };
+    return block;
   }
   // How far they may be off.
   [[nodiscard]] std::vector<ControlErrors> control_errors(const Segment& segment, IndexRange range) const {
@@ -143,6 +164,9 @@ class Elements {
     const double t = time_of_sample(sample, samples);
     if (triangles) return triangles->normals(t, result);
     if (!groups_) return reference_normals(segment, range, t, result);
+    for (std::size_t i = 0; i < range.count && !by_area(); ++i)
+      result[i] = sample_normal(segment, *groups_, range.first + i, weighting_, t).normal;
+    if (!by_area()) return;
     std::vector<ReferenceArea> areas;
     for (std::size_t i = 0; i < range.count; ++i) {
       const auto faces = groups_->faces(range.first + i);
@@ -160,7 +184,10 @@ class Elements {
     const auto number = static_cast<std::size_t>(std::lower_bound(large_.begin(), large_.end(), face) - large_.begin());
     return of_large_.find(segment)->second[number * samples_ + sample];
   }
+  [[nodiscard]] bool by_area() const noexcept { return weighting_ == Weighting::kArea; }
+
   std::optional<NormalGroups> groups_;
+  Weighting weighting_ = Weighting::kArea;
   std::size_t count_;
   std::size_t samples_ = 0;  // for groups
   // Faces of more corners have their normals computed once for all of these; they take less than 400 bytes a corner.
@@ -224,6 +251,7 @@ std::uint32_t checksum_of_options(const CompareOptions& options, const std::vect
         std::uint64_t{options.certify}, std::uint64_t{options.tolerance.has_value()}})
     sum.add(number);
   sum.add(options.tolerance.value_or(0));
+  if (options.weighting != Weighting::kArea) sum.add(static_cast<std::uint64_t>(options.weighting));
   return sum.value();
 }
 
@@ -241,11 +269,12 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   const double elements = static_cast<double>(range.count);
   std::vector<std::unique_ptr<Scheme>> schemes;
   std::vector<Tally> tallies(names.size());
+  const ElementBlock block = all.block(segment, range, control_normals);
   for (std::size_t s = 0; s < names.size(); ++s) {
     schemes.push_back(make_scheme(names[s]).value());
     Scheme& scheme = *schemes[s];
     const auto start = Clock::now();
-    scheme.prepare({&segment, range, control_normals, all.are_faces()});
+    scheme.prepare(block);
     const double prepare_ns = nanoseconds_since(start) + (scheme.uses_control_normals() ? control_ns : 0);
     tallies[s].prepare_ns.push_back(static_cast<float>(prepare_ns / elements));
     tallies[s].fallbacks = scheme.fallback_count();
@@ -254,7 +283,6 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   }
   if (options.certify || options.tolerance) {
     const std::vector<ControlErrors> errors = all.control_errors(segment, range);
-    const ElementBlock block{&segment, range, control_normals, all.are_faces()};
     for (std::size_t s = 0; s < names.size(); ++s) tallies[s].certified = certified_error(*schemes[s], block, errors);
   }
 
@@ -334,16 +362,18 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   if (certified && options.access == Access::kSequential)
     return Error{ErrorCode::kUsage, "", "certificates are of normals at random access, not of those that are played"};
 
+  const bool by_area = options.weighting == Weighting::kArea;
+  if (!by_area && kind == ElementKind::kFaces)
+    return Error{ErrorCode::kUsage, "", "faces are not weighted: compare vertices or corners"};
+  if (!by_area && certified)
+    return Error{ErrorCode::kUsage, "", "certificates are of area-weighted normals, which are polynomials"};
+
   // Linear is the measure of the others, so it takes part even where it is not a row.
   std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
   std::vector<SchemeComparison> rows;
   for (const std::string& name : names) {
-    auto scheme = make_scheme(name);
+    const auto scheme = scheme_for(name, kind);
     if (!scheme) return scheme.error();
-    if (kind != ElementKind::kFaces && scheme.value()->needs_faces())
-      return Error{
-          ErrorCode::kUsage, "",
-          name + " looks at the edges of faces; it has no meaning for " + std::string(element_kind_name(kind))};
     const auto sequential = scheme.value()->sequential_operations();
     SchemeComparison row;
     row.scheme = name;
@@ -361,7 +391,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   } else {
     Result<NormalGroups> groups = make_groups(stream, options.elements);
     if (!groups) return groups.error();
-    all.emplace(motion.topology, std::move(groups).value(), options.samples);
+    all.emplace(motion.topology, std::move(groups).value(), options.weighting, options.samples);
   }
   // The errors of all elements at all samples, of every row.
   std::vector<std::vector<float>> each;
@@ -443,6 +473,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
                         options.samples,
                         {},
                         motion.kind};
+  comparison.weighting = options.weighting;
   comparison.span = {motion.keyframes.front().time, motion.keyframes.back().time};
   comparison.schemes = std::move(rows);
   comparison.tolerance = options.tolerance;

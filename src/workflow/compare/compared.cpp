@@ -32,8 +32,8 @@ bool are_of_one(const Comparison& a, const Comparison& b) {
            one.certified.has_value() == other.certified.has_value();
   };
   return a.kind == b.kind && a.vertices == b.vertices && a.faces == b.faces && a.elements == b.elements &&
-         a.segments == b.segments && a.samples == b.samples && a.motion == b.motion && a.tolerance == b.tolerance &&
-         a.span == b.span &&
+         a.segments == b.segments && a.samples == b.samples && a.motion == b.motion && a.weighting == b.weighting &&
+         a.tolerance == b.tolerance && a.span == b.span &&
          std::equal(a.schemes.begin(), a.schemes.end(), b.schemes.begin(), b.schemes.end(), same_scheme);
 }
 

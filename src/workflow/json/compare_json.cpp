@@ -88,6 +88,8 @@ std::string compare_json(const std::vector<NamedComparison>& inputs, bool severa
   Json json = json_of_command("compare");
   if (!several) json["input"] = input_json(inputs.front());
   json["elements"] = element_kind_name(inputs.front().comparison.kind);
+  if (inputs.front().comparison.kind != ElementKind::kFaces)
+    json["weighting"] = weighting_name(inputs.front().comparison.weighting);
   json["samples"] = inputs.front().comparison.samples;
   if (several) {
     json["inputs"] = Json::array();

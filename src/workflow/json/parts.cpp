@@ -146,7 +146,7 @@ Json authored_offset_json(const AuthoredOffset& offset) {
 }
 
 Weighting read_weighting(std::size_t number, const JsonView& view) {
-  if (number < kWeightings.size()) return static_cast<Weighting>(number);
+  if (number < kAllWeightings.size()) return static_cast<Weighting>(number);
   view.complain("there is no weighting " + std::to_string(number));
   return Weighting::kArea;
 }
@@ -274,6 +274,7 @@ NamedComparison read_comparison(const JsonView& part) {
   c.elements = part.required_count("elements", kMost);
   c.segments = part.required_count("segment_count", kMost);
   c.samples = part.required_count("samples", kMost);
+  c.weighting = static_cast<Weighting>(part.count("weighting", kAllWeightings.size() - 1, 0));
   c.tolerance = read_tolerance(part);
   c.span = read_span(part);
   c.cut = read_cut(part);
@@ -319,7 +320,7 @@ NamedAudit read_audit(const JsonView& part) {
   audit.cut = read_cut(part);
   audit.checksums = read_task_checksums(part);
   audit.rule = static_cast<AuditRule>(part.required_count("rule", static_cast<std::size_t>(AuditRule::kFlat)));
-  audit.weighting = read_weighting(part.required_count("weighting", kWeightings.size()), part);
+  audit.weighting = read_weighting(part.required_count("weighting", kAllWeightings.size()), part);
   audit.stored = part.flag("stored");
   audit.still = part.required_count("still", kMost);
   each_item(part, "offsets", [&](const JsonView& offset) { audit.offsets.push_back(read_offset(offset)); });
@@ -416,6 +417,7 @@ std::string compare_part(const NamedComparison& shard) {
   json["span"] = c.span;
   put_cut(json, c.cut);
   json["samples"] = c.samples;
+  if (c.weighting != Weighting::kArea) json["weighting"] = static_cast<int>(c.weighting);
   json["sequential"] = std::any_of(c.schemes.begin(), c.schemes.end(), [](const auto& row) { return row.sequential; });
   json["certified"] = c.schemes.front().certified.has_value();
   for (const SchemeComparison& row : c.schemes) json["schemes"].push_back(row.scheme);

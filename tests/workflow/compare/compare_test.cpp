@@ -25,6 +25,8 @@
 namespace chronormal::compare_test {
 namespace {
 
+using reference::Real;
+
 const SchemeComparison& row(const Comparison& comparison, const std::string& scheme) {
   for (const SchemeComparison& r : comparison.schemes) {
     if (r.scheme == scheme) return r;
@@ -277,6 +279,57 @@ TEST(Compare, vertices_and_corners_agree_with_the_oracle) {
       EXPECT_NEAR(quality.max_at.t, static_cast<double>(worst_sample) / (kSamples - 1), 1e-12) << scheme;
     }
   }
+}
+
+// Schemes between weighted normals, of which only those by area are quadratics.
+TEST(Compare, every_weighting_agrees_with_the_oracle) {
+  fixtures::Random random(20261127);
+  const Motion motion = fixtures::shaken(fixtures::box_grid(2), 0.3, random.below(1000));
+  const std::vector<std::string> schemes = {"linear", "quadratic", "slerp", "decasteljau:4", "cubic", "polynomial"};
+  constexpr std::size_t kSamples = 11;
+  for (const WeightingInfo& info : kAllWeightings) {
+    CompareOptions options{schemes, kSamples, Access::kRandom, {}, {ElementKind::kVertices}};
+    options.weighting = info.weighting;
+    const auto comparison = compare(motion, options).value();
+    EXPECT_EQ(comparison.weighting, info.weighting);
+    const OracleElements oracle = oracle_elements(motion, options.elements);
+    const std::string weighting(info.name);
+    for (const std::string& scheme : schemes) {
+      Real sum = 0;
+      for (const auto& corners : oracle.corners) {
+        const reference::MovingElement element{oracle.mesh, corners, weighting};
+        for (std::size_t i = 0; i < kSamples; ++i) {
+          const Real t = static_cast<Real>(i) / (kSamples - 1);
+          const auto exact = reference::exact_unit_normal(element, t);
+          // By definition polynomial is the quadratic through three normals, of lengths that only the library knows.
+          const auto found = scheme == "polynomial" ? exact : reference::unit_normal(scheme, element, t);
+          sum += reference::angle(exact.value(), found.value());
+        }
+      }
+      const Quality& quality = row(comparison, scheme).quality;
+      EXPECT_EQ(quality.count, oracle.corners.size() * kSamples);
+      if (scheme != "polynomial") {
+        EXPECT_NEAR(quality.sum, static_cast<double>(sum), 1e-6 * static_cast<double>(quality.count))
+            << scheme << ", " << weighting;
+      } else if (info.weighting == Weighting::kArea) {
+        EXPECT_LT(quality.mean(), 1e-6);
+      } else {
+        EXPECT_GT(quality.mean(), 1e-6) << weighting << " has no quadratic";
+        EXPECT_LT(quality.mean(), row(comparison, "linear").quality.mean()) << weighting;
+      }
+    }
+  }
+}
+
+TEST(Compare, weightings_are_of_vertices_and_have_no_certificates) {
+  const Motion motion = fixtures::smooth_morph(3);
+  CompareOptions options{{"linear"}, 3, Access::kRandom, {}};
+  options.weighting = Weighting::kAngle;
+  EXPECT_NE(compare(motion, options).error().text().find("faces are not weighted"), std::string::npos);
+  options.elements.kind = ElementKind::kVertices;
+  EXPECT_TRUE(compare(motion, options).ok());
+  options.certify = true;
+  EXPECT_NE(compare(motion, options).error().text().find("area-weighted"), std::string::npos);
 }
 
 TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
