@@ -1,5 +1,7 @@
 #include "workflow/shading/corner_terms.h"
 
+#include <cmath>
+
 #include "analysis/quality/kernels/shown_angles.h"
 
 namespace chronormal::inline internal {
@@ -9,6 +11,9 @@ Vec3d corner_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec
   if (weighting == Weighting::kUniform || n == Vec3d{}) return unit(n);
   if (e == Vec3d{} || f == Vec3d{}) return {};
   if (weighting == Weighting::kMax) return (1 / (dot(e, e) * dot(f, f))) * cross(e, f);
+  const double squares = dot(e, e) * dot(f, f);
+  if (weighting == Weighting::kInverseEdges) return (1 / std::sqrt(squares)) * unit(n);
+  if (weighting == Weighting::kInverseRoots) return (1 / std::sqrt(std::sqrt(squares))) * unit(n);
   return angle_between(e, f) * (weighting == Weighting::kAngle ? unit(n) : n);
 }
 
@@ -24,7 +29,7 @@ CornerTerms& CornerTerms::emptied(Weighting weighting) {
 
 void CornerTerms::finish() {
   if (!needs_edges_) return;
-  if (weighting_ == Weighting::kMax) {
+  if (weighting_ != Weighting::kAngle && weighting_ != Weighting::kAreaAngle) {
     for (std::size_t i = 0; i < terms_.size(); ++i)
       terms_[i] = corner_term(weighting_, terms_[i], next_[i], previous_[i]);
     return;
