@@ -189,8 +189,8 @@ INSTANTIATE_TEST_SUITE_P(Documents, Commands, testing::ValuesIn(documents_with_c
   return name;
 });
 
-// Files of the names that README speaks of, all small.
-void write_files_of_readme(const test::TemporaryFolder& folder) {
+// Writes small files with the names in the indented commands of README.md and docs/cli.md.
+void write_files_of_commands(const test::TemporaryFolder& folder) {
   const std::string faces = "f 1 2 3\nf 1 3 4\n";
   const std::string still = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + faces;
   const std::string moved = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0.5\n" + faces;
@@ -206,20 +206,24 @@ void write_files_of_readme(const test::TemporaryFolder& folder) {
   for (const char* const name : {"face.glb", "intro.glb", "models/head.glb"}) folder.write(name, face.glb());
 }
 
-// Those that stand alone, indented; what they print depends on whose files they are given.
-TEST(Documents, every_indented_command_of_README_runs) {
+// Runs the indented commands, whose output depends on the files of the reader and is not shown.
+void run_indented_commands(const std::string& page, std::size_t at_least) {
   const test::TemporaryFolder folder;
-  write_files_of_readme(folder);
+  write_files_of_commands(folder);
   std::size_t commands = 0;
-  for (const std::string& line : lines_of(read(kRoot / "README.md"))) {
+  for (const std::string& line : lines_of(read(kRoot / page))) {
     if (!line.starts_with("    ./run ")) continue;
     ++commands;
     const std::string command = line.substr(4, line.find(" # ") - 4);
     const ProcessResult result = run_documented(command, folder.path());
-    EXPECT_EQ(result.exit_code, 0) << command << "\n" << result.out;
+    EXPECT_EQ(result.exit_code, 0) << page << ": " << command << "\n" << result.out;
   }
-  EXPECT_GE(commands, 14u);
+  EXPECT_GE(commands, at_least) << page;
 }
+
+TEST(Documents, every_indented_command_of_README_runs) { run_indented_commands("README.md", 4); }
+
+TEST(Documents, every_indented_command_of_the_command_line_runs) { run_indented_commands("docs/cli.md", 14); }
 
 // The rows of docs/blend.md on real faces, as the commands above them print them now.
 class RealFaces : public testing::TestWithParam<std::tuple<const char*, const char*, std::size_t>> {};
