@@ -49,6 +49,7 @@
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
+#include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/peers.h"
 #include "chronormal/workflow/shard.h"
 
