@@ -190,7 +190,10 @@ TEST(BakeStream, memory_does_not_grow_with_the_number_of_keyframes) {
       RecordProperty(std::string(name_of(encoding)) + std::to_string(keyframes), std::to_string(run.peak_growth));
     }
     EXPECT_GT(bytes[1], 5 * bytes[0]);
-    EXPECT_LT(growth[1], growth[0] + (bytes[1] - bytes[0]) / 6) << name_of(encoding);
+    // Linux counts the pages of a thread in batches of 64, so that either peak may be off by one batch.
+    constexpr std::size_t kBatches = 2 * 64 * 4096;
+    EXPECT_LT(growth[1], growth[0] + kBatches + (bytes[1] - bytes[0]) / 6) << name_of(encoding);
+    EXPECT_LT(kBatches, (bytes[1] - bytes[0]) / 3);  // all that is written would be seen
   }
 }
 
