@@ -241,9 +241,8 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
     const auto [a, b] = part.edges()[e];
     if ((is_far[a] | is_far[b]) != 0) counts.add(difference_at(a), difference_at(b), 1);
   };
-  const TearCounts found =
-      parallel_fold<TearCounts>(far > 0 ? part.edges().size() : 0, kEdgeBlock, count_edge,
-                                [](TearCounts& to, const TearCounts& from) { to.add(from); });
+  const TearCounts found = parallel_fold<TearCounts>(far > 0 ? part.edges().size() : 0, kEdgeBlock, count_edge,
+                                                     [](TearCounts& to, const TearCounts& from) { to.add(from); });
   error.torn = found.beyond;
   error.samples = 1;
   error.most_torn = found.beyond[0];
