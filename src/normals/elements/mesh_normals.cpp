@@ -135,6 +135,8 @@ struct Shifted {
   }
   void set(std::size_t element, const Vec3f& v) const { form.set(element - first, v); }
 };
+template <class Form>
+Shifted(Form, std::size_t) -> Shifted<Form>;  // clang 14 finds none for an aggregate
 
 PackedOutput form_of(const VectorView<float>& view) { return {view, MemoryAccess{}}; }
 OctahedralOutput form_of(std::span<Octahedral> view) { return {view, MemoryAccess{}}; }
