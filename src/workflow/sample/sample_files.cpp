@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <filesystem>
 #include <memory>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "chronormal/io/output.h"
+#include "core/bits.h"
 #include "core/charconv.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/checksum.h"
@@ -236,8 +236,8 @@ struct Written {
     std::string numbers;
     for (const std::uint64_t number :
          {std::uint64_t{summary.normals}, std::uint64_t{summary.zeros}, positions, std::uint64_t{checksums[0]},
-          std::uint64_t{checksums[1]}, std::bit_cast<std::uint64_t>(summary.drift.largest),
-          std::uint64_t{summary.drift.output}, std::bit_cast<std::uint64_t>(summary.drift.time)})
+          std::uint64_t{checksums[1]}, bit_cast<std::uint64_t>(summary.drift.largest),
+          std::uint64_t{summary.drift.output}, bit_cast<std::uint64_t>(summary.drift.time)})
       numbers += std::to_string(number) + ' ';
     return numbers;
   }
@@ -245,8 +245,7 @@ struct Written {
     std::array<std::uint64_t, 8> numbers{};
     const char* at = text.data();
     for (std::uint64_t& number : numbers) at = from_chars(at, text.data() + text.size(), number).ptr + 1;
-    const Drift drift{std::bit_cast<double>(numbers[5]), static_cast<std::size_t>(numbers[6]),
-                      std::bit_cast<double>(numbers[7])};
+    const Drift drift{bit_cast<double>(numbers[5]), static_cast<std::size_t>(numbers[6]), bit_cast<double>(numbers[7])};
     return {{static_cast<std::size_t>(numbers[0]), static_cast<std::size_t>(numbers[1]), drift},
             numbers[2],
             {static_cast<std::uint32_t>(numbers[3]), static_cast<std::uint32_t>(numbers[4])}};
