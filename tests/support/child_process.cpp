@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <fstream>
@@ -47,6 +48,22 @@ void limit_address_space(std::size_t growth) {
   setrlimit(RLIMIT_AS, &limit);
 }
 
+// Takes whatever large pieces of its heap the parent has freed, and from then on large memory comes from the system and goes
+// back there: else the child would fill those pieces, and keep their pages when it frees them.
+void take_free_pieces() {
+  constexpr std::size_t kLarge = std::size_t{1} << 16;
+  mallopt(M_MMAP_THRESHOLD, kLarge);
+  for (std::size_t size = std::size_t{1} << 30; size >= kLarge; size /= 2) {
+    for (;;) {
+      const std::size_t from_system = mallinfo2().hblks;
+      void* const piece = std::malloc(size);
+      if (mallinfo2().hblks == from_system && piece != nullptr) continue;  // it is kept
+      std::free(piece);
+      break;
+    }
+  }
+}
+
 void write_all(int file, const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t written = write(file, text.data() + at, text.size() - at);
@@ -62,6 +79,7 @@ void write_all(int file, const std::string& text) {
   const rlimit limit{most_seconds, most_seconds};
   setrlimit(RLIMIT_CPU, &limit);
   alarm(kWaits * most_seconds);
+  if (!is_sanitized()) take_free_pieces();
   if (prepare) prepare();
   malloc_trim(0);
   if (!is_sanitized()) limit_address_space(std::size_t{1} << 30);

@@ -1,6 +1,5 @@
 // A large file is baked and audited in memory that its size bounds.
 #include <gtest/gtest.h>
-#include <malloc.h>
 
 #include <bit>
 #include <cstdint>
@@ -130,10 +129,6 @@ std::string write_grid(const TemporaryFolder& folder, std::uint32_t side) {
 
 constexpr std::uint32_t kSide = 600;  // 34.5 MB: beside that the program is small
 
-// What was freed goes back to the system at once, so that the peak is that of what is held. One thread: those of the
-// parent are not there.
-void count_what_is_held() { mallopt(M_MMAP_THRESHOLD, 1 << 16); }
-
 TEST(BakeLarge, memory_of_exact_is_below_twice_the_file_where_all_of_it_morphs) {
   if (test::is_sanitized()) GTEST_SKIP() << "sanitizers take memory of their own";
   const TemporaryFolder folder;
@@ -141,7 +136,6 @@ TEST(BakeLarge, memory_of_exact_is_below_twice_the_file_where_all_of_it_morphs) 
   const std::string small = folder / "small.glb";
   MorphingGrid(8).write(small);
   const auto bake_file = [&](const std::string& input) -> std::string {
-    count_what_is_held();
     const ThreadLimit one(1);
     const Result<GltfDocument> document = GltfDocument::open(input);
     if (!document) return document.error().text();
@@ -167,7 +161,6 @@ TEST(BakeLarge, an_audit_takes_memory_below_four_and_a_half_times_the_file) {
   const TemporaryFolder folder;
   const std::string path = write_grid(folder, kSide);
   const auto audit_it = [&]() -> std::string {
-    count_what_is_held();
     const ThreadLimit one(1);
     const Result<GltfDocument> document = GltfDocument::open(path);
     if (!document) return document.error().text();

@@ -1,8 +1,6 @@
 // A sequence whose keyframes stay in files is baked into the bytes of one in memory, in memory that does not grow with
 // the number of keyframes, and nothing is left behind where that fails.
 #include <gtest/gtest.h>
-#include <malloc.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -164,7 +162,6 @@ TEST(BakeStream, memory_does_not_grow_with_the_number_of_keyframes) {
   if (test::is_sanitized()) GTEST_SKIP() << "sanitizers take memory of their own";
   const TemporaryFolder folder;
   const auto bake_frames = [&](std::uint32_t side, std::size_t keyframes, BakeEncoding encoding) -> std::string {
-    mallopt(M_MMAP_THRESHOLD, 1 << 16);  // what was freed goes back to the system at once
     const ThreadLimit one(1);
     MotionStream stream(
         outline(side, keyframes),
