@@ -62,7 +62,7 @@ export interface AuditOptions extends MotionOptions {
   /** The viewers that are judged, too. */
   for?: Viewer | 'all' | Array<Viewer | 'all'>;
   /** @deprecated the old name of `for` */
-  host?: Viewer | 'all' | Array<Host | 'all'>;
+  host?: Viewer | 'all' | Array<Viewer | 'all'>;
   samples?: number;
   /** 'random', or a name among `resources`: poses that are judged, too. */
   poses?: string;

@@ -20,7 +20,7 @@ export function install() {
   execFileSync('tar', ['-xzf', tarball, '-C', folder]);
   cpSync(join(folder, 'package'), installed, { recursive: true });
   mkdirSync(join(folder, 'node_modules/@types'));
-  for (const name of ['@gltf-transform', 'three', '@types/three', '@babylonjs']) {
+  for (const name of ['@gltf-transform', 'three', '@types/three', '@babylonjs', 'playcanvas']) {
     symlinkSync(fileURLToPath(new URL(`node_modules/${name}`, import.meta.url)), join(folder, 'node_modules', name));
   }
   const run = (command, args, options) => {

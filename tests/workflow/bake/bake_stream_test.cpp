@@ -1,6 +1,7 @@
 // A sequence whose keyframes stay in files is baked into the bytes of one in memory, in memory that does not grow with
 // the number of keyframes, and nothing is left behind where that fails.
 #include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
