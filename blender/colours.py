@@ -12,7 +12,7 @@ DEGREES = "Normal error in degrees"
 # Colours from no error to the largest one of the scale, as they look on the screen (sRGB).
 RAMP = ((0.80, 0.82, 0.84), (0.97, 0.87, 0.35), (0.96, 0.55, 0.16), (0.84, 0.15, 0.12), (0.45, 0.02, 0.25))
 
-# What hide() took away: the name of a mesh, and the degrees of its corners.
+# hide() keeps here what it takes away: the name of a mesh, and the degrees of its corners.
 _hidden: list[tuple[str, numpy.ndarray]] = []
 
 # The number of degrees that has the last colour.

@@ -18,7 +18,7 @@ from mathutils import Vector
 
 from . import baked, colours, program, settings, shown, truth
 
-# How much is looked at, and how much is listed.
+# So many frames and pairs of keys are looked at, and so many of each kind are listed.
 MOST_FRAMES, MOST_PAIRS = 250, 100
 LISTED_FRAMES, LISTED_KEYS, LISTED_PAIRS, LISTED_PLACES = 3, 6, 6, 5
 # Places of the list are apart by this share of the object's size.

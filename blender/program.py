@@ -85,7 +85,7 @@ def find(preferred: str) -> Path:
                       f"{platform.machine()}. Name one in Edit > Preferences > Add-ons > Right normals for shape keys.")
 
 
-# What the panel calls the options that messages of the program name.
+# Messages of the program name options; the panel has these labels for them.
 _OPTIONS = {"--tolerance": "Tolerance", "--max-targets": "Most targets", "--max-bytes": "Most KB", "--for": "Viewers"}
 
 

@@ -89,7 +89,7 @@ int main() {
     });
     std::printf("%5d %8zu  %.2f %17zu\n", frame, segment, t, zeros.load());
 
-    // What the jobs wrote is what one call writes.
+    // Check that the jobs wrote what one call writes.
     std::vector<float> whole(3 * normals.size());
     normals.unit_normals(t, VectorView<float>::packed(whole));
     for (std::size_t i = 0; i < normals.size(); ++i)

@@ -105,7 +105,7 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   return how;
 }
 
-// Whether some mesh has no candidate within what was asked for.
+// Returns whether some mesh has no candidate within what was asked for.
 bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
   return std::any_of(bake.meshes.begin(), bake.meshes.end(), [&how](const BakedMesh& mesh) {

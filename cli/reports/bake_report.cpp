@@ -258,7 +258,7 @@ std::string left_text(const GltfBake& bake) {
   return text;
 }
 
-// Whether an optimiser found for every mesh a candidate that is near enough.
+// Returns whether every mesh got a candidate that is near enough.
 bool are_all_within(const GltfBake& bake) {
   return std::all_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
     return std::any_of(mesh.candidates.begin(), mesh.candidates.end(),

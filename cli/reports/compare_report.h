@@ -9,7 +9,7 @@
 
 namespace chronormal::cli {
 
-/// What a table has beside the errors.
+/// Columns that a table may have beside the errors.
 struct TableColumns {
   bool times = true;  ///< without them it is the same on every run
   bool operations = false;

@@ -32,7 +32,7 @@ struct Audited {
 /// "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55": where the worst error of all is.
 [[nodiscard]] std::string worst_label(const Audited& input);
 
-/// The same of one viewer.
+/// Names the place where the worst error of one viewer is.
 [[nodiscard]] std::string worst_label(const Audited& input, const ViewerAudit& viewer);
 
 /// The same for the first pair that cannot be lit.

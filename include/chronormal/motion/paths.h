@@ -94,15 +94,15 @@ struct CubicSegment {
 /// velocities follow.
 [[nodiscard]] CubicSegment cubic_segment(std::span<const Motion::Keyframe* const> keys, std::size_t i, PathKind kind);
 
-/// How far the paths through every `every`-th keyframe of a sequence are from straight: for every three successive ones
-/// the second difference of a vertex, relative to the way that it went, where both are added up over all vertices and
-/// keyframes. A rigid turn by an angle a from keyframe to keyframe has sin(a / 2). Three keyframes are held at a time.
-/// Errors: those of the stream.
+/// Measures how far the paths through every `every`-th keyframe of a sequence are from straight. For every three
+/// successive keyframes it is the second difference of a vertex, relative to the way that the vertex went; both are
+/// added up over all vertices and keyframes. A rigid turn by an angle a from keyframe to keyframe has sin(a / 2). Three
+/// keyframes are held at a time. Errors: those of the stream.
 [[nodiscard]] Result<double> bend_of(MotionStream& stream, std::size_t every = 1);
 /// Above this bend, a curve through the keyframes tells little about the motion.
 inline constexpr double kTooSparse = 0.5;
-/// Whether a bend is above kTooSparse by more than what the rounding of float32 positions may add to it: a rigid turn
-/// by 60 degrees from keyframe to keyframe bends by the limit, and is not too sparse.
+/// Tells whether a bend is above kTooSparse by more than what the rounding of float32 positions may add to it: a rigid
+/// turn by 60 degrees from keyframe to keyframe bends by the limit, and is not too sparse.
 [[nodiscard]] constexpr bool is_too_sparse(double bend) noexcept { return bend > kTooSparse + 1e-6; }
 
 /// Velocities against positions, to find out whether the velocities are those of the motion.
