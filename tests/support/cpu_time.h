@@ -2,7 +2,14 @@
 #ifndef CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 #define CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 
+#include <gtest/gtest.h>
+
 #include <sys/resource.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/support/child_process.h"
 
 namespace chronormal::test {
 
@@ -28,6 +35,26 @@ class CpuClock {
   }
   double start_ = now();
 };
+
+/// Expects that `many()` takes at most `limit` times as long as `few()`, and `once` seconds more. Both run in turn until
+/// that is so for the least time of each, at most ten times: a busy machine only ever adds time, and work that grows
+/// faster fails all ten. Does nothing under sanitizers, whose own work grows in other ways.
+template <class Few, class Many>
+void expect_growth(double limit, double once, const Few& few, const Many& many) {
+  if (is_sanitized()) return;
+  constexpr int kMostTries = 10;
+  const auto seconds = [](const auto& work) {
+    const CpuClock clock;
+    work();
+    return clock.seconds();
+  };
+  double of_few = std::numeric_limits<double>::infinity(), of_many = of_few;
+  for (int i = 0; i < kMostTries && (i == 0 || of_many > limit * of_few + once); ++i) {
+    of_few = std::min(of_few, seconds(few));
+    of_many = std::min(of_many, seconds(many));
+  }
+  EXPECT_LE(of_many, limit * of_few + once);
+}
 
 }  // namespace chronormal::test
 

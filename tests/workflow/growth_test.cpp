@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -105,17 +104,9 @@ TEST(Growth, is_linear_in_the_corners_of_a_polygon) {
     Random random(49007);
     const Motion few = test::large_polygons(kind, kFew, random, 3), many = test::large_polygons(kind, kMany, random, 3);
     for (const Way& way : ways()) {
-      const auto seconds = [&way](const Motion& motion) {
-        double least = 1e9;
-        for (int i = 0; i < 2; ++i) {
-          const test::CpuClock clock;
-          way.run(motion);
-          least = std::min(least, clock.seconds());
-        }
-        return least;
-      };
-      const double of_few = seconds(few), of_many = seconds(many);
-      EXPECT_LT(of_many, 4.0 * kMany / kFew * of_few + kOnce) << way.name << " of kind " << static_cast<int>(kind);
+      SCOPED_TRACE(way.name + " of kind " + std::to_string(static_cast<int>(kind)));
+      test::expect_growth(
+          4.0 * kMany / kFew, kOnce, [&] { way.run(few); }, [&] { way.run(many); });
     }
   }
 }

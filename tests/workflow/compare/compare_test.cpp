@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "chronormal/io/builtin_morphs.h"
-#include "tests/support/cpu_time.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
@@ -518,25 +517,6 @@ Motion polygon(std::uint32_t corners) {
   }
   motion.connect_as_sequence();
   return motion;
-}
-
-// Each corner of a polygon shows its normal, which is computed once for all of them.
-TEST(Compare, time_is_linear_in_the_corners_of_a_polygon) {
-  CompareOptions options;
-  options.schemes = {"linear"};
-  options.elements.kind = ElementKind::kVertices;
-  const auto seconds = [&](std::uint32_t corners) {
-    const Motion motion = polygon(corners);
-    double least = 1e9;
-    for (int i = 0; i < 3; ++i) {
-      const test::CpuClock clock;
-      EXPECT_EQ(compare(motion, options).value().elements, corners);
-      least = std::min(least, clock.seconds());
-    }
-    return least;
-  };
-  const double few = seconds(1000), many = seconds(8000);
-  EXPECT_LT(many, 16 * few);
 }
 
 // The normal of a vertex is that of its polygon, however many corners that has: of some that are few enough to be
