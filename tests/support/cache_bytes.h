@@ -88,10 +88,10 @@ class MayaWriter {
     return group("CACH", chunk("VRSN", std::string("0.1\0", 4)) + integer("STIM", start) + integer("ETIM", start));
   }
   /// The three chunks of one channel.
-  template <class Real>
-  [[nodiscard]] std::string points(const std::string& channel, const std::vector<float>& positions) const {
+  template <class Real, class Given = float>
+  [[nodiscard]] std::string points(const std::string& channel, const std::vector<Given>& positions) const {
     ByteWriter writer("", true);
-    for (const float value : positions) writer.add(Real{value});
+    for (const Given value : positions) writer.add(Real{value});
     return chunk("CHNM", channel + '\0') + integer("SIZE", static_cast<std::int32_t>(positions.size() / 3)) +
            chunk(sizeof(Real) == 8 ? "DVCA" : "FVCA", writer.bytes());
   }

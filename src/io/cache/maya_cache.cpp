@@ -1,5 +1,4 @@
 #include "io/cache/maya_cache.h"
-#include "io/bytes/file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 
 #include "core/charconv.h"
 #include "io/bytes/binary.h"
+#include "io/bytes/file.h"
 #include "io/bytes/scan.h"
 #include "io/cache/maya_chunks.h"
 
@@ -164,6 +164,8 @@ Result<PositionCache> read_maya_points(std::string_view bytes, const std::string
   const Result<std::string> channel = maya::choose_channel(list.value(), options, {}, name);
   if (!channel) return channel.error();
   PositionCache cache;
+  const maya::FarPoints far = maya::find_far_points(bytes, list.value(), channel.value());
+  if (far.has_more_digits) cache.origin = far.origin;
   if (Status status = maya::append_samples(bytes, list.value(), channel.value(), name, cache); !status)
     return status.error();
   return cache;
@@ -196,20 +198,40 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
 
   PositionCache cache;
   CacheOptions choice = options;
-  for (const std::string& file : files) {
+  using Use = std::function<Status(std::string_view bytes, const std::vector<maya::Points>& list)>;
+  const auto with_points_of = [&](const std::string& file, const Use& use) -> Status {
     const Result<FileBytes> opened = FileBytes::open((path.parent_path() / file).string(), resolve);
     if (!opened) return opened.error();
-    const std::string_view bytes = opened.value().bytes();
-    const Result<std::vector<maya::Points>> list = maya::list_points(bytes, file);
+    const Result<std::vector<maya::Points>> list = maya::list_points(opened.value().bytes(), file);
     if (!list) return list.error();
-    // The first file decides; in the others a channel that is sampled less often may be missing.
-    if (&file == files.data()) {
-      Result<std::string> channel = maya::choose_channel(list.value(), choice, described.channels, file);
-      if (!channel) return channel.error();
-      choice.channel = std::move(channel).value();
-    }
-    if (Status status = maya::append_samples(bytes, list.value(), choice.channel, file, cache); !status)
-      return status.error();
+    return use(opened.value().bytes(), list.value());
+  };
+  // The first file decides which channel is meant (in the others one that is sampled less often may be missing), and the
+  // origin that positions count from; whether they need it, any file may tell.
+  maya::FarPoints far;
+  for (const std::string& file : files) {
+    const bool is_first = &file == files.data();
+    const Status status =
+        with_points_of(file, [&](std::string_view bytes, const std::vector<maya::Points>& list) -> Status {
+          if (is_first) {
+            Result<std::string> channel = maya::choose_channel(list, choice, described.channels, file);
+            if (!channel) return channel.error();
+            choice.channel = std::move(channel).value();
+          }
+          const maya::FarPoints found = maya::find_far_points(bytes, list, choice.channel);
+          if (is_first) far.origin = found.origin;
+          far.has_more_digits = found.has_more_digits;
+          return Success{};
+        });
+    if (!status) return status.error();
+    if (far.origin == Origin{} || far.has_more_digits) break;
+  }
+  if (far.has_more_digits) cache.origin = far.origin;
+  for (const std::string& file : files) {
+    const Status status = with_points_of(file, [&](std::string_view bytes, const std::vector<maya::Points>& list) {
+      return maya::append_samples(bytes, list, choice.channel, file, cache);
+    });
+    if (!status) return status.error();
   }
   std::stable_sort(cache.samples.begin(), cache.samples.end(),
                    [](const PositionCache::Sample& a, const PositionCache::Sample& b) { return a.time < b.time; });

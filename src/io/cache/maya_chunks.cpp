@@ -172,6 +172,26 @@ Result<std::string> choose_channel(const std::vector<Points>& list, const CacheO
   return std::string(left.begin()->first);
 }
 
+FarPoints find_far_points(std::string_view bytes, const std::vector<Points>& list, std::string_view channel) {
+  FarPoints found;
+  bool is_first = true;
+  for (const Points& points : list) {
+    if (points.channel != channel) continue;
+    const std::size_t size = points.is_double ? sizeof(double) : sizeof(float);
+    std::vector<double> positions(3 * std::size_t{points.count});
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const char* const at = bytes.data() + points.begin + i * size;
+      positions[i] =
+          points.is_double ? binary::load<double>(at, kMayaOrder) : double{binary::load<float>(at, kMayaOrder)};
+      if (binary::coordinate_fault(positions[i]) != nullptr) return {};  // append_samples() reports it
+      if (loses_digits(positions[i], 0)) found.has_more_digits = true;
+    }
+    if (is_first) found.origin = far_origin(std::span<const double>(positions));
+    is_first = false;
+  }
+  return found;
+}
+
 Status append_samples(std::string_view bytes, const std::vector<Points>& list, std::string_view channel,
                       const std::string& name, PositionCache& cache) {
   for (const Points& points : list) {
@@ -190,8 +210,9 @@ Status append_samples(std::string_view bytes, const std::vector<Points>& list, s
     sample.positions.resize(3 * count);
     const char* const begin = bytes.data() + points.begin;
     const std::size_t read =
-        points.is_double ? binary::load_coordinates<double>(begin, 3 * count, kMayaOrder, sample.positions.data())
-                         : binary::load_coordinates<float>(begin, 3 * count, kMayaOrder, sample.positions.data());
+        points.is_double
+            ? binary::load_coordinates<double>(begin, 3 * count, kMayaOrder, sample.positions.data(), cache.origin)
+            : binary::load_coordinates<float>(begin, 3 * count, kMayaOrder, sample.positions.data(), cache.origin);
     if (read < 3 * count) {
       const std::size_t size = points.is_double ? sizeof(double) : sizeof(float);
       const char* const at = begin + read * size;

@@ -32,8 +32,17 @@ struct Points {
                                                  const std::vector<MayaCacheDescription::Channel>& described,
                                                  const std::string& name);
 
-/// Reads the points of one channel from a list, and appends them to the cache; the time is in ticks / 6000. Errors: as
-/// read_maya_points().
+/// Tells what the points of one channel say of an origin to count from (io/mesh/far_origin.h): where the first of them
+/// are far, and whether any of them has more digits than float32.
+struct FarPoints {
+  Origin origin = {};
+  bool has_more_digits = false;
+};
+[[nodiscard]] FarPoints find_far_points(std::string_view bytes, const std::vector<Points>& list,
+                                        std::string_view channel);
+
+/// Reads the points of one channel from a list, counts them from the origin of the cache, and appends them; the time is
+/// in ticks / 6000. Errors: as read_maya_points().
 [[nodiscard]] Status append_samples(std::string_view bytes, const std::vector<Points>& list, std::string_view channel,
                                     const std::string& name, PositionCache& cache);
 

@@ -158,13 +158,13 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
       Result<MeshFrame> shifted = read_mesh(bytes, file_name_of(path), place, of_mesh);
       if (!shifted) return shifted;
       bool has_more_digits = shifted.value().has_more_digits;
-      if (!has_more_digits && !read.last_file.empty()) {
-        // Faults of the last file are found when it is read in its turn.
-        if (const Result<FileBytes> last = FileBytes::open(read.last_file, options.resolve)) {
-          const Result<MeshFrame> other =
-              read_mesh(last.value().bytes(), file_name_of(read.last_file), place, {false, false, of_mesh.origin});
-          has_more_digits = other && other.value().has_more_digits;
-        }
+      for (std::size_t i = 0; i < read.other_files.size() && !has_more_digits; ++i) {
+        // Faults of other files are found when these are read in their turn.
+        const Result<FileBytes> file = FileBytes::open(read.other_files[i], options.resolve);
+        if (!file) continue;
+        const Result<MeshFrame> other =
+            read_mesh(file.value().bytes(), file_name_of(read.other_files[i]), place, {false, false, of_mesh.origin});
+        has_more_digits = other && other.value().has_more_digits;
       }
       if (has_more_digits) {
         read.motion.origin = of_mesh.origin;

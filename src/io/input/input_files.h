@@ -23,8 +23,9 @@ struct ReadMotion {
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
   std::string shaded_by;  ///< as Input has it
-  std::string last_file =
-      {};  ///< of a sequence: where the first file does not tell whether it has more digits than float32
+  std::vector<std::string> other_files =
+      {};                                 ///< of a sequence: that tell, where its first file has no more digits than
+                                          ///< float32, whether others have
   std::uint64_t bytes_read = 0;           ///< of all files
   std::vector<std::string> notes = {};    ///< as Input has them
   std::optional<FileSeries> series = {};  ///< as Input has it

@@ -161,6 +161,18 @@ Result<std::vector<double>> find_times(const std::vector<std::string>& files, co
   return std::move(found.times);
 }
 
+// Chooses the files that are looked at where the first one has no more digits than float32: the last one, which is the
+// likeliest to have moved, and others evenly between.
+std::vector<std::string> files_that_tell_digits(const std::vector<std::string>& files,
+                                                const std::vector<std::size_t>& frames) {
+  constexpr std::size_t kMost = 32;
+  std::vector<std::string> chosen;
+  const std::size_t last = frames.size() - 1, count = std::min(kMost, last);
+  for (std::size_t i = count; i > 0; --i)
+    if (const std::string& file = files[frames[last * i / count]]; file != "-") chosen.push_back(file);
+  return chosen;
+}
+
 Status set_ends(const std::vector<std::string>& files, const InputOptions& options, const std::vector<double>& times,
                 Motion& motion) {
   const auto positions = [&](std::size_t k) {
@@ -180,8 +192,7 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   if (!times) return times.error();
   Motion& motion = read.motion;
   const std::size_t total = frames.value().size();
-  const std::string& last_file = files[*std::max_element(frames.value().begin(), frames.value().end())];
-  if (last_file != "-") read.last_file = last_file;
+  read.other_files = files_that_tell_digits(files, frames.value());
   motion.keyframes.reserve(total);
   const auto file_of = [&](std::size_t i) -> const std::string& { return files[frames.value()[i]]; };
   const auto place = [&](std::size_t i) { return frame_place(frames.value()[i], file_name_of(file_of(i))); };
@@ -242,7 +253,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   if (!bytes || *bytes <= options.kept_bytes) return read_sequence(files, options);
 
   ReadMotion read;
-  read.last_file = files[*std::max_element(frames.begin(), frames.end())];
+  read.other_files = files_that_tell_digits(files, frames);
   const Result<std::vector<double>> times = find_times(files, options, read);
   if (!times) return times.error();
   Motion outline;

@@ -15,6 +15,7 @@
 #include "io/cache/npy.h"
 #include "io/cache/npz.h"
 #include "io/mesh/obj.h"
+#include "tests/support/cache_bytes.h"
 #include "tests/support/read_input.h"
 #include "tests/support/temporary_folder.h"
 
@@ -210,26 +211,50 @@ TEST(FarOrigin, what_float32_keeps_stays_as_it_is_and_what_it_has_lost_is_said) 
   EXPECT_NE(kept.value().motion().value()->origin[0], 0);
 }
 
-TEST(FarOrigin, a_later_keyframe_tells_that_there_are_more_digits) {
-  const TemporaryFolder folder;
-  const std::string faces = "f 1 2 3\n";
-  (void)folder.write("f_0.obj", "v 452312 5411873 0\nv 452313 5411873 0\nv 452312 5411874 0\n" + faces);
-  (void)folder.write("f_1.obj", "v 452312.1 5411873 0\nv 452313 5411873.01 0\nv 452312 5411874 0.7\n" + faces);
-  const std::string positions =
-      npy_of("<f8", {2, 3, 3},
-             std::vector<double>{452312, 5411873, 0, 452313, 5411873, 0, 452312, 5411874, 0, 452312.1, 5411873, 0,
-                                 452313, 5411873.01, 0, 452312, 5411874, 0.7});
-  const std::string npz =
-      folder.write("f.npz", npz_of(positions, npy_of("<u4", {1, 3}, std::vector<std::uint32_t>{0, 1, 2})));
-  for (const bool stream : {false, true})
-    for (const std::string& name : {folder / "f_*.obj", npz}) {
-      InputOptions options = test::files({name});
-      options.stream = stream;
-      options.kept_bytes = 0;
-      const Motion motion = test::read_motion(options).value();
-      ASSERT_NE(motion.origin, (std::array<double, 3>{})) << name;
-      EXPECT_NEAR(motion.keyframes[1].positions[0] + motion.origin[0], 452312.1, 1e-6);
+TEST(FarOrigin, any_keyframe_tells_that_there_are_more_digits) {
+  constexpr std::uint32_t kSeed = 5407;
+  std::cout << "seed " << kSeed << '\n';
+  std::mt19937 random(kSeed);
+  const std::vector<std::uint32_t> corners = {0, 1, 2};
+  for (int round = 0; round < 20; ++round) {
+    // One keyframe has digits that float32 has not: none of those before it, nor of those after it.
+    const std::size_t frames = 2 + random() % 10, telling = random() % frames;
+    const TemporaryFolder folder;
+    std::vector<double> all;
+    std::string maya = test::MayaWriter(true).header(0);
+    for (std::size_t k = 0; k < frames; ++k) {
+      Sheet mesh{{452312, 5411873, 0, 452313, 5411873, 0, 452312, 5411874, static_cast<double>(k)}, corners};
+      if (k == telling) {
+        mesh.places[0] += 0.125 + 1.0 / 1024;
+        mesh.places[4] += 0.0078125;
+      }
+      all.insert(all.end(), mesh.places.begin(), mesh.places.end());
+      (void)folder.write("f_" + std::to_string(k) + ".obj", obj_of(mesh));
+      const test::MayaWriter writer(true);
+      const std::string points = writer.points<double>("body", mesh.places);
+      maya += writer.group("MYCH", writer.integer("TIME", 250 * static_cast<std::int32_t>(k)) + points);
+      (void)folder.write("eachFrame" + std::to_string(k) + ".mcx",
+                         writer.header(250 * static_cast<std::int32_t>(k)) + writer.group("MYCH", points));
     }
+    const std::string first = folder / "f_0.obj", cache = folder.write("one.mcx", maya),
+                      each = folder.write("each.xml", test::maya_xml("OneFilePerFrame", "mcx", 250, 0, 0)),
+                      one = folder.write("one.xml", test::maya_xml("OneFile", "mcx", 250, 0, 0)),
+                      npz = folder.write("f.npz",
+                                         npz_of(npy_of("<f8", {frames, 3, 3}, all), npy_of("<u4", {1, 3}, corners)));
+    for (const bool stream : {false, true})
+      for (const std::vector<std::string>& names : std::vector<std::vector<std::string>>{
+               {folder / "f_*.obj"}, {npz}, {first, cache}, {first, one}, {first, each}}) {
+        InputOptions options = test::files(names);
+        options.stream = stream;
+        options.kept_bytes = 0;
+        const Result<Motion> read = test::read_motion(options);
+        ASSERT_TRUE(read.ok()) << error_of(read);
+        const Motion& motion = read.value();
+        ASSERT_NE(motion.origin, (std::array<double, 3>{})) << names.back() << ", keyframe " << telling;
+        for (std::size_t i = 0; i < all.size(); ++i)
+          ASSERT_EQ(double{motion.keyframes[i / 9].positions[i % 9]} + motion.origin[i % 3], all[i]) << names.back();
+      }
+  }
 }
 
 TEST(Loops, come_back_to_the_first_keyframe) {
