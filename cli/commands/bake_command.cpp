@@ -209,7 +209,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
 #endif
   const int code = is_beyond(options, how, baked.value()) ? kExitBeyond : kExitDone;
-  BakeReport told{input.name(), output, options.drivers, std::nullopt};
+  BakeReport told{input.name(), output, options.drivers, std::nullopt, input.notes()};
   if (options.plan) {
     warn(baked.value().warnings);
     const Status printed = print(options.json ? plan_json(baked.value(), told) : plan_text(baked.value(), told));
@@ -291,7 +291,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (!baked) return baked.error();
   if (options.input.is_curved()) baked.value().cut = input.cut_path();
   warn(baked.value().warnings);
-  BakeReport told{input.name(), output, std::nullopt, std::nullopt};
+  BakeReport told{input.name(), output, std::nullopt, std::nullopt, input.notes()};
   // An audit judges the triangles of a file, whatever polygons they come from.
   if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
     std::optional<Input> whole;

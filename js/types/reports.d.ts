@@ -148,6 +148,8 @@ export interface AuditReport extends Head<'audit', 2>, MotionError, CurvedPath {
   viewers: ViewerAudit[];
   authored_offsets: AuthoredOffset[];
   findings: AuditFinding[];
+  /** What was left out of the file, or read in another way than it was meant. */
+  notes: string[];
 }
 
 // Of a bake.
@@ -234,6 +236,8 @@ export interface BakedMesh {
 
 interface BakeHead extends Head<'bake', 3> {
   input: { name: string };
+  /** On the input: what was left out of it, or read in another way than it was meant. */
+  notes: string[];
   warnings: string[];
 }
 

@@ -225,6 +225,24 @@ TEST_F(AuditCli, json_is_one_object_with_schema_2) {
   EXPECT_EQ(json["authored_offsets"][0]["vertices"], 4);
 }
 
+// What is said on standard error is in the JSON of whoever does not read that.
+TEST_F(AuditCli, notes_on_a_file_are_in_the_json_of_audit_and_bake) {
+  test::GltfBuilder builder = test::hinge().file();
+  builder.json["extensionsRequired"] = {"FOO_bar"};
+  builder.json["scenes"] = Json::array({{{"extensions", {{"FOO_bar", 1}}}}});
+  folder_.write("required.glb", builder.glb());
+  for (const std::string command : {"audit required.glb", "bake required.glb --plan", "bake required.glb -o out.glb"}) {
+    const ProcessResult result = run_shell(std::string(kProgram) + " " + command + " --json", folder_.path());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json notes = Json::parse(result.out)["notes"];
+    ASSERT_EQ(notes.size(), 1U) << command;
+    const std::string note = notes[0];
+    EXPECT_TRUE(note.starts_with("required.glb, /extensionsRequired/0: ")) << note;
+    EXPECT_NE(result.err.find(note), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(json_of("hinge.glb")["notes"], Json::array());
+}
+
 TEST_F(AuditCli, sequence_is_judged_by_its_stored_normals_or_by_those_of_a_viewer) {
   Json json = json_of("a.obj b.obj");
   EXPECT_EQ(json["rule"], "nlerp");

@@ -230,6 +230,7 @@ struct Audit {
   std::vector<ViewerAudit> viewers;  ///< those of the options, in their order
   std::vector<AuthoredOffset> offsets;
   std::vector<AuditFinding> findings;  ///< faults first
+  std::vector<std::string> notes;      ///< of a glTF file: what was left out, or read in another way than it was meant
   /// With keep_errors a table for each mesh of a glTF file that has subjects, and one for other inputs. Tracks with the
   /// same keys have rows once, as the first of their subjects.
   std::vector<ErrorTable> errors;

@@ -63,6 +63,7 @@ struct BakeReport {
   std::string input, output;  ///< names
   std::optional<std::string> drivers_file;
   std::optional<BeforeAndAfter> audit;
+  std::vector<std::string> notes = {};  ///< on the input, as Input::notes() has them
 };
 
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);

@@ -536,6 +536,7 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
   if (!options.viewers.empty() && result.rule != AuditRule::kGltf)
     return Error{ErrorCode::kUsage, "", "viewers go with the rule gltf, which they stand for"};
   for (const Viewer& viewer : options.viewers) result.viewers.emplace_back().viewer = viewer;
+  for (const Error& note : document.notes()) result.notes.push_back(note.text());
   const std::size_t total = count_segments(document, options, only);
   std::size_t done = 0;
   const auto progress = [&] {

@@ -163,6 +163,7 @@ Json internal::audit_object(const std::string& input, const Audit& audit, const 
   for (const AuthoredOffset& offset : audit.offsets) json["authored_offsets"].push_back(offset_json(offset));
   json["findings"] = Json::array();
   for (const AuditFinding& finding : audit.findings) json["findings"].push_back(finding_json(finding));
+  json["notes"] = audit.notes;
   return json;
 }
 

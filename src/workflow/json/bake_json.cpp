@@ -16,6 +16,7 @@ Json common_json(const BakeReport& report) {
   Json json = json_of_command("bake", kSchema);
   json["input"] = {{"name", report.input}};
   json["output"] = report.output;
+  json["notes"] = report.notes;
   return json;
 }
 
@@ -142,6 +143,7 @@ std::string bake_json(const GltfBake& bake, const BakeReport& report) {
 std::string plan_json(const GltfBake& bake, const BakeReport& report) {
   Json json = json_of_command("bake", kSchema);
   json["input"] = {{"name", report.input}};
+  json["notes"] = report.notes;
   json["plan"] = true;
   Json meshes = Json::array();
   for (const BakedMesh& mesh : bake.meshes)
