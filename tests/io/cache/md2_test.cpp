@@ -54,6 +54,7 @@ TEST(ReadMd2, clips_are_apart) {
   EXPECT_EQ(segments_of({"death101", "death102", "death201", "death202"}), "01 23 animation");
   EXPECT_EQ(segments_of({"stand01", "stand02", "stand03"}), "01 12 sequence");
   EXPECT_EQ(segments_of({"frame1", "frame3", "frame5"}), "01 12 sequence");
+  EXPECT_EQ(segments_of({"run1", "run3", "run4", "run6"}), "01 12 23 sequence");
   EXPECT_EQ(segments_of({"a", "b", "c"}), "01 12 sequence");
   EXPECT_EQ(segments_of({"pose1", "idle1", "idle2", "fire1"}), "12 animation");
 }

@@ -136,6 +136,13 @@ const std::vector<Case> kCases = {
        f.json["extensionsRequired"] = {"KHR_gaussian_splatting"};
      },
      "/extensionsRequired/0"},
+    {"an extension of lines",
+     [](GltfBuilder& f) {
+       f.json["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"mode", 3}}}}});
+       f.json["meshes"][1]["primitives"][0]["extensions"]["KHR_gaussian_splatting"] = Json::object();
+       f.json["extensionsRequired"] = {"KHR_gaussian_splatting"};
+     },
+     "/extensionsRequired/0"},
     {"an extension that nobody has heard of",
      [](GltfBuilder& f) {
        f.json["extensionsRequired"] = {"FOO_bar"};
@@ -186,9 +193,10 @@ TEST(GltfNotes, what_the_geometry_needs_is_an_error) {
             }).find("/nodes/0/rotation"),
             std::string::npos);
   // An extension of what is read may change it.
-  for (const char* const pointer :
-       {"/meshes/0/primitives/0", "/meshes/0", "/accessors/0", "/bufferViews/0", "/buffers/0"}) {
+  for (const char* const pointer : {"/meshes/0/primitives/0", "/meshes/0", "/accessors/0", "/bufferViews/0",
+                                    "/buffers/0", "/animations/0/samplers/0"}) {
     GltfBuilder builder = animated();
+    builder.json["meshes"][0]["primitives"][0]["mode"] = 4;
     builder.json["buffers"] = Json::array({Json::object()});
     builder.json[Json::json_pointer(pointer)]["extensions"]["FOO_packed"] = Json::object();
     builder.json["extensionsRequired"] = {"FOO_packed"};
