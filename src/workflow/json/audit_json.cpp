@@ -138,9 +138,8 @@ Json viewer_json(const Audit& audit, const AuditLimits& limits, const ViewerAudi
   return json;
 }
 
-}  // namespace
-
-Json internal::audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits) {
+// All that was found in one input, but for its subjects.
+Json without_subjects(const std::string& input, const Audit& audit, const AuditLimits& limits) {
   Json json;
   json["input"] = {{"name", input}};
   json["rule"] = audit_rule_name(audit.rule);
@@ -156,7 +155,6 @@ Json internal::audit_object(const std::string& input, const Audit& audit, const 
   json["histogram"] = histogram_json(audit.error);
   json["still"] = audit.still;
   json["subjects"] = Json::array();
-  for (const AuditSubject& subject : audit.subjects) json["subjects"].push_back(subject_json(subject));
   json["viewers"] = Json::array();
   for (const ViewerAudit& found : audit.viewers) json["viewers"].push_back(viewer_json(audit, limits, found));
   json["authored_offsets"] = Json::array();
@@ -167,11 +165,30 @@ Json internal::audit_object(const std::string& input, const Audit& audit, const 
   return json;
 }
 
-std::string audit_json(const std::string& input, const Audit& audit, const AuditLimits& limits) {
+// The text of one input, whose subjects are never all there as objects.
+std::string audit_text_of(const std::string& input, const Audit& audit, const AuditLimits& limits, bool is_indented) {
   Json json = json_of_command("audit", kAuditSchema);
-  json.update(audit_object(input, audit, limits));
+  json.update(without_subjects(input, audit, limits));
   if (limits.any() && !audit.is_judged()) json["passed"] = false;  // of one input, and not of one among others
-  return json_text(json);
+  return with_items(
+      is_indented ? json_text(json) : json.dump(-1, ' ', false, Json::error_handler_t::replace), "subjects",
+      audit.subjects.size(), [&](std::size_t i) { return subject_json(audit.subjects[i]); }, is_indented);
+}
+
+}  // namespace
+
+Json internal::audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits) {
+  Json json = without_subjects(input, audit, limits);
+  for (const AuditSubject& subject : audit.subjects) json["subjects"].push_back(subject_json(subject));
+  return json;
+}
+
+std::string internal::audit_line(const std::string& input, const Audit& audit, const AuditLimits& limits) {
+  return audit_text_of(input, audit, limits, false);
+}
+
+std::string audit_json(const std::string& input, const Audit& audit, const AuditLimits& limits) {
+  return audit_text_of(input, audit, limits, true);
 }
 
 }  // namespace chronormal

@@ -16,6 +16,9 @@ inline constexpr int kAuditSchema = 2;
 /// All that was found in one input; without the fields that every command begins with.
 [[nodiscard]] Json audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
+/// The text of audit_json() in one line.
+[[nodiscard]] std::string audit_line(const std::string& input, const Audit& audit, const AuditLimits& limits);
+
 }  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_WORKFLOW_JSON_AUDIT_JSON_H_

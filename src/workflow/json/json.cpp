@@ -13,6 +13,27 @@ std::string json_text(const Json& json) {
   return escaped_for_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n';
 }
 
+std::string with_items(std::string text, const std::string& name, std::size_t count,
+                       const std::function<Json(std::size_t)>& item, bool is_indented) {
+  // Inside of strings, quotes are escaped: there is no such text but that of the list.
+  const std::string list = '"' + name + (is_indented ? "\": []" : "\":[]"), margin(is_indented ? 4 : 0, ' ');
+  const std::size_t at = text.find(list);
+  if (at == std::string::npos || count == 0) return text;
+  const std::string rest = text.substr(at + list.size() - 1);
+  text.resize(at + list.size() - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string lines = item(i).dump(is_indented ? 2 : -1, ' ', false, Json::error_handler_t::replace);
+    if (i > 0) text += ',';
+    if (is_indented) text += '\n' + margin;
+    for (const char c : is_indented ? escaped_for_json(lines) : lines) {
+      text += c;
+      if (is_indented && c == '\n') text += margin;
+    }
+  }
+  if (is_indented) text += "\n  ";
+  return text + rest;
+}
+
 void put_path(Json& json, const std::optional<CutPath>& cut) {
   if (!cut) return;
   json["path"] = path_name(cut->path.kind);

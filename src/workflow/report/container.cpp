@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/bytes/binary.h"
+#include "workflow/json/object.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 
 namespace chronormal::inline internal {
@@ -186,8 +187,8 @@ Json part_json(const ModelPart& part, Arrays& arrays) {
 
 }  // namespace
 
-std::string write_container(const Json& head, const ReportModel& model) {
-  Json json = head;
+std::string write_container(const std::string& head, const ReportModel& model) {
+  Json json;
   Arrays arrays;
   json["kind"] = model.kind;
   json["thinned"] = model.thinned;
@@ -202,7 +203,7 @@ std::string write_container(const Json& head, const ReportModel& model) {
                              {"degrees", place.degrees},
                              {"label", place.label},
                              {"moment", place.moment}});
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string own = json.dump(-1, ' ', false, Json::error_handler_t::replace), text = '{' + head + own.substr(1);
   std::string bytes = "CHRONRPT";
   binary::append(bytes, kLayout, std::endian::little);
   binary::append(bytes, static_cast<std::uint32_t>(text.size()), std::endian::little);

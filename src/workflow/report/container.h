@@ -5,13 +5,12 @@
 #include <string>
 #include <string_view>
 
-#include "workflow/json/object.h"
 #include "workflow/report/report_model.h"
 
 namespace chronormal::inline internal {
 
-/// head has what the JSON begins with: the fields that are no part of the model.
-[[nodiscard]] std::string write_container(const Json& head, const ReportModel& model);
+/// head has what the JSON begins with: the fields that are no part of the model, as text, each with a comma behind it.
+[[nodiscard]] std::string write_container(const std::string& head, const ReportModel& model);
 
 /// The bytes by gzip.
 [[nodiscard]] std::string gzipped(std::string_view bytes);

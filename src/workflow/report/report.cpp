@@ -7,6 +7,7 @@
 
 #include "chronormal/workflow/json.h"
 #include "workflow/audit/watched_audit.h"
+#include "workflow/json/audit_json.h"
 #include "workflow/json/object.h"
 #include "workflow/report/container.h"
 #include "workflow/report/report_model.h"
@@ -110,17 +111,21 @@ void plan(const GltfDocument& document, const ReportOptions& options, Report& re
     report.plan_message = planned.error().text();
 }
 
-Json head_of(const Report& report) {
-  const auto object = [](const std::string& text) { return Json::parse(text); };
-  Json audit = object(audit_json(report.input, report.audit, {}));
-  Json head = {{"schema", 2}, {"program", "chronormal " + audit["chronormal"].get<std::string>()}};
-  head["input"] = report.input;
-  head["audit"] = std::move(audit);
-  head["plan"] = Json();
-  if (report.plan) head["plan"] = object(plan_json(*report.plan, {report.input, "", std::nullopt, std::nullopt}));
-  head["plan_message"] = report.plan_message.empty() ? Json() : Json(report.plan_message);
-  head["compare"] = report.comparison ? object(compare_json({*report.comparison}, false, false)) : Json();
-  return head;
+// The fields of a container that are the JSON of commands, each with a comma behind it.
+std::string head_of(const Report& report) {
+  const auto line = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
+  const auto in_one_line = [&](const std::string& text) { return line(Json::parse(text)); };
+  std::string fields;
+  const auto add = [&](const std::string& name, const std::string& value) { fields += line(name) + ':' + value + ','; };
+  add("schema", "2");
+  add("program", line("chronormal " + json_of_command("report")["chronormal"].get<std::string>()));
+  add("input", line(report.input));
+  add("audit", audit_line(report.input, report.audit, {}));
+  add("plan",
+      report.plan ? in_one_line(plan_json(*report.plan, {report.input, "", std::nullopt, std::nullopt})) : "null");
+  add("plan_message", report.plan_message.empty() ? "null" : line(report.plan_message));
+  add("compare", report.comparison ? in_one_line(compare_json({*report.comparison}, false, false)) : "null");
+  return fields;
 }
 
 // The bytes of a page with so many of it as base64 of a container packed, beside the template.
@@ -130,7 +135,7 @@ std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
 }
 
 // Writes the container, and thins the model out first where the page would be too large.
-std::string write_within(const Json& head, ReportModel& model, const ReportOptions& options) {
+std::string write_within(const std::string& head, ReportModel& model, const ReportOptions& options) {
   std::string container = write_container(head, model);
   // How small arrays become is known from these; a part of them may become less so.
   const std::size_t packed = page_bytes(gzipped(container).size(), options);
