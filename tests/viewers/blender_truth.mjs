@@ -47,6 +47,11 @@ function loopsOf(primitive, truth) {
   });
 }
 
+// Blender's normals of the vertices of a primitive at an instant, whose loops these are.
+export function truthOf({ truth }, instant, loops) {
+  return Float32Array.from({ length: 3 * loops.length }, (_, i) => truth.normal(instant, loops[Math.floor(i / 3)])[i % 3]);
+}
+
 // Reads {name, path, truth, exported, loops}: `path` lacks the ending, `loops` has an array for each primitive.
 export async function readModel(path) {
   const [truth, exported] = [readTruth(path), await read(`${path}.glb`)];

@@ -2,7 +2,7 @@
 import * as babylon from './babylon_page.mjs';
 import * as filament from './filament_page.mjs';
 import { differenceOfPictures, drawPicture } from './picture.mjs';
-import { compareNormals, middleOf, normalAt } from './pixels.mjs';
+import { compareNormals, lit, middleOf, normalAt } from './pixels.mjs';
 import * as playcanvas from './playcanvas_page.mjs';
 import * as three from './three_page.mjs';
 
@@ -32,6 +32,46 @@ window.compareInViewer = async (viewer, files, animation, moments, size) => {
   }
   models.forEach(dispose);
   return results;
+};
+
+// What a viewer draws of each file at a time of an animation, held against the still file `truth`: {compared, picture},
+// what compareNormals() says of each, and all of them beside the truth, lit alike, as a PNG in a data URL.
+window.closeUpInViewer = async (viewer, files, animation, { time, truth, view }, size) => {
+  const { play, drawNormals, dispose, normalsAreOfView = false } = viewers[viewer];
+  const draw = async (file, animated) => {
+    const model = await loaded(viewer, file);
+    play(model, animated, time);
+    const picture = await drawNormals(model, view, size);
+    dispose(model);
+    return picture;
+  };
+  const drawn = [];
+  for (const file of files) drawn.push(await draw(file, animation));
+  const expected = await draw(truth, null);
+  const sheet = new OffscreenCanvas(3 * size.width, size.height), ink = sheet.getContext('2d');
+  [...drawn, expected].forEach((picture, i) => ink.putImageData(lit(picture, normalsAreOfView ? null : view, size), i * size.width, 0));
+  return { compared: drawn.map((picture) => compareNormals(picture, expected, size)), picture: await urlOf(sheet, 'image/png') };
+};
+
+const urlOf = async (canvas, type) => {
+  const bytes = new Uint8Array(await (await canvas.convertToBlob({ type, quality: 0.88 })).arrayBuffer());
+  return `data:${type};base64,${btoa(bytes.reduce((text, byte) => text + String.fromCharCode(byte), ''))}`;
+};
+
+// The pictures of closeUpInViewer() of several viewers, one below the other, with words above each, as a JPEG in a data URL.
+window.sheetOfCloseUps = async (pictures, { width, height }) => {
+  const HEAD = 30, sheet = new OffscreenCanvas(3 * width, pictures.length * (height + HEAD)), ink = sheet.getContext('2d');
+  ink.fillStyle = '#f8fafc';
+  ink.fillRect(0, 0, sheet.width, sheet.height);
+  ink.font = '600 15px "DejaVu Sans", sans-serif';
+  for (const [row, { viewer, picture }] of pictures.entries()) {
+    const image = await createImageBitmap(await (await fetch(picture)).blob());
+    ink.fillStyle = '#1e293b';
+    ['as exported', 'baked', 'the truth, by Blender'].forEach((words, i) =>
+      ink.fillText(`${viewer}: ${words}`, i * width + 10, row * (height + HEAD) + 20));
+    ink.drawImage(image, 0, row * (height + HEAD) + HEAD);
+  }
+  return urlOf(sheet, 'image/jpeg');
 };
 
 // What a function makes of each picture of normals that a viewer draws of a file, at times of its first animation.

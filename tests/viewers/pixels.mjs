@@ -24,6 +24,34 @@ export function middleOf(picture, { width, height }) {
   return count > 0 ? sum.map((c) => c / count) : null;
 }
 
+// A picture as a glossy surface under one lamp, as pixels of a canvas: a tear is seen there as the eye sees it in a
+// viewer, by the same light in all of them. Normals are of the world where a view is given, and else of the camera.
+export function lit(picture, view, { width, height }) {
+  const LAMP = unit([-0.45, 0.6, 0.66]), HALF = unit([LAMP[0], LAMP[1], LAMP[2] + 1]), BASE = [47, 127, 181], BACK = [248, 250, 252];
+  const axes = view ? cameraAxes(view) : null, image = new ImageData(width, height);
+  for (let y = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x) {
+      const from = 4 * (y * width + x), to = 4 * ((height - 1 - y) * width + x), colour = [...BACK];
+      if (picture[from + 3] > 0) {
+        const n = unit(normalIn(picture, from)), seen = axes ? axes.map((axis) => dot(axis, n)) : n;
+        const light = 0.25 + 0.8 * Math.max(0, dot(seen, LAMP)), gloss = 190 * Math.max(0, dot(seen, HALF)) ** 60;
+        for (let c = 0; c < 3; ++c) colour[c] = Math.min(255, BASE[c] * light + gloss);
+      }
+      image.data.set([...colour, 255], to);
+    }
+  return image;
+}
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const unit = (a) => a.map((x) => x / (Math.hypot(...a) || 1));
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+
+// Right, up and backwards of a camera.
+function cameraAxes({ eye, at }) {
+  const back = unit(eye.map((x, c) => x - at[c])), right = unit(cross([0, 1, 0], back));
+  return [right, cross(back, right), back];
+}
+
 // Compares two pictures pixel by pixel. A pixel counts where it and its eight neighbours are covered in both, so that
 // silhouettes are left out. Degrees: {pixels, mean, p99, max}.
 export function compareNormals(shown, truth, { width, height }) {

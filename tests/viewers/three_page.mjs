@@ -69,6 +69,8 @@ export function cameraOf({ eye, at, degrees, near, far }, size) {
   return camera;
 }
 
+export const normalsAreOfView = true;
+
 // View-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
 export async function drawNormals(model, view, size) {
   model.scene.traverse((object) => {
