@@ -1,6 +1,6 @@
 // Fuzz target of the readers of parts, and of the records that journals keep: whatever the bytes are, the result is an
 // error with a message, or one that can be printed.
-#include "chronormal/workflow/parts.h"
+#include "workflow/json/parts.h"
 
 #include <string>
 #include <vector>

@@ -11,12 +11,10 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/json.h"
-#include "chronormal/workflow/parts.h"
 #include "chronormal/workflow/viewers.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
-#include "cli/options/resume.h"
-#include "cli/ranks/ranks.h"
+#include "cli/options/run.h"
 #include "cli/reports/audit/audit_files.h"
 #include "cli/reports/audit/audit_report.h"
 #include "cli/terminal/format.h"
@@ -24,6 +22,7 @@
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
 #include "core/charconv.h"
+#include "workflow/audit/watched_audit.h"
 
 namespace chronormal::cli {
 namespace {
@@ -37,8 +36,7 @@ struct AuditArguments {
   std::optional<std::string> weights;
   AuditLimits limits;
   std::optional<std::string> errors;  // where to write every single one
-  ShardArgument shard;
-  ResumeArgument resume;
+  RunArguments run;
   bool no_weld = false;
   bool json = false;
 };
@@ -46,6 +44,8 @@ struct AuditArguments {
 // What a gate says where there is nothing to look at: a build that has lost its animations must not pass.
 constexpr const char* kNothingMoves =
     "nothing moves stored normals, so that there is nothing to judge, and no limit is of use";
+
+constexpr const char* kDividesSequences = "it divides the segments of a sequence, and a glTF file is none";
 
 // A word as a shell reads it back.
 std::string shell_word(const std::string& word) {
@@ -97,40 +97,34 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
            {"--errors FILE", &options.errors,
             "write the error of every vertex at every sample: .npz for programs, or .ply\n"
             "with the worst of each vertex as its quality, for MeshLab and Blender"},
-           {"--no-weld", &options.no_weld, "keep vertices apart that are at one point throughout"},
-           options.shard.option("judge the Ith of N equal shares of the segments of a sequence alone: OUT is a part\n"
-                                "for chronormal merge"),
-           options.resume.option(),
-           {"--json", &options.json, "print one JSON object, for programs"}},
+           {"--no-weld", &options.no_weld, "keep vertices apart that are at one point throughout"}},
+          options.run.options("judge the Ith of N equal shares of the segments of a sequence alone: OUT is a part\n"
+                              "for chronormal merge"),
+          {{"--json", &options.json, "print one JSON object, for programs"}},
           options.common.table(false)};
 }
 
-Result<Audit> audit_motion(Input& input, const AuditOptions& how) {
+// Audits what is no glTF file. The result is nothing on a rank that has nothing to print.
+Result<std::optional<Audit>> audit_motion(Input& input, const AuditArguments& options, const AuditOptions& how,
+                                          CommandRun& run, AuditRun& segments) {
   const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
   const Result<const StoredNormals*> normals = input.normals();
   if (!normals) return normals.error();
-  return audit(*motion.value(), *normals.value(), how);
+  const Status prepared =
+      run.prepare(input, motion.value()->motion(), how.progress, segments, segment_part, read_measured_segment);
+  if (!prepared) return prepared.error();
+  Result<Audit> found = audit(*motion.value(), *normals.value(), how, segments);
+  if (!found) return found.error();
+  if (options.input.is_curved()) found.value().cut = input.cut_path();
+  const Result<bool> prints = CommandRun::join(
+      audit_part(input.name(), found.value(), segments, options.limits.degrees), merge_audit_parts, found.value());
+  if (!prints) return prints.error();
+  return prints.value() ? std::optional(std::move(found).value()) : std::nullopt;
 }
 
-// Takes what an earlier run found, and keeps what this one finds.
-Status go_on(Input& input, const AuditArguments& options, AuditOptions& how, Journal& journal) {
-  const Result<MotionStream*> motion = input.document() == nullptr ? input.stream() : Result<MotionStream*>(nullptr);
-  if (!motion) return motion.error();
-  if (motion.value() == nullptr || motion.value()->motion().kind != MotionKind::kSequence)
-    return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
-  for (const std::string& record : journal.records()) {
-    Result<SegmentErrors> segment = read_measured_segment(record, journal.path());
-    if (!segment) return segment.error();
-    how.known.push_back(std::move(segment).value());
-  }
-  say_goes_on("audit", how.known.size(), "segments", options.common.quiet);
-  how.keep = [&journal](const SegmentErrors& segment) { return journal.append(segment_part(segment)); };
-  return Success{};
-}
-
-// resumed is nullptr where the run does not go on.
-Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Progress& progress, ResumedRun* resumed) {
+Result<std::optional<Audited>> audit_input(const AuditArguments& options, const AuditOptions& how, Progress& progress,
+                                           CommandRun& run, AuditRun& segments) {
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
   wanted.stream = true;
@@ -145,19 +139,25 @@ Result<Audited> audit_input(const AuditArguments& options, AuditOptions how, Pro
     return misuse("--weights", "it is for the targets of a glTF file; this input is none");
   if (document == nullptr && options.limits.torn_edges)
     return misuse("--tears", "torn edges are counted in glTF files; this input is none");
-  if (document != nullptr && how.shard)
-    return misuse(has_ranks() ? "mpirun" : "--shard", "it divides the segments of a sequence, and a glTF file is none");
-  if (resumed != nullptr) {
-    if (const Status known = go_on(input, options, how, resumed->journal()); !known) return known.error();
+  if (document != nullptr && options.run.resume)
+    return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
+  if (const Status status = document != nullptr ? refuse_shares(options.run, kDividesSequences) : Success{}; !status)
+    return status.error();
+  std::optional<Audit> found;
+  if (document != nullptr) {
+    Result<Audit> of_file = audit(*document, how);
+    if (!of_file) return of_file.error();
+    found = std::move(of_file).value();
+  } else {
+    Result<std::optional<Audit>> of_motion = audit_motion(input, options, how, run, segments);
+    if (!of_motion) return of_motion.error();
+    found = std::move(of_motion).value();
   }
-  how.expansion = input.expansion();
-  Result<Audit> found = document != nullptr ? audit(*document, how) : audit_motion(input, how);
-  if (!found) return found.error();
   progress.clear();
-  if (options.input.is_curved()) found.value().cut = input.cut_path();
+  if (!found) return std::optional<Audited>();
   const bool can_be_baked = document != nullptr || input.stream().value()->motion().kind != MotionKind::kTargets;
-  return Audited{std::move(input), std::move(found).value(), options.limits,
-                 can_be_baked ? words_of(options.input) : ""};
+  return std::optional(
+      Audited{std::move(input), std::move(*found), options.limits, can_be_baked ? words_of(options.input) : ""});
 }
 
 Result<std::array<double, 2>> read_weights(const std::string& text) {
@@ -207,20 +207,15 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   std::vector<NamedFile> inputs = input_files(options.input);
   if (options.poses && *options.poses != "random") inputs.push_back({"--poses", *options.poses});
   if (const Status distinct = check_distinct(outputs, inputs); !distinct) return distinct.error();
-  const Result<std::optional<Shard>> shard = options.shard.read();
-  if (!shard) return shard.error();
-  how.shard = shard.value();
-  if (how.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
-  if (how.shard && options.json)
+  if (options.run.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
+  if (options.run.shard && options.json)
     return misuse("--json", "OUT of a shard is a part, of which chronormal merge makes the JSON");
-  if (options.resume.asked && options.errors) return misuse("--errors", "a run with --resume keeps sums alone");
+  if (options.run.resume && options.errors) return misuse("--errors", "a run with --resume keeps sums alone");
   how.keep_errors = options.errors.has_value();
   how.samples = options.judge.samples;
   how.animation = options.input.animation;
   how.weld = !options.no_weld;
-  how.progress = watching_ranks(progress.callback("auditing", "segments"));
-  if (has_ranks()) how.shard = own_shard();
-  how.peers = ranks_as_peers();
+  how.progress = progress.callback("auditing", "segments");
   return how;
 }
 
@@ -289,30 +284,24 @@ bool say_what_is_beyond(const Audited& audited, const std::string& place) {
 
 Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Progress& progress) {
   AuditArguments same = options;
-  const auto resumed = options.resume.begin("audit", tables(same), options.input, options.common);
-  if (!resumed) return resumed.error();
-  Result<Audited> audited = audit_input(options, how, progress, resumed.value().get());
+  const auto run = options.run.begin("audit", tables(same), options.input, options.common);
+  if (!run) return run.error();
+  AuditRun segments;
+  Result<std::optional<Audited>> audited = audit_input(options, how, progress, *run.value(), segments);
   progress.clear();
   if (!audited) return audited.error();
-  Audited& found = audited.value();
-  if (has_ranks()) {
-    const std::vector<Part> parts = gather_parts(audit_part(found.name(), found.audit, found.limits.degrees));
-    if (parts.empty()) return kExitDone;  // the first rank prints
-    Result<Audit> all = merge_audit_parts(parts);
-    if (!all) return all.error();
-    found.audit = std::move(all).value();
-  }
+  if (!audited.value()) return kExitDone;  // the first rank prints
+  Audited& found = *audited.value();
   if (options.errors) {
     const Status written = write_errors(found.audit.errors, *options.errors, options.common.force);
     if (!written) return written.error();
   }
-  const std::string text = options.shard.text ? audit_part(found.name(), found.audit, found.limits.degrees)
-                           : options.json     ? audit_json(found.name(), found.audit, found.limits)
-                                              : audit_text(found);
-  const Status written = options.resume.asked ? resumed.value()->finish(text, options.common.force)
-                                              : print_to(options.common.output, text, options.common.force);
-  if (!written) return written.error();
-  if (options.shard.text) return kExitDone;
+  const bool is_part = run.value()->is_part();
+  const std::string text = is_part        ? audit_part(found.name(), found.audit, segments, found.limits.degrees)
+                           : options.json ? audit_json(found.name(), found.audit, found.limits)
+                                          : audit_text(found);
+  if (const Status written = run.value()->finish(text); !written) return written.error();
+  if (is_part) return kExitDone;
   if (options.limits.any() && found.audit.subjects.empty()) {
     say("audit", kNothingMoves, Tone::kError);
     return kExitBeyond;
@@ -331,7 +320,7 @@ int worse_exit(int a, int b) {
 // Judges files one by one. One that cannot be read does not keep the others from being judged.
 Result<int> run_several(const AuditArguments& options, const AuditOptions& how, const std::vector<std::string>& names,
                         Progress& progress) {
-  if (options.resume.asked) return misuse("--resume", "it goes on with one sequence, and these are several glTF files");
+  if (options.run.resume) return misuse("--resume", "it goes on with one sequence, and these are several glTF files");
   if (!options.input.animation.empty())
     return misuse("--animation", "it chooses among the animations of one file: name one file");
   if (options.errors) return misuse("--errors", "it holds the errors of one input: name one file");
@@ -340,11 +329,13 @@ Result<int> run_several(const AuditArguments& options, const AuditOptions& how, 
   for (const std::string& name : names) {
     AuditArguments one = options;
     one.input.files = {name};
-    const Result<Audited> audited = audit_input(one, how, progress, nullptr);
+    CommandRun run("audit", one.common, {}, {});
+    AuditRun segments;
+    const Result<std::optional<Audited>> audited = audit_input(one, how, progress, run, segments);
     progress.clear();
     if (audited) {
-      files.emplace_back(audited.value());
-      exit = worse_exit(exit, say_what_is_beyond(audited.value(), name + ": ") ? kExitDone : kExitBeyond);
+      files.emplace_back(*audited.value());
+      exit = worse_exit(exit, say_what_is_beyond(*audited.value(), name + ": ") ? kExitDone : kExitBeyond);
       continue;
     }
     if (audited.error().code == ErrorCode::kUsage) return audited.error();
@@ -366,21 +357,16 @@ Result<int> run_several(const AuditArguments& options, const AuditOptions& how, 
 }
 
 Result<int> run(const AuditArguments& options) {
-  if (const Status divisible = check_ranks(options.shard.text     ? "--shard"
-                                           : options.errors       ? "--errors"
-                                           : options.resume.asked ? "--resume"
-                                                                  : "");
-      !divisible)
-    return divisible.error();
+  if (const Status status = options.run.check(options.errors ? "--errors" : ""); !status) return status.error();
   Progress progress(options.common.quiet);
   const Result<AuditOptions> how = understand(options, progress);
   if (!how) return how.error();
-  if (const Status output = options.resume.check_output(options.common); !output) return output.error();
+  if (const Status output = options.run.check_output(options.common); !output) return output.error();
   if (!options.input.base.empty() || !options.input.samples.empty()) return run_one(options, how.value(), progress);
   const Result<std::vector<std::string>> files = find_gltf_files(options.input.files);
   if (!files) return files.error();
-  if (has_ranks() && !files.value().empty())
-    return misuse("mpirun", "it divides the segments of a sequence, and a glTF file is none");
+  if (const Status status = files.value().empty() ? Success{} : refuse_shares(options.run, kDividesSequences); !status)
+    return status.error();
   const bool is_one = files.value().empty() || files.value() == options.input.files;
   return is_one && files.value().size() < 2 ? run_one(options, how.value(), progress)
                                             : run_several(options, how.value(), files.value(), progress);

@@ -6,18 +6,18 @@
 #include "chronormal/io/builtin_morphs.h"
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/compare.h"
-#include "chronormal/workflow/parts.h"
+#include "chronormal/workflow/json.h"
 #include "cli/commands/compare_blend.h"
 #include "cli/commands/compare_truth.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
-#include "cli/options/resume.h"
-#include "cli/ranks/ranks.h"
+#include "cli/options/run.h"
 #include "cli/reports/compare_report.h"
 #include "cli/reports/truth_report.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/text.h"
+#include "workflow/compare/compared.h"
 
 namespace chronormal::cli {
 namespace {
@@ -40,8 +40,7 @@ struct CompareArguments {
   bool certify = false;
   std::optional<double> tolerance;    // degrees
   std::optional<std::string> errors;  // where to write every single one
-  ShardArgument shard;
-  ResumeArgument resume;
+  RunArguments run;
   BlendArguments blend;
   TruthArguments truth;
 
@@ -71,8 +70,8 @@ std::string option_of_schemes(const CompareArguments& options) {
   if (options.samples) return "--samples";
   if (options.schemes) return "--schemes";
   if (options.errors) return "--errors";
-  if (options.shard.text) return "--shard";
-  if (options.resume.asked) return "--resume";
+  if (options.run.shard) return "--shard";
+  if (options.run.resume) return "--resume";
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   if (options.input.is_curved()) return "--path";
@@ -107,47 +106,46 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
     return value == "text" || value == "operations" || value == "latex" ? ""
                                                                         : value + " not in {text,operations,latex}";
   };
-  return {
-      input_table(options.input),
-      {{"--each", &options.each, "compare motions side by side: every INPUT and --sample is one of its own"},
-       {"--schemes A,B,...", &options.schemes, "which schemes, in which order (listed below)"},
-       {"--samples N",
-        &options.samples,
-        "how many moments of each segment are compared, its ends included (default 21)",
-        {.check = check_whole(2, kMostSamples)}}},
-      options.elements.table(),
-      {{"--weighting NAME", &options.weighting,
-        "how the faces around a vertex count, with --elements vertices or corners: area\n"
-        "(default) or another one that sample --help lists"},
-       {"--access KIND",
-        &options.access,
-        "random (default): each moment on its own; sequential: each from the one before",
-        {.check = check_access}}},
-      {{"--certify", &options.certify,
-        "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
-       {"--tolerance DEG", &options.tolerance,
-        "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
-      options.blend.table(),
-      options.truth.table(),
-      {{"--errors FILE", &options.errors,
-        "write the error of every element at every sample: .npz for programs, or .ply of one\n"
-        "scheme with the worst of each as its quality, for MeshLab and Blender"},
-       options.shard.option("compare the Ith of N equal shares of the segments alone: OUT is a part for chronormal\n"
-                            "merge"),
-       options.resume.option(),
-       {"--json", &options.json, "print one JSON object, for programs"},
-       {"--csv", &options.csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
-       {"--table KIND",
-        &options.table,
-        "text (default); operations: with what an evaluation takes; latex: both tables of the\n"
-        "paper for your meshes, with --each of several side by side",
-        {.excludes = "--json", .check = check_table}},
-       {"--no-times", &options.no_times, "leave out measured times: the same output on every run"}},
-      options.common.table(false)};
+  return {input_table(options.input),
+          {{"--each", &options.each, "compare motions side by side: every INPUT and --sample is one of its own"},
+           {"--schemes A,B,...", &options.schemes, "which schemes, in which order (listed below)"},
+           {"--samples N",
+            &options.samples,
+            "how many moments of each segment are compared, its ends included (default 21)",
+            {.check = check_whole(2, kMostSamples)}}},
+          options.elements.table(),
+          {{"--weighting NAME", &options.weighting,
+            "how the faces around a vertex count, with --elements vertices or corners: area\n"
+            "(default) or another one that sample --help lists"},
+           {"--access KIND",
+            &options.access,
+            "random (default): each moment on its own; sequential: each from the one before",
+            {.check = check_access}}},
+          {{"--certify", &options.certify,
+            "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
+           {"--tolerance DEG", &options.tolerance,
+            "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
+          options.blend.table(),
+          options.truth.table(),
+          {{"--errors FILE", &options.errors,
+            "write the error of every element at every sample: .npz for programs, or .ply of one\n"
+            "scheme with the worst of each as its quality, for MeshLab and Blender"}},
+          options.run.options("compare the Ith of N equal shares of the segments alone: OUT is a part for chronormal\n"
+                              "merge"),
+          {{"--json", &options.json, "print one JSON object, for programs"},
+           {"--csv", &options.csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
+           {"--table KIND",
+            &options.table,
+            "text (default); operations: with what an evaluation takes; latex: both tables of the\n"
+            "paper for your meshes, with --each of several side by side",
+            {.excludes = "--json", .check = check_table}},
+           {"--no-times", &options.no_times, "leave out measured times: the same output on every run"}},
+          options.common.table(false)};
 }
 
-// resumed is nullptr where the run does not go on.
-Result<Comparison> compare_one(Input& input, const CompareArguments& options, Progress& progress, ResumedRun* resumed) {
+// Compares one motion. The result is nothing on a rank that has nothing to print.
+Result<std::optional<NamedComparison>> compare_one(Input& input, const CompareArguments& options, Progress& progress,
+                                                   CommandRun& run, CompareRun& segments) {
   const Result<MotionStream*> motion = input.stream();
   if (!motion) return motion.error();
   CompareOptions compare_options{scheme_names(options),
@@ -159,42 +157,39 @@ Result<Comparison> compare_one(Input& input, const CompareArguments& options, Pr
   if (!options.weighting.empty()) compare_options.weighting = make_weighting(options.weighting).value();
   compare_options.certify = options.certify;
   compare_options.tolerance = options.tolerance;
-  compare_options.shard = has_ranks() ? own_shard() : options.shard.read().value();
-  compare_options.expansion = input.expansion();
-  const std::size_t segments =
-      compare_options.shard.value_or(Shard{}).of(motion.value()->motion().segments.size()).count;
-  compare_options.progress = watching_ranks(progress.callback("comparing", "segments", segments));
-  if (resumed != nullptr) {
-    if (input.document() != nullptr || motion.value()->motion().kind != MotionKind::kSequence)
-      return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
-    Journal& journal = resumed->journal();
-    for (const std::string& record : journal.records()) {
-      Result<ComparedSegment> segment = read_compared_segment(record, journal.path());
-      if (!segment) return segment.error();
-      compare_options.known.push_back(std::move(segment).value());
-    }
-    say_goes_on("compare", compare_options.known.size(), "segments", options.common.quiet);
-    compare_options.keep = [&journal](const ComparedSegment& segment) { return journal.append(segment_part(segment)); };
-  }
-  Result<Comparison> comparison = compare(*motion.value(), compare_options);
+  const Motion& outline = motion.value()->motion();
+  const std::size_t count = options.run.share().value_or(Shard{}).of(outline.segments.size()).count;
+  const Status prepared = run.prepare(input, outline, progress.callback("comparing", "segments", count), segments,
+                                      segment_part, read_compared_segment);
+  if (!prepared) return prepared.error();
+  Result<Comparison> comparison = compare(*motion.value(), compare_options, segments);
   progress.clear();
-  if (comparison && options.input.is_curved()) comparison.value().cut = input.cut_path();
-  return comparison;
+  if (!comparison) return comparison.error();
+  if (options.input.is_curved()) comparison.value().cut = input.cut_path();
+  NamedComparison named{input.name(), std::move(comparison).value(), target_names(input).value()};
+  const Result<bool> prints = CommandRun::join(
+      compare_part(named, segments),
+      [&](std::span<const Part> parts) -> Result<NamedComparison> {
+        Result<NamedComparison> all = merge_compare_parts(parts);
+        if (all) all.value().targets = named.targets;
+        return all;
+      },
+      named);
+  if (!prints) return prints.error();
+  return prints.value() ? std::optional(std::move(named)) : std::nullopt;
 }
 
 // An option that was given, and has no meaning where several ranks divide one motion.
 std::string option_of_one_process(const CompareArguments& options) {
-  if (options.shard.text) return "--shard";
-  if (options.resume.asked) return "--resume";
   if (options.errors) return "--errors";
   if (options.blend.rows) return "--blend";
   if (options.truth.every) return "--truth";
   return options.each ? "--each" : "";
 }
 
-// One motion at a time is in memory.
+// One motion at a time is in memory. The result is empty on a rank that has nothing to print.
 Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& options, Progress& progress,
-                                                    ResumedRun* resumed) {
+                                                    CommandRun& run, CompareRun& segments) {
   std::vector<InputOptions> inputs;
   if (options.each) {
     InputOptions one = options.input;
@@ -220,8 +215,9 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
   for (InputOptions& wanted : inputs) {
     wanted.stream = true;
     Result<Input> input = open_input("compare", wanted, progress);
-    Result<Comparison> comparison =
-        input ? compare_one(input.value(), options, progress, resumed) : Result<Comparison>(input.error());
+    Result<std::optional<NamedComparison>> comparison =
+        input ? compare_one(input.value(), options, progress, run, segments)
+              : Result<std::optional<NamedComparison>>(input.error());
     if (!comparison) {
       Error error = comparison.error();
       const bool several = wanted.samples.size() + (wanted.files.empty() ? 0 : 1) > 1;
@@ -230,9 +226,10 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
       if (several) error.message += ", or --each to compare them side by side";
       return error;
     }
-    const bool has_own_name = !options.each || wanted.base.empty();  // else the base is that of all
-    comparisons.push_back({has_own_name ? input.value().name() : wanted.files.front(), std::move(comparison).value(),
-                           target_names(input.value()).value()});
+    if (!comparison.value()) break;
+    comparisons.push_back(std::move(*comparison.value()));
+    if (options.each && !wanted.base.empty())
+      comparisons.back().name = wanted.files.front();  // the base is that of all
   }
   return comparisons;
 }
@@ -272,8 +269,8 @@ std::string option_of_samples(const CompareArguments& options) {
   if (options.certify) return "--certify";
   if (options.tolerance) return "--tolerance";
   if (options.errors) return "--errors";
-  if (options.shard.text) return "--shard";
-  if (options.resume.asked) return "--resume";
+  if (options.run.shard) return "--shard";
+  if (options.run.resume) return "--resume";
   if (options.input.is_curved()) return "--path";
   if (!options.weighting.empty()) return "--weighting";
   if (!options.table.empty()) return "--table";
@@ -297,7 +294,7 @@ Result<int> run_truth(const CompareArguments& options) {
 }
 
 Result<int> run(const CompareArguments& options) {
-  if (const Status divisible = check_ranks(option_of_one_process(options)); !divisible) return divisible.error();
+  if (const Status status = options.run.check(option_of_one_process(options)); !status) return status.error();
   if (options.blend.rows && options.truth.every)
     return misuse("--truth", "blend shapes move straight: leave out --blend for a sequence of keyframes");
   if (options.blend.rows) return run_blend(options);
@@ -323,18 +320,16 @@ Result<int> run(const CompareArguments& options) {
   if (options.access == "sequential" && (options.certify || options.tolerance))
     return misuse(options.certify ? "--certify" : "--tolerance",
                   "it is about normals at random access: leave out --access sequential");
-  if (const Status output = options.resume.check_output(options.common); !output) return output.error();
+  if (const Status output = options.run.check_output(options.common); !output) return output.error();
 
-  const Result<std::optional<Shard>> shard = options.shard.read();
-  if (!shard) return shard.error();
-  if (options.shard.text && options.each) return misuse("--shard", "it divides one motion: leave out --each");
-  if (options.shard.text && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
-  if (options.shard.text && (options.json || options.csv))
+  if (options.run.shard && options.each) return misuse("--shard", "it divides one motion: leave out --each");
+  if (options.run.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
+  if (options.run.shard && (options.json || options.csv))
     return misuse(options.json ? "--json" : "--csv",
                   "OUT of a shard is a part, of which chronormal merge makes the JSON");
-  if (!options.table.empty() && (options.csv || options.shard.text))
+  if (!options.table.empty() && (options.csv || options.run.shard))
     return misuse("--table", options.csv ? "it is another form than --csv" : "OUT of a shard is a part");
-  if (options.resume.asked && (options.each || options.errors))
+  if (options.run.resume && (options.each || options.errors))
     return misuse("--resume", "it keeps the sums of one motion: leave out --each and --errors");
   if (options.errors) {
     if (options.each) return misuse("--errors", "it holds the errors of one motion: leave out --each");
@@ -344,28 +339,22 @@ Result<int> run(const CompareArguments& options) {
 
   Progress progress(options.common.quiet);
   CompareArguments same = options;
-  const auto resumed = options.resume.begin("compare", tables(same), options.input, options.common);
-  if (!resumed) return resumed.error();
-  auto comparisons = compare_inputs(options, progress, resumed.value().get());
+  const auto run = options.run.begin("compare", tables(same), options.input, options.common);
+  if (!run) return run.error();
+  CompareRun segments;
+  auto comparisons = compare_inputs(options, progress, *run.value(), segments);
   if (!comparisons) return comparisons.error();
-  if (has_ranks()) {
-    NamedComparison& own = comparisons.value().front();
-    const std::vector<Part> parts = gather_parts(compare_part(own));
-    if (parts.empty()) return kExitDone;  // the first rank prints
-    Result<NamedComparison> all = merge_compare_parts(parts);
-    if (!all) return all.error();
-    own.comparison = std::move(all.value().comparison);
-  }
+  if (comparisons.value().empty()) return kExitDone;  // the first rank prints
 
   if (options.errors) {
     const Status written =
         write_errors(comparisons.value().front().comparison.errors, *options.errors, options.common.force);
     if (!written) return written.error();
   }
-  const bool with_times = !options.no_times && !options.resume.asked && !has_ranks();
+  const bool with_times = !options.no_times && run.value()->is_timed();
   std::string text;
-  if (options.shard.text)
-    text = compare_part(comparisons.value().front());
+  if (options.run.shard)
+    text = compare_part(comparisons.value().front(), segments);
   else if (options.json)
     text = compare_json(comparisons.value(), options.each, with_times);
   else if (options.csv)
@@ -376,12 +365,10 @@ Result<int> run(const CompareArguments& options) {
     text = compare_tables_side_by_side(comparisons.value());
   else
     text = compare_table(comparisons.value().front(), {with_times, options.table == "operations"});
-  const Status written = options.resume.asked ? resumed.value()->finish(text, options.common.force)
-                                              : print_to(options.common.output, text, options.common.force);
-  if (!written) return written.error();
+  if (const Status written = run.value()->finish(text); !written) return written.error();
   int exit = kExitDone;
   for (const NamedComparison& input : comparisons.value()) {
-    if (!options.tolerance || input.comparison.cheapest || options.shard.text) continue;
+    if (!options.tolerance || input.comparison.cheapest || options.run.shard) continue;
     const std::vector<SchemeComparison>& schemes = input.comparison.schemes;
     const bool is_judged = std::any_of(schemes.begin(), schemes.end(),
                                        [](const SchemeComparison& scheme) { return scheme.quality.count > 0; });

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "chronormal/io/output.h"
-#include "chronormal/workflow/parts.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
 #include "cli/terminal/print.h"
 #include "io/bytes/file.h"
 #include "io/cache/npy.h"
+#include "workflow/json/parts.h"
 
 namespace chronormal::cli {
 namespace {

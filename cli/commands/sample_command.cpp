@@ -7,8 +7,7 @@
 #include "cli/options/command.h"
 #include "cli/options/moments.h"
 #include "cli/options/outputs.h"
-#include "cli/options/resume.h"
-#include "cli/ranks/ranks.h"
+#include "cli/options/run.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/table.h"
@@ -29,8 +28,7 @@ struct SampleArguments {
   std::string scheme;      // empty: exact normals
   std::string hard_edges;  // empty: by the crease angle
   std::string format;      // empty: by the extension
-  ShardArgument shard;
-  ResumeArgument resume;
+  RunArguments run;
 };
 
 std::string sample_footer() {
@@ -57,25 +55,23 @@ std::string sample_footer() {
 }
 
 std::vector<std::vector<Option>> tables(SampleArguments& options) {
-  return {
-      input_table(options.input),
-      options.moments.table(),
-      options.elements.table(),
-      {{"--weighting NAME", &options.weighting, "how the faces around a vertex count (listed below)"},
-       {"--length KIND", &options.length,
-        "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
-        "around a vertex (with --weighting area)"},
-       {"--scheme NAME", &options.scheme,
-        "interpolate between the normals at the ends of each segment, as compare does (listed\n"
-        "below); without it normals are exact"}},
-      {{"--hard-edges KIND", &options.hard_edges,
-        "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
-        "file, by its smoothing groups (groups) or its own normals (normals)"},
-       {"--format NAME", &options.format, "the format of OUT: npy (default for -), npz, ply, obj"},
-       options.shard.option("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
-                            ".obj with the numbers that they have among all"),
-       options.resume.option()},
-      options.common.table(true)};
+  return {input_table(options.input),
+          options.moments.table(),
+          options.elements.table(),
+          {{"--weighting NAME", &options.weighting, "how the faces around a vertex count (listed below)"},
+           {"--length KIND", &options.length,
+            "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
+            "around a vertex (with --weighting area)"},
+           {"--scheme NAME", &options.scheme,
+            "interpolate between the normals at the ends of each segment, as compare does (listed\n"
+            "below); without it normals are exact"}},
+          {{"--hard-edges KIND", &options.hard_edges,
+            "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
+            "file, by its smoothing groups (groups) or its own normals (normals)"},
+           {"--format NAME", &options.format, "the format of OUT: npy (default for -), npz, ply, obj"}},
+          options.run.options("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
+                              ".obj with the numbers that they have among all"),
+          options.common.table(true)};
 }
 
 // The options of the command line, after their texts were parsed.
@@ -83,6 +79,7 @@ struct Request {
   SampleOptions sample;
   AskedMoments asked;
   SampleOutput output;
+  SegmentRun run;
 };
 
 Result<SampleOptions> sample_options(const SampleArguments& options) {
@@ -139,29 +136,23 @@ Result<Request> understand(const SampleArguments& options) {
   sample.value().stepping = asked.value().stepping;
   if (sample.value().stepping && !make_scheme(options.scheme).value()->sequential_operations())
     return misuse("--step", options.scheme + " has no sequential form: give --times instead");
-  const Result<std::optional<Shard>> shard = options.shard.read();
-  if (!shard) return shard.error();
-  if (const Status divisible = check_ranks(options.shard.text     ? "--shard"
-                                           : options.resume.asked ? "--resume"
-                                                                  : "");
-      !divisible)
-    return divisible.error();
-  Request request{sample.value(),
-                  std::move(asked).value(),
-                  {options.common.output, format.value(), options.common.force, shard.value().value_or(own_shard())}};
-  request.output.peers = ranks_as_peers();
+  if (const Status status = options.run.check(); !status) return status.error();
+  Request request{
+      sample.value(), std::move(asked).value(), {options.common.output, format.value(), options.common.force}, {}};
+  request.run.shard = options.run.share();
+  request.run.peers = ranks_as_peers();
   if (const Status status = check_input(options.input); !status) return status.error();
-  if (options.resume.asked) {
+  if (options.run.resume) {
     if (request.sample.stepping) return misuse("--resume", "the drift of steps is that of one run: leave out --step");
     if (format.value() != SampleFormat::kNpy)
       return misuse("--resume", "only .npy files can be continued: write one, or give the times in several runs");
-    if (const Status output = options.resume.check_output(options.common); !output) return output.error();
+    if (const Status output = options.run.check_output(options.common); !output) return output.error();
     const Status distinct = check_distinct({{"OUT", options.common.output}}, input_files(options.input));
     if (!distinct) return distinct.error();
-    // An interrupted run may have written OUT just before its end, as continue_samples() finds out.
+    // An interrupted run may have written OUT just before its end, as write_samples() finds out.
     return request;
   }
-  const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count());
+  const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count(), request.run);
   if (!files) return files.error();
   std::vector<NamedFile> outputs;
   for (const std::string& file : files.value()) outputs.push_back({"OUT", file});
@@ -206,17 +197,6 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
         Tone::kWarning);
 }
 
-// resumed is nullptr where the run does not go on.
-Result<SampleSummary> write_or_go_on(MotionStream& stream, const Request& request, const Moments& moments,
-                                     Progress& progress, bool quiet, ResumedRun* resumed) {
-  const auto show = watching_ranks(progress.callback("sampling", "times"));
-  if (resumed == nullptr) return write_samples(stream, request.sample, moments, request.output, show);
-  if (stream.motion().kind != MotionKind::kSequence)
-    return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
-  say_goes_on("sample", resumed->journal().records().size(), "times", quiet);
-  return continue_samples(stream, request.sample, moments, request.output, resumed->journal(), show);
-}
-
 Result<int> run(const SampleArguments& options) {
   Result<Request> understood = understand(options);
   if (!understood) return understood.error();
@@ -239,13 +219,16 @@ Result<int> run(const SampleArguments& options) {
     if (!status) return status.error();
   }
   SampleArguments same = options;
-  const auto resumed = options.resume.begin("sample", tables(same), options.input, options.common);
-  if (!resumed) return resumed.error();
-  const auto written =
-      write_or_go_on(*read.value(), request, moments.value(), progress, options.common.quiet, resumed.value().get());
+  const auto begun = options.run.begin("sample", tables(same), options.input, options.common);
+  if (!begun) return begun.error();
+  CommandRun& run = *begun.value();
+  const Status prepared =
+      run.prepare(input.value(), motion, progress.callback("sampling", "times"), "times", request.run);
+  if (!prepared) return prepared.error();
+  const auto written = write_samples(*read.value(), request.sample, moments.value(), request.output, request.run);
   progress.clear();
   if (!written) return written.error();
-  if (const Status done = resumed.value() ? resumed.value()->finish() : Success{}; !done) return done.error();
+  if (const Status done = run.finish(); !done) return done.error();
   if (written.value().zeros > 0)
     say("sample",
         formatted("{} of {} normals of {} are (0, 0, 0): there is no area to give them one", written.value().zeros,

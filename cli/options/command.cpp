@@ -97,40 +97,6 @@ Status JudgeArguments::read(const char* command, std::optional<Weighting>& to_we
   return Success{};
 }
 
-Option ShardArgument::option(const std::string& of_what) { return {"--shard I/N", &text, of_what}; }
-
-Result<std::optional<Shard>> ShardArgument::read() const {
-  if (!text) return std::optional<Shard>();
-  const std::string_view words = *text;
-  const std::size_t slash = words.find('/');
-  std::size_t index = 0, count = 0;
-  const auto is_number = [](std::string_view digits, std::size_t& value) {
-    const auto [end, code] = from_chars(digits.data(), digits.data() + digits.size(), value);
-    return code == std::errc{} && end == digits.data() + digits.size();
-  };
-  const bool is_share = slash != std::string_view::npos && is_number(words.substr(0, slash), index) &&
-                        is_number(words.substr(slash + 1), count) && index >= 1 && index <= count;
-  if (!is_share) return misuse("--shard", formatted("'{}': it must be 1/8, 2/8, ... for one of 8 shares", *text));
-  return std::optional(Shard{index - 1, count});
-}
-
-std::vector<Part> gather_parts(const std::string& own) {
-  std::vector<Part> parts;
-  for (std::string& text : gather_texts(own))
-    parts.push_back({formatted("what rank {} has found", parts.size()), std::move(text)});
-  return parts;
-}
-
-Status check_ranks(const std::string& option) {
-  if (const std::size_t copies = count_of_copies(); copies > 1 && option != "--shard")
-    return misuse("mpirun",
-                  formatted("{} copies of this program were started, which was built without MPI: each of them would "
-                            "do all of the work. Build it with -DCHRONORMAL_MPI=ON, or give each copy its --shard",
-                            copies));
-  if (!has_ranks() || option.empty()) return Success{};
-  return misuse(option, "mpirun divides one motion and adds up its shares: leave out one of the two");
-}
-
 Status check_viewers(const std::vector<Viewer>& viewers, const Input& input) {
   if (input.document() != nullptr || viewers.empty()) return Success{};
   return misuse("--for", "viewers are known for what they make of glTF files; this input is none");

@@ -14,9 +14,7 @@
 #include "chronormal/motion/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/parts.h"
 #include "chronormal/workflow/sample.h"
-#include "chronormal/workflow/shard.h"
 #include "chronormal/workflow/viewers.h"
 #include "cli/options/options.h"
 #include "cli/terminal/progress.h"
@@ -73,22 +71,6 @@ struct JudgeArguments {
   [[nodiscard]] Status read(const char* command, std::optional<Weighting>& to_weighting,
                             std::vector<Viewer>& to_viewers) const;
 };
-
-/// The option that takes a share of the work: --shard I/N.
-struct ShardArgument {
-  std::optional<std::string> text;
-
-  /// of_what ends the line of help: it says what is divided, and what OUT is then.
-  [[nodiscard]] Option option(const std::string& of_what);
-  /// Errors: kUsage where the text is no share I/N.
-  [[nodiscard]] Result<std::optional<Shard>> read() const;
-};
-
-/// Gathers what the ranks have written as shards (cli/ranks/ranks.h); nothing but on the first.
-[[nodiscard]] std::vector<Part> gather_parts(const std::string& own);
-/// Errors: kUsage where there are several ranks and option, which divides no task, was given (an empty one was not),
-/// and where several copies that know nothing of each other would do the same work.
-[[nodiscard]] Status check_ranks(const std::string& option);
 
 /// Errors: kUsage where viewers are named and the input is no glTF file.
 [[nodiscard]] Status check_viewers(const std::vector<Viewer>& viewers, const Input& input);

@@ -20,8 +20,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/workflow/peers.h"
-#include "chronormal/workflow/shard.h"
+#include "workflow/segments/shards.h"
 
 namespace chronormal::cli {
 

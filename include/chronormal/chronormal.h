@@ -58,12 +58,9 @@
 #include "chronormal/workflow/inspect.h"  // what a motion or a glTF file holds, and what is trouble for normals
 #include "chronormal/workflow/json.h"     // the results of these as JSON
 #include "chronormal/workflow/motion_error.h"  // errors of shown normals, added up
-#include "chronormal/workflow/parts.h"         // what shards leave in files, and how it is put together
-#include "chronormal/workflow/peers.h"         // processes that share a task, each with its shard
 #include "chronormal/workflow/query.h"         // questions about whole intervals of time, answered as arrays
 #include "chronormal/workflow/report.h"  // what a page needs to show an input as it is shown beside as it should be
 #include "chronormal/workflow/sample.h"  // normals at chosen times, or at weights of targets, and files of them
-#include "chronormal/workflow/shard.h"   // a share of the segments of a motion, for many machines
 #include "chronormal/workflow/truth.h"
 #include "chronormal/workflow/viewers.h"  // programs that show glTF files, and what they make of stored normals
 

@@ -34,8 +34,8 @@ const std::vector<Floor> kFloors = {
     {"analysis", {"fits", "quality", "certificates", "signs", "cones", "containment"}},
     {"io", {"bytes", "json", "mesh", "cache", "gltf", "input"}},
     {"workflow",
-     {"viewers", "shading", "truth", "sample", "inspect", "errors", "audit", "compare", "bake", "query", "json",
-      "report"}},
+     {"segments", "viewers", "shading", "truth", "sample", "inspect", "errors", "audit", "compare", "bake", "query",
+      "json", "report"}},
     {"cli", {"terminal", "ranks", "options", "reports", "commands"}},
 };
 

@@ -1,7 +1,5 @@
 // Processes that share a task, here as threads. Samples are one output with the bytes of one process, which nobody sees
 // before all are done; audits have the bytes of one process, though each looks at its own segments alone.
-#include "chronormal/workflow/peers.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,12 +15,12 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/parts.h"
-#include "chronormal/workflow/sample.h"
 #include "io/bytes/checksum.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/temporary_folder.h"
+#include "workflow/json/parts.h"
+#include "workflow/sample/continued_samples.h"
+#include "workflow/segments/segment_run.h"
 
 namespace chronormal::peers_test {
 namespace {
@@ -70,6 +68,20 @@ class Meeting {
   std::vector<std::vector<std::string>> texts_;
 };
 
+Result<SampleSummary> write_share(MotionStream& stream, const SampleOptions& options, const Moments& moments,
+                                  const SampleOutput& output, const Shard& shard, const Peers& peers) {
+  SegmentRun run;
+  run.shard = shard;
+  run.peers = &peers;
+  return write_samples(stream, options, moments, output, run);
+}
+
+Result<SampleSummary> write_share(const Motion& motion, const SampleOptions& options, const Moments& moments,
+                                  const SampleOutput& output, const Shard& shard, const Peers& peers) {
+  MotionStream stream(motion);
+  return write_share(stream, options, moments, output, shard, peers);
+}
+
 // Every peer writes its share in a thread; returns what each of them found.
 std::vector<SampleSummary> write_together(const Motion& motion, const SampleOptions& options, const Moments& moments,
                                           const SampleOutput& output, std::size_t count) {
@@ -79,10 +91,7 @@ std::vector<SampleSummary> write_together(const Motion& motion, const SampleOpti
   for (std::size_t i = 0; i < count; ++i) {
     threads.emplace_back([&, i] {
       const Peers peers = meeting.peers(i);
-      SampleOutput own = output;
-      own.shard = {i, count};
-      own.peers = &peers;
-      const Result<SampleSummary> summary = write_samples(motion, options, moments, own);
+      const Result<SampleSummary> summary = write_share(motion, options, moments, output, {i, count}, peers);
       if (summary)
         found[i] = summary.value();
       else
@@ -152,8 +161,8 @@ TEST(SamplesOfPeers, no_name_is_given_before_all_are_done) {
                         calls.push_back(std::filesystem::exists(path) ? "broadcast with the file" : "broadcast");
                         return started;
                       }};
-    const SampleOutput output{format == SampleFormat::kObj ? folder / "n_%d.obj" : path, format, false, {1, 2}, &peers};
-    ASSERT_TRUE(write_samples(fixtures::smooth_morph(3), of_vertices(), {{0, 1}, {}}, output).ok());
+    const SampleOutput output{format == SampleFormat::kObj ? folder / "n_%d.obj" : path, format};
+    ASSERT_TRUE(write_share(fixtures::smooth_morph(3), of_vertices(), {{0, 1}, {}}, output, {1, 2}, peers).ok());
     const std::vector<std::string> of_arrays = {"broadcast", "gather", "broadcast", "gather"};
     const std::vector<std::string> of_meshes = {"gather", "broadcast", "gather with the file"};
     EXPECT_EQ(calls, format == SampleFormat::kObj ? of_meshes : of_arrays);
@@ -185,8 +194,7 @@ TEST(SamplesOfPeers, a_peer_that_fails_removes_what_was_begun) {
     return Status(Success{});
   };
   MotionStream stream(std::move(motion), read, 0);
-  const auto written = write_samples(stream, of_vertices(), {{0, 1, 2.5}, {}},
-                                     {folder / "n.npy", SampleFormat::kNpy, false, {1, 2}, &peers});
+  const auto written = write_share(stream, of_vertices(), {{0, 1, 2.5}, {}}, {folder / "n.npy"}, {1, 2}, peers);
   ASSERT_FALSE(written.ok());
   EXPECT_EQ(written.error().message, "the disk is gone");
   EXPECT_EQ(folder.entry_count(), 0U);
@@ -196,13 +204,12 @@ TEST(SamplesOfPeers, a_file_that_a_peer_cannot_see_and_a_stream_are_refused) {
   const TemporaryFolder folder;
   const Peers peers{[](const std::string&) { return std::vector<std::string>(); },
                     [&](const std::string&) { return folder / "elsewhere"; }};
-  const auto written = write_samples(fixtures::smooth_morph(3), of_vertices(), {{0, 1}, {}},
-                                     {folder / "n.npy", SampleFormat::kNpy, false, {1, 2}, &peers});
+  const Motion motion = fixtures::smooth_morph(3);
+  const auto written = write_share(motion, of_vertices(), {{0, 1}, {}}, {folder / "n.npy"}, {1, 2}, peers);
   ASSERT_FALSE(written.ok());
   EXPECT_EQ(written.error().code, ErrorCode::kFailed);
   EXPECT_NE(written.error().text().find("what the first process has begun"), std::string::npos);
-  const auto stream = write_samples(fixtures::smooth_morph(3), of_vertices(), {{0, 1}, {}},
-                                    {"-", SampleFormat::kNpy, false, {1, 2}, &peers});
+  const auto stream = write_share(motion, of_vertices(), {{0, 1}, {}}, {"-"}, {1, 2}, peers);
   ASSERT_FALSE(stream.ok());
   EXPECT_EQ(stream.error().code, ErrorCode::kUsage);
 }
@@ -243,9 +250,9 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
       for (std::size_t i = 0; i < count; ++i) {
         threads.emplace_back([&, i] {
           const Peers peers = meeting.peers(i);
-          AuditOptions own = options;
-          own.shard = Shard{i, count};
-          own.peers = &peers;
+          AuditRun run;
+          run.shard = Shard{i, count};
+          run.peers = &peers;
           Motion outline = motion;
           for (Motion::Keyframe& keyframe : outline.keyframes) keyframe.positions.clear();
           const auto read = [&](const Motion&, std::size_t keyframe, std::span<float> positions) {
@@ -255,7 +262,8 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
             return Status(Success{});
           };
           MotionStream stream(std::move(outline), read, 0);
-          parts[i] = {"part", audit_part("m", audit(stream, {}, own).value(), 1)};
+          const Result<Audit> found = audit(stream, {}, options, run);
+          parts[i] = {"part", audit_part("m", found.value(), run, 1)};
         });
       }
       for (std::thread& thread : threads) thread.join();

@@ -52,8 +52,6 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/motion_error.h"
-#include "chronormal/workflow/peers.h"
-#include "chronormal/workflow/shard.h"
 #include "chronormal/workflow/viewers.h"
 
 namespace chronormal {
@@ -101,20 +99,6 @@ struct AuditOptions {
   bool skins = true;                 ///< glTF: judges meshes in nodes with a skin as they are seen through it
   bool weld = true;                  ///< vertices at one point throughout are one
   bool keep_errors = false;          ///< every single one, in Audit::errors
-  /// For sequences: judges this share of the segments only, and keeps the errors of each of them in
-  /// Audit::measured. Every shard finds out for itself what follows from the whole motion (which vertices move, how
-  /// long a normal gets).
-  std::optional<Shard> shard = {};
-  /// For sequences: the errors of the first segments of the share, where an earlier run has them; they are not measured
-  /// again. `keep` is told of each segment that was measured, in order, so that a later run can have it among `known`;
-  /// an error that it returns ends the audit.
-  std::vector<SegmentErrors> known = {};
-  std::function<Status(const SegmentErrors&)> keep = {};
-  /// With these the shards find out together, by maximize(), which vertices move and how long normals get, so that each
-  /// of them looks at its own segments alone.
-  const Peers* peers = nullptr;
-  /// How much the errors that are kept may take: that of the files behind a motion. A document has its own.
-  Expansion expansion = Expansion::unlimited();
   /// Called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -234,8 +218,6 @@ struct Audit {
   /// With keep_errors a table for each mesh of a glTF file that has subjects, and one for other inputs. Tracks with the
   /// same keys have rows once, as the first of their subjects.
   std::vector<ErrorTable> errors;
-  std::vector<SegmentErrors> measured;  ///< of a shard: one for each of its segments; all else covers these alone
-  TaskChecksums checksums = {};         ///< of a shard
 
   /// Whether there was anything to judge. Where nothing turns normals, or no face ever has an area, nothing is known to
   /// be right.
@@ -293,10 +275,6 @@ struct AuditLimits {
 /// read once more up to where all vertices have moved, and once more up to where none coincide any more. Errors: also
 /// those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
-
-/// Joins the shards of one audit, which may come in any order, into the audit that one run would have made. Errors:
-/// kUsage unless they are shards of the same audit, and each segment is in exactly one of them. There must be some
-[[nodiscard]] Result<Audit> merge(std::vector<Audit> shards);
 
 }  // namespace chronormal
 

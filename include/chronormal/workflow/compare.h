@@ -1,9 +1,9 @@
 /// The paper's Table 1 for any motion, every scheme held against the exact normals; and the same for the deltas of
 /// blend shapes.
 ///
-/// A viewer that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic form
-/// in the weights (docs/theory.md, section 14). Compared are the deltas of a glTF file, end-point deltas (right for
-/// each target alone at weight 1), those that are best by least squares (analysis/quality/blend_quality.h), and the
+/// A viewer that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic
+/// form in the weights (docs/theory.md, section 14). Compared are the deltas of a glTF file, end-point deltas (right
+/// for each target alone at weight 1), those that are best by least squares (analysis/quality/blend_quality.h), and the
 /// exact normals of BlendNormals, which are off by rounding. All of them are held against cross products of blended
 /// positions in double.
 ///
@@ -29,7 +29,6 @@
 
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/result.h"
-#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/motion/motion_stream.h"
@@ -37,7 +36,6 @@
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/errors.h"
 #include "chronormal/workflow/sample.h"
-#include "chronormal/workflow/shard.h"
 
 namespace chronormal {
 
@@ -61,20 +59,6 @@ struct CertifiedError {
   std::size_t unbounded = 0;  ///< (element, segment) pairs for which no bound below half a turn could be shown
 };
 
-/// The results of one scheme in one segment.
-struct SchemeTally {
-  Quality quality;
-  std::size_t fallbacks = 0, flagged = 0;
-  double bytes = 0;  ///< of all elements together
-  CertifiedError certified = {};
-};
-
-/// The results of all schemes in one segment: one for each row, and a last one for linear where it is none of the rows.
-struct ComparedSegment {
-  std::size_t segment = 0;
-  std::vector<SchemeTally> schemes;
-};
-
 struct CompareOptions {
   std::vector<std::string> schemes;  ///< names, in the order of the rows; empty: default_schemes()
   std::size_t samples = 21;          ///< per segment, ends included; 2 or more
@@ -91,16 +75,6 @@ struct CompareOptions {
   bool certify = false;       ///< bound the largest error at any time, in SchemeComparison::certified
   /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
   std::optional<double> tolerance = {};
-  /// Compares this share of the segments only, and keeps the results of each in Comparison::compared.
-  std::optional<Shard> shard = {};
-  /// The results of the first segments of the share, where an earlier run has them: they are not computed again, and
-  /// have no times.
-  std::vector<ComparedSegment> known = {};
-  /// Told of each segment that was computed, in order, so that a later run can have it among `known`; may be empty. An
-  /// error that it returns ends the comparison.
-  std::function<Status(const ComparedSegment&)> keep = {};
-  /// How much the errors that are kept may take: that of the file behind the motion.
-  Expansion expansion = Expansion::unlimited();
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
@@ -129,23 +103,20 @@ struct Comparison {
   std::size_t segments = 0;
   std::size_t samples = 0;
   std::vector<SchemeComparison> schemes;
-  MotionKind motion = MotionKind::kSequence;   ///< what the segments are
-  std::vector<ErrorTable> errors = {};         ///< with keep_errors: one for each scheme that was asked for
-  std::optional<double> tolerance = {};        ///< degrees, where it was given
-  std::optional<std::size_t> cheapest = {};    ///< of those judged: within the tolerance for certain; nothing: none is
-  Weighting weighting = Weighting::kArea;      ///< of vertices and corners
-  std::array<double, 2> span = {};             ///< the times of the first and the last keyframe
-  std::optional<CutPath> cut = {};             ///< of curves, set by who has cut them: for reports
-  std::vector<ComparedSegment> compared = {};  ///< of a shard: one for each of its segments; the rows cover these alone
-  TaskChecksums checksums = {};                ///< of a shard
+  MotionKind motion = MotionKind::kSequence;  ///< what the segments are
+  std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each scheme that was asked for
+  std::optional<double> tolerance = {};       ///< degrees, where it was given
+  std::optional<std::size_t> cheapest = {};   ///< of those judged: within the tolerance for certain; nothing: none is
+  Weighting weighting = Weighting::kArea;     ///< of vertices and corners
+  std::array<double, 2> span = {};            ///< the times of the first and the last keyframe
+  std::optional<CutPath> cut = {};            ///< of curves, set by who has cut them: for reports
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
 /// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
-///            tolerance, another weighting than area with faces or certificates, certificates of sequential access, errors to keep that take more than kMostErrorBytes, single
-///            errors of a shard or beside known segments, and known segments of another comparison; those of
-///            options.keep.
+///            tolerance, another weighting than area with faces or certificates, certificates of sequential access,
+///            errors to keep that take more than kMostErrorBytes.
 /// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and segment for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.
@@ -155,12 +126,6 @@ struct Comparison {
 /// The same for a stream, of which a few segments are held at a time: as many as have a few thousand elements for each
 /// thread, but at least one. Errors: also those of the stream.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
-
-/// Joins the shards of one comparison, which may come in any order, into the comparison that one run would have made,
-/// but without times. Errors: kUsage unless they are shards of the same comparison, and each segment is in exactly one
-/// of them.
-/// There must be at least one shard
-[[nodiscard]] Result<Comparison> merge(std::vector<Comparison> shards);
 
 /// What an evaluation costs, roughly, to put schemes in order: 1 for each byte that is read, for an addition and for a
 /// multiplication, 4 for a quotient or a root, 20 for a sine with its cosine.

@@ -148,12 +148,6 @@ struct WorseRespects {
   return find_worse(after, before).any();
 }
 
-/// The errors in one segment, and those at its ends alone.
-struct SegmentErrors {
-  std::size_t segment = 0;
-  MotionError error, at_keys;
-};
-
 }  // namespace chronormal
 
 #endif  // CHRONORMAL_WORKFLOW_MOTION_ERROR_H_

@@ -50,8 +50,6 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/schemes/scheme.h"
-#include "chronormal/workflow/peers.h"
-#include "chronormal/workflow/shard.h"
 
 namespace chronormal {
 
@@ -196,21 +194,14 @@ struct SampleOutput {
   std::string path;  ///< "-" is the standard output; %d or %0Nd in a name of .ply or .obj is the number of the moment
   SampleFormat format = SampleFormat::kNpy;
   bool force = false;
-  /// Writes this share of the moments only: .ply and .obj files with the numbers that they would have among all, or
-  /// .npy with as many rows (workflow/parts.h joins them). The bits are those of one run.
-  Shard shard = {};
-  /// With these the shards have one output among them, which no one sees before all are done: a .npy or .npz file that
-  /// every process writes its rows into, or .ply and .obj files. The output must be no stream.
-  const Peers* peers = nullptr;
 };
 
 /// The files that `count` moments will be written to. Asks before a long computation whether that can be. Errors:
-/// kUsage for normals of corners in PLY, for a shard of .npz, and for several moments in one .ply or .obj; those of
+/// kUsage for normals of corners in PLY, and for several moments in one .ply or .obj; those of
 /// check_output().
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count);
 
-/// With peers, the first process gets that of all, and each of the others its own.
 struct SampleSummary {
   std::size_t normals = 0;  ///< that were written: moments x outputs
   std::size_t zeros = 0;    ///< how many of them are (0, 0, 0)

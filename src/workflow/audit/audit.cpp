@@ -9,9 +9,8 @@
 #include "chronormal/normals/weighting.h"
 #include "core/portable_math.h"
 #include "workflow/audit/measure.h"
+#include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
-#include "workflow/errors/shards.h"
-#include "workflow/sample/task_checksums.h"
 #include "workflow/shading/surface_edges.h"
 
 namespace chronormal {
@@ -39,26 +38,15 @@ bool are_of_one(const Audit& a, const Audit& b) {
 
 }  // namespace
 
-Result<Audit> merge(std::vector<Audit> shards) {
-  std::vector<SegmentErrors> measured;
-  KnownParts known_parts;
-  for (std::size_t i = 0; i < shards.size(); ++i) {
-    Audit& shard = shards[i];
-    const Status known = known_parts.add("shard " + std::to_string(i), shard.checksums);
-    if (!known) return known.error();
-    if (!are_of_one(shard, shards.front()))
-      return Error{ErrorCode::kUsage, "", "these are shards of two different audits"};
-    std::move(shard.measured.begin(), shard.measured.end(), std::back_inserter(measured));
-  }
-  Audit all = std::move(shards.front());
-  all.measured.clear();
-  all.checksums.clear();
+Result<Audit> internal::merge(std::vector<AuditShard> shards) {
+  const std::vector<AuditSubject>& subjects = shards.front().whole.subjects;
+  const auto measured = join(shards, subjects.empty() ? 0 : subjects.front().segments, are_of_one, "audits");
+  if (!measured) return measured.error();
+  Audit all = std::move(shards.front().whole);
   if (all.subjects.empty()) return all;
-  const Status complete = put_in_order(all.subjects.front().segments, measured);
-  if (!complete) return complete.error();
   AuditSubject& subject = all.subjects.front();
   subject.error = subject.at_keys = all.error = {};
-  for (const SegmentErrors& segment : measured) {
+  for (const SegmentErrors& segment : measured.value()) {
     subject.error.add(segment.error);
     subject.at_keys.add(segment.at_keys);
   }

@@ -44,8 +44,6 @@ class BlendSource {
               std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
               MeshSkin* skin = nullptr);
 
-  /// Does nothing: all data are in memory.
-  [[nodiscard]] static Status enter(std::size_t /*segment*/) { return Success{}; }
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
   /// Writes the positions at any weights, and leaves the moment that was placed as it is.
   void place_at(std::span<const double> weights, std::span<Vec3d> positions);

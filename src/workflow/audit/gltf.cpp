@@ -165,6 +165,27 @@ Weights of_involved(const Involved& involved, std::size_t targets, Weights all_w
   };
 }
 
+// The segments of a track, or one of a target, all of them in memory, so that there can be no error; of long tracks every
+// so many of them.
+struct SegmentsOfTrack {
+  std::size_t count, step;
+  const std::function<void()>& progress;
+
+  template <class Look>
+  [[nodiscard]] Status look_over(const Look& look) const {
+    for (std::size_t s = 0; s < count; s += step) look(s);
+    return Success{};
+  }
+  static void maximize(std::span<double> /*numbers*/) {}
+  template <class Work>
+  [[nodiscard]] Status over(AuditSubject& subject, const Work& work) const {
+    return look_over([&](std::size_t s) {
+      add_segment(work(s), subject);
+      progress();
+    });
+  }
+};
+
 // Measures a subject that will be the one of this index; nothing where there is nothing to judge.
 std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const Involved& involved,
                                      const SubjectWeights& weights, const Moment& moment, MeshSkin* skin,
@@ -188,11 +209,11 @@ std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& pa
                 sample.error, sample.each, of_all_targets(source.now(), involved, targets), played});
   };
   const bool are_watched = static_cast<bool>(mesh.watch);
-  // Nothing is read here, so that there can be no error.
-  KeptErrors kept{mesh.errors, index, are_watched};
+  SegmentsOfTrack segments{subject.segments, 1, mesh.progress};
   if (subject.kind == AuditSubject::Kind::kTrack && mesh.options.most_segments > 0)
-    kept.step = block_count(std::max<std::size_t>(1, subject.segments), mesh.options.most_segments);
-  (void)measure(source, part, mesh.rule, mesh.progress, subject, kept, judge_viewers);
+    segments.step = block_count(std::max<std::size_t>(1, subject.segments), mesh.options.most_segments);
+  const KeptErrors kept{mesh.errors, index, are_watched};
+  (void)measure(source, segments, part, mesh.rule, subject, kept, judge_viewers);
   subject.skinning = skinning.all();
   return Measured{std::move(subject), viewers.take()};
 }

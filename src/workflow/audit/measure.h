@@ -20,6 +20,7 @@
 #include "core/bits.h"
 #include "core/blocks.h"
 #include "workflow/audit/judged_part.h"
+#include "workflow/audit/watched_audit.h"
 #include "workflow/shading/authored_weighting.h"
 
 namespace chronormal::inline internal {
@@ -41,8 +42,8 @@ inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
   return bin;
 }
 
-/// The fine bin for it. Where a viewer rounds otherwise than to nearest, an angle may also be -0, or a little beyond 180:
-/// nothing may be indexed by such bits unchecked.
+/// The fine bin for it. Where a viewer rounds otherwise than to nearest, an angle may also be -0, or a little beyond
+/// 180: nothing may be indexed by such bits unchecked.
 [[nodiscard]] inline std::size_t fine_bin_of(double degrees) noexcept {
   // Each doubling is an exponent of double, and its bins are the first bits of the fraction; both together are one
   // number.
@@ -79,11 +80,16 @@ inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
 /// keys, or else between them.
 [[nodiscard]] std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject);
 
+/// Adds the errors of a segment to those of its subject.
+inline void add_segment(const SegmentErrors& found, AuditSubject& subject) {
+  subject.error.add(found.error);
+  subject.at_keys.add(found.at_keys);
+}
+
 /// Sums over the subjects, finds the worst of them, and puts faults before notes.
 void finish(Audit& result);
 
 // A source is a motion with what is shown on the way:
-//     enter(segment)                 makes ready what is asked about this segment; a Status
 //     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
 //     forget()                       makes the next call differ
 //     turn(positions, normals)       makes right directions of the normals of the part, as long as they are
@@ -94,6 +100,11 @@ void finish(Audit& result);
 //     right(output, n)               the direction for a normal of the geometry
 //     hides(output, n)               whether what is seen has no direction, however right: such a pair is not judged
 //     at(segment, t, output)         for people
+//
+// Segments are what it is measured on:
+//     look_over(look)                calls look(segment) for those from which the largest normals follow; a Status
+//     maximize(numbers)              makes each number the largest that processes with other segments have
+//     over(subject, work)            adds work(segment), the errors of each that is measured, to its subject; a Status
 
 /// Positions and normals of a part, as the source has placed it.
 struct PlacedPart {
@@ -115,20 +126,19 @@ struct PlacedPart {
   PartNormals normals;
 };
 
-/// The length of the largest control normal of each element in some of the segments. The control normals of a quadratic
+/// The length of the largest control normal of each element in all segments. The control normals of a quadratic
 /// follow from its ends and its middle. (On curved paths they are those of the parabola through these three, which is
 /// near enough for a scale.)
-template <class Source>
-[[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, IndexRange segments,
-                                                                  PlacedPart& placed, std::size_t step = 1) {
+template <class Source, class Segments>
+[[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, Segments& segments,
+                                                                  PlacedPart& placed) {
   std::vector<double> largest(placed.part.elements().size(), 0.0);
   const auto normals_at = [&](std::size_t s, double t) {
     placed.place(source, s, t);
     return placed.normals.elements;
   };
   source.forget();
-  for (std::size_t s = segments.first; s < segments.end(); s += step) {
-    if (const Status status = source.enter(s); !status) return status.error();
+  const Status looked = segments.look_over([&](std::size_t s) {
     const std::vector<Vec3d> start = normals_at(s, 0), middle = normals_at(s, 0.5);
     placed.place(source, s, 1);
     const std::vector<Vec3d>& end = placed.normals.elements;
@@ -136,13 +146,15 @@ template <class Source>
       const Vec3d m = 2.0 * middle[e] - 0.5 * (start[e] + end[e]);
       largest[e] = std::max({largest[e], length(start[e]), length(m), length(end[e])});
     });
-  }
+  });
+  if (!looked) return looked.error();
+  segments.maximize(largest);
   return largest;
 }
 
-/// Adds the errors of some outputs, in their order, to a result that has none yet, as MotionError::add() and add_unlit()
-/// do. degrees(output, i) is that of the i-th of them, kNotLit or kNotJudged; faint(output, i) is asked for that of a
-/// pair that is not judged, which a gate looks at: kNotJudged where no face around has an area, or kCancels.
+/// Adds the errors of some outputs, in their order, to a result that has none yet, as MotionError::add() and
+/// add_unlit() do. degrees(output, i) is that of the i-th of them, kNotLit or kNotJudged; faint(output, i) is asked for
+/// that of a pair that is not judged, which a gate looks at: kNotJudged where no face around has an area, or kCancels.
 template <class Degrees, class Faint, class At>
 void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
                 MotionError& result) {
@@ -288,36 +300,10 @@ template <class Source, class Shown, class Right>
 struct KeptErrors {
   ErrorTable* table = nullptr;  ///< nullptr: nowhere
   std::size_t subject = 0;
-  bool are_watched = false;                   ///< each_sample looks at them
-  Shard shard = {};                           ///< the share of the segments that is measured
-  std::span<const SegmentErrors> known = {};  ///< of the first segments of the share, which are not measured
-  /// Is told of the errors of each segment, known or measured, while the segment is held; may be empty.
-  std::function<Status(SegmentErrors& found, bool is_known)> tell_segment = {};
-  const Peers* peers = nullptr;  ///< that measure the other shares; nullptr: nobody is known to
-  std::size_t step = 1;          ///< from one segment that is measured to the next
+  bool are_watched = false;  ///< each_sample looks at them
 
-  /// The segments that this process looks at to find what follows from all of them.
-  [[nodiscard]] IndexRange looked_at(std::size_t all) const noexcept {
-    return peers != nullptr ? shard.of(all) : IndexRange{0, all};
-  }
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
-
-/// Adds up errors segment by segment, so that sums do not depend on where a motion is divided.
-[[nodiscard]] inline Status add_segment(SegmentErrors found, bool is_known, const KeptErrors& kept,
-                                        AuditSubject& subject) {
-  subject.error.add(found.error);
-  subject.at_keys.add(found.at_keys);
-  return kept.tell_segment ? kept.tell_segment(found, is_known) : Success{};
-}
-
-/// Adds the segments that are known, and returns the rest of the share.
-[[nodiscard]] inline Result<IndexRange> add_known(const KeptErrors& kept, AuditSubject& subject) {
-  const IndexRange share = kept.shard.of(subject.segments);
-  for (const SegmentErrors& known : kept.known)
-    if (const Status status = add_segment(known, true, kept, subject); !status) return status.error();
-  return IndexRange{share.first + kept.known.size(), share.count - kept.known.size()};
-}
 
 /// A sample that was measured.
 struct MeasuredSample {
@@ -333,18 +319,14 @@ struct MeasuredSample {
 void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
                  bool is_weight, double at);
 
-/// Measures all samples of the segments of a subject, or of a share of them, which says how many there are, and fills
-/// in its errors. progress is called after each segment, each_sample(measured sample) after each sample. Errors: those
-/// of source.enter().
-template <class Source, class EachSample>
-[[nodiscard]] Status measure(Source& source, const JudgedPart& part, AuditRule rule,
-                             const std::function<void()>& progress, AuditSubject& subject, const KeptErrors& kept,
-                             const EachSample& each_sample) {
+/// Measures all samples of segments of a subject, and fills in its errors. Each sample is told to each_sample(measured
+/// sample). Errors: those of the segments.
+template <class Source, class Segments, class EachSample>
+[[nodiscard]] Status measure(Source& source, Segments segments, const JudgedPart& part, AuditRule rule,
+                             AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {
   PlacedPart placed(part);
-  Result<std::vector<double>> all_largest =
-      largest_control_normals(source, kept.looked_at(subject.segments), placed, kept.step);
+  const Result<std::vector<double>> all_largest = largest_control_normals(source, segments, placed);
   if (!all_largest) return all_largest.error();
-  if (kept.peers != nullptr) kept.peers->maximize(all_largest.value());
   const std::vector<double>& largest = all_largest.value();
   source.forget();
   const bool is_flat = rule == AuditRule::kFlat;
@@ -356,10 +338,7 @@ template <class Source, class EachSample>
   };
   MotionError error;  // of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
-  const Result<IndexRange> rest = add_known(kept, subject);
-  if (!rest) return rest.error();
-  for (std::size_t s = rest.value().first; s < rest.value().end(); s += kept.step) {
-    if (Status status = source.enter(s); !status) return status;
+  const Status measured = segments.over(subject, [&](std::size_t s) {
     SegmentErrors found{s, {}, {}};
     if constexpr (Source::kNeedsEnds) {
       placed.place(source, s, 0);
@@ -380,9 +359,9 @@ template <class Source, class EachSample>
       if (i == 0 || i + 1 == subject.samples) found.at_keys.add(error);
       each_sample(MeasuredSample{s, t, placed, largest, error, each});
     }
-    if (Status status = add_segment(found, false, kept, subject); !status) return status;
-    progress();
-  }
+    return found;
+  });
+  if (!measured) return measured;
   subject.vertices = part.outputs().size();
   return Success{};
 }

@@ -99,10 +99,11 @@ void keep_largest_normals(const Motion& motion, std::span<const std::size_t> seg
 }
 
 // Makes each number the largest that a peer has there, all of them in one go.
-void maximize(const Peers& peers, std::vector<std::vector<double>>& numbers) {
+void maximize(const SegmentRun& run, std::vector<std::vector<double>>& numbers) {
+  if (run.peers == nullptr) return;
   std::vector<double> all;
   for (const std::vector<double>& some : numbers) all.insert(all.end(), some.begin(), some.end());
-  peers.maximize(all);
+  run.maximize(all);
   auto from = all.begin();
   for (std::vector<double>& some : numbers) {
     const auto end = from + static_cast<std::ptrdiff_t>(some.size());
@@ -186,32 +187,29 @@ bool can_measure_blocks(const JudgedPart& part, AuditRule rule, Weighting weight
   return true;
 }
 
-Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segments, const JudgedPart& part,
-                      AuditRule rule, const FindPlace& at, const std::function<void()>& progress, AuditSubject& subject,
-                      const KeptErrors& kept) {
-  const Motion& motion = stream.motion();
+Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, AuditRule rule, const FindPlace& at,
+                      AuditSubject& subject) {
+  const Motion& motion = segments.stream.motion();
   const std::vector<Block> blocks = make_blocks(part);
   std::vector<std::vector<double>> largest;  // an element at the border of two blocks is in both
   largest.reserve(blocks.size());
   for (const Block& block : blocks) largest.emplace_back(block.elements.count, 0.0);
-  const IndexRange looked_at = kept.looked_at(segments.size());
   // Segments that are held together share the normals at the keyframes between them.
-  const std::size_t at_once = stream.keeps_all() ? looked_at.count : 1;
-  for (std::size_t s = looked_at.first; s < looked_at.end(); s += at_once) {
-    const std::span<const std::size_t> held = segments.subspan(s, at_once);
-    if (Status status = stream.hold_segments(held.front(), held.back()); !status) return status;
-    parallel_for(blocks.size(), [&](std::size_t b) { keep_largest_normals(motion, held, blocks[b], largest[b]); });
-  }
-  if (kept.peers != nullptr) maximize(*kept.peers, largest);
+  const std::size_t at_once = segments.stream.keeps_all() ? std::max<std::size_t>(segments.of_motion.size(), 1) : 1;
+  const Status looked =
+      SegmentRun::look_over(segments.stream, segments.keys(), segments.looked_at(), at_once, [&](IndexRange some) {
+        const auto held = segments.of_motion.subspan(some.first, some.count);
+        parallel_for(blocks.size(), [&](std::size_t b) { keep_largest_normals(motion, held, blocks[b], largest[b]); });
+        return Status(Success{});
+      });
+  if (!looked) return looked;
+  maximize(segments.run, largest);
 
   const std::size_t per_wave = std::min(blocks.size(), kBlocksPerWaveAndThread * thread_count());
   std::vector<std::vector<MotionError>> wave(per_wave, std::vector<MotionError>(subject.samples));
   std::vector<Scratch> scratch(per_wave);
-  const Result<IndexRange> rest = add_known(kept, subject);
-  if (!rest) return rest.error();
-  for (std::size_t s = rest.value().first; s < rest.value().end(); ++s) {
-    if (Status status = stream.hold_segment(segments[s]); !status) return status;
-    const Segment segment = motion.segment(segments[s]);
+  const Status measured = segments.over(subject, [&](std::size_t s) {
+    const Segment segment = motion.segment(segments.of_motion[s]);
     std::vector<MotionError> of_samples(subject.samples);
     for (std::size_t first = 0; first < blocks.size(); first += per_wave) {
       const std::size_t count = std::min(per_wave, blocks.size() - first);
@@ -227,9 +225,9 @@ Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segment
       found.error.add(of_samples[i]);
       if (i == 0 || i + 1 == of_samples.size()) found.at_keys.add(of_samples[i]);
     }
-    if (Status status = add_segment(found, false, kept, subject); !status) return status;
-    progress();
-  }
+    return found;
+  });
+  if (!measured) return measured;
   subject.vertices = part.outputs().size();
   return Success{};
 }

@@ -26,13 +26,41 @@ namespace chronormal::inline internal {
 /// Names a moment and a vertex for people, as a source does (measure.h).
 using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const JudgedOutput& output)>;
 
-/// Measures all samples of these segments of a motion, as measure() does for normals that a viewer computes at keyframes.
-/// The outputs of the part must be in the order of their elements. Calls progress after each segment. Of `kept`, only
-/// the shard, the known segments and tell_segment are used. Errors: those of the stream, of which one segment is held
-/// at a time.
-[[nodiscard]] Status measure_blocks(MotionStream& stream, std::span<const std::size_t> segments, const JudgedPart& part,
-                                    AuditRule rule, const FindPlace& at, const std::function<void()>& progress,
-                                    AuditSubject& subject, const KeptErrors& kept);
+/// The segments of a subject in a motion, as measure() goes over them.
+struct SegmentsOfRun {
+  MotionStream& stream;
+  std::span<const std::size_t> of_motion;  ///< their numbers there
+  AuditRun& run;
+
+  [[nodiscard]] auto keys() const {
+    return [&motion = stream.motion(), own = of_motion](std::size_t s) { return motion.segments[own[s]]; };
+  }
+  /// Those from which follows what holds for all of them.
+  [[nodiscard]] IndexRange looked_at() const noexcept { return run.looked_at(of_motion.size()); }
+  /// Those that are measured. Only a sequence is divided, which is one subject.
+  [[nodiscard]] IndexRange rest() const noexcept {
+    return run.is_divided() ? run.rest() : IndexRange{0, of_motion.size()};
+  }
+  template <class Look>
+  [[nodiscard]] Status look_over(const Look& look) const {
+    return SegmentRun::look_over(stream, keys(), looked_at(), 1, [&](IndexRange one) {
+      look(one.first);
+      return Status(Success{});
+    });
+  }
+  void maximize(std::span<double> numbers) const { run.maximize(numbers); }
+  template <class Work>
+  [[nodiscard]] Status over(AuditSubject& subject, const Work& work) const {
+    return run.over(stream, keys(), rest(), 1, [&](IndexRange one) {
+      return run.take(work(one.first), [&](const SegmentErrors& found) { add_segment(found, subject); });
+    });
+  }
+};
+
+/// Measures all samples of these segments, as measure() does for normals that a viewer computes at keyframes. The
+/// outputs of the part must be in the order of their elements. Errors: those of the stream and of the run.
+[[nodiscard]] Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, AuditRule rule,
+                                    const FindPlace& at, AuditSubject& subject);
 
 }  // namespace chronormal::inline internal
 

@@ -17,7 +17,6 @@
 #include "workflow/audit/measure_blocks.h"
 #include "workflow/audit/watched_audit.h"
 #include "workflow/errors/error_rows.h"
-#include "workflow/sample/task_checksums.h"
 #include "workflow/shading/authored_weighting.h"
 
 namespace chronormal {
@@ -32,10 +31,9 @@ class SequenceSource {
  public:
   static constexpr bool kNeedsEnds = true;
 
-  SequenceSource(MotionStream& stream, const StoredNormals& normals, bool stored, const JudgedPart& part,
+  SequenceSource(const MotionStream& stream, const StoredNormals& normals, bool stored, const JudgedPart& part,
                  AuditRule rule, std::vector<Vec3d> first, std::span<const std::size_t> segments)
-      : stream_(stream),
-        motion_(stream.motion()),
+      : motion_(stream.motion()),
         normals_(normals),
         stored_(stored),
         part_(part),
@@ -43,7 +41,6 @@ class SequenceSource {
         first_(std::move(first)),
         segments_(segments) {}
 
-  [[nodiscard]] Status enter(std::size_t segment) { return stream_.hold_segment(segments_[segment]); }
   bool place(std::size_t segment, double t, std::span<Vec3d> positions) {
     if (known_ && segment == segment_ && t == t_) return false;
     known_ = true;
@@ -110,7 +107,6 @@ class SequenceSource {
     return turned(from, portable::cos(allowed) * from + portable::sin(allowed) * across, direction);
   }
 
-  MotionStream& stream_;
   const Motion& motion_;
   const StoredNormals& normals_;
   bool stored_;
@@ -163,14 +159,6 @@ Status check_normals(const Motion& motion, const StoredNormals& normals) {
   return Success{};
 }
 
-// Checks that errors of an earlier run are those of the first segments of this one.
-Status check_known(std::span<const SegmentErrors> known, IndexRange share) {
-  bool are_first = known.size() <= share.count;
-  for (std::size_t i = 0; i < known.size(); ++i) are_first = are_first && known[i].segment == share.first + i;
-  if (are_first) return Success{};
-  return Error{ErrorCode::kUsage, "", "the segments that are known already are those of another audit"};
-}
-
 // A vertex once for each normal that it shows: corners of one element with the same stored normals show the same.
 std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups& groups, const StoredNormals& normals,
                                        const std::vector<bool>& moves, AuditRule rule, bool stored) {
@@ -204,14 +192,14 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
 }
 
 // Looks at these segments alone where peers look at the others.
-Result<std::vector<bool>> moving_vertices(MotionStream& stream, std::span<const std::size_t> segments,
-                                          const Peers* peers) {
-  const Motion& motion = stream.motion();
+Result<std::vector<bool>> moving_vertices(const SegmentsOfRun& segments) {
+  const Motion& motion = segments.stream.motion();
   std::vector<bool> moves(motion.topology.vertex_count());
   std::size_t still = moves.size();
-  for (const std::size_t s : segments) {
+  const IndexRange looked_at = segments.looked_at();
+  for (const std::size_t s : segments.of_motion.subspan(looked_at.first, looked_at.count)) {
     if (still == 0) break;
-    if (const Status status = stream.hold_segment(s); !status) return status.error();
+    if (const Status status = segments.stream.hold_segment(s); !status) return status.error();
     const Segment segment = motion.segment(s);
     const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
     for (std::size_t v = 0; v < moves.size(); ++v) {
@@ -220,9 +208,9 @@ Result<std::vector<bool>> moving_vertices(MotionStream& stream, std::span<const 
       --still;
     }
   }
-  if (peers == nullptr) return moves;
+  if (segments.run.peers == nullptr) return moves;
   std::vector<double> of_all(moves.begin(), moves.end());
-  peers->maximize(of_all);
+  segments.maximize(of_all);
   std::transform(of_all.begin(), of_all.end(), moves.begin(), [](double one) { return one != 0; });
   return moves;
 }
@@ -264,11 +252,18 @@ Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const Au
 }
 
 Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options) {
-  return watched_audit(stream, normals, options, {});
+  AuditRun run;
+  run.progress = options.progress;
+  return audit(stream, normals, options, run);
+}
+
+Result<Audit> internal::audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
+                              AuditRun& run) {
+  return watched_audit(stream, normals, options, run, {});
 }
 
 Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
-                                      const AuditWatch& watch) {
+                                      AuditRun& run, const AuditWatch& watch) {
   const Motion& motion = stream.motion();
   if (const Status status = check_samples(options); !status) return status.error();
   Audit result;
@@ -280,16 +275,15 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     return Error{ErrorCode::kUsage, "", "viewers are known for what they make of glTF files; this input is none"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.span = {motion.keyframes.front().time, motion.keyframes.back().time};
-  const bool in_parts = options.shard || options.keep || !options.known.empty();
-  if (in_parts && (motion.kind == MotionKind::kTargets || options.keep_errors))
+  if (run.is_divided() && (motion.kind == MotionKind::kTargets || options.keep_errors))
     return Error{
         ErrorCode::kUsage, "",
         "a shard, or a run that goes on, is of the segments of a sequence, and keeps sums and no single errors"};
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   KeyframeChecksums seen(stream);
-  if (options.shard) {
-    result.checksums["the options"] = checksum_of_options(options, result.rule, result.stored);
-    result.checksums["the stored normals"] = checksum_of_normals(normals);
+  if (run.shard) {
+    run.checksums["the options"] = checksum_of_options(options, result.rule, result.stored);
+    run.checksums["the stored normals"] = checksum_of_normals(normals);
     if (const Status status = seen.begin(); !status) return status.error();
   }
   Result<NormalGroups> groups = audited_groups(stream, normals, options.weld);
@@ -319,20 +313,16 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   if (options.keep_errors) {
     result.errors.push_back({"", ElementKind::kVertices, topology, motion.keyframes[0].positions});
     const std::size_t rows = motion.segments.size() * options.samples.value_or(kAuditSamples);
-    if (const Status status = reserve_rows(result.errors[0], rows, options.expansion); !status) return status.error();
+    if (const Status status = reserve_rows(result.errors[0], rows, run.expansion); !status) return status.error();
   }
-  const Shard share = options.shard.value_or(Shard{});
-  if (const Status status = check_known(options.known, share.of(motion.segments.size())); !status)
-    return status.error();
-  const auto tell_segment = [&](SegmentErrors& found, bool is_known) -> Status {
-    if (Status kept = options.keep && !is_known ? options.keep(found) : Success{}; !kept) return kept;
-    if (options.shard) result.measured.push_back(std::move(found));
-    return Success{};
-  };
-  std::size_t done = options.known.size();
-  const auto progress = [&] {
-    if (options.progress) options.progress(++done, share.of(motion.segments.size()).count);
-  };
+  SegmentErrors of_known;
+  const Status begun = run.begin(
+      motion.segments.size(), 1, "audit", [](const SegmentErrors&) { return true; },
+      [&](const SegmentErrors& known) {
+        of_known.error.add(known.error);
+        of_known.at_keys.add(known.at_keys);
+      });
+  if (!begun) return begun.error();
   const bool is_targets = motion.kind == MotionKind::kTargets;
   const bool has_residuals = std::any_of(motion.keyframes.begin(), motion.keyframes.end(),
                                          [](const Motion::Keyframe& keyframe) { return !keyframe.residuals.empty(); });
@@ -346,33 +336,28 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     subject.weighting = weighting;
     subject.segments = segments.size();
     subject.samples = options.samples.value_or(kAuditSamples);
-    const IndexRange own = share.of(segments.size());
-    const Result<std::vector<bool>> moves = moving_vertices(
-        stream, options.peers ? std::span(segments).subspan(own.first, own.count) : std::span(segments), options.peers);
+    add_segment(of_known, subject);
+    const SegmentsOfRun own{stream, segments, run};
+    const Result<std::vector<bool>> moves = moving_vertices(own);
     if (!moves) return moves.error();
-    if (options.shard) {
+    if (run.shard) {
       NumberChecksum sharing;
       sharing.add(groups.value().element_of_output());
-      result.checksums["who shares a normal"] = sharing.value();
-      result.checksums["which vertices move"] = checksum_of_flags(moves.value());
+      run.checksums["who shares a normal"] = sharing.value();
+      run.checksums["which vertices move"] = checksum_of_flags(moves.value());
     }
     const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
     if (!is_targets) groups = NormalGroups();  // the part has all that is needed of the groups
     if (part.outputs().empty()) {
       ++result.still;
-      for (std::size_t s = 0; s < share.of(subject.segments).count; ++s) progress();
+      run.tell(own.rest().count);
       continue;
     }
     if (const Status status = stream.hold(0, 0); !status) return status.error();
     SequenceSource source(stream, normals, result.stored, part, result.rule, normals_at_first_keyframe(part, motion),
                           segments);
-    const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr,
-                          result.subjects.size(),
-                          static_cast<bool>(watch),
-                          share,
-                          options.known,
-                          tell_segment,
-                          options.peers};
+    const KeptErrors kept{options.keep_errors ? result.errors.data() : nullptr, result.subjects.size(),
+                          static_cast<bool>(watch)};
     const auto tell = [&](const MeasuredSample& sample) {
       if (!watch) return;
       const double at = source.at(sample.segment, sample.t, part.outputs().front()).at;
@@ -393,17 +378,17 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     const auto at = [&](std::size_t segment, double t, const JudgedOutput& output) {
       return source.at(segment, t, output);
     };
-    const Status measured = in_blocks ? measure_blocks(stream, segments, part, result.rule, at, progress, subject, kept)
-                                      : measure(source, part, result.rule, progress, subject, kept, tell);
+    const Status measured = in_blocks ? measure_blocks(own, part, result.rule, at, subject)
+                                      : measure(source, own, part, result.rule, subject, kept, tell);
     if (!measured) return measured.error();
     if (const std::optional<AuditFinding> fault = find_wrong_normals(subject)) result.findings.push_back(*fault);
     result.subjects.push_back(std::move(subject));
   }
   if (result.subjects.empty()) result.errors.clear();
-  if (options.shard) {
+  if (run.shard) {
     // Without peers, what follows from the whole motion is found out from all keyframes.
-    const Shard read = options.peers != nullptr ? share : Shard{};
-    const Status status = seen.finish(keyframes_of_shard(motion, read), result.checksums);
+    const Shard read = run.peers != nullptr ? *run.shard : Shard{};
+    const Status status = seen.finish(keyframes_of_shard(motion, read), run.checksums);
     if (!status) return status.error();
   }
   finish(result);

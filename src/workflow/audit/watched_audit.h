@@ -1,4 +1,5 @@
-/// An audit that tells of each sample, for whoever keeps more of it than its sums. Private to workflow.
+/// Audits of a share of a sequence, and audits that tell of each sample, for whoever keeps more of it than its sums.
+/// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_WATCHED_AUDIT_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_WATCHED_AUDIT_H_
 
@@ -14,8 +15,28 @@
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/audit.h"
 #include "workflow/audit/judged_part.h"
+#include "workflow/segments/segment_run.h"
 
 namespace chronormal::inline internal {
+
+/// The errors in one segment, and those at its ends alone.
+struct SegmentErrors {
+  std::size_t segment = 0;
+  MotionError error, at_keys;
+};
+
+using AuditRun = RecordedRun<SegmentErrors>;
+using AuditShard = ShardOf<Audit, SegmentErrors>;
+
+/// The audit of a sequence as the run has it: of its share of the segments. Every shard finds out for itself what
+/// follows from the whole motion (which vertices move, how long a normal gets); with peers they find it out together,
+/// by maximize(). Errors: also kUsage for single errors of a run that is divided, or for targets, and for known
+/// segments of another audit; those of run.keep.
+[[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
+                                  AuditRun& run);
+
+/// Joins the shards of one audit into what one run would have found. Errors: those of join(). There must be some
+[[nodiscard]] Result<Audit> merge(std::vector<AuditShard> shards);
 
 /// A sample of a subject as it was judged. Views are good for the call.
 struct AuditSample {
@@ -39,7 +60,7 @@ using AuditWatch = std::function<void(const AuditSample&)>;
 [[nodiscard]] Result<Audit> watched_audit(const GltfDocument& document, const AuditOptions& options,
                                           const AuditWatch& watch);
 [[nodiscard]] Result<Audit> watched_audit(MotionStream& stream, const StoredNormals& normals,
-                                          const AuditOptions& options, const AuditWatch& watch);
+                                          const AuditOptions& options, AuditRun& run, const AuditWatch& watch);
 
 /// Which corners of a motion share a normal, as its audit has it: those of smooth edges, as the stored normals of
 /// keyframe 0 say, where there are any. Errors: of NormalGroups and of the stream

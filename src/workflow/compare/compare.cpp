@@ -1,4 +1,5 @@
-// Compares schemes block by block and in waves of blocks, and adds up their results in order.
+// Compares schemes block by block, as many blocks at a time as keep all threads busy, and adds up their results in
+// order.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>
@@ -19,6 +20,7 @@
 #include "chronormal/core/interruption.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
+#include "core/blocks.h"
 #include "io/bytes/checksum.h"
 #include "normals/control/shared_faces.h"
 #include "normals/groups/group_sum.h"
@@ -26,7 +28,6 @@
 #include "workflow/compare/compared.h"
 #include "workflow/errors/error_rows.h"
 #include "workflow/sample/scheme_normals.h"
-#include "workflow/sample/task_checksums.h"
 
 namespace chronormal {
 namespace {
@@ -321,15 +322,6 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   return tallies;
 }
 
-// Checks that results of an earlier run are those of the first segments of this one.
-Status check_known(std::span<const ComparedSegment> known, IndexRange share, std::size_t schemes) {
-  bool are_first = known.size() <= share.count;
-  for (std::size_t i = 0; i < known.size(); ++i)
-    are_first = are_first && known[i].segment == share.first + i && known[i].schemes.size() == schemes;
-  if (are_first) return Success{};
-  return Error{ErrorCode::kUsage, "", "the segments that are known already are those of another comparison"};
-}
-
 }  // namespace
 
 std::vector<std::string> default_schemes(ElementKind kind) {
@@ -353,6 +345,12 @@ Result<Comparison> compare(const Motion& motion, const CompareOptions& options) 
 }
 
 Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) {
+  CompareRun run;
+  run.progress = options.progress;
+  return compare(stream, options, run);
+}
+
+Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions& options, CompareRun& run) {
   const Motion& motion = stream.motion();
   if (options.samples < 2) return Error{ErrorCode::kUsage, "", "it takes 2 samples or more, the ends of a segment"};
   const ElementKind kind = options.elements.kind;
@@ -384,7 +382,7 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   if (std::find(names.begin(), names.end(), "linear") == names.end()) names.emplace_back("linear");
 
   KeyframeChecksums seen(stream);
-  if (const Status status = options.shard ? seen.begin() : Success{}; !status) return status.error();
+  if (const Status status = run.shard ? seen.begin() : Success{}; !status) return status.error();
   std::optional<Elements> all;
   if (kind == ElementKind::kFaces) {
     all.emplace(motion.topology);
@@ -398,72 +396,71 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   if (options.keep_errors) {
     const std::size_t samples = motion.segments.size() * options.samples;
     ErrorTable room{names[0], kind, motion.topology, {}};
-    if (const Status status = reserve_rows(room, samples * rows.size(), options.expansion); !status)
-      return status.error();
+    if (const Status status = reserve_rows(room, samples * rows.size(), run.expansion); !status) return status.error();
     each.assign(rows.size(), std::vector<float>(samples * all->count()));
   }
-  if ((options.shard || !options.known.empty()) && (options.keep_errors || options.keep_samples))
+  if (run.is_divided() && (options.keep_errors || options.keep_samples))
     return Error{ErrorCode::kUsage, "",
                  "a shard keeps sums, and so does a run that goes on: the rest is of a whole motion"};
   if (options.keep_samples)
     for (SchemeComparison& row : rows) row.samples.resize(motion.segments.size() * options.samples);
   std::vector<SchemeTally> totals(names.size());
   std::vector<SchemeTimes> times(names.size());
-  std::vector<ComparedSegment> compared;
-  const IndexRange share = options.shard.value_or(Shard{}).of(motion.segments.size());
-  const std::size_t blocks_per_segment = (all->count() + kBlockSize - 1) / kBlockSize;
-  if (const Status status = check_known(options.known, share, names.size()); !status) return status.error();
-  const std::size_t share_block = share.first * blocks_per_segment, blocks = share.end() * blocks_per_segment;
-  const std::size_t first_block = share_block + options.known.size() * blocks_per_segment;
-  const std::size_t blocks_per_wave = kBlocksPerWaveAndThread * thread_count();
-  std::vector<std::vector<Tally>> wave(std::min(blocks - first_block, blocks_per_wave));
-  std::vector<Tally> of_segment(names.size());
-  const auto add_segment = [&](ComparedSegment found) {
+  const auto add_segment = [&](const ComparedSegment& found) {
     for (std::size_t s = 0; s < names.size(); ++s) add(totals[s], found.schemes[s]);
-    if (options.shard) compared.push_back(std::move(found));
   };
-  for (const ComparedSegment& known : options.known) add_segment(known);
-  for (std::size_t first = first_block, count = 0; first < blocks; first += count) {
-    // A wave goes over the end of a segment only where segments have fewer blocks than it.
-    const std::size_t left = blocks_per_segment - first % blocks_per_segment;
-    count =
-        std::min({blocks_per_wave, blocks - first, std::max(left, blocks_per_segment < blocks_per_wave ? blocks : 0)});
-    const std::size_t first_segment = first / blocks_per_segment;
-    const std::size_t last_segment = (first + count - 1) / blocks_per_segment;
-    if (const Status status = stream.hold_segments(first_segment, last_segment); !status) return status.error();
-    all->enter(motion, first_segment, last_segment);
-    parallel_for(count, [&](std::size_t i) {
-      const Segment segment = motion.segment((first + i) / blocks_per_segment);
-      const std::size_t first_element = (first + i) % blocks_per_segment * kBlockSize;
-      const IndexRange range{first_element, std::min(kBlockSize, all->count() - first_element)};
-      wave[i] = compare_block(segment, *all, range, names, options, each);
-    });
-    // Results are added in order and segment by segment, so that sums depend neither on the number of threads nor on
-    // where a motion is divided.
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t segment = (first + i) / blocks_per_segment, first_sample = segment * options.samples;
-      for (std::size_t s = 0; s < names.size(); ++s) {
-        of_segment[s].add(wave[i][s]);
-        if (s >= rows.size()) continue;
-        for (std::size_t k = 0; k < wave[i][s].samples.size(); ++k)
-          rows[s].samples[first_sample + k].add(wave[i][s].samples[k]);
-      }
-      if ((first + i + 1) % blocks_per_segment != 0) continue;
-      ComparedSegment done{segment, {}};
-      for (std::size_t s = 0; s < names.size(); ++s) {
-        Tally& found = of_segment[s];
-        found.quality.max_at.element = all->first_output(found.quality.max_at.element);
-        found.certified.element = all->first_output(found.certified.element);
-        times[s].prepare_ns.push_back(static_cast<float>(median(std::move(found.prepare_ns))));
-        times[s].evaluate_ns.push_back(static_cast<float>(median(std::move(found.evaluate_ns))));
-        done.schemes.push_back(found);
-        found = {};
-      }
-      if (const Status kept = options.keep ? options.keep(done) : Success{}; !kept) return kept.error();
-      add_segment(std::move(done));
+  const std::size_t blocks = block_count(all->count(), kBlockSize), at_once = kBlocksPerWaveAndThread * thread_count();
+  const Status begun = run.begin(
+      motion.segments.size(), blocks, "comparison",
+      [&](const ComparedSegment& known) { return known.schemes.size() == names.size(); }, add_segment);
+  if (!begun) return begun.error();
+  std::vector<std::vector<Tally>> wave(at_once);
+  std::vector<Tally> of_segment(names.size());
+  // Results are added in order, segment by segment.
+  const auto add_block = [&](std::size_t segment, const std::vector<Tally>& of_block) {
+    for (std::size_t s = 0; s < names.size(); ++s) {
+      of_segment[s].add(of_block[s]);
+      for (std::size_t k = 0; s < rows.size() && k < of_block[s].samples.size(); ++k)
+        rows[s].samples[segment * options.samples + k].add(of_block[s].samples[k]);
     }
-    if (options.progress) options.progress(first + count - share_block, blocks - share_block);
-  }
+  };
+  const auto end_segment = [&](std::size_t segment) {
+    ComparedSegment done{segment, {}};
+    for (std::size_t s = 0; s < names.size(); ++s) {
+      Tally& found = of_segment[s];
+      found.quality.max_at.element = all->first_output(found.quality.max_at.element);
+      found.certified.element = all->first_output(found.certified.element);
+      times[s].prepare_ns.push_back(static_cast<float>(median(std::move(found.prepare_ns))));
+      times[s].evaluate_ns.push_back(static_cast<float>(median(std::move(found.evaluate_ns))));
+      done.schemes.push_back(found);
+      found = {};
+    }
+    return run.take(std::move(done), add_segment);
+  };
+  const Status compared = run.over(
+      stream, segment_keys(motion), run.rest(), std::max<std::size_t>(at_once / blocks, 1), [&](IndexRange segments) {
+        all->enter(motion, segments.first, segments.end() - 1);
+        // Small segments are computed together, and large ones in several waves.
+        const std::size_t wanted = segments.count * blocks;
+        for (std::size_t first = 0; first < wanted; first += at_once) {
+          const std::size_t count = std::min(at_once, wanted - first);
+          parallel_for(count, [&](std::size_t i) {
+            const Segment segment = motion.segment(segments.first + (first + i) / blocks);
+            const std::size_t first_element = (first + i) % blocks * kBlockSize;
+            const IndexRange range{first_element, std::min(kBlockSize, all->count() - first_element)};
+            wave[i] = compare_block(segment, *all, range, names, options, each);
+          });
+          for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t segment = segments.first + (first + i) / blocks;
+            add_block(segment, wave[i]);
+            if ((first + i + 1) % blocks != 0) continue;
+            if (Status kept = end_segment(segment); !kept) return kept;
+          }
+          if (first + count < wanted) run.tell(0, first + count);
+        }
+        return Status(Success{});
+      });
+  if (!compared) return compared.error();
 
   Comparison comparison{kind,
                         motion.topology.vertex_count(),
@@ -477,7 +474,6 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
   comparison.span = {motion.keyframes.front().time, motion.keyframes.back().time};
   comparison.schemes = std::move(rows);
   comparison.tolerance = options.tolerance;
-  comparison.compared = std::move(compared);
   for (std::size_t s = 0; s < comparison.schemes.size(); ++s) {
     SchemeComparison& row = comparison.schemes[s];
     row.prepare_ns = median(times[s].prepare_ns);
@@ -487,15 +483,15 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
     comparison.errors.push_back(table_of(motion, *all, options, each.size() > 1 ? row.scheme : "", each[s]));
     each[s] = {};
   }
-  if (options.shard) {
+  if (run.shard) {
     NumberChecksum sharing;
     sharing.add(all->element_of_output());
-    comparison.checksums["the options"] = checksum_of_options(options, names);
-    comparison.checksums["who shares a normal"] = sharing.value();
-    const Status status = seen.finish(keyframes_of_shard(motion, *options.shard), comparison.checksums);
+    run.checksums["the options"] = checksum_of_options(options, names);
+    run.checksums["who shares a normal"] = sharing.value();
+    const Status status = seen.finish(keyframes_of_shard(motion, *run.shard), run.checksums);
     if (!status) return status.error();
   }
-  conclude(totals, share.count, certified, comparison);
+  conclude(totals, run.share().count, certified, comparison);
   return comparison;
 }
 

@@ -6,9 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "workflow/errors/shards.h"
-#include "workflow/sample/task_checksums.h"
-
 namespace chronormal {
 namespace {
 
@@ -79,27 +76,16 @@ void internal::conclude(const std::vector<SchemeTally>& totals, std::size_t segm
   if (comparison.tolerance) comparison.cheapest = cheapest_within(rows, *comparison.tolerance);
 }
 
-Result<Comparison> merge(std::vector<Comparison> shards) {
-  std::vector<ComparedSegment> compared;
-  KnownParts known_parts;
-  for (std::size_t i = 0; i < shards.size(); ++i) {
-    Comparison& shard = shards[i];
-    const Status known = known_parts.add("shard " + std::to_string(i), shard.checksums);
-    if (!known) return known.error();
-    if (!are_of_one(shard, shards.front()))
-      return Error{ErrorCode::kUsage, "", "these are shards of two different comparisons"};
-    std::move(shard.compared.begin(), shard.compared.end(), std::back_inserter(compared));
-  }
-  Comparison all = std::move(shards.front());
-  if (const Status complete = put_in_order(all.segments, compared); !complete) return complete.error();
-  std::vector<SchemeTally> totals(compared.front().schemes.size());
-  for (const ComparedSegment& segment : compared) {
+Result<Comparison> internal::merge(std::vector<ComparisonShard> shards) {
+  const auto compared = join(shards, shards.front().whole.segments, are_of_one, "comparisons");
+  if (!compared) return compared.error();
+  Comparison all = std::move(shards.front().whole);
+  std::vector<SchemeTally> totals(compared.value().front().schemes.size());
+  for (const ComparedSegment& segment : compared.value()) {
     for (std::size_t i = 0; i < totals.size(); ++i) add(totals[i], segment.schemes[i]);
   }
   const bool certified = all.schemes.front().certified.has_value();
   for (SchemeComparison& row : all.schemes) row.prepare_ns = row.evaluate_ns = 0;
-  all.compared.clear();
-  all.checksums.clear();
   conclude(totals, all.segments, certified, all);
   return all;
 }

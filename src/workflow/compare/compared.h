@@ -7,8 +7,34 @@
 #include <vector>
 
 #include "chronormal/workflow/compare.h"
+#include "workflow/segments/segment_run.h"
 
 namespace chronormal::inline internal {
+
+/// The results of one scheme in one segment.
+struct SchemeTally {
+  Quality quality;
+  std::size_t fallbacks = 0, flagged = 0;
+  double bytes = 0;  ///< of all elements together
+  CertifiedError certified = {};
+};
+
+/// The results of all schemes in one segment: one for each row, and a last one for linear where it is none of the rows.
+struct ComparedSegment {
+  std::size_t segment = 0;
+  std::vector<SchemeTally> schemes;
+};
+
+using CompareRun = RecordedRun<ComparedSegment>;
+using ComparisonShard = ShardOf<Comparison, ComparedSegment>;
+
+/// compare() as the run has it. Segments that are known have no times. Errors: also kUsage for single errors or samples
+/// of a run that is divided, and for known segments of another comparison; those of run.keep.
+[[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options, CompareRun& run);
+
+/// Joins the shards of one comparison into what one run would have found, but without times. Errors: those of join().
+/// There must be at least one shard
+[[nodiscard]] Result<Comparison> merge(std::vector<ComparisonShard> shards);
 
 /// Puts the bounds of the elements of a block together, or those of blocks; of equals the first counts.
 void add(CertifiedError& all, const CertifiedError& other);

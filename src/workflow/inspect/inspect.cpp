@@ -26,6 +26,7 @@
 #include "motion/triangles.h"
 #include "normals/curves/curve_count.h"
 #include "normals/groups/weld.h"
+#include "workflow/segments/segment_run.h"
 
 namespace chronormal {
 namespace {
@@ -359,13 +360,11 @@ Result<Inspection> inspect(MotionStream& stream,
   };
   const auto judges_from = [&](std::size_t s) { return !moves(s) || judge[keys_of(s).from] == s; };
   const auto judges_to = [&](std::size_t s) { return moves(s) && judge[keys_of(s).to] == s; };
-  for (std::size_t first = 0; first < total; first += wave) {
-    const std::size_t count = std::min(wave, total - first);
-    Motion::SegmentKeys keys = keys_of(first);
-    for (std::size_t s = first; s < first + count; ++s)
-      keys = {std::min(keys.from, keys_of(s).from), std::max(keys.to, keys_of(s).to)};
-    if (const Status status = stream.hold(keys.from, keys.to); !status) return status.error();
-
+  SegmentRun run;
+  run.progress = progress;
+  run.begin(total);
+  const auto inspect_wave = [&](IndexRange some) -> Status {
+    const std::size_t first = some.first, count = some.count;
     parallel_for(count * blocks, [&](std::size_t i) {
       const std::size_t s = first + i / blocks;
       const Segment segment = segment_of(s);
@@ -403,8 +402,9 @@ Result<Inspection> inspect(MotionStream& stream,
       result.segments.push_back(tally.inspection(vertex_blocks[i * blocks], result.faces));
       segments[s] = tally;
     }
-    if (progress) progress(first + count, total);
-  }
+    return Success{};
+  };
+  if (const Status status = run.over(stream, keys_of, run.share(), wave, inspect_wave); !status) return status.error();
   Box box;
   for (const Box& of_keyframe : boxes) box.add(of_keyframe);
   result.low = to_double(box.low);

@@ -6,14 +6,14 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/workflow/parts.h"
 #include "io/bytes/checksum.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/positioned_file.h"
 #include "io/cache/npy.h"
+#include "workflow/json/parts.h"
 #include "workflow/sample/sample_part.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 // The rows of one shard, and where they stand among all.
@@ -117,4 +117,4 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
   return file.value().finish();
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -1,6 +1,6 @@
 // Writes and reads parts as JSON: numbers stand in lists, in the order of the members of their structs. Sums keep their
 // bits, since the shortest text of a double reads back as the same double.
-#include "chronormal/workflow/parts.h"
+#include "workflow/json/parts.h"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,8 @@
 #include "io/bytes/checksum.h"
 #include "io/json/json.h"
 #include "workflow/json/object.h"
-#include "workflow/sample/task_checksums.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr double kMostCount = 9007199254740992;  // up to here a double holds every integer
@@ -263,10 +262,9 @@ auto read_segment(std::string_view text, const std::string& name, const Read& re
 
 std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-NamedComparison read_comparison(const JsonView& part) {
-  NamedComparison named;
-  named.name = part.required_text("input");
-  Comparison& c = named.comparison;
+ComparisonShard read_comparison(const JsonView& part) {
+  ComparisonShard shard;
+  Comparison& c = shard.whole;
   c.kind = static_cast<ElementKind>(part.required_count("kind", 2));
   c.motion = static_cast<MotionKind>(part.required_count("motion", 2));
   c.vertices = part.required_count("vertices", kMost);
@@ -278,7 +276,7 @@ NamedComparison read_comparison(const JsonView& part) {
   c.tolerance = read_tolerance(part);
   c.span = read_span(part);
   c.cut = read_cut(part);
-  c.checksums = read_task_checksums(part);
+  shard.checksums = read_task_checksums(part);
   if (c.segments == 0) part.complain("segment_count", "there are no segments");
   const bool is_sequential = part.flag("sequential"), is_certified = part.flag("certified");
   bool has_linear = false;
@@ -298,27 +296,19 @@ NamedComparison read_comparison(const JsonView& part) {
   each_item(part, "segments", [&](const JsonView& segment) {
     ComparedSegment found = read_compared(segment);
     if (found.schemes.size() != tallies) segment.complain("there must be a tally for each scheme, and for linear");
-    c.compared.push_back(std::move(found));
+    shard.found.push_back(std::move(found));
   });
   if (c.schemes.empty()) part.complain("there are no schemes");
   if (c.tolerance && !is_certified) part.complain("tolerance_degrees", "there is a tolerance without certificates");
-  return named;
+  return shard;
 }
 
-struct NamedAudit {
-  std::string name;
-  Audit audit;
-  std::optional<double> tolerance;
-};
-
-NamedAudit read_audit(const JsonView& part) {
-  NamedAudit named;
-  named.name = part.required_text("input");
-  named.tolerance = read_tolerance(part);
-  Audit& audit = named.audit;
+AuditShard read_audit(const JsonView& part) {
+  AuditShard shard;
+  Audit& audit = shard.whole;
   audit.span = read_span(part);
   audit.cut = read_cut(part);
-  audit.checksums = read_task_checksums(part);
+  shard.checksums = read_task_checksums(part);
   audit.rule = static_cast<AuditRule>(part.required_count("rule", static_cast<std::size_t>(AuditRule::kFlat)));
   audit.weighting = read_weighting(part.required_count("weighting", kAllWeightings.size()), part);
   audit.stored = part.flag("stored");
@@ -333,35 +323,16 @@ NamedAudit read_audit(const JsonView& part) {
     subject.vertices = part.required_count("vertices", kMost);
     audit.subjects.push_back(std::move(subject));
   }
-  each_item(part, "segments", [&](const JsonView& segment) { audit.measured.push_back(read_measured(segment)); });
-  return named;
+  each_item(part, "segments", [&](const JsonView& segment) { shard.found.push_back(read_measured(segment)); });
+  return shard;
 }
 
-Result<NamedComparison> merge_comparisons(std::vector<NamedComparison> named) {
-  std::vector<Comparison> shards;
-  for (NamedComparison& one : named) {
-    shards.push_back(std::move(one.comparison));
-  }
-  Result<Comparison> all = merge(std::move(shards));
-  if (!all) return all.error();
-  return NamedComparison{named.front().name, std::move(all).value(), {}};
-}
-
-Result<NamedAudit> merge_audits(std::vector<NamedAudit> named) {
-  const std::optional<double> tolerance = named.front().tolerance;
-  std::vector<Audit> shards;
-  for (NamedAudit& one : named) {
-    shards.push_back(std::move(one.audit));
-  }
-  Result<Audit> all = merge(std::move(shards));
-  if (!all) return all.error();
-  return NamedAudit{named.front().name, std::move(all).value(), tolerance};
-}
-
-// The parts that were read, of which one list is empty.
+// The parts that were read, of which one list is empty, and what all of them have.
 struct ReadParts {
-  std::vector<NamedComparison> comparisons;
-  std::vector<NamedAudit> audits;
+  std::string name;
+  std::optional<double> tolerance;
+  std::vector<ComparisonShard> comparisons;
+  std::vector<AuditShard> audits;
 };
 
 // The checksums of a part, with what it has as a text.
@@ -388,6 +359,8 @@ Result<ReadParts> read_parts(std::span<const Part> parts) {
     check_part_version(view);
     if (!complaint.first() && !has_its_checksum(part.text)) return invalid_input(part.name, std::string(kDamagedPart));
     const std::string command = view.required_text("command");
+    read.name = view.required_text("input");
+    read.tolerance = read_tolerance(view);
     if (command == "compare")
       read.comparisons.push_back(read_comparison(view));
     else if (command == "audit")
@@ -405,9 +378,9 @@ Result<ReadParts> read_parts(std::span<const Part> parts) {
 
 }  // namespace
 
-std::string compare_part(const NamedComparison& shard) {
+std::string compare_part(const NamedComparison& shard, const CompareRun& run) {
   const Comparison& c = shard.comparison;
-  Json json = part_json("compare", shard.name, c.tolerance, c.checksums);
+  Json json = part_json("compare", shard.name, c.tolerance, run.checksums);
   json["kind"] = static_cast<int>(c.kind);
   json["motion"] = static_cast<int>(c.motion);
   json["vertices"] = c.vertices;
@@ -421,12 +394,13 @@ std::string compare_part(const NamedComparison& shard) {
   json["sequential"] = std::any_of(c.schemes.begin(), c.schemes.end(), [](const auto& row) { return row.sequential; });
   json["certified"] = c.schemes.front().certified.has_value();
   for (const SchemeComparison& row : c.schemes) json["schemes"].push_back(row.scheme);
-  for (const ComparedSegment& segment : c.compared) json["segments"].push_back(segment_json(segment));
+  for (const ComparedSegment& segment : run.found) json["segments"].push_back(segment_json(segment));
   return with_checksum(line_of(json));
 }
 
-std::string audit_part(const std::string& input, const Audit& shard, std::optional<double> tolerance) {
-  Json json = part_json("audit", input, tolerance, shard.checksums);
+std::string audit_part(const std::string& input, const Audit& shard, const AuditRun& run,
+                       std::optional<double> tolerance) {
+  Json json = part_json("audit", input, tolerance, run.checksums);
   json["rule"] = static_cast<int>(shard.rule);
   json["weighting"] = static_cast<int>(shard.weighting.value_or(Weighting::kArea));
   json["stored"] = shard.stored;
@@ -440,7 +414,7 @@ std::string audit_part(const std::string& input, const Audit& shard, std::option
     json["samples"] = subject.samples;
     json["vertices"] = subject.vertices;
   }
-  for (const SegmentErrors& segment : shard.measured) json["segments"].push_back(segment_json(segment));
+  for (const SegmentErrors& segment : run.found) json["segments"].push_back(segment_json(segment));
   return with_checksum(line_of(json));
 }
 
@@ -459,33 +433,32 @@ Result<NamedComparison> merge_compare_parts(std::span<const Part> parts) {
   Result<ReadParts> read = read_parts(parts);
   if (!read) return read.error();
   if (read.value().comparisons.empty()) return Error{ErrorCode::kUsage, "", "these are parts of an audit"};
-  return merge_comparisons(std::move(read.value().comparisons));
+  Result<Comparison> all = merge(std::move(read.value().comparisons));
+  if (!all) return all.error();
+  return NamedComparison{read.value().name, std::move(all).value(), {}};
 }
 
 Result<Audit> merge_audit_parts(std::span<const Part> parts) {
   Result<ReadParts> read = read_parts(parts);
   if (!read) return read.error();
   if (read.value().audits.empty()) return Error{ErrorCode::kUsage, "", "these are parts of a comparison"};
-  Result<NamedAudit> all = merge_audits(std::move(read.value().audits));
-  if (!all) return all.error();
-  return std::move(all.value().audit);
+  return merge(std::move(read.value().audits));
 }
 
 Result<MergedParts> merge_parts(std::span<const Part> parts) {
   Result<ReadParts> read = read_parts(parts);
   if (!read) return read.error();
-  if (read.value().audits.empty()) {
-    const Result<NamedComparison> all = merge_comparisons(std::move(read.value().comparisons));
+  const auto& [name, tolerance, comparisons, audits] = read.value();
+  if (audits.empty()) {
+    const Result<Comparison> all = merge(comparisons);
     if (!all) return all.error();
-    const Comparison& comparison = all.value().comparison;
-    return MergedParts{compare_json({all.value()}, false, false),
-                       !comparison.tolerance || comparison.cheapest.has_value()};
+    return MergedParts{compare_json({{name, all.value(), {}}}, false, false),
+                       !tolerance || all.value().cheapest.has_value()};
   }
-  const Result<NamedAudit> all = merge_audits(std::move(read.value().audits));
+  const Result<Audit> all = merge(audits);
   if (!all) return all.error();
-  const auto& [name, audit, tolerance] = all.value();
-  return MergedParts{audit_json(name, audit, {tolerance}),
-                     !tolerance || (audit.is_judged() && audit.is_within(*tolerance))};
+  return MergedParts{audit_json(name, all.value(), {tolerance}),
+                     !tolerance || (all.value().is_judged() && all.value().is_within(*tolerance))};
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -98,7 +98,11 @@ Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points
   std::vector<std::int32_t> windings;
   std::vector<Passed> all;
   RowsInBounds rows(span.expansion);
-  for (std::size_t i = 0; i < parts.value().size(); ++i) {
+  SegmentRun run;
+  run.progress = progress;
+  run.begin(parts.value().size());
+  const Status answered = run.over(run.share(), 1, [&](IndexRange one) {
+    const std::size_t i = one.first;
     const SegmentPart& part = parts.value()[i];
     const Segment segment = motion.segment(part.segment);
     const auto places = [&](double time) { return places_at(points, motion.origin, (time - first) / (last - first)); };
@@ -111,10 +115,9 @@ Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points
         all.push_back(
             {part.segment, segment.start_time + crossing.t * (segment.end_time - segment.start_time), crossing});
     }
-    if (const Status status = rows.add(kBytesPerCrossing * (all.size() - before), i + 1, parts.value().size()); !status)
-      return status.error();
-    if (progress) progress(i + 1, parts.value().size());
-  }
+    return rows.add(kBytesPerCrossing * (all.size() - before), i + 1, parts.value().size());
+  });
+  if (!answered) return answered.error();
   std::stable_sort(all.begin(), all.end(),
                    [](const Passed& a, const Passed& b) { return a.crossing.point < b.crossing.point; });
   QueryAnswer answer = answer_of(parts.value().size(), windings, all);

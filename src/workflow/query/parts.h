@@ -10,6 +10,7 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/workflow/query.h"
+#include "workflow/segments/segment_run.h"
 
 namespace chronormal::inline internal {
 
@@ -48,14 +49,17 @@ template <class T, class Answer, class BytesOf>
                                                        const BytesOf& bytes_of) {
   std::vector<T> results(parts.size());
   RowsInBounds rows(span.expansion);
-  const std::size_t wave = std::max<std::size_t>(thread_count(), 1);
-  for (std::size_t first = 0; first < parts.size(); first += wave) {
-    const std::size_t count = std::min(wave, parts.size() - first);
-    parallel_for(count, [&](std::size_t i) { results[first + i] = answer(parts[first + i]); });
-    for (std::size_t i = first; i < first + count; ++i)
-      if (const Status status = rows.add(bytes_of(results[i]), i + 1, parts.size()); !status) return status.error();
-    if (progress) progress(first + count, parts.size());
-  }
+  SegmentRun run;
+  run.progress = progress;
+  run.begin(parts.size());
+  const Status answered =
+      run.over(run.share(), std::max<std::size_t>(thread_count(), 1), [&](IndexRange some) -> Status {
+        parallel_for(some.count, [&](std::size_t i) { results[some.first + i] = answer(parts[some.first + i]); });
+        for (std::size_t i = some.first; i < some.end(); ++i)
+          if (Status status = rows.add(bytes_of(results[i]), i + 1, parts.size()); !status) return status;
+        return Success{};
+      });
+  if (!answered) return answered.error();
   return results;
 }
 

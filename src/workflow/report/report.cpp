@@ -83,7 +83,9 @@ Status read_motion(Input& input, const ReportOptions& options, Report& report, R
   if (!vertices) return vertices.error();
   WatchedMotions watched({}, {}, vertices.value().of_corner);
   MotionStream stream(*motion.value());
-  Result<Audit> found = watched_audit(stream, *normals.value(), audit_options(options),
+  AuditRun run;
+  run.progress = told(options, "auditing");
+  Result<Audit> found = watched_audit(stream, *normals.value(), audit_options(options), run,
                                       [&](const AuditSample& sample) { watched.add(sample); });
   if (!found) return found.error();
   report.audit = std::move(found).value();

@@ -1,10 +1,10 @@
-/// Samples of which an interrupted run wrote some rows already. Private to workflow and the program.
+/// Samples that a process writes with others, as a share, or behind the rows that an interrupted run wrote already.
+/// Private to workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_SAMPLE_CONTINUED_SAMPLES_H_
 #define CHRONORMAL_WORKFLOW_SAMPLE_CONTINUED_SAMPLES_H_
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,16 +13,30 @@
 
 #include "chronormal/workflow/sample.h"
 #include "io/bytes/journal.h"
+#include "workflow/segments/segment_run.h"
 
 namespace chronormal::inline internal {
 
-/// write_samples() (chronormal/workflow/sample.h) into a .npy file, of which each row that is written gets a record of
-/// the journal. The file is OUT.partial until it is whole. Rows that the journal of an earlier run has, and that are in
-/// the file with the same checksum, are not computed again. The journal stays; the caller removes it. Errors: also
-/// those of the journal; kUsage for another format or a stream; kFailed where OUT.partial is no such array.
-[[nodiscard]] Result<SampleSummary> continue_samples(
-    MotionStream& stream, const SampleOptions& options, const Moments& moments, const SampleOutput& output,
-    Journal& journal, const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+/// The files that `count` moments are written to. Of several shards, other files may be there. Errors: also kUsage for
+/// a shard of .npz, and for peers and a stream.
+[[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
+                                                            std::size_t count, const SegmentRun& run);
+
+/// write_samples() as the run has it, of which each moment is a segment:
+///
+///     shard      its share of the moments: .ply and .obj files with the numbers that they would have among all, or
+///                .npy with as many rows (workflow/json/parts.h joins them). The bits are those of one run
+///     peers      the shards have one output among them, which no one sees before all are done: a .npy or .npz file
+///                that every process writes its rows into, or .ply and .obj files. The first process gets the summary
+///                of all, and each of the others its own
+///     journal    each row of a .npy file gets a record. The file is OUT.partial until it is whole. Rows that the
+///                journal of an earlier run has, and that are in the file with the same checksum, are not computed
+///                again. The journal stays; the caller removes it
+///
+/// Errors: also those of the journal; kUsage for a journal with another format or a stream; kFailed where OUT.partial
+/// is no such array.
+[[nodiscard]] Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& options,
+                                                  const Moments& moments, const SampleOutput& output, SegmentRun& run);
 
 /// A row that was written, as the journal has it.
 struct WrittenRow {

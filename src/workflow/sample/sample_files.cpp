@@ -78,6 +78,8 @@ std::size_t count_zeros(const std::vector<float>& normals) {
   return zeros;
 }
 
+bool is_first_process(const SegmentRun& run) { return !run.shard || run.shard->index == 0; }
+
 // A .npy or .npz file as it grows.
 class ArrayFile {
  public:
@@ -87,15 +89,15 @@ class ArrayFile {
 
   // Begins with the row at the first moment of a share: of a file of its own, or, with peers, of the file of all.
   // header is that of a .npy file.
-  [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, const SampleOutput& output,
-                             std::size_t outputs, std::string_view header) {
-    const IndexRange share = output.shard.of(moments.count());
-    const bool is_first = output.shard.index == 0;
-    const std::vector<std::uint64_t> shape = {output.peers ? moments.count() : share.count, outputs, 3};
+  [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, const SegmentRun& run, std::size_t outputs,
+                             std::string_view header) {
+    const IndexRange share = run.share();
+    const bool is_first = is_first_process(run);
+    const std::vector<std::uint64_t> shape = {run.peers ? moments.count() : share.count, outputs, 3};
     const std::uint64_t before = std::uint64_t{share.first} * 3 * sizeof(float);  // bytes, of each output
     if (!npz_) {
       checksum_ = checksum_of(header);
-      if (output.peers == nullptr) return file_->append(header);
+      if (run.peers == nullptr) return file_->append(header);
       at_ = header.size() + before * outputs;
       return is_first ? file_->put(0, header) : Status(Success{});
     }
@@ -111,7 +113,7 @@ class ArrayFile {
     origin_ = motion.origin;
     positions_ = npz_->add_growing("positions", {moments.count(), motion.topology.vertex_count(), 3}, is_far());
     if (faces) npz_->add({"faces", faces.value()});
-    if (output.peers == nullptr || is_first) return npz_->begin();
+    if (run.peers == nullptr || is_first) return npz_->begin();
     npz_->join();
     npz_->skip(normals_, before * outputs);
     npz_->skip(positions_, (is_far() ? 2 : 1) * before * motion.topology.vertex_count());
@@ -211,11 +213,10 @@ std::string mesh_file(const Motion& motion, const NormalSampler& sampler, const 
 }
 
 // Begins a file; of peers, the first begins it, and the others open what the first has begun.
-Result<OutputFile> begin_file(const SampleOutput& output) {
-  if (output.peers != nullptr && output.shard.index > 0)
-    return OutputFile::join(output.path, output.peers->broadcast(""));
+Result<OutputFile> begin_file(const SampleOutput& output, const SegmentRun& run) {
+  if (run.peers != nullptr && !is_first_process(run)) return OutputFile::join(output.path, run.peers->broadcast(""));
   Result<OutputFile> file = OutputFile::create(output.path, output.force);
-  if (file && output.peers != nullptr) (void)output.peers->broadcast(file.value().temporary_name());
+  if (file && run.peers != nullptr) (void)run.peers->broadcast(file.value().temporary_name());
   return file;
 }
 
@@ -253,14 +254,14 @@ struct Written {
 };
 
 // Gives files their names once all peers have written theirs, and returns in the first process once all have done that.
-Result<SampleSummary> finish_with_peers(const SampleOutput& output, Written own, ArrayFile* arrays,
+Result<SampleSummary> finish_with_peers(const SegmentRun& run, Written own, ArrayFile* arrays,
                                         std::vector<OutputFile>& meshes) {
-  const bool is_first = output.shard.index == 0;
+  const bool is_first = is_first_process(run);
   if (arrays != nullptr) {
     own.checksums = arrays->checksums();
     if (Status status = is_first ? Status(Success{}) : arrays->seal(); !status) return status.error();
   }
-  const std::vector<std::string> all = output.peers->gather(own.text());
+  const std::vector<std::string> all = run.peers->gather(own.text());
   for (std::size_t i = 1; i < all.size(); ++i) {
     const Written other = Written::read(all[i]);
     own.summary.normals += other.summary.normals;
@@ -271,42 +272,45 @@ Result<SampleSummary> finish_with_peers(const SampleOutput& output, Written own,
   if (arrays != nullptr && is_first) {
     if (Status status = arrays->finish(); !status) return status.error();
   }
-  (void)output.peers->broadcast("");
+  (void)run.peers->broadcast("");
   if (Status status = finish_all(meshes); !status) return status.error();
   if (arrays != nullptr && !is_first) {
     if (Status status = arrays->finish_joined(); !status) return status.error();
   }
-  (void)output.peers->gather("");
+  (void)run.peers->gather("");
   return own.summary;
 }
 
 // The text that ends the part of a share, whose bytes before that have this checksum.
 Result<std::string> end_of_part(const Motion& motion, const SampleOptions& options, const Moments& moments,
-                                const Shard& shard, const NormalSampler& sampler, std::uint32_t array,
+                                const SegmentRun& run, const NormalSampler& sampler, std::uint32_t array,
                                 KeyframeChecksums& seen) {
-  SamplePart part{shard.of(moments.count()).first, moments.count(), array};
+  SamplePart part{run.share().first, moments.count(), array};
   NumberChecksum sharing;
   sharing.add(sampler.element_of_output());
   part.checksums["the options"] = checksum_of_options(options, moments);
   part.checksums["who shares a normal"] = sharing.value();
-  const Status status = seen.finish(keyframes_of_moments(motion, moments, shard), part.checksums);
+  const Status status = seen.finish(keyframes_of_moments(motion, moments, *run.shard), part.checksums);
   if (!status) return status.error();
   return part.text();
 }
 
-// Writes all moments of the share, but for rows that an earlier run wrote, as the journal has it.
-Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& options, const Moments& moments,
-                                const SampleOutput& output, Journal* journal,
-                                const std::function<void(std::size_t done, std::size_t total)>& progress) {
+}  // namespace
+
+Result<SampleSummary> internal::write_samples(MotionStream& stream, const SampleOptions& options,
+                                              const Moments& moments, const SampleOutput& output, SegmentRun& run) {
+  Journal* const journal = run.journal;
+  if (journal != nullptr && output.format != SampleFormat::kNpy)
+    return Error{ErrorCode::kUsage, output.path, "only a .npy file can be continued by a later run"};
   const Motion& motion = stream.motion();
   const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
   const ElementKind kind = options.elements.kind;
   SampleOutput checked = output;
   if (journal != nullptr) checked.force = true;  // an interrupted run may have written it just before its end
-  const Result<std::vector<std::string>> names = sample_files(checked, kind, count);
+  const Result<std::vector<std::string>> names = sample_files(checked, kind, count, run);
   if (!names) return names.error();
   if (Status status = check_moments(motion, options, moments); !status) return status.error();
-  const bool is_part = output.format == SampleFormat::kNpy && output.peers == nullptr && !output.shard.is_all();
+  const bool is_part = output.format == SampleFormat::kNpy && run.peers == nullptr && run.shard && !run.shard->is_all();
   KeyframeChecksums seen(stream);
   if (Status status = is_part ? seen.begin() : Success{}; !status) return status.error();
   Result<NormalSampler> made = NormalSampler::make(stream, options);
@@ -315,14 +319,15 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
   const Result<std::vector<double>> in_a_row = times_in_a_row(motion, moments.times);
   if (!in_a_row) return in_a_row.error();
 
-  const IndexRange share = output.shard.of(count);
+  run.begin(count);
+  const IndexRange share = run.share();
   EmptyPartial partial;
   std::optional<ArrayFile> arrays;
   SampleSummary summary;
   std::size_t written = 0;        // rows, by an earlier run
   std::uint32_t written_sum = 0;  // the checksum of the header and of these
   const auto end = [&](std::uint32_t array) {
-    return is_part ? end_of_part(motion, options, moments, output.shard, sampler, array, seen) : std::string();
+    return is_part ? end_of_part(motion, options, moments, run, sampler, array, seen) : std::string();
   };
   if (is_array(output.format)) {
     const std::size_t per_moment = sampler.output_count() + vertices;
@@ -331,7 +336,7 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
       return Error{ErrorCode::kUsage, output.path,
                    "the arrays would take more than 4 GiB, and a stream gets them at once: write to a file"};
     const std::size_t outputs = sampler.output_count(), row_bytes = 3 * sizeof(float) * outputs;
-    const std::string header = npy::write_header("<f4", {output.peers != nullptr ? count : share.count, outputs, 3});
+    const std::string header = npy::write_header("<f4", {run.peers != nullptr ? count : share.count, outputs, 3});
     if (journal != nullptr) {
       const auto found = find_written_rows(output.path, header, row_bytes, share.count, *journal);
       if (!found) return found.error();
@@ -353,7 +358,7 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
     }
     const std::uint64_t kept = written > 0 ? header.size() + std::uint64_t{row_bytes} * written : 0;
     Result<OutputFile> file =
-        journal != nullptr ? OutputFile::go_on(output.path, output.force, kept) : begin_file(output);
+        journal != nullptr ? OutputFile::go_on(output.path, output.force, kept) : begin_file(output, run);
     if (!file) return file.error();
     if (journal != nullptr) {
       partial.journal = journal;
@@ -361,12 +366,19 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
     }
     arrays.emplace(std::move(file).value(), output.format);
     if (kept > 0) arrays->go_on(written_sum);
-    if (Status status = kept > 0 ? Success{} : arrays->begin(motion, moments, output, outputs, header); !status)
+    if (Status status = kept > 0 ? Success{} : arrays->begin(motion, moments, run, outputs, header); !status)
       return status.error();
   }
 
   std::vector<OutputFile> meshes;  // without names until all are there: they may have those of keyframes
-  for (std::size_t i = share.first + written; i < share.end(); ++i) {
+  run.skip(written);
+  const auto keys = [&](std::size_t i) {
+    return moments.times.empty() ? Motion::SegmentKeys{}
+                                 : motion.segments[find_instant(motion, moments.times[i]).value().segment];
+  };
+  const IndexRange rest{share.first + written, share.count - written};
+  const Status computed = run.over(stream, keys, rest, 1, [&](IndexRange one) -> Status {
+    const std::size_t i = one.first;
     const Result<Pose> pose = pose_of(sampler, stream, moments, in_a_row.value(), i);
     if (!pose) return pose.error();
     const std::vector<float> normals = sampler.normals_of_outputs(pose.value());
@@ -383,12 +395,13 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
       if (Status status = file.value().seal(); !status) return status.error();
       meshes.push_back(std::move(file).value());
     }
-    if (progress) progress(i + 1 - share.first, share.count);
-  }
+    return Success{};
+  });
+  if (!computed) return computed.error();
   summary.drift = sampler.drift();
-  if (output.peers != nullptr) {
+  if (run.peers != nullptr) {
     const Written own{summary, std::uint64_t{share.count} * vertices, {}};
-    return finish_with_peers(output, own, arrays ? &*arrays : nullptr, meshes);
+    return finish_with_peers(run, own, arrays ? &*arrays : nullptr, meshes);
   }
   if (Status status = finish_all(meshes); !status) return status.error();
   if (is_part) {
@@ -399,8 +412,6 @@ Result<SampleSummary> write_all(MotionStream& stream, const SampleOptions& optio
   if (Status status = arrays ? arrays->finish() : Status(Success{}); !status) return status.error();
   return summary;
 }
-
-}  // namespace
 
 Result<SampleFormat> make_sample_format(std::string_view name) {
   std::string names;
@@ -437,11 +448,16 @@ std::optional<SampleFormat> find_sample_format(std::string_view path) {
 }
 
 Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind, std::size_t count) {
+  return sample_files(output, kind, count, {});
+}
+
+Result<std::vector<std::string>> internal::sample_files(const SampleOutput& output, ElementKind kind, std::size_t count,
+                                                        const SegmentRun& run) {
   if (output.format == SampleFormat::kPly && kind == ElementKind::kCorners)
     return Error{ErrorCode::kUsage, output.path, "PLY has no place for normals of corners: write .obj, .npy or .npz"};
-  if (output.format == SampleFormat::kNpz && !output.shard.is_all() && output.peers == nullptr)
+  if (output.format == SampleFormat::kNpz && run.shard && !run.shard->is_all() && run.peers == nullptr)
     return Error{ErrorCode::kUsage, output.path, "a shard is an array of its own: write .npy"};
-  if (output.peers != nullptr && is_stream(output.path))
+  if (run.peers != nullptr && is_stream(output.path))
     return Error{ErrorCode::kUsage, output.path, "several processes can not write to one stream: name a file"};
   std::vector<std::string> names = {output.path};
   if (!is_array(output.format) && output.path != "-") {
@@ -453,7 +469,7 @@ Result<std::vector<std::string>> sample_files(const SampleOutput& output, Elemen
                  "there are " + std::to_string(count) + " meshes, and the standard output can take one"};
   }
   // Where there are shards, the files of the other shards may be there.
-  const IndexRange own = names.size() == count ? output.shard.of(count) : IndexRange{0, names.size()};
+  const IndexRange own = names.size() == count ? run.share_of(count) : IndexRange{0, names.size()};
   for (std::size_t i = own.first; i < own.end(); ++i) {
     if (Status status = check_output(names[i], output.force); !status) return status.error();
   }
@@ -470,15 +486,9 @@ Result<SampleSummary> write_samples(const Motion& motion, const SampleOptions& o
 Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& options, const Moments& moments,
                                     const SampleOutput& output,
                                     const std::function<void(std::size_t done, std::size_t total)>& progress) {
-  return write_all(stream, options, moments, output, nullptr, progress);
-}
-
-Result<SampleSummary> internal::continue_samples(
-    MotionStream& stream, const SampleOptions& options, const Moments& moments, const SampleOutput& output,
-    Journal& journal, const std::function<void(std::size_t done, std::size_t total)>& progress) {
-  if (output.format != SampleFormat::kNpy)
-    return Error{ErrorCode::kUsage, output.path, "only a .npy file can be continued by a later run"};
-  return write_all(stream, options, moments, output, &journal, progress);
+  SegmentRun run;
+  run.progress = progress;
+  return write_samples(stream, options, moments, output, run);
 }
 
 }  // namespace chronormal

@@ -14,7 +14,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/workflow/sample.h"
-#include "workflow/sample/task_checksums.h"
+#include "workflow/segments/task_checksums.h"
 
 namespace chronormal::inline internal {
 

@@ -20,6 +20,7 @@
 #include "tests/support/integer_normal.h"
 #include "tests/support/reference.h"
 #include "tests/support/reference_elements.h"
+#include "workflow/compare/compared.h"
 
 namespace chronormal::compare_test {
 namespace {
@@ -183,10 +184,12 @@ TEST(Compare, refuses_what_makes_no_table) {
   EXPECT_EQ(compare(motion, {{"linear"}, 1, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
   EXPECT_EQ(compare(motion, {{""}, 21, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
   EXPECT_EQ(compare(motion, {{"bicubic"}, 21, Access::kRandom, {}}).error().code, ErrorCode::kUsage);
-  CompareOptions shard;
-  shard.shard = Shard{};
-  shard.keep_samples = true;
-  EXPECT_EQ(compare(motion, shard).error().text(),
+  CompareOptions each_sample;
+  each_sample.keep_samples = true;
+  MotionStream stream(motion);
+  CompareRun run;
+  run.shard = Shard{};
+  EXPECT_EQ(compare(stream, each_sample, run).error().text(),
             "a shard keeps sums, and so does a run that goes on: the rest is of a whole motion");
 }
 

@@ -1,5 +1,5 @@
 // Parts of comparisons and audits are merged into the text of one run, and parts that do not fit are refused.
-#include "chronormal/workflow/parts.h"
+#include "workflow/json/parts.h"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +17,7 @@
 #include "io/bytes/checksum.h"
 #include "tests/support/strict_stream.h"
 #include "tests/support/temporary_folder.h"
+#include "workflow/sample/continued_samples.h"
 
 namespace chronormal::parts_test {
 namespace {
@@ -51,23 +52,56 @@ std::string merged(std::vector<Part> parts) {
   return all ? all.value().json : all.error().text();
 }
 
-std::vector<Part> compare_parts(const Motion& motion, CompareOptions options, std::size_t count) {
+std::string compared_part(MotionStream& stream, const CompareOptions& options, CompareRun& run) {
+  const Result<Comparison> comparison = compare(stream, options, run);
+  return comparison ? compare_part({"walk", comparison.value()}, run) : comparison.error().text();
+}
+
+std::string compared_part(const Motion& motion, const CompareOptions& options, const Shard& shard) {
+  MotionStream stream(motion);
+  CompareRun run;
+  run.shard = shard;
+  return compared_part(stream, options, run);
+}
+
+std::string audited_part(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
+                         const Shard& shard) {
+  AuditRun run;
+  run.shard = shard;
+  const Result<Audit> found = audit(stream, normals, options, run);
+  return found ? audit_part("walk", found.value(), run, 1) : found.error().text();
+}
+
+std::vector<Part> compare_parts(const Motion& motion, const CompareOptions& options, std::size_t count) {
   std::vector<Part> parts;
   for (std::size_t i = 0; i < count; ++i) {
-    options.shard = Shard{i, count};
-    parts.push_back({"part_" + std::to_string(i), compare_part({"walk", compare(motion, options).value()})});
+    parts.push_back({"part_" + std::to_string(i), compared_part(motion, options, Shard{i, count})});
   }
   return parts;
 }
 
-std::vector<Part> audit_parts(const Motion& motion, const StoredNormals& normals, AuditOptions options,
+std::vector<Part> audit_parts(const Motion& motion, const StoredNormals& normals, const AuditOptions& options,
                               std::size_t count) {
   std::vector<Part> parts;
   for (std::size_t i = 0; i < count; ++i) {
-    options.shard = Shard{i, count};
-    parts.push_back({"part_" + std::to_string(i), audit_part("walk", audit(motion, normals, options).value(), 1)});
+    MotionStream stream(motion);
+    parts.push_back({"part_" + std::to_string(i), audited_part(stream, normals, options, Shard{i, count})});
   }
   return parts;
+}
+
+// Writes a share of the moments.
+Result<SampleSummary> write_share(MotionStream& stream, const SampleOptions& options, const Moments& moments,
+                                  const SampleOutput& output, const Shard& shard) {
+  SegmentRun run;
+  run.shard = shard;
+  return write_samples(stream, options, moments, output, run);
+}
+
+Result<SampleSummary> write_share(const Motion& motion, const SampleOptions& options, const Moments& moments,
+                                  const SampleOutput& output, const Shard& shard) {
+  MotionStream stream(motion);
+  return write_share(stream, options, moments, output, shard);
 }
 
 // The text of a part in which something else stands, with the checksum that it has then.
@@ -132,19 +166,20 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
 // Ends a run after so many segments, and gives what it kept to another one.
 TEST(KnownSegments, a_comparison_that_goes_on_gives_the_bytes_of_one_run) {
   const Motion motion = bending();
+  MotionStream stream(motion);
+  const CompareOptions options;
   for (const Shard shard : {Shard{}, Shard{1, 2}}) {
+    const std::string whole = compared_part(motion, options, shard);
     for (std::size_t most = 0; most <= shard.of(8).count; ++most) {
-      CompareOptions options;
-      options.shard = shard;
-      const std::string whole = compare_part({"walk", compare(motion, options).value()});
       std::vector<std::string> kept;
-      CompareOptions first = options, second = options;
+      CompareRun first, second;
+      first.shard = second.shard = shard;
       first.keep = [&](const ComparedSegment& segment) -> Status {
         if (kept.size() == most) return Error{ErrorCode::kFailed, "", "the disk is full"};
         kept.push_back(segment_part(segment));
         return Success{};
       };
-      EXPECT_EQ(compare(motion, first).ok(), most == shard.of(8).count);
+      EXPECT_EQ(compare(stream, options, first).ok(), most == shard.of(8).count);
       ASSERT_EQ(kept.size(), most);
       for (const std::string& text : kept) second.known.push_back(read_compared_segment(text, "journal").value());
       std::size_t computed = 0;
@@ -152,7 +187,7 @@ TEST(KnownSegments, a_comparison_that_goes_on_gives_the_bytes_of_one_run) {
         ++computed;
         return Success{};
       };
-      EXPECT_EQ(compare_part({"walk", compare(motion, second).value()}), whole);
+      EXPECT_EQ(compared_part(stream, options, second), whole);
       EXPECT_EQ(computed + most, shard.of(8).count);
     }
   }
@@ -160,26 +195,27 @@ TEST(KnownSegments, a_comparison_that_goes_on_gives_the_bytes_of_one_run) {
 
 TEST(KnownSegments, an_audit_that_goes_on_gives_the_bytes_of_one_run) {
   const Motion motion = bending();
+  MotionStream stream(motion);
   for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {
     for (const std::size_t most : {0U, 3U, 8U}) {
       AuditOptions options;
       options.rule = rule;
       const std::string whole = audit_json("walk", audit(motion, {}, options).value(), {1});
       std::vector<std::string> kept;
-      AuditOptions first = options, second = options;
+      AuditRun first, second;
       first.keep = [&](const SegmentErrors& segment) -> Status {
         if (kept.size() == most) return Error{ErrorCode::kFailed, "", "the disk is full"};
         kept.push_back(segment_part(segment));
         return Success{};
       };
-      EXPECT_EQ(audit(motion, {}, first).ok(), most == 8);
+      EXPECT_EQ(audit(stream, {}, options, first).ok(), most == 8);
       for (const std::string& text : kept) second.known.push_back(read_measured_segment(text, "journal").value());
       std::size_t measured = 0;
       second.keep = [&](const SegmentErrors&) -> Status {
         ++measured;
         return Success{};
       };
-      EXPECT_EQ(audit_json("walk", audit(motion, {}, second).value(), {1}), whole);
+      EXPECT_EQ(audit_json("walk", audit(stream, {}, options, second).value(), {1}), whole);
       EXPECT_EQ(measured + most, 8U);
     }
   }
@@ -187,21 +223,21 @@ TEST(KnownSegments, an_audit_that_goes_on_gives_the_bytes_of_one_run) {
 
 TEST(KnownSegments, those_of_another_run_are_refused) {
   const Motion motion = bending();
-  CompareOptions options;
-  options.known.resize(1);  // without a tally
-  EXPECT_EQ(compare(motion, options).error().code, ErrorCode::kUsage);
-  options.known.clear();
-  options.shard = Shard{1, 2};
-  options.keep = [&](const ComparedSegment& segment) -> Status {
-    options.known.push_back(segment);
-    return Success{};
-  };
-  ASSERT_TRUE(compare(motion, CompareOptions(options)).ok());
-  options.shard = Shard{0, 2};
-  EXPECT_EQ(compare(motion, options).error().code, ErrorCode::kUsage);
-  AuditOptions audit_options;
-  audit_options.known.resize(9);
-  EXPECT_EQ(audit(motion, {}, audit_options).error().code, ErrorCode::kUsage);
+  MotionStream stream(motion);
+  CompareRun untallied;
+  untallied.known.resize(1);
+  EXPECT_EQ(compare(stream, {}, untallied).error().text(),
+            "the segments that are known already are those of another comparison");
+  CompareRun second_half, first_half;
+  second_half.shard = Shard{1, 2};
+  ASSERT_TRUE(compare(stream, {}, second_half).ok());
+  first_half.shard = Shard{0, 2};
+  first_half.known = second_half.found;
+  EXPECT_EQ(compare(stream, {}, first_half).error().code, ErrorCode::kUsage);
+  AuditRun too_many;
+  too_many.known.resize(9);
+  EXPECT_EQ(audit(stream, {}, {}, too_many).error().text(),
+            "the segments that are known already are those of another audit");
   EXPECT_EQ(read_compared_segment("{\"segment\": 1, \"tallies\": [[1]]}", "journal").error().place,
             "journal, /tallies/0");
 }
@@ -310,13 +346,13 @@ TEST(MergeArrays, shards_of_samples_give_the_bytes_of_one_run) {
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < count; ++i) {
       parts.push_back(folder / ("part_" + std::to_string(i) + ".npy"));
-      ASSERT_TRUE(write_samples(motion, options, moments, {parts.back(), SampleFormat::kNpy, true, {i, count}}).ok());
+      ASSERT_TRUE(write_share(motion, options, moments, {parts.back(), SampleFormat::kNpy, true}, {i, count}).ok());
     }
     std::reverse(parts.begin(), parts.end());  // any order
     ASSERT_TRUE(merge_arrays(parts, folder / "merged.npy", true).ok());
     EXPECT_TRUE(test::read_whole(folder / "merged.npy") == test::read_whole(folder / "all.npy")) << count;
   }
-  EXPECT_EQ(write_samples(motion, options, moments, {folder / "p.npz", SampleFormat::kNpz, true, {0, 2}}).error().code,
+  EXPECT_EQ(write_share(motion, options, moments, {folder / "p.npz", SampleFormat::kNpz, true}, {0, 2}).error().code,
             ErrorCode::kUsage);
 }
 
@@ -327,7 +363,7 @@ TEST(MergeArrays, refuses_shards_that_do_not_make_a_whole) {
   const auto shard = [&](const std::string& name, std::size_t index, const SampleOptions& options, double scale = 1) {
     Moments scaled = moments;
     for (double& time : scaled.times) time *= scale;
-    EXPECT_TRUE(write_samples(motion, options, scaled, {folder / name, SampleFormat::kNpy, true, {index, 3}}).ok());
+    EXPECT_TRUE(write_share(motion, options, scaled, {folder / name, SampleFormat::kNpy, true}, {index, 3}).ok());
     return folder / name;
   };
   const std::string first = shard("1.npy", 0, {}), second = shard("2.npy", 1, {}), third = shard("3.npy", 2, {});
@@ -381,8 +417,9 @@ std::vector<Task> tasks(const std::string& merged_path) {
              CompareOptions options;
              options.schemes = {"linear"};
              options.samples = 3;
-             options.shard = shard;
-             write(path, compare_part({"walk", compare(stream, options).value()}));
+             CompareRun run;
+             run.shard = shard;
+             write(path, compared_part(stream, options, run));
            },
            merge_texts},
           {"compare of vertices",
@@ -390,24 +427,24 @@ std::vector<Task> tasks(const std::string& merged_path) {
              CompareOptions options;
              options.schemes = {"slerp"};
              options.samples = 2;
-             options.shard = shard;
              options.elements.kind = ElementKind::kVertices;
-             write(path, compare_part({"walk", compare(stream, options).value()}));
+             CompareRun run;
+             run.shard = shard;
+             write(path, compared_part(stream, options, run));
            },
            merge_texts},
           {"audit",
            [write](MotionStream& stream, const Shard& shard, const std::string& path) {
              AuditOptions options;
              options.samples = 3;
-             options.shard = shard;
-             write(path, audit_part("walk", audit(stream, {}, options).value(), 1));
+             write(path, audited_part(stream, {}, options, shard));
            },
            merge_texts},
           {"sample",
            [](MotionStream& stream, const Shard& shard, const std::string& path) {
              Moments moments;
              for (int i = 0; i < 8; ++i) moments.times.push_back(0.1 * i + 0.05);
-             ASSERT_TRUE(write_samples(stream, {}, moments, {path, SampleFormat::kNpy, true, shard}).ok());
+             ASSERT_TRUE(write_share(stream, {}, moments, {path, SampleFormat::kNpy, true}, shard).ok());
            },
            merge_rows},
           {"sample of faces at two times that have no keyframe in common",
@@ -416,7 +453,7 @@ std::vector<Task> tasks(const std::string& merged_path) {
              SampleOptions options;
              options.elements.kind = ElementKind::kFaces;
              const Shard half{shard.index % 2, 2};
-             ASSERT_TRUE(write_samples(stream, options, moments, {path, SampleFormat::kNpy, true, half}).ok());
+             ASSERT_TRUE(write_share(stream, options, moments, {path, SampleFormat::kNpy, true}, half).ok());
            },
            [merge_rows](const std::vector<std::string>& paths) {
              return merge_rows(
@@ -542,9 +579,7 @@ TEST(Parts, are_not_written_of_a_keyframe_that_changes_while_it_is_read) {
         return Success{};
       },
       0);
-  AuditOptions options;
-  options.shard = Shard{1, 2};
-  EXPECT_EQ(audit(stream, {}, options).error().text(), "keyframe 5 has changed since it was read first");
+  EXPECT_EQ(audited_part(stream, {}, {}, Shard{1, 2}), "keyframe 5 has changed since it was read first");
 }
 
 }  // namespace

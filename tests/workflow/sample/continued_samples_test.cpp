@@ -23,10 +23,12 @@ Result<SampleSummary> sampled(const test::TemporaryFolder& folder, std::size_t m
   Result<Journal> journal = Journal::open(folder / "out.journal", kRun);
   if (!journal) return journal.error();
   std::size_t computed = 0;
-  const auto progress = [&](std::size_t, std::size_t) {
+  SegmentRun run;
+  run.journal = &journal.value();
+  run.progress = [&](std::size_t, std::size_t) {
     if (++computed == most) throw std::runtime_error("the power is cut");
   };
-  return continue_samples(stream, {}, kMoments, output, journal.value(), progress);
+  return write_samples(stream, {}, kMoments, output, run);
 }
 
 TEST(ContinuedSamples, count_the_normals_of_all_rows) {

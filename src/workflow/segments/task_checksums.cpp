@@ -1,5 +1,5 @@
 // Takes checksums of keyframes while a stream reads them, and of the outline of a motion.
-#include "workflow/sample/task_checksums.h"
+#include "workflow/segments/task_checksums.h"
 
 #include <limits>
 #include <utility>

@@ -1,7 +1,7 @@
-/// The checksums by which parts of one task are told from parts of another (TaskChecksums in workflow/shard.h), taken
-/// of keyframes as a shard reads them. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_SAMPLE_TASK_CHECKSUMS_H_
-#define CHRONORMAL_WORKFLOW_SAMPLE_TASK_CHECKSUMS_H_
+/// The checksums by which parts of one task are told from parts of another, taken of keyframes as a shard reads them.
+/// Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
+#define CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -16,8 +16,8 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion_stream.h"
-#include "chronormal/workflow/shard.h"
 #include "io/json/json.h"
+#include "workflow/segments/shards.h"
 
 namespace chronormal::inline internal {
 
@@ -72,4 +72,4 @@ class KnownParts {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_SAMPLE_TASK_CHECKSUMS_H_
+#endif  // CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_

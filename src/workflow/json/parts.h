@@ -1,5 +1,5 @@
-/// Parts, the files that shards (workflow/shard.h) write, and how they become what one run would have written, byte for
-/// byte.
+/// Parts, the files that shards (workflow/segments/shards.h) write, and how they become what one run would have
+/// written, byte for byte.
 ///
 ///     chronormal compare body.obj walk.pc2 --shard 1/8 -o part_1.json             ... 8/8, wherever and whenever
 ///     chronormal merge part_*.json -o all.json                   as compare ... --json --no-times -o all.json
@@ -7,12 +7,12 @@
 /// A part of a comparison or an audit is a JSON object. It describes the whole task, and has the sums of each segment
 /// of the share with all of their bits. Only merge reads it, and only where both have the same version of this format.
 /// A part of samples is a .npy array of the rows of its share, behind which an object of JSON says which of how many
-/// they are. Either ends with a checksum of all bytes before, and has the TaskChecksums of workflow/shard.h, so that
+/// they are. Either ends with a checksum of all bytes before, and has the TaskChecksums of the task, so that
 /// neither a damaged part nor one of another input or task is joined.
 ///
-/// Threads    everything here is pure, apart from reading and writing files.
-#ifndef CHRONORMAL_WORKFLOW_PARTS_H_
-#define CHRONORMAL_WORKFLOW_PARTS_H_
+/// Threads    everything here is pure, apart from reading and writing files. Private to workflow and the program.
+#ifndef CHRONORMAL_WORKFLOW_JSON_PARTS_H_
+#define CHRONORMAL_WORKFLOW_JSON_PARTS_H_
 
 #include <optional>
 #include <span>
@@ -23,13 +23,16 @@
 #include "chronormal/core/result.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/json.h"
+#include "workflow/audit/watched_audit.h"
+#include "workflow/compare/compared.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
-/// The text of the part that a shard of a comparison writes.
-[[nodiscard]] std::string compare_part(const NamedComparison& shard);
+/// The text of the part that a shard of a comparison writes, which the run has found.
+[[nodiscard]] std::string compare_part(const NamedComparison& shard, const CompareRun& run);
 /// The text of the part that a shard of an audit writes; input and tolerance are those of audit_json().
-[[nodiscard]] std::string audit_part(const std::string& input, const Audit& shard, std::optional<double> tolerance);
+[[nodiscard]] std::string audit_part(const std::string& input, const Audit& shard, const AuditRun& run,
+                                     std::optional<double> tolerance);
 
 /// The text of one segment as a part has it, in one line, and the segment of such a text; name is for messages. Errors:
 /// kInvalidInput with the place in the text.
@@ -67,6 +70,6 @@ struct MergedParts {
 /// io/output.h. There must be at least one path
 [[nodiscard]] Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force);
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_PARTS_H_
+#endif  // CHRONORMAL_WORKFLOW_JSON_PARTS_H_

@@ -1,0 +1,225 @@
+/// One pass over the segments of a motion, which compare, audit, sample, inspect and query share. A run knows which
+/// segments are its own, holds their keyframes, and knows where results go; the commands know what to compute of a
+/// segment, and how results are added up.
+///
+///     SegmentRun run;                           // one process does everything; or:
+///     run.shard = Shard{0, 8};                  // the first of eight shares, for --shard 1/8
+///     run.peers = &peers;                       // mpirun: other processes have the other shares
+///     run.begin(motion.segments.size());
+///     run.over(stream, segment_keys(motion), run.share(), at_once, [&](IndexRange segments) -> Status { ... });
+///
+/// A RecordedRun also has a result for each segment: it leaves out the segments of which an earlier run has kept the
+/// results (--resume), hands each new result to the journal, and collects them for the part of a shard.
+///
+/// Results are added up segment by segment in the order of the motion, so that their bits depend neither on the number
+/// of threads nor on where a motion is divided.
+///
+/// Private to workflow and the program.
+#ifndef CHRONORMAL_WORKFLOW_SEGMENTS_SEGMENT_RUN_H_
+#define CHRONORMAL_WORKFLOW_SEGMENTS_SEGMENT_RUN_H_
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/views.h"
+#include "chronormal/io/expansion.h"
+#include "chronormal/motion/motion_stream.h"
+#include "workflow/segments/shards.h"
+#include "workflow/segments/task_checksums.h"
+
+namespace chronormal::inline internal {
+
+class Journal;
+
+/// The keyframes of each segment of a motion, for SegmentRun::over(). The motion must outlive it.
+[[nodiscard]] inline auto segment_keys(const Motion& motion) {
+  return [&motion](std::size_t segment) { return motion.segments[segment]; };
+}
+
+struct SegmentRun {
+  using Progress = std::function<void(std::size_t done, std::size_t total)>;
+
+  /// The share of the work; nothing: all of it, and no part for a merge is wanted.
+  std::optional<Shard> shard = {};
+  /// The processes that have the other shares; nullptr: nobody is known to.
+  const Peers* peers = nullptr;
+  /// How much the results may take in memory: that of the files behind the motion.
+  Expansion expansion = Expansion::unlimited();
+  Progress progress = {};
+  /// Records the rows of samples; a RecordedRun has `keep` instead.
+  Journal* journal = nullptr;
+  /// The checksums of what a shard follows from, for its part.
+  TaskChecksums checksums = {};
+
+  /// Begins a run over so many segments, each of which takes so many steps, as progress has them.
+  void begin(std::size_t segments, std::size_t steps = 1) noexcept {
+    total_ = segments;
+    steps_ = steps;
+    done_ = 0;
+  }
+  /// Passes over segments that are done already.
+  void skip(std::size_t segments) noexcept { done_ += segments; }
+  /// The segments that this process computes.
+  [[nodiscard]] IndexRange share() const noexcept { return share_of(total_); }
+  /// The same of a row of so many things.
+  [[nodiscard]] IndexRange share_of(std::size_t total) const noexcept { return shard.value_or(Shard{}).of(total); }
+  /// The things that it looks at to find what follows from all: its own, where peers look at the others.
+  [[nodiscard]] IndexRange looked_at(std::size_t total) const noexcept {
+    return peers != nullptr ? share_of(total) : IndexRange{0, total};
+  }
+  /// Makes each number the largest that a peer has in its place.
+  void maximize(std::span<double> numbers) const {
+    if (peers != nullptr) peers->maximize(numbers);
+  }
+
+  /// Reports that so many segments, and so many steps of the next one, are done.
+  void tell(std::size_t segments, std::size_t steps = 0) {
+    done_ += segments;
+    if (progress) progress(done_ * steps_ + steps, share().count * steps_);
+  }
+
+  /// Goes over segments that are in memory, in order: calls work(segments) for `at_once` of them at a time, and reports
+  /// that they are done. Errors: those of work.
+  template <class Work>
+  [[nodiscard]] Status over(IndexRange segments, std::size_t at_once, const Work& work) {
+    return in_waves(segments, at_once, [&](IndexRange some) -> Status {
+      Status status = work(some);
+      if (status) tell(some.count);
+      return status;
+    });
+  }
+  /// The same of a stream, which holds the keyframes from the first to the last that keys(segment) names of a wave.
+  /// Errors: also those of the stream.
+  template <class Keys, class Work>
+  [[nodiscard]] Status over(MotionStream& stream, const Keys& keys, IndexRange segments, std::size_t at_once,
+                            const Work& work) {
+    return over(segments, at_once, [&](IndexRange some) -> Status {
+      Status status = hold(stream, keys, some);
+      return status ? work(some) : status;
+    });
+  }
+  /// The same before the run, to find what it needs to know of all segments: nothing is reported.
+  template <class Keys, class Work>
+  [[nodiscard]] static Status look_over(MotionStream& stream, const Keys& keys, IndexRange segments,
+                                        std::size_t at_once, const Work& work) {
+    return in_waves(segments, at_once, [&](IndexRange some) -> Status {
+      Status status = hold(stream, keys, some);
+      return status ? work(some) : status;
+    });
+  }
+
+ private:
+  template <class Work>
+  [[nodiscard]] static Status in_waves(IndexRange segments, std::size_t at_once, const Work& work) {
+    for (std::size_t first = segments.first; first < segments.end(); first += at_once)
+      if (Status status = work(IndexRange{first, std::min(at_once, segments.end() - first)}); !status) return status;
+    return Success{};
+  }
+  template <class Keys>
+  [[nodiscard]] static Status hold(MotionStream& stream, const Keys& keys, IndexRange some) {
+    Motion::SegmentKeys held = keys(some.first);
+    for (std::size_t s = some.first + 1; s < some.end(); ++s)
+      held = {std::min(held.from, keys(s).from), std::max(held.to, keys(s).to)};
+    return stream.hold(held.from, held.to);
+  }
+
+  std::size_t total_ = 0, steps_ = 1, done_ = 0;
+};
+
+/// A run that has a result for each segment. Found has a member `segment`, its number.
+template <class Found>
+struct RecordedRun : SegmentRun {
+  /// The results of the first segments of the share, where an earlier run has them.
+  std::vector<Found> known = {};
+  /// Told of each segment that was computed, in order, so that a later run can have it among `known`; may be empty. An
+  /// error that it returns ends the run.
+  std::function<Status(const Found&)> keep = {};
+  /// The result of each segment of a shard, those that were known among them.
+  std::vector<Found> found = {};
+
+  /// Whether only sums are kept of segments, so that nothing may be asked that needs them all at once.
+  [[nodiscard]] bool is_divided() const noexcept { return shard || keep || !known.empty(); }
+
+  /// Begins as SegmentRun does, with add(result) for each segment that is known. Errors: kUsage unless these are the
+  /// first segments of the share, and fits(result) is true of each; `task` names what they are of then, "audit".
+  template <class Fits, class Add>
+  [[nodiscard]] Status begin(std::size_t segments, std::size_t steps, const char* task, const Fits& fits,
+                             const Add& add) {
+    SegmentRun::begin(segments, steps);
+    const IndexRange own = share();
+    bool are_first = known.size() <= own.count;
+    for (std::size_t i = 0; i < known.size(); ++i)
+      are_first = are_first && known[i].segment == own.first + i && fits(known[i]);
+    if (!are_first)
+      return Error{ErrorCode::kUsage, "",
+                   std::string("the segments that are known already are those of another ") + task};
+    for (const Found& one : known) {
+      add(one);
+      if (shard) found.push_back(one);
+    }
+    skip(known.size());
+    return Success{};
+  }
+  /// The segments of the share that are not known.
+  [[nodiscard]] IndexRange rest() const noexcept {
+    const IndexRange own = share();
+    return {own.first + known.size(), own.count - known.size()};
+  }
+
+  /// Takes the result of the next segment, and calls add(result). Errors: those of keep.
+  template <class Add>
+  [[nodiscard]] Status take(Found result, const Add& add) {
+    if (Status kept = keep ? keep(result) : Success{}; !kept) return kept;
+    add(std::as_const(result));
+    if (shard) found.push_back(std::move(result));
+    return Success{};
+  }
+};
+
+/// What one shard found: the sums over its segments, and each of them.
+template <class Whole, class Found>
+struct ShardOf {
+  Whole whole;
+  std::vector<Found> found;
+  TaskChecksums checksums;
+};
+
+/// Puts the segments of shards, which may come in any order, in the order of the motion; it has total(whole) segments.
+/// Errors: kUsage unless all are of one task, which are_of_one(whole, whole) decides and `tasks` names, and each
+/// segment is in exactly one of them.
+template <class Whole, class Found, class AreOfOne>
+[[nodiscard]] Result<std::vector<Found>> join(std::vector<ShardOf<Whole, Found>>& shards, std::size_t total,
+                                              const AreOfOne& are_of_one, const char* tasks) {
+  KnownParts parts;
+  std::vector<Found> all;
+  for (std::size_t i = 0; i < shards.size(); ++i) {
+    ShardOf<Whole, Found>& shard = shards[i];
+    if (const Status known = parts.add("shard " + std::to_string(i), shard.checksums); !known) return known.error();
+    if (!are_of_one(shard.whole, shards.front().whole))
+      return Error{ErrorCode::kUsage, "", std::string("these are shards of two different ") + tasks};
+    std::move(shard.found.begin(), shard.found.end(), std::back_inserter(all));
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Found& a, const Found& b) { return a.segment < b.segment; });
+  for (std::size_t s = 0; s < std::max(total, all.size()); ++s) {
+    if (s < all.size() && all[s].segment == s) continue;
+    const bool is_twice = s < all.size() && all[s].segment < s;
+    return Error{ErrorCode::kUsage, "",
+                 "segment " + std::to_string(is_twice ? all[s].segment : s) +
+                     (is_twice ? " is in two of the shards" : " is in none of the shards")};
+  }
+  return all;
+}
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_SEGMENTS_SEGMENT_RUN_H_
