@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/chronormal.h"
+#include "chronormal/chronormal_io.h"
 
 namespace {
 

@@ -18,7 +18,7 @@ endif()
 
 file(GLOB python_sources CONFIGURE_DEPENDS python/src/*.cpp)
 pybind11_add_module(_chronormal NO_EXTRAS ${python_sources})
-target_include_directories(_chronormal PRIVATE python/src)
+target_include_directories(_chronormal PRIVATE python/src src)  # src: the JSON of the program
 target_compile_definitions(_chronormal PRIVATE CHRONORMAL_VERSION="${PROJECT_VERSION}")
 target_link_libraries(_chronormal PRIVATE chronormal_io chronormal_product_flags)
 target_link_options(_chronormal PRIVATE -Wl,--exclude-libs,ALL)

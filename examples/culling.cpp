@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/chronormal.h"
+#include "chronormal/chronormal_io.h"
 
 namespace {
 

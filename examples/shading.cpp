@@ -17,7 +17,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "chronormal/chronormal.h"
+#include "chronormal/chronormal_io.h"
 
 namespace {
 

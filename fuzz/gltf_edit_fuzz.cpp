@@ -5,7 +5,7 @@
 //
 // What is no glTF file by itself becomes the extras of one. An edit is refused, or gives JSON in which every token
 // beside the pointers that it names is the old one, and the value of the last change is where it was put.
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Fuzz target of the reader of poses: whatever the bytes are, the result is an error with a place, or poses with finite
 // weights.
-#include "chronormal/io/poses_file.h"
+#include "chronormal/io/input.h"
 
 #include <cmath>
 

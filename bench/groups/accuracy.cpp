@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/recompute.h"
 #include "groups/groups.h"
@@ -19,7 +19,7 @@ constexpr std::size_t kSamples = 20, kQuickSamples = 3;  // steps of t
 constexpr std::size_t kGridFaces = 20000;
 constexpr float kFar = 1000;  // how far from the origin, in radii of the ring
 
-// The bounds of normals/encodings.h.
+// The bounds of normals/normal_curves.h.
 constexpr double kOctahedralBound = 7e-5, kRgb10A2Bound = 1.7e-3;
 
 // Unit normals of all elements, sample after sample.

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "chronormal/normals/blend_normals.h"
-#include "chronormal/normals/float_recompute.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/recompute.h"
 #include "groups/groups.h"

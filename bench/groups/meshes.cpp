@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
 #include "chronormal/io/input.h"
 #include "groups/groups.h"
 #include "paths/rivals.h"

@@ -9,7 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/compare.h"
 #include "groups/groups.h"

@@ -10,8 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "chronormal/analysis/collapse.h"
-#include "chronormal/analysis/facing.h"
+#include "chronormal/analysis/signs.h"
 #include "chronormal/normals/normal_curves.h"
 #include "groups/groups.h"
 

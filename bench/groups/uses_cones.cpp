@@ -10,9 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "chronormal/analysis/cluster_bounds.h"
 #include "chronormal/analysis/cones.h"
-#include "chronormal/analysis/shutter.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "groups/groups.h"

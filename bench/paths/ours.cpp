@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "chronormal/normals/float_recompute.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/recompute.h"
 #include "memory/bare_loop.h"
@@ -13,7 +12,7 @@
 namespace chronormal::bench {
 namespace {
 
-constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;  // of normals/encodings.h
+constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;  // of normals/normal_curves.h
 constexpr std::size_t kManyTimesBytes = std::size_t{3} << 30;      // of results; more are not asked for
 
 Vector to_vector(const Vec3f& v) { return {double{v.x}, double{v.y}, double{v.z}}; }

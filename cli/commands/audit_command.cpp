@@ -6,11 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
-#include "chronormal/io/poses_file.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/json.h"
 #include "chronormal/workflow/viewers.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
@@ -23,6 +22,7 @@
 #include "cli/terminal/text.h"
 #include "core/charconv.h"
 #include "workflow/audit/watched_audit.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::cli {
 namespace {

@@ -10,8 +10,8 @@
 #include <malloc.h>
 #endif
 
+#include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
-#include "chronormal/io/poses_file.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
@@ -20,6 +20,7 @@
 #include "cli/terminal/print.h"
 #include "cli/terminal/process.h"
 #include "core/text.h"
+#include "io/bytes/expansion.h"
 
 namespace chronormal::cli {
 namespace {
@@ -285,7 +286,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
     how.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
   }
   how.progress = progress.callback("baking");
-  how.expansion = input.expansion();
+  const Expansion allowed = input.expansion();
+  how.expansion = &allowed;
   Result<SequenceBake> baked = bake_sequence(stream, how, output, options.common.force);
   progress.clear();
   if (!baked) return baked.error();

@@ -3,10 +3,9 @@
 #include <memory>
 #include <optional>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/compare.h"
-#include "chronormal/workflow/json.h"
 #include "cli/commands/compare_blend.h"
 #include "cli/commands/compare_truth.h"
 #include "cli/options/command.h"
@@ -18,6 +17,7 @@
 #include "cli/terminal/print.h"
 #include "cli/terminal/text.h"
 #include "workflow/compare/compared.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::cli {
 namespace {

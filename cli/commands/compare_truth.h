@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "chronormal/workflow/json.h"
 #include "cli/options/command.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::cli {
 

@@ -2,12 +2,14 @@
 #include <memory>
 #include <utility>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
 #include "cli/options/command.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "core/text.h"
+#include "io/bytes/expansion.h"
+#include "io/input/write_motion.h"
 
 namespace chronormal::cli {
 namespace {

@@ -3,11 +3,11 @@
 #include <utility>
 
 #include "chronormal/io/output.h"
-#include "chronormal/workflow/json.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
 #include "cli/reports/inspect_report.h"
 #include "cli/terminal/print.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::cli {
 namespace {

@@ -8,7 +8,6 @@
 #include <variant>
 
 #include "chronormal/io/output.h"
-#include "chronormal/workflow/json.h"
 #include "cli/commands/query_question.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
@@ -16,6 +15,8 @@
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/text.h"
+#include "io/bytes/expansion.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::cli {
 namespace {
@@ -88,7 +89,8 @@ Result<int> run(const QueryArguments& options) {
   const Result<const Motion*> motion = input.value().motion();
   if (!motion) return motion.error();
   QuerySpan span = options.span;
-  span.expansion = input.value().expansion();
+  const Expansion allowed = input.value().expansion();
+  span.expansion = &allowed;
   const std::string& name = input.value().name();
   const auto named = [&name](Error error) {
     if (error.code == ErrorCode::kInvalidInput) error.place = name + ", " + error.place;
@@ -98,7 +100,7 @@ Result<int> run(const QueryArguments& options) {
   progress.clear();
   if (!answer) return named(answer.error());
   const std::uint64_t bytes = options.json ? json_bytes_of_query(answer.value()) : bytes_of_query(answer.value());
-  if (const Status status = span.expansion.check(bytes, "the answer"); !status) return named(status.error());
+  if (const Status status = allowed.check(bytes, "the answer"); !status) return named(status.error());
   const Status written =
       is_file ? write_query(answer.value(), output, options.common.force)
               : print_to(output, options.json ? query_json(name, answer.value()) : query_text(name, answer.value()),

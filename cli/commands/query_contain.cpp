@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "chronormal/io/points_file.h"
+#include "chronormal/io/input.h"
 #include "cli/commands/query_question.h"
 #include "cli/options/command.h"
 

@@ -7,7 +7,6 @@
 
 #include "chronormal/io/output.h"
 #include "chronormal/normals/weighting.h"
-#include "chronormal/workflow/report.h"
 #include "chronormal/workflow/viewers.h"
 #include "cli/commands/built_in_page.h"
 #include "cli/options/command.h"
@@ -16,6 +15,7 @@
 #include "cli/terminal/print.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/file.h"
+#include "workflow/report/report.h"
 
 namespace chronormal::cli {
 namespace {

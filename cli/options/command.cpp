@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
 #include "cli/ranks/ranks.h"
 #include "cli/terminal/format.h"

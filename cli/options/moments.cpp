@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "chronormal/io/target_names.h"
+#include "chronormal/io/input.h"
 #include "cli/options/command.h"
 #include "cli/terminal/format.h"
 #include "core/charconv.h"

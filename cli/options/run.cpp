@@ -15,6 +15,7 @@
 #include "cli/terminal/table.h"
 #include "cli/terminal/version.h"
 #include "core/charconv.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/file.h"
 #include "io/input/input_identity.h"
 

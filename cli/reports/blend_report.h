@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "chronormal/workflow/json.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::cli {
 

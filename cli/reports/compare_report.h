@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/workflow/json.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::cli {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "chronormal/workflow/report.h"
+#include "workflow/report/report.h"
 
 namespace chronormal::cli {
 

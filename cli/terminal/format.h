@@ -2,7 +2,7 @@
 ///
 /// What is computed may be infinite or no number at all, where a file has weights of 3e38 or no pair was judged. No
 /// reader of a table, of CSV or of a message has a use for "nan" or "-nan": such a number is written as "-". (JSON has
-/// no word for it either, and workflow/json.h writes null.) fmt::format would print it, so nothing else in cli/ calls
+/// no word for it either, and workflow/json/json.h writes null.) fmt::format would print it, so nothing else in cli/ calls
 /// that.
 #ifndef CLI_TERMINAL_FORMAT_H_
 #define CLI_TERMINAL_FORMAT_H_

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "computation.h"
+#include "io/bytes/expansion.h"
 
 namespace chronormal::python {
 namespace {
@@ -150,7 +151,8 @@ std::string bake_sequence_of(Input& input, BakeOptions options, std::string& jso
       const std::vector<float>& first = stored.value()->of_keyframes.front();
       options.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
     }
-    options.expansion = input.expansion();
+    const Expansion allowed = input.expansion();
+    options.expansion = &allowed;
     return bake_sequence(*motion.value(), options, glb);
   });
   if (input.cut_path().path.is_curved()) baked.cut = input.cut_path();

@@ -13,8 +13,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "chronormal/core/interruption.h"
-
 #ifndef __EMSCRIPTEN__
 #include <atomic>
 #include <cfenv>

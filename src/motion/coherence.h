@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 
 namespace chronormal::inline internal {
 

@@ -1,6 +1,6 @@
 // Holds a window of keyframes. Keyframes that leave the window give their memory to those that enter it, so that a pass
 // over a motion allocates memory once, for the window and for the keyframe that is read ahead.
-#include "chronormal/motion/motion_stream.h"
+#include "chronormal/motion/motion.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 
 #include <limits>
 #include <string>

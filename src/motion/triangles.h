@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 
 namespace chronormal::inline internal {
 

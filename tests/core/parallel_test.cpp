@@ -1,7 +1,5 @@
 #include "chronormal/core/parallel.h"
 
-#include "chronormal/core/interruption.h"
-
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>

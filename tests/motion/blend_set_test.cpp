@@ -1,4 +1,4 @@
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // MotionStream: what is held, what is read and how often, and what becomes of errors of the reader.
-#include "chronormal/motion/motion_stream.h"
+#include "chronormal/motion/motion.h"
 
 #include <gtest/gtest.h>
 

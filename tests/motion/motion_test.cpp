@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/topology.h"
 
 namespace chronormal::motion_test {
 namespace {

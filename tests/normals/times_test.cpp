@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "chronormal/core/parallel.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/blend_normals.h"
 #include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_curves.h"

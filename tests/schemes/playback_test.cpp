@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/schemes/scheme.h"
 #include "schemes/curve_scheme.h"
 #include "schemes/kernels/curve_kernels.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"

@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/topology.h"
 
 namespace chronormal::fixtures {
 

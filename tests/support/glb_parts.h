@@ -10,7 +10,7 @@
 #include <cstring>
 #include <string>
 
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 
 namespace chronormal::test {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/motion/motion_stream.h"
+#include "chronormal/motion/motion.h"
 
 namespace chronormal::test {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "chronormal/chronormal.h"
+#include "chronormal/chronormal_io.h"
 #include "support/numbers.h"
 
 namespace chronormal::paper {

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/chronormal.h"
+#include "chronormal/chronormal_io.h"
 #include "made_up_rig.h"
 #include "support/other_files.h"
 #include "support/page.h"

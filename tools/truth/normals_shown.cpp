@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/chronormal.h"
+#include "chronormal/chronormal_io.h"
 #include "chronormal/io/input.h"
 
 namespace {

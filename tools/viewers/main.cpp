@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "chronormal/chronormal.h"
+#include "chronormal/chronormal_io.h"
 #include "support/other_files.h"
 #include "support/page.h"
 

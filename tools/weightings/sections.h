@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "chronormal/chronormal.h"
+#include "chronormal/chronormal_io.h"
 #include "support/numbers.h"
 #include "support/page.h"
 

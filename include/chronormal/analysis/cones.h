@@ -25,6 +25,7 @@
 #ifndef CHRONORMAL_ANALYSIS_CONES_H_
 #define CHRONORMAL_ANALYSIS_CONES_H_
 
+#include <cstdint>
 #include <span>
 
 #include "chronormal/core/vec3.h"
@@ -65,6 +66,79 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
 /// from several segments. Empty ones do not count; the cone of none is empty. It is near the smallest one (a few
 /// percent wider), and each level of a hierarchy adds about 1e-7 rad of rounding. Cost: 11 passes over the cones.
 [[nodiscard]] NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept;
+
+// Bounds of clusters of faces of a deforming mesh, in the layout of meshoptimizer: made for one interval of time, and
+// right at every instant of it.
+//
+// Engines cull meshlets of which no face can be seen from the front. meshopt_computeMeshletBounds() makes what that
+// test needs of a mesh that stands still. For a mesh that moves, the sphere must hold every vertex on its whole way,
+// the cone every normal on its, and the apex must stay behind the plane of every face: n(t).(p(t) - apex) >= 0, a
+// cubic in t whose Bernstein coefficients decide it. These are the tests of meshoptimizer.h, and none of them rejects
+// a cluster of which one face is front-facing from the camera at any instant of [t0, t1]:
+//
+//     dot(view, cone_axis) >= cone_cutoff                                                      orthographic
+//     dot(normalize(cone_apex - camera), cone_axis) >= cone_cutoff                             perspective
+//     dot(center - camera, cone_axis) >= cone_cutoff * length(center - camera) + radius        perspective, no apex
+//
+// They may be computed in float32: cone_cutoff has 2^-20 for that. So do the forms of 8 bits, decoded as x / 127.
+// A cluster that can always be seen has the axis 0 and the cutoff 1 (127), and one that has no normal at any time, and
+// so nothing to be seen, the axis 0 and the cutoff 0.
+//
+// Proof      docs/theory.md, section 20. For vertices on straight lines, p(t) = (1-t) p0 + t p1, without rounding; a
+//            viewer that moves vertices in float32 shows faces that are edge on from either side, as it does anyhow.
+// Threads    pure, on the thread that calls.
+// Source     meshoptimizer 0.18, src/clusterizer.cpp; Shirman, Abi-Ezzi: The cone of normals technique (1993).
+
+/// The members of meshopt_Bounds, in their order.
+struct ClusterBounds {
+  float center[3] = {};  ///< a sphere around all vertices on their way
+  float radius = 0;
+  float cone_apex[3] = {};  ///< a point behind all faces at any instant
+  float cone_axis[3] = {};
+  float cone_cutoff = 0;  ///< the sine of the half-angle, and 2^-20
+  std::int8_t cone_axis_s8[3] = {};
+  std::int8_t cone_cutoff_s8 = 0;
+};
+
+/// Returns the bounds of some faces over [t0, t1]. Where their normals fill more than 84 degrees around any axis, the
+/// cluster can always be seen. Cost: some 0.3 microseconds a face; allocates memory.
+/// faces must lie inside the topology; 0 <= t0 <= t1 <= 1
+[[nodiscard]] ClusterBounds cluster_bounds(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
+                                           double t1);
+
+// Normals over an open shutter: the mean of n(t), and of the unit normal n(t) / |n(t)|, over an interval of time.
+//
+// A renderer with motion blur sees every instant of [t0, t1] and shows their mean. What it should store as the normal
+// of a pixel, or shade with where it shades once, is the mean of the unit normal, and not the normal in the middle or
+// half way between the ends:
+//
+//     mean        1 / (t1 - t0) integral of n(t) dt             a third of the three control normals of [t0, t1], exactly
+//     mean_unit   1 / (t1 - t0) integral of n(t) / |n(t)| dt    an elliptic integral; here to a bound that is proven
+//
+// The first weighs instants by the area of the face at each (half of it is the mean vector area), the second does not.
+// The length of mean_unit says how far normals spread: 1 where they are all the same, 0 where they cancel.
+//
+// Proof      Gauss's rule with 8 nodes on pieces in which |n(z)|^2 has no zero for complex z nearby, so that the unit
+//            normal is analytic there and the error is known (docs/theory.md, section 21). Around an instant at which
+//            n(t) = 0, pieces are halved until they are 2^-28 of the interval, and count as error.
+// Threads    pure, on the thread that calls: no allocation, no throw, the same bits everywhere.
+
+struct ShutterNormal {
+  Vec3d mean;       ///< of n(t); for triangles twice the mean vector area
+  Vec3d mean_unit;  ///< of n(t) / |n(t)|; zero where n is zero all the time
+  double error =
+      0;  ///< the exact mean of the unit normal is within this of mean_unit; some 1e-7 where nothing collapses
+};
+
+/// Returns the means over [t0, t1]. Control normals are taken to be within 2^-26 of their length, and that is in the
+/// error. Cost: about 0.2 microseconds where normals turn little, more where n(t) comes near zero.
+/// 0 <= t0 <= t1 <= 1; where both are the same, the means are the normals at that instant
+[[nodiscard]] ShutterNormal shutter_normal(const ControlNormals& normals, double t0, double t1) noexcept;
+
+/// Writes the means of a range of faces over [t0, t1], from positions: where control normals of the interval cancel,
+/// from integers. result must have faces.count elements; faces must lie inside the topology; 0 <= t0 <= t1 <= 1
+void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, double t1,
+                          std::span<ShutterNormal> result) noexcept;
 
 }  // namespace chronormal
 

@@ -19,7 +19,7 @@
 
 #include <cstddef>
 
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {

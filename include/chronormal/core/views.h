@@ -12,12 +12,18 @@
 
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <type_traits>
 
 #include "chronormal/core/vec3.h"
 
 namespace chronormal {
+
+/// So many bytes, or all that the machine can address where that is less: its addresses may have 32 bits.
+[[nodiscard]] constexpr std::size_t addressable(std::uint64_t bytes) noexcept {
+  return bytes < static_cast<std::size_t>(-1) ? static_cast<std::size_t>(bytes) : static_cast<std::size_t>(-1);
+}
 
 /// Half-open range of element indices: first, first + 1, ..., first + count - 1.
 struct IndexRange {

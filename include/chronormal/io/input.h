@@ -10,7 +10,7 @@
 ///     face.glb                      a glTF document: its morph targets, or one of its animations
 ///     base, and any of              a set of morph targets: meshes with the faces of the base, targets of MakeHuman,
 ///       smile.obj lift.target t/      patterns, folders with all folders in them; the base itself is passed over
-///     sample twist                  a built-in morph (io/builtin_morphs.h)
+///     sample twist                  a built-in morph (io/input.h)
 ///     -                             one file on the standard input
 ///
 /// A file is opened once and looked at once: its extension says what it is, or else its content, so that pipes are as
@@ -29,16 +29,19 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
 #include "chronormal/motion/paths.h"
 
 namespace chronormal {
+
+inline namespace internal {
+class Expansion;  // how much a file may make us hold or write
+}
 
 /// Which of the normals and smoothing groups are kept that meshes store beside their positions.
 enum class KeepShading {
@@ -57,8 +60,10 @@ struct InputOptions {
   std::string animation = {};        ///< of a glTF file, by name or index; empty: its morph targets
   bool world = false;                ///< vertices of a glTF file are where its nodes put them
   bool allow_external = false;       ///< a glTF file may name files outside its folder
-  std::size_t max_expansion = Expansion::kUsual;  ///< io/expansion.h
-  bool allow_mesh = false;                        ///< a mesh that does not move is an input, too
+  /// A file may make us hold so many times its bytes, or 32 MiB where that is more. What a user asks for is no matter of
+  /// this.
+  std::size_t max_expansion = 100;
+  bool allow_mesh = false;  ///< a mesh that does not move is an input, too
   KeepShading shading = KeepShading::kNone;
   /// The velocities that mesh files of a sequence store are kept, and then all of them are read at once. Formats that
   /// hold a whole motion always keep theirs.
@@ -198,6 +203,92 @@ class Input {
 /// faces that change between them, folders without meshes or with several formats; kUsage for inputs that do not go
 /// together.
 [[nodiscard]] Result<Input> open_input(const InputOptions& options);
+
+// Morphs that need no file: to try things on, and to publish figures that anyone can measure again.
+
+struct BuiltinMorph {
+  std::string_view name;
+  std::string_view summary;  ///< one line
+};
+
+/// The morphs there are that are sequences, from mild to dramatic.
+[[nodiscard]] std::span<const BuiltinMorph> builtin_morphs() noexcept;
+
+/// Blend shapes, whose keyframes are targets over a base.
+[[nodiscard]] std::span<const BuiltinMorph> builtin_blend_shapes() noexcept;
+
+/// Makes one of either by name: the same positions on every call. Errors: kUsage with the names that there are.
+[[nodiscard]] Result<Motion> make_builtin_morph(std::string_view name);
+
+// The morph targets of an input by their names.
+//
+//     base.obj smile.obj lift.target     0 smile, 1 lift: the names of the files
+//     face.glb                           extras.targetNames of its meshes; target k of a motion is target k of every
+//                                        mesh, so that it has as many names as meshes call it differently
+//
+// Threads    pure.
+
+/// The names of each target, in the order of the targets. A target without a name has none here.
+using TargetNames = std::vector<std::vector<std::string>>;
+
+/// The names of the targets that the motion of an input has; empty where it is no set of targets. Errors: of
+/// Input::motion()
+[[nodiscard]] Result<TargetNames> target_names(Input& input);
+
+/// The target of a name, or else of a number in digits, counted from 0. Errors: kUsage for a name that no target has,
+/// with the nearest one, and for a name that several have, with their numbers.
+[[nodiscard]] Result<std::size_t> find_target(const TargetNames& names, const std::string& name_or_number);
+
+/// "3 (smile)", or "3" for a target without a name: what tables and messages call target 3.
+[[nodiscard]] std::string target_label(const TargetNames& names, std::size_t target);
+
+// Points that rest or move on straight lines, from a NumPy array: a .npy file of float32 or float64.
+//
+//     (n, 3)      each point rests
+//     (n, 2, 3)   each point moves from the first position to the second
+//
+// Errors     kInvalidInput with the file, and the element, as the place ("points.npy, [17, 0, 2]"): another shape or
+//            type, coordinates that are not finite or too large for float32; kFailed where the file cannot be read.
+// Threads    pure
+
+/// The ends of n straight lines, (n, 3) each; the same where points rest.
+struct PointPaths {
+  std::vector<double> from, to;
+
+  [[nodiscard]] std::size_t count() const noexcept { return from.size() / 3; }
+};
+
+[[nodiscard]] Result<PointPaths> read_points_file(const std::string& path);
+
+/// The same of its bytes; name is for messages.
+[[nodiscard]] Result<PointPaths> parse_points(std::string_view bytes, const std::string& name);
+
+// Poses of a rig from a JSON file: the weights that a program or a person gives its morph targets.
+//
+//     [{"jawOpen": 0.7, "mouthSmile_L": 1},     weights by the names of targets; all others are 0
+//      [0, 0.7, 0, 1]]                          or one for each target of a mesh, in its order
+//
+// Errors     kInvalidInput with the file and a JSON pointer as the place ("poses.json, /1/jawOpen"), or a byte for
+//            what is no JSON; kFailed where the file cannot be read.
+// Threads    pure
+
+/// One pose: weights by name, or in the order of the targets; one of the two is empty.
+struct RigPose {
+  struct Named {
+    std::string target;
+    double weight = 0;
+    std::string place;  ///< for messages: "poses.json, /1/jawOpen"
+  };
+  std::vector<Named> named;
+  std::vector<double> in_order;
+  std::string place;
+};
+
+/// Reads a file of poses. One at least, each with finite weights.
+[[nodiscard]] Result<std::vector<RigPose>> read_poses_file(const std::string& path);
+
+/// The same of its text; name is for messages.
+[[nodiscard]] Result<std::vector<RigPose>> parse_poses(std::string_view text, const std::string& name);
 
 }  // namespace chronormal
 

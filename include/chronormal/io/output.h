@@ -18,11 +18,8 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
 
 namespace chronormal {
-
-class Expansion;  // io/expansion.h
 
 /// Refuses now what write_output() would refuse later: a folder, or an existing file without force. Asks before a long
 /// computation, and before the first of many files.
@@ -56,17 +53,13 @@ void remove_temporaries() noexcept;
 ///     .obj, .ply    every keyframe into a file of its own, of numbered_names(); .ply is binary, little endian
 ///
 /// Precondition: every keyframe has 3 x vertex_count coordinates, or the format is one of the first three.
-/// expansion is that of the file that the motion came from, if any: a file for each keyframe repeats all faces.
 /// Targets in a .glb get base normals, to which vertices at one point throughout add alike unless `weld` is false.
 /// A stream is written as its keyframes are read; errors of the stream are returned, too.
-/// Errors: those of expansion.check(); kUsage with path as the place for another extension, a pattern of another form,
+/// Errors: kUsage with path as the place for another extension, a pattern of another form,
 /// and a motion that the format does not hold: targets in a point cache, faces of different numbers of corners in .npz.
 /// Else those of write_output(); where a file exists and force is not given, nothing is written.
-[[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force);
-[[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force,
-                                  const Expansion& expansion);
-[[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion,
-                                  bool weld = true);
+[[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force, bool weld = true);
+[[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, bool weld = true);
 
 }  // namespace chronormal
 

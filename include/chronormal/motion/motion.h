@@ -17,18 +17,69 @@
 #define CHRONORMAL_MOTION_MOTION_H_
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
-#include "chronormal/motion/topology.h"
 
 namespace chronormal {
+
+// Which vertices make which face: the part of a mesh that does not move.
+//
+// Faces are polygons of three or more corners, counter-clockwise seen from the side to which the normal points. Two
+// triangles and a quad are kept as
+//
+//     corners   0 1 2   2 1 3   4 5 6 7        vertex of each corner, face after face
+//     offsets   0       3       6         10   where each face begins, and the end
+//
+// A mesh of triangles alone keeps no offsets.
+
+class Topology {
+ public:
+  Topology() = default;
+
+  /// Builds polygons from corners and offsets (see above) over vertices 0 .. vertex_count - 1.
+  /// Errors: a face of fewer than 3 corners, a corner that names no vertex, offsets that do not ascend from 0 to the
+  /// number of corners; the place is "face F" or "face F, corner C". O(corners).
+  [[nodiscard]] static Result<Topology> polygons(std::size_t vertex_count, std::vector<std::uint32_t> offsets,
+                                                 std::vector<std::uint32_t> corners);
+
+  /// Builds triangles from three corners each. Errors and cost as for polygons().
+  [[nodiscard]] static Result<Topology> triangles(std::size_t vertex_count, std::vector<std::uint32_t> corners);
+
+  [[nodiscard]] std::size_t vertex_count() const noexcept { return vertex_count_; }
+  [[nodiscard]] std::size_t corner_count() const noexcept { return corners_.size(); }
+  [[nodiscard]] std::size_t face_count() const noexcept {
+    return offsets_.empty() ? corners_.size() / 3 : offsets_.size() - 1;
+  }
+  /// Whether every face is a triangle.
+  [[nodiscard]] bool all_triangles() const noexcept { return offsets_.empty(); }
+
+  /// The vertices of one face, in order.
+  [[nodiscard]] std::span<const std::uint32_t> face(std::size_t f) const noexcept {
+    assert(f < face_count());
+    if (offsets_.empty()) return {corners_.data() + 3 * f, 3};
+    return {corners_.data() + offsets_[f], corners_.data() + offsets_[f + 1]};
+  }
+
+  [[nodiscard]] std::span<const std::uint32_t> corners() const noexcept { return corners_; }
+
+  friend bool operator==(const Topology&, const Topology&) = default;
+
+ private:
+  std::size_t vertex_count_ = 0;
+  std::vector<std::uint32_t> offsets_;  // empty where all faces are triangles
+  std::vector<std::uint32_t> corners_;
+};
 
 /// One straight piece of a motion, as a view: what control normals and schemes are prepared from.
 /// The Motion that it comes from must outlive it.
@@ -138,6 +189,114 @@ struct Instant {
 /// O(segments). Errors: kUsage for a time at which there is no motion, with the range; for targets, and for a mesh that
 /// stands still.
 [[nodiscard]] Result<Instant> find_instant(const Motion& motion, double time);
+
+// A motion that is larger than memory: its keyframes are read when they are needed, and released after that.
+//
+//     MotionStream stream = ...;                      // from Input::stream() in io/input.h, or from a whole motion
+//     for (std::size_t s = 0; s < stream.motion().segments.size(); ++s) {
+//       if (const Status status = stream.hold_segment(s); !status) return status.error();
+//       const Segment segment = stream.motion().segment(s);      // good until the next hold
+//     }
+//
+// motion() is the whole motion except for the positions of keyframes that are not held: faces, segments, times and
+// names are always there. So a function that takes a Motion takes the motion of a stream too, once the stream holds
+// what the function looks at. Where keyframes are held one after the other, a thread of its own reads the next one
+// ahead.
+//
+// Memory     the keyframes that are held, and one that is read ahead. Keyframes that take no more than `kept` bytes
+//            together are read once and stay. A motion that was whole before takes nothing more.
+// Threads    one stream belongs to one thread at a time; what is held may be read by many.
+
+class MotionStream {
+ public:
+  /// Writes the 3 x vertex_count coordinates of a keyframe of the motion, all of them finite. It is called from one
+  /// thread at a time, not always from the same.
+  using Reader = std::function<Status(const Motion& motion, std::size_t keyframe, std::span<float> positions)>;
+
+  /// Is told of the positions of a keyframe, as the reader has written them.
+  using Watcher = std::function<Status(std::size_t keyframe, std::span<const float> positions)>;
+
+  static constexpr std::size_t kUsuallyKept = std::size_t{64} << 20;
+
+  /// A motion that is in memory and stays there; it must outlive the stream, and it may stand still.
+  explicit MotionStream(const Motion& whole);
+
+  /// A motion whose keyframes have no positions yet; the first one may have some. Everything else of the outline must
+  /// be valid (motion/motion.h).
+  MotionStream(Motion outline, Reader read, std::size_t kept = kUsuallyKept);
+
+  MotionStream(MotionStream&& other) noexcept;
+  MotionStream& operator=(MotionStream&& other) noexcept;
+  ~MotionStream();
+
+  [[nodiscard]] const Motion& motion() const noexcept;
+
+  /// Makes the positions of keyframes first to last be there, until the next hold. Errors: those of the reader.
+  /// first <= last, and last must be a keyframe
+  [[nodiscard]] Status hold(std::size_t first, std::size_t last);
+  /// The same of both ends of segments first to last.
+  [[nodiscard]] Status hold_segments(std::size_t first, std::size_t last);
+  [[nodiscard]] Status hold_segment(std::size_t segment) { return hold_segments(segment, segment); }
+  /// The same of all keyframes: the motion is in memory then.
+  [[nodiscard]] Status hold_all();
+
+  /// Tells the watcher at once of every keyframe that is there, and from now on of each that is read, before anybody
+  /// else sees it and by the thread that reads it. There is one watcher at a time; an empty one ends this. Errors:
+  /// those of the watcher, here and for each hold.
+  [[nodiscard]] Status watch(Watcher watcher);
+
+  /// Whether keyframes stay where they are once they were held: to hold all is no more than to read them.
+  [[nodiscard]] bool keeps_all() const noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Blend shapes: a base and targets that move some of its vertices, with any weights at once.
+//
+//     p(w) = base + sum_i w_i d_i                                            (section 14 of docs/theory.md)
+//
+// A target lists the vertices that it moves, ascending, and how: target 0 lifts vertex 2, target 1 shifts 0 and 2:
+//
+//     targets[0]   vertices 2      deltas  0 1 0
+//     targets[1]   vertices 0 2    deltas  1 0 0   1 0 0
+//
+// Shapes     V = vertices, K = targets; base is (V, 3), deltas (n, 3) for n moved vertices, float32.
+// Units      positions and deltas: any length; weights: any finite number, often in [0, 1].
+
+struct BlendTarget {
+  std::string name;                     ///< for messages; may be empty
+  std::vector<std::uint32_t> vertices;  ///< ascending
+  std::vector<float> deltas;            ///< (n, 3)
+
+  /// Keeps the vertices of dense deltas, (V, 3), that are not (0, 0, 0).
+  [[nodiscard]] static BlendTarget from_dense(std::span<const float> deltas, std::string name = {});
+};
+
+struct BlendSet {
+  Topology topology;
+  std::vector<float> base;  ///< (V, 3)
+  std::vector<BlendTarget> targets;
+};
+
+/// The blend shapes of a star of segments (targets in io/input.h): its base, and a target for each segment
+/// from keyframe 0, named as the keyframe at its end. Deltas are differences of positions, rounded to float32. The
+/// motion must be valid. Errors, with the place "target K": kUsage for a segment that does not begin at keyframe 0,
+/// kInvalidInput for a delta beyond the range of float32.
+[[nodiscard]] Result<BlendSet> blend_set_of(const Motion& star);
+
+/// Checks what the rest of the library relies on: as many positions as the topology has vertices, all finite, and in
+/// each target vertices that ascend and exist, with one finite delta each.
+/// Errors: kInvalidInput with the place "base, vertex V" or "target K, entry N".
+[[nodiscard]] Status validate(const BlendSet& set);
+
+/// The same of one target that is to become number k of a set over this topology.
+[[nodiscard]] Status validate(const BlendTarget& target, const Topology& topology, std::size_t k);
+
+/// Writes the positions at some weights, (V, 3) in double, without a rounding to float32 in between.
+/// weights must have one for each target, result 3 V; targets of weight 0 cost nothing
+void blend_positions(const BlendSet& set, std::span<const double> weights, std::span<double> result) noexcept;
 
 }  // namespace chronormal
 

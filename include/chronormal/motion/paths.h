@@ -33,7 +33,6 @@
 #include "chronormal/core/result.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
 
 namespace chronormal {
 

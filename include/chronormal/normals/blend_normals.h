@@ -40,7 +40,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {
@@ -106,7 +106,7 @@ struct BlendEvaluation : BlendChoice {
 
 class BlendNormals {
  public:
-  /// Of the faces of a set, or of the elements of groups. The set must be valid (motion/blend_set.h), the groups must be
+  /// Of the faces of a set, or of the elements of groups. The set must be valid (motion/motion.h), the groups must be
   /// of its topology and keep their corners. Throws std::bad_alloc only.
   [[nodiscard]] static BlendNormals of_faces(BlendSet set, const BlendNormalsOptions& options = {});
   [[nodiscard]] static BlendNormals of_groups(BlendSet set, NormalGroups groups,

@@ -45,13 +45,10 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
-#include "chronormal/motion/blend_set.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/topology.h"
 #include "chronormal/normals/blend_normals.h"
-#include "chronormal/normals/elements.h"
-#include "chronormal/normals/encodings.h"
 #include "chronormal/normals/normal_curves.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 
 namespace chronormal {

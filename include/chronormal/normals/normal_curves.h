@@ -32,18 +32,48 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "chronormal/core/parallel.h"
+#include "chronormal/core/vec3.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
-#include "chronormal/normals/encodings.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {
+
+// Unit normals in four bytes, as vertex buffers of renderers hold them.
+//
+//     Octahedral    x: snorm16 in the low 16 bits, y: snorm16 in the high 16. The unit vector is divided by
+//                   |x| + |y| + |z|, which puts it on an octahedron; the lower half is folded over the upper one
+//                   (Meyer et al. 2010, "On floating-point normal vectors"). Within 7e-5 rad.
+//     Rgb10A2       x, y, z: snorm10 from the lowest bits up, and 2 bits of 0: GL_INT_2_10_10_10_REV,
+//                   DXGI R10G10B10A2, VK A2B10G10R10. Within 1.7e-3 rad.
+//
+// A component c of snorm N bits is the integer nearest to c (2^(N-1) - 1), in two's complement. (0, 0, 0), the normal
+// of an element that has none, is 0 in Rgb10A2; Octahedral cannot say it, and 0 there is (0, 0, 1).
+
+/// A type of its own for each encoding, so that one cannot be taken for the other; nothing but the four bytes.
+struct Octahedral {
+  std::uint32_t bits = 0;
+  friend bool operator==(const Octahedral&, const Octahedral&) = default;
+};
+struct Rgb10A2 {
+  std::uint32_t bits = 0;
+  friend bool operator==(const Rgb10A2&, const Rgb10A2&) = default;
+};
+
+/// v must have length 1, or be zero. Pure.
+[[nodiscard]] Octahedral encode_octahedral(const Vec3f& v) noexcept;
+[[nodiscard]] Rgb10A2 encode_rgb10a2(const Vec3f& v) noexcept;
+
+/// Of length 1, but for the zero of Rgb10A2.
+[[nodiscard]] Vec3f decode(Octahedral encoded) noexcept;
+[[nodiscard]] Vec3f decode(Rgb10A2 encoded) noexcept;
 
 inline namespace internal {
 struct CurveData;
@@ -90,7 +120,7 @@ class NormalCurves {
   /// mean is said in control_normals.h.
   /// result must have size() elements
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne) const;
-  /// The same in four bytes each; see normals/encodings.h for what becomes of (0, 0, 0).
+  /// The same in four bytes each; see normals/normal_curves.h for what becomes of (0, 0, 0).
   std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result, Threads threads = Threads::kOne) const;
   std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result, Threads threads = Threads::kOne) const;
 

@@ -45,13 +45,10 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/input.h"
-#include "chronormal/io/poses_file.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
 #include "chronormal/motion/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/errors.h"
-#include "chronormal/workflow/motion_error.h"
 #include "chronormal/workflow/viewers.h"
 
 namespace chronormal {

@@ -29,17 +29,18 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/io/gltf_edit.h"
-#include "chronormal/io/poses_file.h"
+#include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
 #include "chronormal/motion/paths.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/viewers.h"
 
 namespace chronormal {
+
+inline namespace internal {
+class Expansion;  // how much a file may make us hold or write
+}
 
 inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< degrees
 inline constexpr double kLeastKeyTolerance = 0.001;  ///< degrees: float32 in viewers takes some
@@ -67,8 +68,8 @@ struct BakeOptions {
   bool weld = true;  ///< vertices at one point throughout are one, but for hard edges and the two sides of a sheet
   bool recompute_base = false;  ///< replace the base normals by those of the geometry; hard edges stay
   bool dense_zeros = false;     ///< write zeros as bytes: for readers that need every accessor to have some
-  std::optional<std::size_t> most_bytes = {};    ///< refuse to add more than this
-  Expansion expansion = Expansion::unlimited();  ///< of sequences; a document has its own
+  std::optional<std::size_t> most_bytes = {};  ///< refuse to add more than this
+  const Expansion* expansion = nullptr;  ///< of sequences, by the program; nullptr: anything; a document has its own
   /// Degrees: what the worst error of smallest may be. Of harmless and exact, extra targets whose lack, all together,
   /// turns no normal by more are left out. Tracks are cut to this.
   /// Of keys, what no normal may be off by at any instant; kLeastKeyTolerance or more. Nothing: kHarmlessTolerance, and

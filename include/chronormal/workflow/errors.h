@@ -12,17 +12,158 @@
 #ifndef CHRONORMAL_WORKFLOW_ERRORS_H_
 #define CHRONORMAL_WORKFLOW_ERRORS_H_
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/motion/topology.h"
-#include "chronormal/normals/elements.h"
+#include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {
+
+// The errors that an audit adds up: how far shown normals are from the right ones, over pairs of a vertex and a sample
+// (workflow/audit.h says which pairs are judged).
+//
+// Units      degrees
+// Threads    these are plain values. Adding the same parts in the same order gives the same bits.
+
+/// Bins of the histogram: below 0.1, 0.1 to 0.5, ... and from 90 on.
+inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
+inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
+
+/// Bins of MotionError::counts: below 2^-10 degrees, and then 128 to each doubling, so that a percentile is known to
+/// 0.001 degrees or to 0.8 %.
+inline constexpr int kAuditLeastExponent = -10, kAuditBinsOfDoubling = 128;
+inline constexpr std::size_t kAuditFineBins = 1 + 18 * std::size_t{kAuditBinsOfDoubling};  // up to 256 degrees
+
+/// A vertex at a moment, numbered as in the file.
+struct AuditPlace {
+  std::optional<std::size_t> mesh, primitive;  ///< of a glTF file
+  std::size_t vertex = 0;                      ///< of the primitive, or of the motion
+  std::size_t segment = 0;                     ///< of the subject
+  double at = 0;                               ///< weight of the target, or time in seconds
+};
+
+/// The counts in these bins. Most errors of a small mesh are in a few of them, and a file may have thousands of
+/// motions, so that only those are kept that are not empty, 8 bytes each.
+class FineBins {
+ public:
+  class Bin {
+   public:
+    constexpr Bin(std::size_t number, std::uint64_t count) noexcept
+        : word_(std::uint64_t{number} << kCountBits | count) {}
+    [[nodiscard]] constexpr std::size_t number() const noexcept {
+      return static_cast<std::size_t>(word_ >> kCountBits);
+    }
+    [[nodiscard]] constexpr std::size_t count() const noexcept {
+      return static_cast<std::size_t>(word_ & ((std::uint64_t{1} << kCountBits) - 1));
+    }
+    friend bool operator==(const Bin&, const Bin&) = default;
+
+   private:
+    std::uint64_t word_;
+  };
+  static constexpr unsigned kCountBits = 48;
+  static constexpr std::uint64_t kMostCount = (std::uint64_t{1} << kCountBits) - 1;
+
+  /// The bins that are not empty, by number.
+  [[nodiscard]] std::span<const Bin> filled() const noexcept { return bins_; }
+  [[nodiscard]] std::size_t operator[](std::size_t number) const noexcept;
+
+  /// number < kAuditFineBins, count <= kMostCount
+  void add(std::size_t number, std::uint64_t count);
+  void add(const FineBins& other);
+  friend bool operator==(const FineBins&, const FineBins&) = default;
+
+ private:
+  std::vector<Bin> bins_;
+};
+
+struct MotionError {
+  std::size_t judged = 0;  ///< pairs
+  double sum = 0, sum_of_squares = 0;
+  double worst = 0;
+  AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
+  std::array<std::size_t, kAuditBins> histogram{};
+  FineBins counts;            ///< the same in finer bins
+  std::size_t no_normal = 0;  ///< beside those that are judged: n(t) is too small to have a direction
+  std::size_t unlit = 0;      ///< of those that are judged: what is shown cannot be lit, which counts as 180 degrees
+  AuditPlace unlit_at;        ///< the first of them; means nothing where there are none
+  /// Of those without a normal: n(t) is small, but the positions as float32 determine its direction. Each of these is
+  /// off by the angle less what such rounding of the positions may turn n(t).
+  std::size_t faint = 0;
+  double faint_worst = 0;
+  AuditPlace faint_at;  ///< the first pair of that error; means nothing where faint_worst is 0
+  /// Pairs without a normal that are not faint although the faces around have an area: their normals cancel, so that
+  /// nobody knows what is right.
+  std::size_t cancelled = 0;
+  AuditPlace cancelled_at;  ///< the first of them; means nothing where there are none
+  /// Edges over which errors jump by more than 10, 20 and 40 degrees: a picture shows a fold there that the surface does
+  /// not have. They are those of faces, and the seams between copies of a point, each counted once at every sample.
+  std::array<std::size_t, 3> torn{};
+  std::size_t samples = 0;    ///< at which they were counted; 0: nobody counted them, as in sequences
+  std::size_t most_torn = 0;  ///< beyond 10 degrees, at one sample
+  AuditPlace most_torn_at;    ///< the first sample with so many: mesh, segment and moment
+
+  /// The edges that are torn by more than 10 degrees, on average over the samples.
+  [[nodiscard]] double torn_edges() const noexcept {
+    return samples > 0 ? static_cast<double>(torn[0]) / static_cast<double>(samples) : 0;
+  }
+  [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
+  [[nodiscard]] double rms() const noexcept {
+    return judged > 0 ? std::sqrt(sum_of_squares / static_cast<double>(judged)) : 0;
+  }
+  /// The error, in degrees, that at least this share of the judged pairs does not exceed, as counts know it; 0 where
+  /// nothing is judged. 0 < share <= 1.
+  [[nodiscard]] double percentile(double share) const noexcept;
+  /// Whether every pair can be lit and none is off by more than this.
+  [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
+  /// Returns the same for a gate, which leaves out no pair with a direction and passes nothing that is drawn without.
+  [[nodiscard]] bool passes(double degrees) const noexcept {
+    return is_within(degrees) && faint_worst <= degrees && cancelled == 0;
+  }
+  void add(double degrees, const AuditPlace& place);
+  void add_unlit(const AuditPlace& place);
+  void add(const MotionError& other);
+};
+
+/// How far a skin turns right normals from those of the surface that it makes, over pairs of a vertex and a sample: what
+/// no target can mend.
+struct SkinningError {
+  std::size_t judged = 0;  ///< pairs
+  double sum = 0, worst = 0;
+  AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
+
+  [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
+  void add(double degrees, const AuditPlace& place) noexcept { add({1, degrees, degrees, place}); }
+  void add(const SkinningError& other) noexcept {
+    judged += other.judged;
+    sum += other.sum;
+    if (!(other.worst > worst)) return;
+    worst = other.worst;
+    worst_at = other.worst_at;
+  }
+};
+
+/// In which respects what an audit found after a change is worse than what it found before: more pairs that cannot be
+/// lit, a worst or mean error that grew by more than what the rounding of float32 may turn, or more torn edges. With the
+/// two exchanged, in which respects it is better.
+struct WorseRespects {
+  bool unlit = false, mean = false, worst = false, torn = false;
+
+  [[nodiscard]] bool any() const noexcept { return unlit || mean || worst || torn; }
+};
+[[nodiscard]] WorseRespects find_worse(const MotionError& after, const MotionError& before) noexcept;
+/// Whether it is worse in any respect.
+[[nodiscard]] inline bool is_worse(const MotionError& after, const MotionError& before) noexcept {
+  return find_worse(after, before).any();
+}
 
 struct ErrorTable {
   std::string name;  ///< "mesh0" of a glTF file, or the scheme; empty where one table has all

@@ -21,7 +21,6 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
 
 namespace chronormal {
 
@@ -69,7 +68,7 @@ struct Inspection {
   Places no_area;           ///< keyframes: no area at all
   Places slivers;           ///< keyframes: see inspect()
   Places collapses;         ///< segments: the normal vanishes inside, or falls below 1e-6 of its control normals
-  Places vanishing;         ///< segments: the normal is zero inside, exactly (analysis/collapse.h)
+  Places vanishing;         ///< segments: the normal is zero inside, exactly (analysis/signs.h)
   Places turned_over;       ///< segments: those of which the normal is opposed afterwards
   Places turned_far;        ///< segments: the normals at both ends are more than 90 degrees apart
   Places without_normals;   ///< segments: no area throughout, so there is no direction to give

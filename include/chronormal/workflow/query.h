@@ -22,21 +22,24 @@
 #include <variant>
 #include <vector>
 
-#include "chronormal/analysis/facing.h"
+#include "chronormal/analysis/signs.h"
 #include "chronormal/core/result.h"
-#include "chronormal/io/expansion.h"
-#include "chronormal/io/points_file.h"
+#include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
 
 namespace chronormal {
+
+inline namespace internal {
+class Expansion;  // how much a file may make us hold or write
+}
 
 /// The span that a question is about, in the time of the motion; of targets, in weights. Nothing: from its beginning,
 /// or to its end.
 struct QuerySpan {
   std::optional<double> from = {}, to = {};
-  /// How much the answer may take: that of the file behind the motion. Rows for every face of every segment are counted
-  /// before anything is computed, and those that have to be found are counted as they are.
-  Expansion expansion = Expansion::unlimited();
+  /// How much the answer may take, as the program has it; nullptr: anything. Rows for every face of every segment are
+  /// counted before anything is computed, and those that have to be found are counted as they are.
+  const Expansion* expansion = nullptr;
 };
 
 /// What a span takes of one segment: [t0, t1], with t0 < t1.
@@ -86,20 +89,20 @@ struct QueryAnswer {
 /// Called with (done, total) from the calling thread.
 using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 
-/// When and where faces collapse (analysis/collapse.h), decided exactly. Tables:
+/// When and where faces collapse (analysis/signs.h), decided exactly. Tables:
 ///     ""        segment, face, lower, upper (t), time, turns_over, before, after: one row for each collapse
 ///     always    segment, face: n is zero in the whole segment
-/// Errors: of segment_parts() and of span.expansion.check().
+/// Errors: of segment_parts().
 [[nodiscard]] Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span = {},
                                                  const QueryProgress& progress = {});
 
-/// When faces show their front or their back (analysis/facing.h). The view is that of the whole motion: an eye that
+/// When faces show their front or their back (analysis/signs.h). The view is that of the whole motion: an eye that
 /// moves does so from the first to the last time of the motion, and its places at the ends of segments are rounded to
 /// float32; over targets it moves with the weight. Tables:
 ///     ""           segment, face, from, from_upper, to_lower, to: the face shows its front at every t in (from_upper,
 ///                  to_lower), and at none outside of [from, to]; cut off at the ends of the span
 ///     silhouette   segment, vertices, faces, from, from_upper, to_lower, to: the two faces of an edge show different sides
-/// Silhouettes are there where they are asked for. Errors: of segment_parts() and of span.expansion.check(); kUsage for
+/// Silhouettes are there where they are asked for. Errors: of segment_parts(); kUsage for
 /// the direction (0, 0, 0).
 [[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
                                                const QuerySpan& span = {}, const QueryProgress& progress = {});
@@ -112,26 +115,26 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; of targets, by point,
 ///                segment and weight
 /// Where the weights of an animation jump, a point may be elsewhere without a crossing.
-/// Errors: of segment_parts(), of Containment::make() and of span.expansion.check().
+/// Errors: of segment_parts() and of Containment::make().
 [[nodiscard]] Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points,
                                                 const QuerySpan& span = {}, const QueryProgress& progress = {});
 
 /// Cones that contain every normal of a face while a part of a segment lasts (analysis/cones.h). Tables:
 ///     ""        segment, face, axis, sine, half_angle (degrees, rounded up): one row for each segment and face
-///     meshlet   segment, index, and the members of meshopt_Bounds (analysis/cluster_bounds.h), which hold for that part
+///     meshlet   segment, index, and the members of meshopt_Bounds (analysis/cones.h), which hold for that part
 ///     member    meshlet, face
 /// The last two where `meshlets` says how many triangles one may have: meshoptimizer builds them from the first
-/// keyframe. Errors: of segment_parts() and of span.expansion.check(); kUsage, with --meshlets as the place, for a
+/// keyframe. Errors: of segment_parts(); kUsage, with --meshlets as the place, for a
 /// number that is no multiple of 4 up to 512, and for a mesh of larger faces.
 [[nodiscard]] Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets = {},
                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
 
-/// The mean normals of faces while a shutter is open over the span (analysis/shutter.h). Tables:
+/// The mean normals of faces while a shutter is open over the span (analysis/cones.h). Tables:
 ///     ""        segment, face, mean, mean_unit, error, length (of mean_unit), half_angle (of the cone, degrees), ends (the
 ///               direction half way between the unit normals at both ends, which lerp and nlerp have as their mean), and
 ///               ends_off (degrees from mean_unit to it): one row for each segment and face
 ///     span      the same without segment, over all parts together, weighed by their duration; not for targets
-/// Errors: of segment_parts() and of span.expansion.check().
+/// Errors: of segment_parts().
 [[nodiscard]] Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span = {},
                                                 const QueryProgress& progress = {});
 

@@ -42,10 +42,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
-#include "chronormal/io/expansion.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
-#include "chronormal/normals/elements.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"

@@ -12,7 +12,7 @@
 #include "analysis/certificates/angle_bound.h"
 #include "analysis/certificates/line_bound.h"
 #include "analysis/certificates/scheme_curves.h"
-#include "chronormal/core/interruption.h"
+#include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_curves.h"
 #include "core/blocks.h"
 #include "schemes/fitted_curves.h"

@@ -1,4 +1,4 @@
-#include "chronormal/analysis/cluster_bounds.h"
+#include "chronormal/analysis/cones.h"
 
 #include <algorithm>
 #include <array>

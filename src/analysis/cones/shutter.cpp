@@ -6,7 +6,7 @@
 // the foci -1 and 1 and the half-axes' sum 4, and there Chebyshev's coefficients of an analytic function are at most 2
 // M 4^-j. Gauss's rule with 8 nodes is exact up to degree 15, so the mean that it gives is off by at most
 //     32/15 M 4^-16 / (1 - 4^-2)                               (Trefethen, Approximation Theory and Practice, chapter 19)
-#include "chronormal/analysis/shutter.h"
+#include "chronormal/analysis/cones.h"
 
 #include <algorithm>
 #include <array>

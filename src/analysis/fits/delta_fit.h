@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "chronormal/core/vec3.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 
 namespace chronormal::inline internal {
 

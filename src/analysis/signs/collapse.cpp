@@ -10,8 +10,8 @@
 //
 // Control normals are within 2^-26 of their length of the exact ones, which both bounds in floating point allow for.
 
-#include "chronormal/analysis/collapse.h"
 #include "analysis/signs/length_1.h"
+#include "chronormal/analysis/signs.h"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 // 3. Integers (analysis/signs/exact_roots.h), for what touches edge-on, is edge-on at an end or in the middle, or has
 //    no area. Where a bracket of the second stage is too wide, their signs close it in.
 
-#include "chronormal/analysis/facing.h"
+#include "chronormal/analysis/signs.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "chronormal/analysis/facing.h"
+#include "chronormal/analysis/signs.h"
 
 namespace chronormal {
 namespace {

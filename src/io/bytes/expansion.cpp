@@ -1,9 +1,9 @@
-#include "chronormal/io/expansion.h"
+#include "io/bytes/expansion.h"
 
 #include <algorithm>
 #include <limits>
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 // 1234567 as "1,234,567".
@@ -32,4 +32,4 @@ Status Expansion::check(std::uint64_t bytes, const std::string& place) const {
                                   std::to_string(times) + " allows it");
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -12,8 +12,8 @@
 #include <system_error>
 #include <utility>
 
-#include "chronormal/io/expansion.h"
 #include "io/bytes/descriptor.h"
+#include "io/bytes/expansion.h"
 
 namespace chronormal {
 namespace {

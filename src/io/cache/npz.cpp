@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/expansion.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/checksum.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/scan.h"
 #include "io/bytes/zip.h"
 #include "io/cache/npy.h"

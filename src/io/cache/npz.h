@@ -28,9 +28,8 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/expansion.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/zip.h"
 #include "io/cache/cache_layout.h"

@@ -19,7 +19,6 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
 #include "io/bytes/output_file.h"
 #include "io/cache/cache_layout.h"
 #include "io/cache/position_cache.h"

@@ -21,8 +21,6 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
-#include "chronormal/motion/topology.h"
 #include "io/mesh/far_origin.h"
 
 namespace chronormal::inline internal {

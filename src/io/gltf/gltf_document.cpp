@@ -8,6 +8,7 @@
 
 #include "core/charconv.h"
 #include "io/bytes/binary.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/file.h"
 #include "io/bytes/known_kinds.h"

@@ -1,4 +1,4 @@
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 
 #include <filesystem>
 #include <optional>
@@ -6,8 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "chronormal/io/expansion.h"
 #include "chronormal/io/output.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/extension.h"
 #include "io/gltf/edit/gltf_edit_arrays.h"
 #include "io/gltf/edit/gltf_edit_layout.h"

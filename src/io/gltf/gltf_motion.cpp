@@ -12,6 +12,7 @@
 #include "core/portable_math.h"
 #include "core/twofold.h"
 #include "io/bytes/binary.h"
+#include "io/bytes/expansion.h"
 #include "io/gltf/gltf_weights.h"
 #include "io/gltf/model/gltf_model.h"
 

@@ -23,9 +23,9 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
+#include "io/bytes/expansion.h"
 
 namespace chronormal::inline internal {
 

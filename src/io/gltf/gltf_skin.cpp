@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "io/bytes/expansion.h"
 #include "io/gltf/decode/gltf_draco.h"
 #include "io/gltf/gltf_document_state.h"
 

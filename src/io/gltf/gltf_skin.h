@@ -16,7 +16,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/normals/transform.h"
+#include "chronormal/normals/control_normals.h"
 #include "io/gltf/gltf_weights.h"
 #include "io/gltf/model/gltf_model.h"
 

@@ -1,4 +1,4 @@
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 
 #include <array>
 #include <cmath>

@@ -15,8 +15,8 @@
 #include <system_error>
 #include <utility>
 
-#include "chronormal/io/builtin_morphs.h"
 #include "core/portable_math.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/file.h"
 #include "io/bytes/known_kinds.h"
 #include "io/bytes/positioned_file.h"

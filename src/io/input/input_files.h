@@ -11,7 +11,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/input.h"
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 #include "io/mesh/mesh_frame.h"
 
 namespace chronormal::inline internal {

@@ -1,4 +1,4 @@
-#include "chronormal/io/poses_file.h"
+#include "chronormal/io/input.h"
 
 #include <utility>
 

@@ -1,5 +1,5 @@
 // Finds the names of the morph targets of an input, and looks targets up by name.
-#include "chronormal/io/target_names.h"
+#include "chronormal/io/input.h"
 
 #include <algorithm>
 

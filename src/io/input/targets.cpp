@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chronormal/motion/motion.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/file.h"
 #include "io/bytes/known_kinds.h"

@@ -5,14 +5,15 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/expansion.h"
 #include "chronormal/io/output.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/scan.h"
 #include "io/gltf/glb/glb.h"
 #include "io/gltf/glb/glb_targets.h"
 #include "io/input/formats.h"
+#include "io/input/write_motion.h"
 
 namespace chronormal {
 namespace {
@@ -104,16 +105,17 @@ bool is_motion_file(const std::string& path) noexcept {
   return format != nullptr && (format->write_mesh != nullptr || format->write_motion != nullptr);
 }
 
-Status write_motion(const Motion& motion, const std::string& path, bool force) {
-  return write_motion(motion, path, force, Expansion::unlimited());
-}
-
-Status write_motion(const Motion& motion, const std::string& path, bool force, const Expansion& expansion) {
+Status write_motion(const Motion& motion, const std::string& path, bool force, bool weld) {
   MotionStream stream(motion);
-  return write_motion(stream, path, force, expansion);
+  return write_motion(stream, path, force, weld);
 }
 
-Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion, bool weld) {
+Status write_motion(MotionStream& stream, const std::string& path, bool force, bool weld) {
+  return write_motion(stream, path, force, Expansion::unlimited(), weld);
+}
+
+Status internal::write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion,
+                              bool weld) {
   const Motion& motion = stream.motion();
   const Format* const format = find_format(path);
   if (format != nullptr && format->write_mesh != nullptr)

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 #include "io/mesh/far_origin.h"
 
 namespace chronormal::inline internal {

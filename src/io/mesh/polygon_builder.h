@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 
 namespace chronormal::inline internal {
 

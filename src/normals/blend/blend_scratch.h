@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chronormal/core/vec3.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/blend_normals.h"
 #include "core/memory.h"
 #include "normals/blend/index_bits.h"

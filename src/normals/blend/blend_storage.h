@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/blend_normals.h"
 #include "chronormal/normals/normal_groups.h"
 #include "normals/blend/blend_terms.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chronormal/core/vec3.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "core/rounding.h"
 #include "core/vector_area.h"
 

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "chronormal/core/vec3.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal::inline internal {
@@ -35,7 +35,7 @@ struct BlendTerm {
 class BlendTerms {
  public:
   /// Of the faces of a set, or of the elements of groups. Lists the faces that each target moves. set must be valid
-  /// (motion/blend_set.h) and groups those of its topology. O(corners + sizes of targets, log).
+  /// (motion/motion.h) and groups those of its topology. O(corners + sizes of targets, log).
   explicit BlendTerms(const BlendSet& set) : BlendTerms(set, nullptr) {}
   BlendTerms(const BlendSet& set, const NormalGroups& groups) : BlendTerms(set, &groups) {}
 

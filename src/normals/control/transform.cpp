@@ -1,4 +1,4 @@
-#include "chronormal/normals/transform.h"
+#include "chronormal/normals/control_normals.h"
 
 #include <cassert>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "chronormal/normals/encodings.h"
+#include "chronormal/normals/normal_curves.h"
 
 #include <cmath>
 

@@ -11,7 +11,7 @@
 #include <span>
 
 #include "chronormal/core/views.h"
-#include "chronormal/normals/encodings.h"
+#include "chronormal/normals/normal_curves.h"
 #include "normals/curves/kernels/evaluate.h"
 
 namespace chronormal::inline internal {

@@ -1,5 +1,5 @@
 // Finds a kind of element by its name, and makes the groups for it.
-#include "chronormal/normals/elements.h"
+#include "chronormal/normals/normal_groups.h"
 
 #include <array>
 #include <cassert>

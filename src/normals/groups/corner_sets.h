@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal::inline internal {

@@ -26,7 +26,7 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal::inline internal {

@@ -3,7 +3,7 @@
 #define CHRONORMAL_NORMALS_GROUPS_WELD_H_
 
 #include "chronormal/core/result.h"
-#include "chronormal/motion/motion_stream.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal::inline internal {

@@ -1,7 +1,7 @@
 // Interpolates all positions at t into rows that a vector loads at once, and then goes along the paths around sixteen
 // elements at a time (groups/rings.h). The paths are made once, from the topology alone.
 
-#include "chronormal/normals/float_recompute.h"
+#include "chronormal/normals/recompute.h"
 
 #include "simd/highway-inl.h"
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "chronormal/workflow/audit.h"
+#include "io/bytes/expansion.h"
 #include "io/gltf/gltf_weights.h"
 #include "workflow/audit/blend_source.h"
 #include "workflow/audit/gltf_findings.h"

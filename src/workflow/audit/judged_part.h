@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chronormal/core/vec3.h"
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
 #include "workflow/truth/author_sums.h"

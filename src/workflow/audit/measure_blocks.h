@@ -11,7 +11,7 @@
 #include <functional>
 #include <span>
 
-#include "chronormal/motion/motion_stream.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/workflow/audit.h"
 #include "workflow/audit/judged_part.h"
 #include "workflow/audit/measure.h"

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "chronormal/core/views.h"
+#include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/transform.h"
 #include "chronormal/workflow/audit.h"
 #include "core/blocks.h"
 #include "core/float32.h"

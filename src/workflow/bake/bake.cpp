@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "chronormal/analysis/quality.h"
+#include "io/bytes/expansion.h"
 #include "workflow/bake/candidates/chooser.h"
 #include "workflow/bake/deltas/candidate.h"
 #include "workflow/bake/deltas/deltas.h"

@@ -11,7 +11,7 @@
 
 #include "analysis/quality/blend_quality.h"
 #include "chronormal/core/parallel.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/blend_normals.h"
 #include "chronormal/workflow/sample.h"
 #include "core/blocks.h"

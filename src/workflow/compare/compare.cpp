@@ -17,7 +17,6 @@
 #include "analysis/quality/shared_reference.h"
 #include "chronormal/analysis/certify.h"
 #include "chronormal/analysis/quality.h"
-#include "chronormal/core/interruption.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
 #include "core/blocks.h"

@@ -1,5 +1,5 @@
 // Compares interpolated normals with those of keyframes that were left out.
-#include "chronormal/workflow/truth.h"
+#include "chronormal/workflow/compare.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,6 @@
 #include "chronormal/motion/paths.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/schemes/scheme.h"
-#include "chronormal/workflow/compare.h"
 #include "normals/control/shared_faces.h"
 #include "workflow/sample/scheme_normals.h"
 

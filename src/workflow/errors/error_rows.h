@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "chronormal/io/expansion.h"
 #include "chronormal/workflow/errors.h"
+#include "io/bytes/expansion.h"
 
 namespace chronormal::inline internal {
 

@@ -16,7 +16,7 @@
 
 #include "analysis/signs/kernels/face_glance.h"
 #include "analysis/signs/near_collapse.h"
-#include "chronormal/analysis/collapse.h"
+#include "chronormal/analysis/signs.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"

@@ -2,9 +2,9 @@
 #include "workflow/json/audit_json.h"
 
 #include "chronormal/normals/weighting.h"
-#include "chronormal/workflow/json.h"
+#include "workflow/json/json.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 constexpr const char* kKinds[] = {
@@ -177,13 +177,13 @@ std::string audit_text_of(const std::string& input, const Audit& audit, const Au
 
 }  // namespace
 
-Json internal::audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits) {
+Json audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits) {
   Json json = without_subjects(input, audit, limits);
   for (const AuditSubject& subject : audit.subjects) json["subjects"].push_back(subject_json(subject));
   return json;
 }
 
-std::string internal::audit_line(const std::string& input, const Audit& audit, const AuditLimits& limits) {
+std::string audit_line(const std::string& input, const Audit& audit, const AuditLimits& limits) {
   return audit_text_of(input, audit, limits, false);
 }
 
@@ -191,4 +191,4 @@ std::string audit_json(const std::string& input, const Audit& audit, const Audit
   return audit_text_of(input, audit, limits, true);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -3,10 +3,10 @@
 #include <array>
 
 #include "chronormal/normals/weighting.h"
-#include "chronormal/workflow/json.h"
+#include "workflow/json/json.h"
 #include "workflow/json/object.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 // 3: `viewers` for `hosts` and `candidates` for `choices`; kinds of poses; torn edges.
@@ -175,4 +175,4 @@ std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const Bak
   return json_text(json);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -1,9 +1,9 @@
 // Writes the result of a comparison as JSON.
 #include "chronormal/analysis/quality.h"
-#include "chronormal/workflow/json.h"
+#include "workflow/json/json.h"
 #include "workflow/json/object.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 double degrees(double radians) { return radians * kDegreesPerRadian; }
@@ -132,4 +132,4 @@ std::string blend_json(const NamedBlendComparison& input) {
   return json_text(json);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -1,9 +1,9 @@
 #include "chronormal/analysis/quality.h"
-#include "chronormal/workflow/json.h"
 #include "workflow/inspect/trouble.h"
+#include "workflow/json/json.h"
 #include "workflow/json/object.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 Json found_json(const Found& found, const char* what) {
@@ -186,4 +186,4 @@ std::string inspect_json(const Inspected& input) {
   return json_text(json);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -22,9 +22,9 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/json.h"
 #include "workflow/audit/watched_audit.h"
 #include "workflow/compare/compared.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::inline internal {
 

@@ -1,10 +1,10 @@
 #include <cmath>
 #include <type_traits>
 
-#include "chronormal/workflow/json.h"
+#include "workflow/json/json.h"
 #include "workflow/json/object.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 template <class T>
@@ -49,4 +49,4 @@ std::string query_json(const std::string& input, const QueryAnswer& answer) {
   return json_text(json);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

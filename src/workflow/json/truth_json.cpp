@@ -1,7 +1,7 @@
-#include "chronormal/workflow/json.h"
+#include "workflow/json/json.h"
 #include "workflow/json/object.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 std::string truth_json(const NamedTruthComparison& input) {
   const TruthComparison& c = input.comparison;
@@ -30,4 +30,4 @@ std::string truth_json(const NamedTruthComparison& input) {
   return json_text(json);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

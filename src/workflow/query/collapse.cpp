@@ -1,6 +1,6 @@
 #include <utility>
 
-#include "chronormal/analysis/collapse.h"
+#include "chronormal/analysis/signs.h"
 #include "chronormal/workflow/query.h"
 #include "workflow/query/parts.h"
 

@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "chronormal/analysis/cluster_bounds.h"
 #include "chronormal/workflow/query.h"
 #include "workflow/query/parts.h"
 

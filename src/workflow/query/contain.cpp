@@ -4,6 +4,7 @@
 
 #include "chronormal/analysis/containment.h"
 #include "chronormal/workflow/query.h"
+#include "io/bytes/expansion.h"
 #include "workflow/query/parts.h"
 
 namespace chronormal {
@@ -97,7 +98,8 @@ Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points
   constexpr std::uint64_t kBytesPerCrossing = 3 * sizeof(std::int64_t) + 4 * sizeof(double) + 1;
   std::vector<std::int32_t> windings;
   std::vector<Passed> all;
-  RowsInBounds rows(span.expansion);
+  const Expansion expansion = expansion_of(span);
+  RowsInBounds rows(expansion);
   SegmentRun run;
   run.progress = progress;
   run.begin(parts.value().size());

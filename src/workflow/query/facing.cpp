@@ -1,4 +1,4 @@
-#include "chronormal/analysis/facing.h"
+#include "chronormal/analysis/signs.h"
 
 #include <algorithm>
 #include <array>

@@ -10,15 +10,21 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/workflow/query.h"
+#include "io/bytes/expansion.h"
 #include "workflow/segments/segment_run.h"
 
 namespace chronormal::inline internal {
+
+/// How much an answer may take.
+[[nodiscard]] inline Expansion expansion_of(const QuerySpan& span) {
+  return span.expansion != nullptr ? *span.expansion : Expansion::unlimited();
+}
 
 /// Whether an answer may have a row of so many bytes for every face of every part. Errors: of Expansion::check().
 [[nodiscard]] inline Status check_rows(const Motion& motion, std::span<const SegmentPart> parts,
                                        std::uint64_t bytes_per_row, const QuerySpan& span) {
   const std::uint64_t rows = std::uint64_t{parts.size()} * motion.topology.face_count();
-  return span.expansion.check(bytes_per_row * rows, "the answer for every face of every segment");
+  return expansion_of(span).check(bytes_per_row * rows, "the answer for every face of every segment");
 }
 
 /// Holds an answer whose rows are only known as they are found to what its span allows, while it grows: what is
@@ -48,7 +54,8 @@ template <class T, class Answer, class BytesOf>
                                                        const QueryProgress& progress, const Answer& answer,
                                                        const BytesOf& bytes_of) {
   std::vector<T> results(parts.size());
-  RowsInBounds rows(span.expansion);
+  const Expansion expansion = expansion_of(span);
+  RowsInBounds rows(expansion);
   SegmentRun run;
   run.progress = progress;
   run.begin(parts.size());

@@ -1,12 +1,11 @@
 // The question `shutter`: what normal a renderer should show while the shutter is open, and what it shows instead where
 // it interpolates between the ends.
 
-#include "chronormal/analysis/shutter.h"
+#include "chronormal/analysis/cones.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "chronormal/analysis/cones.h"
 #include "chronormal/workflow/query.h"
 #include "workflow/query/parts.h"
 

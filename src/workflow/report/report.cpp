@@ -1,13 +1,13 @@
 // Gathers the data of a report, and puts them into its container.
-#include "chronormal/workflow/report.h"
+#include "workflow/report/report.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
-#include "chronormal/workflow/json.h"
 #include "workflow/audit/watched_audit.h"
 #include "workflow/json/audit_json.h"
+#include "workflow/json/json.h"
 #include "workflow/json/object.h"
 #include "workflow/report/container.h"
 #include "workflow/report/report_model.h"
@@ -16,7 +16,7 @@
 #include "workflow/report/watched_motions.h"
 #include "workflow/report/worst_places.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 namespace {
 
 // A page that is still too large is thinned out more, by this factor, until hardly anything is left.
@@ -190,4 +190,4 @@ Result<Report> report(Input& input, const ReportOptions& options) {
   return result;
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/bake_mark.h"
+#include "chronormal/io/gltf_document.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
-#include "chronormal/workflow/report.h"
 #include "chronormal/workflow/viewers.h"
+#include "workflow/report/report.h"
 
 namespace chronormal::inline internal {
 

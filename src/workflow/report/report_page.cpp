@@ -1,11 +1,11 @@
 // The page of a report: a template, and in it the container.
 #include <string>
 
-#include "chronormal/workflow/report.h"
 #include "workflow/json/object.h"
 #include "workflow/report/container.h"
+#include "workflow/report/report.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 Status check_report_template(std::string_view page_template) {
   const std::size_t at = page_template.find(kReportMark);
@@ -48,4 +48,4 @@ std::string report_json(const Report& report, const std::string& output, std::si
   return json_text(json);
 }
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal

@@ -32,8 +32,8 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
-#include "chronormal/io/expansion.h"
-#include "chronormal/motion/motion_stream.h"
+#include "chronormal/motion/motion.h"
+#include "io/bytes/expansion.h"
 #include "workflow/segments/shards.h"
 #include "workflow/segments/task_checksums.h"
 

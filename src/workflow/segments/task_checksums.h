@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/motion/motion_stream.h"
+#include "chronormal/motion/motion.h"
 #include "io/json/json.h"
 #include "workflow/segments/shards.h"
 

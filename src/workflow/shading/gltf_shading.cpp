@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "chronormal/core/views.h"
+#include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/transform.h"
 #include "core/blocks.h"
 #include "core/vector_area.h"
 #include "normals/groups/sides.h"

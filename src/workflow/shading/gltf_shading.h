@@ -26,7 +26,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 
 namespace chronormal::inline internal {

@@ -22,7 +22,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/core/vec3.h"
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/normals/transform.h"
+#include "chronormal/normals/control_normals.h"
 #include "chronormal/workflow/viewers.h"
 #include "io/gltf/gltf_skin.h"
 #include "workflow/shading/gltf_shading.h"

@@ -19,7 +19,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
-#include "chronormal/io/poses_file.h"
+#include "chronormal/io/input.h"
 #include "workflow/shading/target_weights.h"
 
 namespace chronormal::inline internal {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "chronormal/normals/transform.h"
+#include "chronormal/normals/control_normals.h"
 #include "core/blocks.h"
 
 namespace chronormal::inline internal {

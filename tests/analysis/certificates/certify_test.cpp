@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/normals/normal_groups.h"
 #include "schemes/curve_scheme.h"
 #include "tests/support/fixtures.h"

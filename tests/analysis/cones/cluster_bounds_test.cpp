@@ -2,7 +2,7 @@
 // face is front-facing at an instant of the interval, which integers decide. Bounds of one instant do. A sheet of 512
 // faces, and built-in morphs under ./test --full exact.
 
-#include "chronormal/analysis/cluster_bounds.h"
+#include "chronormal/analysis/cones.h"
 
 #include <gmpxx.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "tests/support/cone_oracle.h"
 #include "tests/support/exact_cases.h"
 #include "tests/support/fixtures.h"

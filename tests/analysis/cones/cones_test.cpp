@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/normals/normal_groups.h"
 #include "simd/targets.h"
 #include "tests/support/cone_oracle.h"

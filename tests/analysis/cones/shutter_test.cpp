@@ -1,7 +1,7 @@
 // Means over an open shutter against oracles that share nothing with them: closed forms where n(t) is a line, however
 // near to zero it passes, and dense Gaussian quadrature in long double, from positions, elsewhere.
 
-#include "chronormal/analysis/shutter.h"
+#include "chronormal/analysis/cones.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "chronormal/core/parallel.h"
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "tests/support/exact_cases.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/read_input.h"

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/normals/normal_groups.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"

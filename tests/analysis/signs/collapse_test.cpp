@@ -1,6 +1,6 @@
 // When faces collapse, against polynomials in whole numbers of any size.
 
-#include "chronormal/analysis/collapse.h"
+#include "chronormal/analysis/signs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Sides of faces over time, against polynomials in whole numbers of any size.
 
-#include "chronormal/analysis/facing.h"
+#include "chronormal/analysis/signs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What a small file may make us hold or write. Every file here declares far more than it has; --max-expansion reads it.
 
-#include "chronormal/io/expansion.h"
+#include "io/bytes/expansion.h"
 
 #include <gtest/gtest.h>
 
@@ -215,7 +215,8 @@ TEST(Expansion, of_a_sequence_of_many_keyframes_is_asked_for_before_its_weights_
   }();
   std::string glb;
   BakeOptions options;
-  options.expansion = Expansion(100, 72000);
+  const Expansion allowed(100, 72000);
+  options.expansion = &allowed;
   const Result<SequenceBake> refused = bake_sequence(motion, options, glb);
   expect_refused(error_of(refused));
   EXPECT_TRUE(glb.empty());
@@ -229,9 +230,10 @@ TEST(Expansion, of_faces_that_every_file_of_a_sequence_repeats_is_asked_for_befo
   for (int k = 0; k < 1000; ++k) motion.keyframes.push_back({{0, 0, 0, 1, 0, 0, 0, 1, 0}, static_cast<double>(k), ""});
   motion.connect_as_sequence();
   const test::TemporaryFolder folder;
-  expect_refused(error_of(write_motion(motion, folder / "a_%d.obj", false, Expansion(100, 100000))));
+  MotionStream stream(motion);
+  expect_refused(error_of(write_motion(stream, folder / "a_%d.obj", false, Expansion(100, 100000))));
   EXPECT_EQ(folder.entry_count(), 0U);
-  EXPECT_EQ(error_of(write_motion(motion, folder / "a.npz", false, Expansion(100, 100000))), "no error");
+  EXPECT_EQ(error_of(write_motion(stream, folder / "a.npz", false, Expansion(100, 100000))), "no error");
 }
 
 }  // namespace

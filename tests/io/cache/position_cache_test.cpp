@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "chronormal/motion/motion.h"
-#include "chronormal/motion/motion_stream.h"
 #include "tests/support/cache_bytes.h"
 
 namespace chronormal::position_cache_test {

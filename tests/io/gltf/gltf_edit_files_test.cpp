@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 #include "fuzz/json_tokens.h"
 #include "tests/support/glb_parts.h"
 #include "tests/support/gltf_builder.h"

@@ -1,4 +1,4 @@
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 
 #include <gtest/gtest.h>
 

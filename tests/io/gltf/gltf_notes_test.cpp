@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 #include "fuzz/gltf_invariants.h"
 #include "io/gltf/gltf_motion.h"
 #include "tests/support/gltf_builder.h"

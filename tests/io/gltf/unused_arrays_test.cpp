@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 #include "tests/support/glb_parts.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/temporary_folder.h"

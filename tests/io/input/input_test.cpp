@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "chronormal/io/output.h"
-#include "chronormal/io/target_names.h"
 #include "chronormal/motion/motion.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/gltf_builder.h"

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/expansion.h"
 #include "chronormal/motion/motion.h"
+#include "io/bytes/expansion.h"
 #include "io/cache/maya_cache.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/cpu_time.h"

@@ -12,6 +12,7 @@
 #include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
 #include "io/bytes/binary.h"
+#include "io/bytes/expansion.h"
 #include "io/cache/npy.h"
 #include "io/cache/npz.h"
 #include "io/mesh/obj.h"

@@ -1,5 +1,5 @@
 // Poses of a rig from JSON, and what is said of a file that has none.
-#include "chronormal/io/poses_file.h"
+#include "chronormal/io/input.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,6 @@
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/inspect.h"
-#include "chronormal/workflow/json.h"
 #include "chronormal/workflow/sample.h"
 #include "io/input/input_identity.h"
 #include "tests/support/cache_bytes.h"
@@ -23,6 +22,7 @@
 #include "tests/support/read_input.h"
 #include "tests/support/strict_stream.h"
 #include "tests/support/temporary_folder.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::stream_test {
 namespace {
@@ -213,7 +213,7 @@ TEST(InputStream, commands_give_the_bytes_that_they_give_of_a_motion_in_memory) 
   }
   EXPECT_LE(most_held, 3U);
   for (const char* const name : {"c.npz", "c.pc2", "c.mdd", "c_%d.ply"}) {
-    ASSERT_TRUE(write_motion(stream, folder / (std::string("s") + name), false, Expansion::unlimited()).ok());
+    ASSERT_TRUE(write_motion(stream, folder / (std::string("s") + name), false).ok());
     ASSERT_TRUE(write_motion(whole, folder / (std::string("w") + name), false).ok());
   }
   for (const char* const name : {"c.npz", "c.pc2", "c.mdd", "c_8.ply"})
@@ -265,7 +265,7 @@ TEST(InputStream, keyframes_may_be_written_over_the_files_that_they_come_from) {
       if (sampled)
         ASSERT_TRUE(write_samples(stream, {}, moments, {folder / name, SampleFormat::kPly, true}).ok());
       else
-        ASSERT_TRUE(write_motion(stream, folder / name, true, Expansion::unlimited()).ok());
+        ASSERT_TRUE(write_motion(stream, folder / name, true).ok());
     }
     for (int k = 0; k < 5; ++k) {
       const std::string end = "_0" + std::to_string(k) + ".ply";
@@ -285,7 +285,7 @@ TEST(InputStream, a_keyframe_that_is_wrong_leaves_none_of_the_files_behind) {
     MotionStream& stream = *input.value().stream().value();
     const bool is_written =
         sampled ? write_samples(stream, {}, {{0, 1, 3}, {}}, {folder / "new_%d.obj", SampleFormat::kObj}).ok()
-                : write_motion(stream, folder / "new_%d.obj", false, Expansion::unlimited()).ok();
+                : write_motion(stream, folder / "new_%d.obj", false).ok();
     EXPECT_FALSE(is_written);
     EXPECT_EQ(folder.entry_count(), before) << sampled;
   }

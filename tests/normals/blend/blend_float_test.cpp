@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chronormal/normals/blend_normals.h"
-#include "chronormal/normals/float_recompute.h"
+#include "chronormal/normals/recompute.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 

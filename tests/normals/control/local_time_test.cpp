@@ -16,7 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/normals/encodings.h"
 #include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"

@@ -1,6 +1,6 @@
 // Normals of meshes that move as a whole, against the normals of the transformed mesh.
 
-#include "chronormal/normals/transform.h"
+#include "chronormal/normals/control_normals.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

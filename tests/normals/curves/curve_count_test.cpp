@@ -9,7 +9,7 @@
 #include <cstring>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/normals/normal_curves.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"

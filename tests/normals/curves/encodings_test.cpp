@@ -1,6 +1,6 @@
 // Unit normals in four bytes: what the bits mean, how far they are off, and that kernels and functions agree.
 
-#include "chronormal/normals/encodings.h"
+#include "chronormal/normals/normal_curves.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include <iostream>
 #include <vector>
 
-#include "chronormal/normals/normal_curves.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_normals.h"

@@ -1,6 +1,6 @@
 // FloatRecompute against double arithmetic, and all ways to the same result against each other.
 
-#include "chronormal/normals/float_recompute.h"
+#include "chronormal/normals/recompute.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "chronormal/core/parallel.h"
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "tests/support/hard_motions.h"
 
 namespace chronormal::measure_blocks_test {

@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
-#include "chronormal/workflow/json.h"
 #include "tests/support/audit_fixture.h"
 #include "tests/support/gltf_compressed.h"
 #include "tests/support/skinned_mesh.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::skinned_audit_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/workflow/bake.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/poses_file.h"
+#include "chronormal/io/input.h"
 #include "tests/support/bake_fixture.h"
 
 namespace chronormal::bake_undriven_test {

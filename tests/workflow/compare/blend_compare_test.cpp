@@ -13,7 +13,7 @@
 
 #include "analysis/quality/blend_quality.h"
 #include "chronormal/core/parallel.h"
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "tests/support/blend_oracle.h"
 #include "tests/support/child_process.h"
 #include "tests/support/gltf_builder.h"

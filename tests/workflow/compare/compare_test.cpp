@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "tests/support/elements.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"

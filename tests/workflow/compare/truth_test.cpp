@@ -1,6 +1,6 @@
 // Normals between keyframes against keyframes that were left out: motions whose truth is known, figures computed here
 // from positions alone, and what is refused.
-#include "chronormal/workflow/truth.h"
+#include "chronormal/workflow/compare.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 
 namespace chronormal::truth_test {
 namespace {

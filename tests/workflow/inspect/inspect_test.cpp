@@ -11,7 +11,7 @@
 
 #include "chronormal/analysis/quality.h"
 #include "chronormal/core/parallel.h"
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "chronormal/normals/normal_curves.h"
 #include "tests/support/fixtures.h"
 

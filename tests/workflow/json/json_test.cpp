@@ -1,6 +1,6 @@
 // The JSON of results, by the library: the very text that the program prints.
 
-#include "chronormal/workflow/json.h"
+#include "workflow/json/json.h"
 
 #include <gtest/gtest.h>
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chronormal/workflow/query.h"
+#include "io/bytes/expansion.h"
 #include "tests/support/fixtures.h"
 
 namespace chronormal::query_expansion_test {
@@ -61,7 +62,8 @@ void expect_bounded(const Ask& ask) {
   QuerySpan span;
   std::size_t last = 0;
   const QueryProgress progress = [&last](std::size_t done, std::size_t) { last = done; };
-  span.expansion = Expansion();
+  const Expansion allowed;
+  span.expansion = &allowed;
   const Result<QueryAnswer> bounded = ask(span, progress);
   ASSERT_FALSE(bounded);
   EXPECT_EQ(bounded.error().code, ErrorCode::kInvalidInput);

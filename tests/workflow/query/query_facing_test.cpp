@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "chronormal/analysis/facing.h"
+#include "chronormal/analysis/signs.h"
 #include "chronormal/workflow/query.h"
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"

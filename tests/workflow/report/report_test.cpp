@@ -1,7 +1,7 @@
 // What a report holds, as a page reads it: tests/support/report_file.h computes the number of each worst place from the
 // container alone.
 
-#include "chronormal/workflow/report.h"
+#include "workflow/report/report.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "chronormal/io/builtin_morphs.h"
+#include "chronormal/io/input.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::continued_samples_test {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "io/bytes/binary.h"
+#include "io/bytes/expansion.h"
 #include "io/gltf/decode/gltf_octahedral.h"
 #include "io/gltf/model/gltf_uri.h"
 

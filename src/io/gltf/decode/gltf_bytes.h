@@ -14,6 +14,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/file.h"
 #include "io/gltf/model/gltf_model.h"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/expansion.h"
 #include "chronormal/io/gltf_document.h"
+#include "io/bytes/expansion.h"
 #include "io/gltf/model/gltf_model.h"
 
 namespace chronormal::inline internal::gltf {

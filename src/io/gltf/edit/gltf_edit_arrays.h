@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 #include "io/bytes/spool.h"
 
 namespace chronormal::inline internal::gltf {

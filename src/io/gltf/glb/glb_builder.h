@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/gltf_edit.h"
-#include "chronormal/motion/topology.h"
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/motion/motion.h"
 #include "io/bytes/spool.h"
 #include "io/gltf/edit/gltf_edit_arrays.h"
 

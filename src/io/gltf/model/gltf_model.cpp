@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "chronormal/io/expansion.h"
+#include "io/bytes/expansion.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 #include "io/gltf/model/gltf_model_parser.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chronormal/core/vec3.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 #include "workflow/bake/deltas/terms.h"
 #include "workflow/shading/target_weights.h"
 

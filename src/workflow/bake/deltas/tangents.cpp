@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "chronormal/analysis/quality.h"
-#include "chronormal/motion/blend_set.h"
+#include "chronormal/motion/motion.h"
 
 namespace chronormal::inline internal {
 namespace {

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/transform.h"
+#include "chronormal/normals/control_normals.h"
 #include "core/blocks.h"
 
 namespace chronormal::inline internal {

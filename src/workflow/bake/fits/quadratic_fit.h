@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/io/bake_mark.h"
+#include "chronormal/io/gltf_document.h"
 #include "workflow/bake/deltas/deltas.h"
 #include "workflow/bake/deltas/vertex_columns.h"
 #include "workflow/bake/fits/missing_normals.h"

@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "chronormal/io/bake_mark.h"
+#include "chronormal/io/gltf_document.h"
 #include "workflow/bake/poses/mesh_weights.h"
 #include "workflow/bake/poses/tracks.h"
 #include "workflow/shading/target_weights.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "chronormal/core/vec3.h"
-#include "chronormal/normals/transform.h"
+#include "chronormal/normals/control_normals.h"
 #include "chronormal/workflow/viewers.h"
 #include "workflow/shading/mesh_skin.h"
 #include "workflow/shading/target_weights.h"

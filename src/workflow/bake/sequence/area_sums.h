@@ -15,7 +15,7 @@
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/core/views.h"
-#include "chronormal/motion/topology.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 #include "core/memory.h"
 

@@ -19,7 +19,6 @@
 #include <utility>
 
 #include "chronormal/analysis/quality.h"
-#include "chronormal/normals/elements.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
 #include "io/bytes/output_file.h"

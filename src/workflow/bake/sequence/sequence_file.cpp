@@ -10,6 +10,7 @@
 
 #include "chronormal/core/views.h"
 #include "core/blocks.h"
+#include "io/bytes/expansion.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 #include "workflow/bake/sequence/harmless_sequence.h"
 
@@ -172,7 +173,7 @@ SequenceFile::SequenceFile(const Topology& topology, const NormalGroups& groups,
       topology_(&topology),
       most_bytes_(options.most_bytes),
       dense_zeros_(options.dense_zeros),
-      expansion_(options.expansion),
+      expansion_(options.expansion != nullptr ? *options.expansion : Expansion::unlimited()),
       builder_(options.most_bytes, std::move(spool)) {
   begin(base, elements);
 }

@@ -13,10 +13,11 @@
 #include <string_view>
 #include <vector>
 
-#include "chronormal/io/bake_mark.h"
-#include "chronormal/motion/topology.h"
+#include "chronormal/io/gltf_document.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
+#include "io/bytes/expansion.h"
 #include "io/bytes/spool.h"
 #include "io/gltf/glb/glb_builder.h"
 #include "workflow/bake/sequence/sequence_deltas.h"

@@ -13,7 +13,7 @@
 
 #include "chronormal/core/result.h"
 #include "chronormal/core/vec3.h"
-#include "chronormal/motion/motion_stream.h"
+#include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 #include "workflow/bake/deltas/deltas.h"
 #include "workflow/bake/deltas/shared_parts.h"
 #include "workflow/shading/target_weights.h"

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/charconv.h"
+#include "io/bytes/expansion.h"
 #include "io/json/json_writer.h"
 
 namespace chronormal::inline internal {

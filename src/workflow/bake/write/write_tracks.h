@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "chronormal/io/gltf_edit.h"
+#include "chronormal/io/gltf_document.h"
 #include "workflow/bake/poses/extra_curves.h"
 
 namespace chronormal::inline internal {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/signs/near_collapse.h"
-#include "chronormal/analysis/collapse.h"
+#include "chronormal/analysis/signs.h"
 #include "normals/control/kernels/face_tiles.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"

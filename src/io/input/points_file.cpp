@@ -1,4 +1,4 @@
-#include "chronormal/io/points_file.h"
+#include "chronormal/io/input.h"
 
 #include "io/bytes/binary.h"
 #include "io/bytes/file.h"

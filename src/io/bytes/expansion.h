@@ -8,8 +8,8 @@
 /// for (times to sample, poses) is no matter of this.
 ///
 /// Threads    a value: as any other.
-#ifndef CHRONORMAL_IO_EXPANSION_H_
-#define CHRONORMAL_IO_EXPANSION_H_
+#ifndef CHRONORMAL_IO_BYTES_EXPANSION_H_
+#define CHRONORMAL_IO_BYTES_EXPANSION_H_
 
 #include <algorithm>
 #include <cstddef>
@@ -18,13 +18,9 @@
 #include <string>
 
 #include "chronormal/core/result.h"
+#include "chronormal/core/views.h"
 
-namespace chronormal {
-
-/// So many bytes, or all that the machine can address where that is less: its addresses may have 32 bits.
-[[nodiscard]] constexpr std::size_t addressable(std::uint64_t bytes) noexcept {
-  return static_cast<std::size_t>(std::min<std::uint64_t>(bytes, std::numeric_limits<std::size_t>::max()));
-}
+namespace chronormal::inline internal {
 
 class Expansion {
  public:
@@ -51,6 +47,6 @@ class Expansion {
   std::uint64_t read_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_IO_EXPANSION_H_
+#endif  // CHRONORMAL_IO_BYTES_EXPANSION_H_

@@ -4,22 +4,21 @@
 /// Text       indented by two, with a line end; names that are no UTF-8 get U+FFFD, and numbers that are infinite or no
 ///            numbers are null.
 /// Threads    everything here is pure.
-#ifndef CHRONORMAL_WORKFLOW_JSON_H_
-#define CHRONORMAL_WORKFLOW_JSON_H_
+#ifndef CHRONORMAL_WORKFLOW_JSON_JSON_H_
+#define CHRONORMAL_WORKFLOW_JSON_JSON_H_
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "chronormal/io/target_names.h"
+#include "chronormal/io/input.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/inspect.h"
 #include "chronormal/workflow/query.h"
-#include "chronormal/workflow/truth.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 [[nodiscard]] std::string inspect_json(const Inspected& input);
 
@@ -75,6 +74,6 @@ struct BakeReport {
 /// input is the name of what was asked about. Columns are arrays, named as in a .npz file.
 [[nodiscard]] std::string query_json(const std::string& input, const QueryAnswer& answer);
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_JSON_H_
+#endif  // CHRONORMAL_WORKFLOW_JSON_JSON_H_

@@ -15,8 +15,8 @@
 ///            of the worst places, and then triangles far from these, which become fewer and are not judged. Everything
 ///            that the normals around a worst place depend on is kept as it is.
 /// Threads    on all cores; the same bytes on any number of them.
-#ifndef CHRONORMAL_WORKFLOW_REPORT_H_
-#define CHRONORMAL_WORKFLOW_REPORT_H_
+#ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_H_
+#define CHRONORMAL_WORKFLOW_REPORT_REPORT_H_
 
 #include <cstddef>
 #include <functional>
@@ -30,10 +30,10 @@
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
-#include "chronormal/workflow/json.h"
 #include "chronormal/workflow/viewers.h"
+#include "workflow/json/json.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 inline constexpr std::size_t kMostReportBytes = 30000000;  ///< of a page, its template counted in
 inline constexpr std::size_t kMostWorstPlaces = 20;
@@ -97,6 +97,6 @@ inline constexpr std::string_view kReportMark = "<!--chronormal-data-->";
 /// What the report holds, as JSON for programs. output: the name of what was written, and its size.
 [[nodiscard]] std::string report_json(const Report& report, const std::string& output, std::size_t bytes);
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_REPORT_H_
+#endif  // CHRONORMAL_WORKFLOW_REPORT_REPORT_H_

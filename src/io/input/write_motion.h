@@ -1,0 +1,20 @@
+/// write_motion() of io/output.h within limits. Private to io, workflow and the program.
+#ifndef CHRONORMAL_IO_INPUT_WRITE_MOTION_H_
+#define CHRONORMAL_IO_INPUT_WRITE_MOTION_H_
+
+#include <string>
+
+#include "chronormal/core/result.h"
+#include "chronormal/motion/motion.h"
+#include "io/bytes/expansion.h"
+
+namespace chronormal::inline internal {
+
+/// The same, where expansion is that of the file that the motion came from: a file for each keyframe repeats all faces.
+/// Errors: also those of expansion.check().
+[[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion,
+                                  bool weld = true);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_IO_INPUT_WRITE_MOTION_H_
