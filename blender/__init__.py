@@ -8,7 +8,7 @@ slide and folds open where the surface has none. The add-on
     baked.py    recognises a baked file that is imported, so that the next export begins with the author's own keys,
 
 and program.py runs the program `chronormal`, which does the baking. shown.py reads what a viewer would show from an exported file,
-truth.py asks Blender for its own normals, and settings.py has the preferences. docs/blender.md is the manual.
+truth.py asks Blender for its own normals, and settings.py has the preferences. docs/artists.md is the manual.
 """
 # SPDX-License-Identifier: MIT
 

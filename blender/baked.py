@@ -1,6 +1,6 @@
 """Recognises meshes that were baked before they were imported.
 
-A bake adds morph targets that move no vertex, and says in `extras.chronormal` which ones (docs/extras.md). Blender makes shape
+A bake adds morph targets that move no vertex, and says in `extras.chronormal` which ones (docs/formats.md). Blender makes shape
 keys of them, which turn nothing, since Blender computes normals by itself. Here they become idle: named so, without animation,
 and muted, so that the exporter leaves them out. The mark goes as well, so that the next export bakes the author's keys anew.
 """

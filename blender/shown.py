@@ -98,7 +98,7 @@ class Shown:
     normals: numpy.ndarray          # (vertices, 3)
     position_deltas: numpy.ndarray  # (targets, vertices, 3)
     normal_deltas: numpy.ndarray    # (targets, vertices, 3)
-    mark: dict[str, Any] | None     # extras.chronormal of a baked mesh (docs/extras.md)
+    mark: dict[str, Any] | None     # extras.chronormal of a baked mesh (docs/formats.md)
     track: Track | None
 
     def weights(self, own: numpy.ndarray, time: float | None = None) -> numpy.ndarray:

@@ -1,6 +1,6 @@
 // Makes the pages, each one file with everything in it.
 //
-//   node web/build.mjs report OUT.html              the page of a report, without data (docs/report.md)
+//   node web/build.mjs report OUT.html              the page of a report, without data (docs/artists.md)
 //   node web/build.mjs page PACKAGE OUT.html        the page with the engine inside; PACKAGE is the npm package with the wasm module
 import { mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';

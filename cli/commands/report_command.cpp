@@ -135,7 +135,7 @@ Command report_command() {
       "OUT.html is one page that needs nothing else and sends nothing: the mesh, a heat map of the errors in degrees, "
       "a\n"
       "slider over the motion, and a list of the worst places. It stays below 30 MB: what was left out for that is\n"
-      "said. OUT.bin is its data alone (docs/report-data.md).\n"
+      "said. OUT.bin is its data alone (docs/formats.md).\n"
       "\nExamples:\n"
       "  chronormal report face.glb -o face.html\n"
       "  chronormal report face.glb -o face.html --for three,godot --no-plan\n"

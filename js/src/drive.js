@@ -1,4 +1,4 @@
-// The weights of extra targets, from those of a mesh's own targets (docs/extras.md): what three.js, babylon.js and playcanvas.js share.
+// The weights of extra targets, from those of a mesh's own targets (docs/formats.md): what three.js, babylon.js and playcanvas.js share.
 
 // What a program without us knows as version 2. Files of another are left as they are.
 const VERSION = 2;

@@ -10,12 +10,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -189,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(Documents, Commands, testing::ValuesIn(documents_with_c
   return name;
 });
 
-// Writes small files with the names in the indented commands of README.md and docs/cli.md.
+// Writes small files with the names in the indented commands of README.md and the pages.
 void write_files_of_commands(const test::TemporaryFolder& folder) {
   const std::string faces = "f 1 2 3\nf 1 3 4\n";
   const std::string still = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + faces;
@@ -225,7 +228,11 @@ TEST(Documents, every_indented_command_of_README_runs) { run_indented_commands("
 
 TEST(Documents, every_indented_command_of_the_command_line_runs) { run_indented_commands("docs/cli.md", 14); }
 
-// The rows of docs/blend.md on real faces, as the commands above them print them now.
+TEST(Documents, every_indented_command_for_artists_runs) { run_indented_commands("docs/artists.md", 4); }
+
+TEST(Documents, every_indented_command_for_simulation_runs) { run_indented_commands("docs/simulation.md", 5); }
+
+// The rows of docs/cpp.md on real faces, as `compare --blend` finds them now.
 class RealFaces : public testing::TestWithParam<std::tuple<const char*, const char*, std::size_t>> {};
 
 TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
@@ -254,7 +261,7 @@ TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
   // The rows of the page without blanks at the rims of cells; a name stands in the first of its rows only.
   Lines shown;
   std::string last;
-  for (const std::string& line : lines_of(read(kRoot / "docs/blend.md"))) {
+  for (const std::string& line : lines_of(read(kRoot / "docs/cpp.md"))) {
     if (!line.starts_with("| ")) continue;
     std::string row = line;
     while (row.find("  ") != std::string::npos) row = replaced(row, "  ", " ");
@@ -268,13 +275,10 @@ TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
   EXPECT_EQ(shown, expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Documents, RealFaces,
-    testing::Values(std::tuple{"face", "--base face_mpfb2/base.obj face_mpfb2/targets/", 0},
-                    std::tuple{"RobotExpressive", "gltf/RobotExpressive/RobotExpressive.glb", 5},
-                    std::tuple{"MorphStressTest", "gltf/MorphStressTest/glTF/MorphStressTest.gltf", 0},
-                    std::tuple{"AnimatedMorphSphere", "gltf/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf", 0}),
-    [](const auto& tested) { return std::string(std::get<0>(tested.param)); });
+INSTANTIATE_TEST_SUITE_P(Documents, RealFaces,
+                         testing::Values(std::tuple{"face", "--base face_mpfb2/base.obj face_mpfb2/targets/", 0},
+                                         std::tuple{"RobotExpressive", "gltf/RobotExpressive/RobotExpressive.glb", 5}),
+                         [](const auto& tested) { return std::string(std::get<0>(tested.param)); });
 
 TEST(Documents, with_commands_are_found) { EXPECT_GE(documents_with_commands().size(), 5u); }
 
@@ -297,19 +301,74 @@ TEST(Documents, quoted_code_is_the_example_that_is_built_and_run) {
   EXPECT_GT(quotes_of_js, 0);
 }
 
-TEST(Documents, links_to_files_lead_somewhere) {
-  int links = 0;
+// Returns the anchors of a document's headings, as GitHub and the site make them: letters, digits and dashes.
+std::set<std::string> anchors_of(const fs::path& path) {
+  std::set<std::string> anchors;
+  for (const std::string& line : lines_of(without_code(read(path)))) {
+    const std::size_t level = line.find_first_not_of('#');
+    if (level == 0 || level == std::string::npos || line[level] != ' ') continue;
+    std::string anchor;
+    for (const char c : line.substr(level + 1)) {
+      const auto byte = static_cast<unsigned char>(c);
+      if (c == ' ') anchor += '-';
+      if (std::isalnum(byte) || c == '-' || c == '_' || byte >= 0x80) anchor += static_cast<char>(std::tolower(byte));
+    }
+    anchors.insert(anchor);
+  }
+  return anchors;
+}
+
+TEST(Documents, links_lead_to_files_and_headings) {
+  int links = 0, anchors = 0;
   for (const fs::path& path : documents()) {
     const std::string text = without_code(read(path));
     for (std::size_t at = 0; (at = text.find("](", at)) != std::string::npos; at += 2) {
-      std::string target = between(text.substr(at), "](", ")");
-      target = target.substr(0, target.find('#'));
-      if (target.empty() || target.find("://") != std::string::npos) continue;
+      const std::string link = between(text.substr(at), "](", ")");
+      if (link.empty() || link.find("://") != std::string::npos) continue;
+      const std::size_t hash = link.find('#');
+      const std::string name = link.substr(0, hash);
+      const fs::path target = name.empty() ? path : path.parent_path() / name;
       ++links;
-      EXPECT_TRUE(fs::exists(path.parent_path() / target)) << path << " links to " << target;
+      EXPECT_TRUE(fs::exists(target)) << path << " links to " << link;
+      if (hash == std::string::npos || target.extension() != ".md") continue;
+      ++anchors;
+      EXPECT_TRUE(anchors_of(target).contains(link.substr(hash + 1))) << path << " links to " << link;
     }
   }
   EXPECT_GT(links, 5);
+  EXPECT_GT(anchors, 5);
+}
+
+// Comments, messages and help name pages, and some of them a heading or a section of the theory.
+TEST(Documents, that_sources_name_are_there) {
+  static const std::regex kPage("docs/[a-z][a-z-]*[.]md(#[a-z0-9-]+)?(, section ([0-9]+))?");
+  const std::string theory = read(kRoot / "docs/theory.md");
+  int pages = 0, sections = 0;
+  for (const char* const folder :
+       {"blender", "capi", "cli", "examples", "include", "src", "tests", "tools", "vtk", "js", "python", "web"}) {
+    for (auto entry = fs::recursive_directory_iterator(kRoot / folder); entry != fs::end(entry); ++entry) {
+      if (entry->path().filename() == "node_modules" || entry->path().filename() == "build")
+        entry.disable_recursion_pending();
+      if (!entry->is_regular_file() || entry->path() == kRoot / "tests/docs/docs_test.cpp") continue;
+      const std::string text = read(entry->path());
+      if (text.find("docs/") == std::string::npos) continue;
+      for (std::sregex_iterator match(text.begin(), text.end(), kPage), end; match != end; ++match) {
+        const std::string page = match->str().substr(0, match->str().find_first_of("#,"));
+        ++pages;
+        ASSERT_TRUE(fs::exists(kRoot / page)) << entry->path() << " names " << page;
+        if ((*match)[1].matched) {
+          EXPECT_TRUE(anchors_of(kRoot / page).contains((*match)[1].str().substr(1)))
+              << entry->path() << " names " << match->str();
+        }
+        if (!(*match)[3].matched || page != "docs/theory.md") continue;
+        ++sections;
+        EXPECT_NE(theory.find("\n## " + (*match)[3].str() + " "), std::string::npos)
+            << entry->path() << " names " << match->str();
+      }
+    }
+  }
+  EXPECT_GT(pages, 50);
+  EXPECT_GT(sections, 10);
 }
 
 TEST(Documents, the_changelog_and_the_citation_know_the_version) {

@@ -24,10 +24,10 @@ if(FROM STREQUAL "package")
   list(APPEND options -DCMAKE_PREFIX_PATH=${folder}/moved)
   list(APPEND programs engine core_by_pkg_config engine_by_pkg_config c_by_pkg_config c_by_component)
 elseif(FROM STREQUAL "folder")
-  # The project that docs/examples.md shows, with this repository as its folder.
+  # The project that docs/cpp.md shows, with this repository as its folder.
   set(project ${folder}/project)
   set(programs first_steps)
-  file(READ ${SOURCE}/docs/examples.md page)
+  file(READ ${SOURCE}/docs/cpp.md page)
   string(REGEX MATCH "```cmake\n([^`]*)```" block "${page}")
   file(WRITE ${project}/CMakeLists.txt "${CMAKE_MATCH_1}")
   file(COPY ${SOURCE}/examples/first_steps.cpp DESTINATION ${project})

@@ -1,10 +1,10 @@
 // What is left of a bake after other people's tools: gltf-transform and gltfpack, as people run them. Run by ctest as
-// `pipelines`; docs/pipelines.md has the tables, whose lines and figures are checked here.
+// `pipelines`; docs/web.md has the tables, whose lines and figures are checked here.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_DATA           moving files by other people, where it is set
 //   CHRONORMAL_FULL=1         every tool, on every file; else one file, with the tools that do the most
-//   CHRONORMAL_UPDATE_DOCS=1  writes the figures of docs/pipelines.md, with the two above
+//   CHRONORMAL_UPDATE_DOCS=1  writes the figures of docs/web.md, with the two above
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -22,7 +22,7 @@ import { newComplaints } from './validator.mjs';
 const FULL = process.env.CHRONORMAL_FULL === '1';
 const DATA = process.env.CHRONORMAL_DATA;
 const NO_DATA = !FULL || !DATA ? 'set CHRONORMAL_FULL=1, and CHRONORMAL_DATA to the folder of the real data' : false;
-const PAGE = fileURLToPath(new URL('../../docs/pipelines.md', import.meta.url));
+const PAGE = fileURLToPath(new URL('../../docs/web.md', import.meta.url));
 
 // Tools, and by how many degrees a baked file may be worse after them than a file with plain end-point deltas.
 const PACK_12 = '-vn 12 -vtf -af 0';
@@ -155,7 +155,7 @@ test('gltfpack -ke leaves what drives extra targets where audit and three.js fin
   weights.forEach((weight, i) => assert.ok(Math.abs(shown[i] - weight) < 1e-6, String(shown)));
 });
 
-// docs/pipelines.md: tables under a line <!-- measured: NAME -->, whose rows begin with a line in backticks.
+// docs/web.md: tables under a line <!-- measured: NAME -->, whose rows begin with a line in backticks.
 const lines = readFileSync(PAGE, 'utf8').split('\n');
 
 function blocksOfPage() {
@@ -198,7 +198,7 @@ async function measureRow(columns, line, name) {
   return `| ${cells.join(' | ')} |`;
 }
 
-describe('docs/pipelines.md', () => {
+describe('docs/web.md', () => {
   test('has lines that run', async () => {
     const blocks = blocksOfPage();
     assert.ok(blocks.length >= 3);

@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/blender.md, in a window of Blender with the add-on. Run by tools/make_blender_pictures:
+"""Draws the pictures of docs/artists.md, in a window of Blender with the add-on. Run by tools/make_blender_pictures:
 
     blender --factory-startup --enable-event-simulate --python pictures.py -- PROGRAM MODELS FOLDER
 

@@ -1,4 +1,4 @@
-"""Draws the picture of docs/vtk.md, the stock filter of VTK beside ours half-way through a morph, and prints the table of
+"""Draws the picture of docs/simulation.md, the stock filter of VTK beside ours half-way through a morph, and prints the table of
 that page, which shows how far the normals of both are off on the built-in morphs.
 
     picture.py PROGRAM            writes the picture into docs/pictures
@@ -112,8 +112,8 @@ def main():
         Image.fromarray(np.ascontiguousarray(picture)).quantize(160, dither=Image.Dither.NONE).save(PICTURE, optimize=True)
         return 0
     different = 0
-    if text not in (ROOT / "docs" / "vtk.md").read_text():
-        print("the table of docs/vtk.md is another", file=sys.stderr)
+    if text not in (ROOT / "docs" / "simulation.md").read_text():
+        print("the table of docs/simulation.md is another", file=sys.stderr)
         different += 1
     before = np.asarray(Image.open(PICTURE).convert("RGB"), dtype=float)
     if before.shape != picture.shape or np.abs(before - picture).mean() > 2:

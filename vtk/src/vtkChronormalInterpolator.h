@@ -2,7 +2,7 @@
 ///
 /// It takes the place of vtkTemporalInterpolator in a pipeline: positions and all other arrays are interpolated as
 /// there, and the normals of every vtkPolyData, alone or in blocks of composite data, are those of the mesh as it is at
-/// the requested time, and not mixtures of stored ones. See docs/vtk.md.
+/// the requested time, and not mixtures of stored ones. See docs/simulation.md.
 ///
 /// Normals    Point normals are sums over the faces around a point, weighted by area, and cell normals those of the
 ///            cell; both are of length 1, or (0, 0, 0) where there is no face. Normals that the input has are replaced;

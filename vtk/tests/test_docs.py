@@ -1,4 +1,4 @@
-"""The lines of Python in docs/vtk.md run, and give right normals."""
+"""The lines of Python in docs/simulation.md run, and give right normals."""
 
 import re
 import unittest
@@ -8,7 +8,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from meshes import Steps, between, degrees, point_normals, triangles
 
-PAGE = Path(__file__).resolve().parent.parent.parent / "docs" / "vtk.md"
+PAGE = Path(__file__).resolve().parent.parent.parent / "docs" / "simulation.md"
 
 
 class DocumentTest(unittest.TestCase):

@@ -1,4 +1,4 @@
-// The data of a report: the container that `chronormal report` writes (docs/report-data.md), as JSON with typed arrays in it.
+// The data of a report: the container that `chronormal report` writes (docs/formats.md), as JSON with typed arrays in it.
 
 const MAGIC = 'CHRONRPT', VERSION = 1, HEADER = 16;
 const TYPES = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, i16: Int16Array, u8: Uint8Array };

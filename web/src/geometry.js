@@ -1,5 +1,5 @@
 // Right normals from positions: the cross products of faces, added up over those who share a normal (docs/theory.md, sections 1,
-// 8 and 9), and what the author of a file shows beyond that (docs/report-data.md). Everything is double, and nothing is allocated
+// 8 and 9), and what the author of a file shows beyond that (docs/formats.md). Everything is double, and nothing is allocated
 // in a step.
 
 /** No element: a vertex of a flat primitive, or one without a face. */

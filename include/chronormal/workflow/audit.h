@@ -253,7 +253,7 @@ struct AuditLimits {
 
 /// Audits the targets of all meshes, each alone, the expressions of an avatar, the poses in which the file opens (where
 /// a mesh or a node gives targets weights), and all weight tracks. Extra targets of a bake are no subjects: with each
-/// target alone, in expressions and in poses that are asked for, they get the weights that follow (docs/extras.md); a
+/// target alone, in expressions and in poses that are asked for, they get the weights that follow (docs/formats.md); a
 /// track, and the pose in which the file opens, give them what the file says. A file in which nothing moves has no
 /// subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an

@@ -193,7 +193,7 @@ struct GltfBake {
   std::size_t left_out_bytes = 0;    ///< of arrays of the source that nothing refers to any more
   std::size_t converted_tracks = 0;  ///< weight tracks that are cubic splines now
   bool changed = false;
-  std::string drivers;  ///< what drives the extra targets of all meshes, as JSON of its own (docs/extras.md)
+  std::string drivers;  ///< what drives the extra targets of all meshes, as JSON of its own (docs/formats.md)
 };
 
 /// Bakes a document into a new edit of it, which the caller writes. Meshes that a bake was at before stay as they are.

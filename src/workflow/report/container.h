@@ -1,4 +1,4 @@
-/// The container of a report: JSON, and the arrays that it names (docs/report-data.md). Private to workflow.
+/// The container of a report: JSON, and the arrays that it names (docs/formats.md). Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_CONTAINER_H_
 #define CHRONORMAL_WORKFLOW_REPORT_CONTAINER_H_
 

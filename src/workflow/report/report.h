@@ -4,7 +4,7 @@
 ///     Result<Report> found = report(input.value(), {});
 ///     write_output("face.html", report_page(found.value(), page_template).value(), false);
 ///
-/// The report is one container of bytes (docs/report-data.md): the mesh, what moves it, what is stored of normals, the
+/// The report is one container of bytes (docs/formats.md): the mesh, what moves it, what is stored of normals, the
 /// samples that audit() judged with the worst and the mean error of each, the worst places, and as JSON what audit, the
 /// plan of bake and compare say. What is right and what is shown at any moment in between is computed by the page, from
 /// the same positions and normals, so that its numbers at the worst places are those of the audit.

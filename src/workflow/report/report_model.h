@@ -1,4 +1,4 @@
-/// A report before it becomes bytes: the parts, their motions and the worst places, as docs/report-data.md has them.
+/// A report before it becomes bytes: the parts, their motions and the worst places, as docs/formats.md has them.
 /// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_

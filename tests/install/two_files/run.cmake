@@ -1,5 +1,5 @@
 # cmake -DSOURCE=... -DFOLDER=... -DCOMPILER=... [-DFLAGS=...] [-DRUN=...] [-DLIBRARY=...] -P: writes the two files of
-# tools/two_files.py, compiles them and the example of docs/examples.md with the command there, and compares what the
+# tools/two_files.py, compiles them and the example of docs/cpp.md with the command there, and compares what the
 # example and bits.cpp print with what they print with the library, which LIBRARY (the command line behind them) links;
 # without it, with what the last run in FOLDER that had a library left.
 file(MAKE_DIRECTORY ${FOLDER})
@@ -17,9 +17,9 @@ separate_arguments(LIBRARY)
 set(two_files ${CMAKE_CURRENT_LIST_DIR})
 
 run(said ${SOURCE}/tools/two_files.py ${FOLDER})
-file(READ ${SOURCE}/docs/examples.md page)
+file(READ ${SOURCE}/docs/cpp.md page)
 if(NOT page MATCHES "```cpp\n([^`]*#include \"chronormal_core.h\"[^`]*)```[^`]*```text\n([^`]*)```")
-  message(FATAL_ERROR "docs/examples.md shows no example with the two files, or not what it prints")
+  message(FATAL_ERROR "docs/cpp.md shows no example with the two files, or not what it prints")
 endif()
 file(WRITE ${FOLDER}/example.cpp "${CMAKE_MATCH_1}")
 set(printed "${CMAKE_MATCH_2}")
@@ -55,6 +55,6 @@ foreach(program example bits)
   endif()
   message(STATUS "${program}: the same\n${said}")
   if(program STREQUAL "example" AND NOT said STREQUAL printed)
-    message(FATAL_ERROR "docs/examples.md has\n${printed}")
+    message(FATAL_ERROR "docs/cpp.md has\n${printed}")
   endif()
 endforeach()

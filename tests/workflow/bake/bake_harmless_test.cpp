@@ -69,7 +69,7 @@ std::vector<Weights> on_track(const Baked& baked, std::size_t instants = 137) {
   return result;
 }
 
-// Each target alone, with what docs/extras.md says of the others.
+// Each target alone, with what docs/formats.md says of the others.
 std::vector<Weights> alone(const Baked& baked) {
   std::vector<Weights> result;
   const Json& mesh = baked.mesh();

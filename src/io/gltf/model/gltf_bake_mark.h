@@ -1,4 +1,4 @@
-/// The mark that a bake leaves in extras.chronormal (docs/extras.md): written and read here. Private to io and
+/// The mark that a bake leaves in extras.chronormal (docs/formats.md): written and read here. Private to io and
 /// workflow.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_BAKE_MARK_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_BAKE_MARK_H_

@@ -55,7 +55,7 @@ class MeshWriter {
   /// Gives weights and names to the targets that were appended. rest has their weights in each pose that stands still,
   /// as MeshWeights has these, where no formula gives them.
   void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
-  /// Writes down what was done (docs/extras.md): in the mesh, where the next bake and an audit look for it, and where
+  /// Writes down what was done (docs/formats.md): in the mesh, where the next bake and an audit look for it, and where
   /// there are extra targets, in the nodes that carry the mesh, for viewers that hand on the extras of nodes alone.
   /// Returns the nodes whose extras are no object, which stay as they are.
   [[nodiscard]] std::vector<std::size_t> set_mark(const GltfBakeMark& mark);
