@@ -1,7 +1,7 @@
 # Sourced by ./run: makes what a release has, in dist/.
 
 # The steps in order. Each may be named alone: ./run dist program sums.
-dist_steps=(source program wheel deb npm page core blender sbom sums)
+dist_steps=(source program wheel deb npm page core site blender sbom sums)
 
 # dist STEP...: all steps where none is named.
 dist() {
@@ -124,6 +124,15 @@ dist_page() {
 
 # The library as two files.
 dist_core() { /usr/bin/python3 "$root/tools/two_files.py" "$dist"; }
+
+# The pages and the reference of the headers, to read from a disk or a server.
+dist_site() {
+  dist_packages site
+  local name=chronormal-$version-site
+  mkdir -p "$root/build/dist"
+  "$root/tools/site/make" "$root/build/dist/$name"
+  pack "$root/build/dist/$name" "$dist/$name.tar.gz"
+}
 
 # blender_system ARCHITECTURE: what the Blender add-on calls this kind of machine.
 blender_system() { case $1 in x86_64) echo linux-x64 ;; aarch64) echo linux-arm64 ;; *) echo "linux-$1" ;; esac; }

@@ -24,7 +24,7 @@ everywhere  30  web,node,wasm     ^tests/viewers/same_bytes
 pages       15  latex,plots,python  ^tools/(paper|weightings|benchmarks|support|python|uses|truth)/|^cli/reports/compare
 scale       28  vtk,plots         ^(vtk|cli/ranks|tools/scale)/
 peers       20  bench,peers       ^bench/
-dist        16  dist,python,node  ^tools/dist|^tests/dist/|^packaging/|^cmake/(sources|install|product)|^\.github/|^run$
+dist        16  dist,python,node,site  ^tools/(dist|site)|^tests/dist/|^packaging/|^cmake/(sources|install|product)|^\.github/|^run$
 '
 
 part_names() { awk 'NF { print $1 }' <<<"$parts_table"; }

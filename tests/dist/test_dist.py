@@ -17,7 +17,9 @@ import tarfile
 import tempfile
 import unittest
 import zipfile
+from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import unquote
 
 import yaml
 
@@ -241,6 +243,76 @@ class Blender(Unpacked):
     def test_has_the_version_of_the_project(self):
         self.assertIn(f'version = "{VERSION}"\n', (self.addon / "blender_manifest.toml").read_text())
         self.assertIn(f'"version": ({VERSION.replace(".", ", ")})', (self.addon / "__init__.py").read_text())
+
+
+class Links(HTMLParser):
+    """Collects what a page links to and loads, and the names of its places."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.links, self.loaded, self.places = [], [], set()
+        self.feed(path.read_text())
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name == "id" or (name == "name" and tag == "a"):
+                self.places.add(value)
+            elif name in ("href", "src") and value:
+                (self.links if tag == "a" else self.loaded).append(value)
+
+
+class Site(Unpacked):
+    """The pages and the reference of the headers, as they are read from a disk."""
+
+    def setUp(self):
+        super().setUp()
+        with tarfile.open(artefact(f"chronormal-{VERSION}-site.tar.gz")) as archive:
+            archive.extractall(self.folder)
+        (self.site,) = self.folder.iterdir()
+
+    def test_links_lead_somewhere_and_nothing_is_loaded_from_elsewhere(self):
+        pages = {path: Links(path) for path in self.site.rglob("*.html")}
+        self.assertGreater(len(pages), 100)
+        for path, page in pages.items():
+            for link in page.loaded:
+                self.assertNotRegex(link, r"^(\w+:)?/", path)
+            for link in [*page.links, *page.loaded]:
+                if re.match(r"\w+:", link):
+                    continue
+                name, _, place = unquote(link).partition("#")
+                name = name.partition("?")[0]
+                target = (path.parent / name).resolve() if name else path
+                self.assertTrue(target.is_file(), f"{path} links to {link}")
+                if place and target in pages and place != "top":
+                    self.assertIn(place, pages[target].places, f"{path} links to {link}")
+        for path in self.site.rglob("*.css"):
+            self.assertNotRegex(path.read_text(), r"@import url\(/|url\(.?https?:", path)
+
+    def test_has_every_page_and_header(self):
+        for path in [*ROOT.glob("docs/*.md"), *ROOT.glob("docs/decisions/*.md")]:
+            self.assertTrue((self.site / path.relative_to(ROOT)).with_suffix(".html").is_file(), path)
+        headers = {re.sub("_8h(_source)?$", "", path.stem) for path in (self.site / "api").glob("*_8h.html")}
+        for path in (ROOT / "include").rglob("*.h"):
+            self.assertIn(path.stem.replace("_", "__"), {name.split("_2")[-1] for name in headers}, path)
+
+    def test_can_be_searched_without_a_server(self):
+        self.assertTrue((self.site / "searchindex.js").read_text().startswith("Search.setIndex("))
+        self.assertIn("meshlet", (self.site / "searchindex.js").read_text())
+        self.assertTrue(any("MeshNormals" in path.read_text() for path in (self.site / "api/search").glob("classes_*.js")))
+
+    def test_follows_a_system_that_is_dark(self):
+        for name in ("index.html", "docs/cli.html"):
+            after = (self.site / name).read_text().partition("prefers-color-scheme: dark")[2]
+            self.assertIn("--color-background-primary", after.partition("</style>")[0])
+
+    def test_is_not_made_where_a_link_or_a_comment_is_wrong(self):
+        for file, line in (("docs/cli.md", "[nothing](nothing.md)"), ("include/chronormal/core/views.h", "/// \\param nothing")):
+            copy = self.folder / Path(file).name
+            run("git", "clone", "-q", "--depth=1", f"file://{ROOT}", copy)
+            with (copy / file).open("a") as opened:
+                opened.write(f"\n{line}\n" + "void f(int a);\n" * file.endswith(".h"))
+            with self.assertRaisesRegex(AssertionError, "nothing"):
+                run(copy / "tools/site/make", copy / "made")
 
 
 class Wheel(Unpacked):

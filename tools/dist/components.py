@@ -35,6 +35,7 @@ ARTEFACTS = {
     "blender": ("chronormal-blender-*.zip", "dist", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
     "header": ("chronormal_core.h", None, [], "SOURCE"),
     "core": ("chronormal_core.cpp", None, [], "SOURCE"),
+    "site": ("chronormal-*-site.tar.gz", None, [], "ARCHIVE"),
     "source": ("chronormal-*.tar.gz", None, [], "SOURCE"),
 }
 WITH_PAGE = ("program", "deb", "npm", "page", "blender")  # with what the pages of web/ are made of

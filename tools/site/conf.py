@@ -1,0 +1,68 @@
+"""Configures Sphinx for the site (tools/site/make): the pages of the repository as they are, with a navigation.
+
+The source folder is the repository itself, so that links between pages, and from pages to files, mean what they mean there.
+"""
+
+import re
+from pathlib import Path
+
+import furo
+
+ROOT = Path(__file__).resolve().parents[2]
+
+project = "chronormal"
+copyright = "the chronormal authors, MIT licence"
+version = release = re.search(r"project\(chronormal VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
+
+extensions = ["myst_parser"]
+root_doc = "README"
+include_patterns = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "js/README.md", "packaging/README.md", "docs/**.md"]
+myst_heading_anchors = 4
+highlight_language = "none"
+# The theme of Debian's package furo: dark and light, on phones, with a search that needs no server. Its style sheet has the
+# dark colours for the button alone, since sassc dropped those for systems that are set to dark.
+html_theme = "furo"
+STYLES = (Path(furo.__file__).parent / "theme/furo/static/styles/furo.css").read_text()
+DARK = STYLES[STYLES.index('body[data-theme="dark"] {'):STYLES.index(".only-light {\n      display")]
+html_theme_options = {"dark_css_variables": dict(re.findall(r"--([\w-]+): ([^;]+);", DARK))}
+html_title = f"chronormal {version}"
+templates_path = ["templates"]
+html_sidebars = {"**": [*(f"sidebar/{part}.html" for part in ("brand", "search", "scroll-start", "navigation")), "api.html",
+                        "sidebar/scroll-end.html"]}
+html_copy_source = html_show_sourcelink = False
+html_show_sphinx = False
+
+# The groups of the navigation. Pages of docs/ that stand in none are results.
+GROUPS = {
+    "Getting started": ["docs/artists", "docs/web", "docs/simulation", "docs/cpp", "docs/python"],
+    "Reference": ["docs/cli", "docs/formats", "docs/stability", "The npm package <js/README>"],
+    "Results": [],
+    "Theory and code": ["docs/theory", "docs/architecture", "docs/decisions/README"],
+    "Project": ["CONTRIBUTING", "packaging/README", "SECURITY", "CHANGELOG"],
+}
+
+
+def navigation():
+    """Returns the tables of contents that stand, hidden, at the end of the first page."""
+    placed = {page for pages in GROUPS.values() for page in pages}
+    groups = dict(GROUPS)
+    groups["Results"] = [f"docs/{path.stem}" for path in sorted((ROOT / "docs").glob("*.md")) if f"docs/{path.stem}" not in placed]
+    tables = []
+    for caption, pages in groups.items():
+        tables.append("\n".join(["```{toctree}", ":hidden:", f":caption: {caption}", "", *pages, "```"]))
+    return "\n\n".join(tables)
+
+
+def add_navigation(app, page, source):
+    if page == root_doc:
+        source[0] += "\n\n" + navigation() + "\n"
+    elif page == "js/README":  # whose picture is put beside it where the npm package is made
+        source[0] = source[0].replace("](head.png)", "](../docs/pictures/head.png)")
+    elif page == "docs/decisions/README":
+        entries = sorted(path.stem for path in (ROOT / "docs/decisions").glob("0*.md"))
+        source[0] += "\n\n" + "\n".join(["```{toctree}", ":hidden:", "", *entries, "```"]) + "\n"
+
+
+def setup(app):
+    app.connect("source-read", add_navigation)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
