@@ -27,7 +27,7 @@ BlendSet sheet() {
   return set;
 }
 
-// What lifts a part of the sheet, smoothly.
+// Returns a target that lifts a part of the sheet smoothly.
 BlendTarget bump(const BlendSet& set, const char* name, float x, float y, const Vec3f& push) {
   std::vector<float> deltas;
   for (std::size_t v = 0; v < set.base.size(); v += 3) {
@@ -38,7 +38,7 @@ BlendTarget bump(const BlendSet& set, const char* name, float x, float y, const 
   return BlendTarget::from_dense(deltas, name);
 }
 
-// Between these normals and those of the blended positions, in float32; radians.
+// Returns the largest angle between these normals and normals of the blended positions in float32, in radians.
 double largest_difference(const BlendSet& set, const NormalGroups& groups, const std::vector<double>& weights,
                           const std::vector<float>& normals) {
   std::vector<double> blended(set.base.size());
@@ -59,7 +59,7 @@ double largest_difference(const BlendSet& set, const NormalGroups& groups, const
 }  // namespace
 
 int main() {
-  // Three targets of a face, so to say: two that overlap, and one elsewhere.
+  // Make three targets as a face has them: two that overlap, and one elsewhere.
   BlendSet set = sheet();
   set.targets = {bump(set, "smile", -0.4F, 0, {0.1F, 0, 0.3F}), bump(set, "puff", -0.2F, 0, {-0.1F, 0.1F, 0.2F}),
                  bump(set, "brow", 0.5F, 0.5F, {0, 0.1F, 0.2F})};
@@ -68,7 +68,7 @@ int main() {
     return 1;
   }
 
-  // Known before anything is made.
+  // Predict the cost before anything is made.
   const NormalGroups groups = NormalGroups::of_vertices(set.topology, separate_points(kSide * kSide));
   const BlendCost cost = predict_blend_cost(set, groups);
   std::printf("%zu pairs overlap, %zu KiB of terms\n", cost.overlapping_pairs, (cost.bytes - cost.least_bytes) / 1024);
@@ -79,11 +79,11 @@ int main() {
     done = normals.unit_normals(weights, VectorView<float>::packed(xyz.data(), normals.size()));
     return xyz;
   };
-  // What engines do: the base normal, and a delta per target that is right where it is alone and its weight is 1.
+  // Do what engines do: add a delta for each target, which is right where it is alone and its weight is 1.
   BlendEvaluation done;
   const std::vector<float> base = unit_normals({0, 0, 0}, done), smile = unit_normals({1, 0, 0}, done),
                            puff = unit_normals({0, 1, 0}, done), brow = unit_normals({0, 0, 1}, done);
-  std::printf("\nsmile  puff  brow   path   touched  engines are off by\n");
+  std::printf("\nsmile  puff  brow   path   touched  error of engines\n");
   for (const std::vector<double>& w :
        {std::vector<double>{1, 0, 0}, {0.5, 0, 0}, {0.5, 0.5, 0}, {1, 1, 0}, {1, 1, 1}}) {
     const std::vector<float> exact = unit_normals(w, done);

@@ -3,8 +3,8 @@
 // A ball (a point here) moves on a straight line, and so does every vertex of the sheet. Containment::crossings() finds
 // where it goes through: the face, the time, and the unit normal of the face at that time. It takes closed meshes
 // alone, so that it can promise that no contact is missed; the sheet becomes the top of a cushion. At the contact the
-// velocity relative to the sheet is mirrored, and the normal decides where the ball goes. A normal that is off by an
-// angle sends it off by up to twice that.
+// velocity relative to the sheet is mirrored, and the normal decides where the ball goes. An error of the normal turns the
+// outgoing direction by up to twice as much.
 
 #include <array>
 #include <cmath>
@@ -169,7 +169,7 @@ int main() {
   }
 
   std::printf("%d balls, %d hit the sheet\n\n", kBalls, hits);
-  std::printf("normal   outgoing direction off by  go through\n");
+  std::printf("normal    error of the direction  go through\n");
   std::printf("         mean deg         max deg       balls\n");
   for (const Choice& choice : choices)
     std::printf("%-7s  %8.4f  %14.4f  %10d\n", choice.name, choice.sum / hits, choice.max, choice.through);

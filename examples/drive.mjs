@@ -1,7 +1,7 @@
-// Gives the extra targets of a baked file their weights: what a program does that sets weights by itself, instead of
-// playing the animations of the file. `chronormal` is extras.chronormal of the mesh, or of a node that carries it.
+// Gives the correction targets of a baked file their weights, for a program that sets weights by itself instead of playing
+// the animations of the file. `chronormal` is extras.chronormal of the mesh, or of a node that carries it.
 
-// The weight of one extra target, from the weights w of the mesh's own targets.
+// Returns the weight of one correction target, from the weights w of the mesh's own targets.
 function weightOf({ linear, quadratic }, w) {
   let sum = 0;
   for (const [i, a] of linear) sum += a * w[i];
@@ -9,13 +9,13 @@ function weightOf({ linear, quadratic }, w) {
   return sum;
 }
 
-// Writes the weights of all extra targets into w.
+// Writes the weights of all correction targets into w.
 export function drive(chronormal, w) {
   for (const extra of chronormal.extras) w[extra.target] = weightOf(extra, w);
 }
 
-// What drives the extra targets of a mesh: its own mark, or else that of the nearest object above. A mesh of several
-// primitives is a node with a child for each, and gltfpack puts a mesh into a new node below that with the extras.
+// Returns the mark of a mesh, or else the mark of the nearest object above. A mesh of several primitives is a node with a
+// child for each, and gltfpack puts a mesh into a new node below the one with the extras.
 function markAbove(mesh, extrasOf) {
   for (let object = mesh; object; object = object.parent) {
     const mark = extrasOf(object)?.chronormal;
@@ -23,7 +23,7 @@ function markAbove(mesh, extrasOf) {
   }
 }
 
-// three.js hands on the extras of meshes and of nodes.
+// Drives a scene of three.js, which passes on the extras of meshes and of nodes.
 export function driveThree(scene) {
   scene.traverse((object) => {
     if (!object.morphTargetInfluences) return;
@@ -32,7 +32,7 @@ export function driveThree(scene) {
   });
 }
 
-// Babylon.js hands on those of nodes.
+// Drives a scene of Babylon.js, which passes on the extras of nodes.
 export function driveBabylon(scene) {
   for (const mesh of scene.meshes) {
     const chronormal = markAbove(mesh, ({ metadata }) => metadata?.gltf?.extras);
