@@ -29,6 +29,7 @@ html_title = f"chronormal {version}"
 templates_path = ["templates"]
 html_sidebars = {"**": [*(f"sidebar/{part}.html" for part in ("brand", "search", "scroll-start", "navigation")), "api.html",
                         "sidebar/scroll-end.html"]}
+pygments_style = "xcode"
 html_copy_source = html_show_sourcelink = False
 html_show_sphinx = False
 
