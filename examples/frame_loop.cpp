@@ -41,7 +41,7 @@ std::vector<std::uint32_t> triangles() {
   return corners;
 }
 
-// The job system of the engine. Here a job is a thread.
+// Stands for the job system of the engine. Here a job is a thread.
 template <class Job>
 void run_jobs(const Job& job) {
   std::vector<std::thread> threads;
@@ -61,7 +61,7 @@ int main() {
   for (int k = 0; k < 4; ++k) keyframes.push_back(flag(0.7 * k));
   const auto at = [&](std::size_t k) { return VectorView<const float>::packed(keyframes[k]); };
 
-  // Once: a twentieth of a degree is enough for shading.
+  // Prepare once. A twentieth of a degree is enough for shading.
   const Topology topology = Topology::triangles(kRow * kRow, triangles()).value();
   MeshNormals normals = MeshNormals::make(topology, {.tolerance = kCompactTolerance}).value();
   if (!normals.set_segment(at(0), at(1))) return 1;
@@ -96,7 +96,7 @@ int main() {
       if (VectorView<float>::packed(whole)[i] != in_buffer[i]) return 1;
   }
 
-  // A slider rig: the flag at rest, and one shape. Weights are set once for a frame, and any thread writes a range.
+  // Make a slider rig of the flag at rest and one shape. Weights are set once for a frame, and any thread writes a range.
   std::vector<float> deltas(keyframes[0].size());
   for (std::size_t i = 0; i < deltas.size(); ++i) deltas[i] = keyframes[2][i] - keyframes[0][i];
   if (!normals.set_targets({topology, keyframes[0], {BlendTarget::from_dense(deltas, "blow")}})) return 1;

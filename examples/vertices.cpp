@@ -8,7 +8,7 @@ namespace {
 
 using namespace chronormal;
 
-// Vertices 0 and 1 at x = 0, and so on along the strip; 4 and 5 at the places of 2 and 3.
+// Returns a keyframe of the strip: vertices 0 and 1 are at x = 0, and so on; 4 and 5 are at the places of 2 and 3.
 Motion::Keyframe strip(double time, float down) {
   constexpr float kX[] = {0, 1, 1, 2, 2.5F, 3}, kHeight[] = {0, 0.3F, 0.3F, 0, -1, -2};
   Motion::Keyframe keyframe{{}, time, {}};
@@ -30,16 +30,16 @@ int main() {
   motion.keyframes = {strip(0, 1), strip(1, 0)};
   motion.connect_as_sequence();
 
-  // Once: vertices that coincide in all keyframes are one, and edges of more than 40 degrees in keyframe 0 are hard.
+  // Say once who shares a normal: vertices that coincide in all keyframes, but not across edges of more than 40 degrees.
   const auto groups = NormalGroups::by_crease_angle(motion, weld_coincident(motion), 40);
   if (!groups.ok()) {
     std::fprintf(stderr, "%s\n", groups.error().text().c_str());
     return 1;
   }
-  // Once per segment: sums of the control normals of faces, exact for every t between.
+  // Prepare each segment once: sums of the control normals of faces, exact for every t between.
   const NormalCurves curves = NormalCurves::of_groups(motion.segment(0), groups.value());
 
-  // As often as you like: the different normals as a stream, then a copy to every corner that shows them.
+  // Evaluate as often as you like: the different normals as a stream, then a copy to every corner that shows them.
   const std::size_t corners = groups.value().element_of_output().size();
   std::vector<float> different(3 * curves.size()), normals(3 * corners);
   std::printf("%zu corners, %zu different normals\n", corners, curves.size());
