@@ -3,8 +3,8 @@
 // A ball (a point here) moves on a straight line, and so does every vertex of the sheet. Containment::crossings() finds
 // where it goes through: the face, the time, and the unit normal of the face at that time. It takes closed meshes
 // alone, so that it can promise that no contact is missed; the sheet becomes the top of a cushion. At the contact the
-// velocity relative to the sheet is mirrored, and the normal decides where the ball goes. An error of the normal turns the
-// outgoing direction by up to twice as much.
+// velocity relative to the sheet is mirrored, and the normal decides where the ball goes. An error of the normal turns
+// the outgoing direction by up to twice as much.
 
 #include <array>
 #include <cmath>

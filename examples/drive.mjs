@@ -1,5 +1,5 @@
-// Gives the correction targets of a baked file their weights, for a program that sets weights by itself instead of playing
-// the animations of the file. `chronormal` is extras.chronormal of the mesh, or of a node that carries it.
+// Gives the correction targets of a baked file their weights, for a program that sets weights by itself instead of
+// playing the animations of the file. `chronormal` is extras.chronormal of the mesh, or of a node that carries it.
 
 // Returns the weight of one correction target, from the weights w of the mesh's own targets.
 function weightOf({ linear, quadratic }, w) {
@@ -14,8 +14,8 @@ export function drive(chronormal, w) {
   for (const extra of chronormal.extras) w[extra.target] = weightOf(extra, w);
 }
 
-// Returns the mark of a mesh, or else the mark of the nearest object above. A mesh of several primitives is a node with a
-// child for each, and gltfpack puts a mesh into a new node below the one with the extras.
+// Returns the mark of a mesh, or else the mark of the nearest object above. A mesh of several primitives is a node with
+// a child for each, and gltfpack puts a mesh into a new node below the one with the extras.
 function markAbove(mesh, extrasOf) {
   for (let object = mesh; object; object = object.parent) {
     const mark = extrasOf(object)?.chronormal;

@@ -96,7 +96,7 @@ int main() {
       if (VectorView<float>::packed(whole)[i] != in_buffer[i]) return 1;
   }
 
-  // Make a slider rig of the flag at rest and one shape. Weights are set once for a frame, and any thread writes a range.
+  // Make a slider rig of the flag at rest and one shape. Weights are set once for a frame; any thread writes a range.
   std::vector<float> deltas(keyframes[0].size());
   for (std::size_t i = 0; i < deltas.size(); ++i) deltas[i] = keyframes[2][i] - keyframes[0][i];
   if (!normals.set_targets({topology, keyframes[0], {BlendTarget::from_dense(deltas, "blow")}})) return 1;
