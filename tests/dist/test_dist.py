@@ -298,7 +298,8 @@ class Site(Unpacked):
     def test_can_be_searched_without_a_server(self):
         self.assertTrue((self.site / "searchindex.js").read_text().startswith("Search.setIndex("))
         self.assertIn("meshlet", (self.site / "searchindex.js").read_text())
-        self.assertTrue(any("MeshNormals" in path.read_text() for path in (self.site / "api/search").glob("classes_*.js")))
+        classes = (self.site / "api/search").glob("classes_*.js")
+        self.assertTrue(any("MeshNormals" in path.read_text() for path in classes))
 
     def test_follows_a_system_that_is_dark(self):
         for name in ("index.html", "docs/cli.html"):
@@ -306,7 +307,8 @@ class Site(Unpacked):
             self.assertIn("--color-background-primary", after.partition("</style>")[0])
 
     def test_is_not_made_where_a_link_or_a_comment_is_wrong(self):
-        for file, line in (("docs/cli.md", "[nothing](nothing.md)"), ("include/chronormal/core/views.h", "/// \\param nothing")):
+        wrong = {"docs/cli.md": "[nothing](nothing.md)", "include/chronormal/core/views.h": "/// \\param nothing"}
+        for file, line in wrong.items():
             copy = self.folder / Path(file).name
             run("git", "clone", "-q", "--depth=1", f"file://{ROOT}", copy)
             with (copy / file).open("a") as opened:

@@ -1,6 +1,7 @@
 """Configures Sphinx for the site (tools/site/make): the pages of the repository as they are, with a navigation.
 
-The source folder is the repository itself, so that links between pages, and from pages to files, mean what they mean there.
+The source folder is the repository itself, so that links between pages, and from pages to files, mean what they mean
+there.
 """
 
 import re
@@ -16,19 +17,20 @@ version = release = re.search(r"project\(chronormal VERSION ([0-9.]+)", (ROOT / 
 
 extensions = ["myst_parser"]
 root_doc = "README"
-include_patterns = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "js/README.md", "packaging/README.md", "docs/**.md"]
+include_patterns = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "js/README.md", "packaging/README.md",
+                    "docs/**.md"]
 myst_heading_anchors = 4
 highlight_language = "none"
-# The theme of Debian's package furo: dark and light, on phones, with a search that needs no server. Its style sheet has the
-# dark colours for the button alone, since sassc dropped those for systems that are set to dark.
+# The theme of Debian's package furo: dark and light, on phones, with a search that needs no server. Its style sheet has
+# the dark colours for the button alone, since sassc dropped those for systems that are set to dark.
 html_theme = "furo"
 STYLES = (Path(furo.__file__).parent / "theme/furo/static/styles/furo.css").read_text()
 DARK = STYLES[STYLES.index('body[data-theme="dark"] {'):STYLES.index(".only-light {\n      display")]
 html_theme_options = {"dark_css_variables": dict(re.findall(r"--([\w-]+): ([^;]+);", DARK))}
 html_title = f"chronormal {version}"
 templates_path = ["templates"]
-html_sidebars = {"**": [*(f"sidebar/{part}.html" for part in ("brand", "search", "scroll-start", "navigation")), "api.html",
-                        "sidebar/scroll-end.html"]}
+SIDEBAR = ("brand", "search", "scroll-start", "navigation")
+html_sidebars = {"**": [*(f"sidebar/{part}.html" for part in SIDEBAR), "api.html", "sidebar/scroll-end.html"]}
 pygments_style = "xcode"
 html_copy_source = html_show_sourcelink = False
 html_show_sphinx = False
@@ -46,11 +48,11 @@ GROUPS = {
 def navigation():
     """Returns the tables of contents that stand, hidden, at the end of the first page."""
     placed = {page for pages in GROUPS.values() for page in pages}
-    groups = dict(GROUPS)
-    groups["Results"] = [f"docs/{path.stem}" for path in sorted((ROOT / "docs").glob("*.md")) if f"docs/{path.stem}" not in placed]
+    pages = [f"docs/{path.stem}" for path in sorted((ROOT / "docs").glob("*.md"))]
+    groups = GROUPS | {"Results": [page for page in pages if page not in placed]}
     tables = []
-    for caption, pages in groups.items():
-        tables.append("\n".join(["```{toctree}", ":hidden:", f":caption: {caption}", "", *pages, "```"]))
+    for caption, entries in groups.items():
+        tables.append("\n".join(["```{toctree}", ":hidden:", f":caption: {caption}", "", *entries, "```"]))
     return "\n\n".join(tables)
 
 
