@@ -31,7 +31,7 @@ html_title = f"chronormal {version}"
 templates_path = ["templates"]
 SIDEBAR = ("brand", "search", "scroll-start", "navigation")
 html_sidebars = {"**": [*(f"sidebar/{part}.html" for part in SIDEBAR), "api.html", "sidebar/scroll-end.html"]}
-pygments_style = "xcode"
+pygments_style = "default"
 html_copy_source = html_show_sourcelink = False
 html_show_sphinx = False
 
