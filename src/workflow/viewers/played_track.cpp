@@ -20,7 +20,7 @@ bool has_own_splines(TrackRule rule, GltfInterpolation interpolation) noexcept {
          (rule == TrackRule::kSplinesWithoutDuration || rule == TrackRule::kSplinesMisread);
 }
 
-// Hermite's weights of the value before, its tangent, the value after and its tangent.
+// Returns the weights of Hermite interpolation: of the value before, its tangent, the value after and its tangent.
 std::array<double, 4> hermite(double t) noexcept {
   const double s = 1 - t;
   return {(1 + 2 * t) * s * s, t * s * s, t * t * (3 - 2 * t), t * t * (t - 1)};
@@ -62,7 +62,7 @@ PlayedTrack::PlayedTrack(const Viewer& viewer, GltfKeys keys, GltfInterpolation 
 
 void PlayedTrack::sample(double index, std::span<double> weights) const {
   double time = first_ + index / kViewerSampleRate;
-  // The last sample of splines is the last key.
+  // The last sample of a spline is its last key, which need not be at a multiple of the step.
   if (viewer_.tracks == TrackRule::kSplinesResampled) time = std::min(time, last_);
   curve_.at(time, false, weights);
   if (viewer_.weight_bits == 32) return;
@@ -88,8 +88,8 @@ void PlayedTrack::play_spline(double time, bool just_before, std::span<double> w
       weights[i] = h[0] * number(from, 1) + h[2] * number(to, 1) + t * (h[1] * number(from, 2) + h[3] * number(to, 0));
       continue;
     }
-    // The numbers of a target are taken for those of three targets, one number a key, and the first of these, which are
-    // the in-tangents, for a spline with three numbers a key. Where they end, there is no number, and no weight.
+    // This viewer takes the values of one target for those of a spline with three values per key, and begins with those
+    // of the first third, which are in-tangents. Past the end of the array it reads no value, so that the weight is 0.
     const auto number = [&](std::size_t at) { return keys_.values[3 * at * targets + i]; };
     weights[i] = 3 * to + 1 >= keys || 3 * from + 2 >= keys
                      ? 0

@@ -1,6 +1,7 @@
-/// What a viewer plays of a track of weights, which may be otherwise than the specification has it. Private to workflow.
+/// The weights that a viewer plays from a track of a file, which may differ from those that glTF specifies. Private to
+/// workflow.
 ///
-/// Nothing is sampled before it is asked for: a resampled track is the two samples around a time.
+/// Nothing is sampled in advance: a resampled track computes the two samples around the time that is asked for.
 #ifndef CHRONORMAL_WORKFLOW_VIEWERS_PLAYED_TRACK_H_
 #define CHRONORMAL_WORKFLOW_VIEWERS_PLAYED_TRACK_H_
 
@@ -14,39 +15,40 @@
 
 namespace chronormal::inline internal {
 
-/// The first and the last time of all tracks of weights of an animation, in seconds.
+/// The first and the last time of all weight tracks of an animation, in seconds.
 struct TimeRange {
   double first = 0, last = 0;
 };
 
-/// Reads that range. Errors: of GltfDocument
+/// Reads the time range of an animation. Errors: see GltfDocument
 [[nodiscard]] Result<TimeRange> weight_time_range(const GltfDocument& document, std::size_t animation);
 
 class PlayedTrack {
  public:
-  /// keys as GltfDocument::keys() gives them. animation: of the animation that the track is of.
+  /// Takes keys as GltfDocument::keys() returns them, and the time range of the animation that the track belongs to.
   PlayedTrack(const Viewer& viewer, GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count,
               const TimeRange& animation);
 
-  /// Writes the weights that the viewer shows at a time; where they jump, those just after it or just before it.
+  /// Writes the weights that the viewer shows at a time. Where they jump, it writes the ones just after the jump, or
+  /// just before it.
   void at(double time, bool just_before, std::span<double> weights) const;
 
-  /// Whether the viewer plays the weights of the specification, but for rounding and weights that are left out.
+  /// Tells whether the viewer plays the specified weights, except for rounding and dropped weights.
   [[nodiscard]] bool is_as_specified() const noexcept { return as_specified_; }
 
  private:
-  // A sample of a resampled track.
+  // Computes one sample of a resampled track.
   void sample(double index, std::span<double> weights) const;
-  // The weights of a cubic spline that is played by a rule of its own.
+  // Plays a cubic spline by the viewer's own rule.
   void play_spline(double time, bool just_before, std::span<double> weights) const;
 
   Viewer viewer_;
   bool as_specified_;
   bool resampled_;
   bool steps_;
-  double first_, last_;  // of the samples
-  double last_index_;    // that of the last sample
-  GltfKeys keys_;        // of a spline that is played by a rule of its own; else none
+  double first_, last_;  // the first and the last time of the samples
+  double last_index_;    // the index of the last sample
+  GltfKeys keys_;        // set only for a spline that the viewer plays by its own rule
   gltf::WeightCurve curve_;
 };
 

@@ -1,4 +1,4 @@
-// What viewers keep of normals and deltas.
+// Rounding of normals and deltas as viewers store them.
 #include "chronormal/workflow/viewers.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace chronormal {
 namespace {
 
-// The nearest 16-bit float, halves away from zero: a sign, 5 bits of the exponent, and 10 of the fraction, of which
-// float32 has 23.
+// Returns the nearest 16-bit float, halves away from zero. It has a sign, 5 bits of exponent and 10 of fraction; a
+// float32 has 23 bits of fraction.
 float half(float value) noexcept {
   constexpr std::uint32_t kInfinity = 0x7f800000, kLeastNormal = 0x38800000, kHalfOfLast = 1U << 12;
   constexpr float kLargest = 65504, kStep = 0x1p-24F;  // the step below 2^-14
@@ -29,8 +29,8 @@ float half(float value) noexcept {
 
 Vec3f half(const Vec3f& v) noexcept { return {half(v.x), half(v.y), half(v.z)}; }
 
-// Rounds to a signed integer of some bits that stands for [-1, 1], halves away from zero. In 9 to 15 bits it is kept in
-// 16, its upper bits once more below it, so that 1 stays 1.
+// Rounds to a signed integer that stands for [-1, 1], halves away from zero. Integers of 9 to 15 bits are stored in 16:
+// their upper bits are repeated in the unused lower ones, so that 1 stays 1.
 float clamped(float value, int bits) noexcept {
   const int wide = bits <= 8 ? 8 : 16;
   const int lack = wide - bits;
@@ -62,7 +62,7 @@ Vec3d from_octahedral(const Octahedral& o) noexcept {
   return unit(Vec3d{o.x - std::copysign(fold, o.x), o.y - std::copysign(fold, o.y), z});
 }
 
-// The direction of a vector as two unsigned numbers that stand for [-1, 1] keep it, cut off below.
+// Returns a direction after it was stored as two unsigned integers that stand for [-1, 1], rounded down.
 Vec3d through_unsigned_octahedral(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const double most = std::ldexp(1, bits) - 1;
@@ -71,7 +71,7 @@ Vec3d through_unsigned_octahedral(const Vec3d& v, int bits) noexcept {
   return from_octahedral({kept(o.x), kept(o.y)});
 }
 
-// The same of two signed numbers, rounded.
+// Returns a direction after it was stored as two signed integers, rounded to nearest.
 Vec3d through_signed_octahedral(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const double most = std::ldexp(1, bits - 1) - 1;
@@ -79,8 +79,8 @@ Vec3d through_signed_octahedral(const Vec3d& v, int bits) noexcept {
   return from_octahedral({std::round(o.x * most) / most, std::round(o.y * most) / most});
 }
 
-// The first axis of the frame that Frisvad's rule makes of a unit vector, here with y up, taken as the rule is of any
-// vector.
+// Returns the first axis of Frisvad's frame of a unit vector, here with y up. Like the viewer, it applies the formula
+// to vectors of any length.
 Vec3d first_axis(const Vec3d& n) noexcept {
   constexpr double kDown = -1 + 1.0 / (1 << 23);
   if (n.y < kDown) return {-1, 0, 0};
@@ -88,8 +88,8 @@ Vec3d first_axis(const Vec3d& n) noexcept {
   return {-n.z * n.x * a, -n.z, 1 - n.z * n.z * a};
 }
 
-// The third axis of the rotation that is read from the frame of a vector by the rule for orthonormal frames, once it
-// was kept as a quaternion of signed integers.
+// Returns the third axis of the rotation that the viewer reads from the frame of a vector, after the rotation was
+// stored as a quaternion of signed integers. The conversion expects an orthonormal frame, but is applied to any.
 Vec3d through_frame(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const Vec3d x = first_axis(v), y = cross(v, x);
@@ -115,8 +115,8 @@ Vec3d through_frame(const Vec3d& v, int bits) noexcept {
       Vec3d{2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]), 1 - 2 * (q[0] * q[0] + q[1] * q[1])});
 }
 
-// The unit normal that a viewer keeps of a vector of any length. In so many bits nothing is rounded but to float32; a frame
-// turns vectors whose length is not 1 all the same.
+// Returns the unit normal that a viewer stores for a vector of any length. With 32 bits it is rounded to float32 only.
+// A viewer that stores frames also turns vectors whose length is not 1.
 Vec3f kept_direction(const Viewer& viewer, const Vec3f& v) noexcept {
   constexpr int kAllBits = 32;
   const Vec3d vector = to_double(v);
