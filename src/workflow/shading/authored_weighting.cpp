@@ -11,15 +11,15 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 1024;                // elements that are looked at together
+constexpr std::size_t kBlock = 1024;                // elements in one block
 constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians, and small enough to be its own sine
 constexpr double kClear = 2.0 / 3;
 constexpr double kFollows = 1;  // degrees
 
-using Stored = std::span<const StoredNormal>;  // in the order of their elements
+using Stored = std::span<const StoredNormal>;  // sorted by element
 
-// Some elements as a mesh of its own in which each has its faces for itself, so that memory is that of a block: the
-// element is one vertex of them, and their other vertices belong to nobody else.
+// Holds some elements as a small mesh, so that memory stays that of one block. Each element has its own copy of its
+// faces: it is one vertex of them, and no other element uses their other vertices.
 class Block {
  public:
   Block(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups, Stored stored) {
@@ -51,7 +51,7 @@ class Block {
     groups_ = NormalGroups::of_vertices(topology_, separate_points(topology_.vertex_count()));
   }
 
-  // The normals of the elements by a weighting, one for each stored normal; zero where there is none.
+  // Returns the normals of the elements by a weighting, one for each stored normal; zero where an element has none.
   [[nodiscard]] std::vector<Vec3d> normals(Weighting weighting) const {
     const auto view = VectorView<const float>::packed(positions_.data(), topology_.vertex_count());
     const std::vector<Vec3d> all = all_weighted_normals_at({&topology_, view, view, 0, 1, 0}, groups_, weighting, 0);
@@ -63,7 +63,7 @@ class Block {
  private:
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
-  std::vector<std::uint32_t> own_;  // the vertex that an element is, of each stored normal
+  std::vector<std::uint32_t> own_;  // for each stored normal, the vertex that stands for its element
   Topology topology_;
   std::vector<float> positions_;
   NormalGroups groups_;
@@ -75,7 +75,7 @@ bool differ(const Vec3d& a, const Vec3d& b) {
   return dot(across, across) > kTells * kTells * dot(a, a) * dot(b, b) || along < 0;
 }
 
-// What blocks add up to.
+// Holds the distances that are added up over blocks.
 struct Distances {
   std::array<WeightingDistance, kAllWeightings.size()> of_weightings;
   std::array<std::vector<float>, kWeightings.size()> told;  // degrees, of the normals that tell
@@ -117,7 +117,7 @@ Distances distances_of(const Block& block, Stored stored) {
     result.telling += tells ? 1U : 0U;
     for (std::size_t w = 0; w < normals.size(); ++w) {
       if (normals[w][i] == Vec3d{}) continue;
-      // An author may show the other side: that is no offset.
+      // An author may show the other side of a surface; the distance ignores which.
       const double angle = angle_between(stored[i].normal, normals[w][i]) * kDegreesPerRadian;
       const double degrees = std::fmin(angle, 180 - angle);
       result.add(w, stored[i], degrees);
@@ -145,7 +145,7 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
   Distances all;
   const Stored sorted(stored);
   const std::size_t blocks = (sorted.size() + kBlock - 1) / kBlock;
-  // Some blocks at a time, so that what they found is not all there at once.
+  // Works on some blocks at a time, to limit the memory of their results.
   constexpr std::size_t kAtOnce = 64;
   for (std::size_t first = 0; first < blocks; first += kAtOnce) {
     std::vector<Distances> found(std::min(kAtOnce, blocks - first));

@@ -1,7 +1,8 @@
-/// Which weighting an author's normals follow. Private to workflow.
+/// Finds which weighting an author's normals follow. Private to workflow.
 ///
-/// The program that made a mesh weighed the faces around a vertex in its own way (normals/weighting.h); what it stored
-/// says which. Right normals are those of that weighting, and what another one makes of them is no fault of the file.
+/// The program that made a mesh weighed the faces around a vertex in its own way (normals/weighting.h), and its stored
+/// normals show which. The true normals follow the same weighting: a difference from another weighting is no error of
+/// the file.
 ///
 ///     tells      a stored normal around which two weightings differ by more than 0.1 degrees: elsewhere all agree
 ///     distance   of a weighting: the median, over the normals that tell, of the angle to the stored one
@@ -28,18 +29,19 @@
 
 namespace chronormal::inline internal {
 
-/// A normal that is stored for a vertex, of any length but zero, and its element in NormalGroups.
+/// A stored normal of a vertex, of any length but zero, and the vertex's element in NormalGroups.
 struct StoredNormal {
   std::uint32_t vertex = 0, element = 0;
   Vec3d normal;
 };
 
-/// How far stored normals are from those of one weighting, or of its other side, in degrees.
+/// The distances between the stored normals and the normals of one weighting, in degrees. Normals of the other side
+/// count as equal.
 struct WeightingDistance {
-  std::size_t count = 0;  ///< of the stored normals, those whose element has a normal
+  std::size_t count = 0;  ///< how many stored normals have an element with a normal
   double sum = 0, worst = 0;
-  std::uint32_t worst_at = 0;  ///< the vertex
-  double of_telling = 0;       ///< the median over those that tell
+  std::uint32_t worst_at = 0;  ///< the vertex with the worst one
+  double of_telling = 0;       ///< the median over the normals that tell
 
   [[nodiscard]] double mean() const noexcept { return count > 0 ? sum / static_cast<double>(count) : 0; }
 };
@@ -54,14 +56,14 @@ struct AuthoredWeighting {
   Weighting detected = Weighting::kArea;  ///< one of kWeightings
 };
 
-/// Holds stored normals against all weightings of the geometry. groups must be those of the topology, with corners.
-/// O(corners), seven times; on all cores, and in little memory beside the stored normals. The same bits on any number of
-/// threads.
+/// Compares stored normals with all weightings of the geometry. groups must belong to the topology, and have corners.
+/// O(corners), seven times; uses all cores, and little memory beside the stored normals. The result has the same bits
+/// on any number of threads.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
                                                         const NormalGroups& groups, std::vector<StoredNormal> stored);
 
-/// The same of the base normals of a mesh; area where it has none. Its groups must have their corners. Where there are
-/// more normals than `most`, about that many of them are asked, evenly.
+/// Compares the base normals of a mesh in the same way; detects area if it has none. Its groups must have their
+/// corners. If there are more normals than `most`, it asks about that many of them, evenly spread.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const GltfShading& shading,
                                                         std::size_t most = static_cast<std::size_t>(-1));
 

@@ -1,7 +1,7 @@
-/// What corners of polygons add to the normals of elements, by a weighting. Private to workflow.
+/// Computes the terms that corners of polygons add to the normals of elements, by a weighting. Private to workflow.
 ///
-/// Terms are computed for many corners at once: the normal of a polygon once for the corners that come near each other,
-/// and angles in lanes. The bits are those of corner_term(), one by one.
+/// Many corners are computed at once: the normal of a polygon once for corners that are close together in the list, and
+/// angles in SIMD lanes. The result has the same bits as corner_term(), called for each corner.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 #define CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 
@@ -17,19 +17,19 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, twice its area long; e and
-/// f are the edges from the corner to the next and to the previous one.
+/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, twice its area long; e
+/// and f are the edges from the corner to the next and to the previous one.
 [[nodiscard]] Vec3d corner_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept;
 
-/// Elements are computed together in blocks of so many: their corners fill lanes, and stay in the fastest cache.
+/// The number of elements that are computed together: their corners fill lanes, and fit into the fastest cache.
 inline constexpr std::size_t kElementsOfBlock = 128;
 
 class CornerTerms {
  public:
-  /// An empty object for this thread, which keeps its memory. Valid until the next call in this thread.
+  /// Returns an empty object of this thread, which reuses its memory. It is valid until the next call in this thread.
   [[nodiscard]] static CornerTerms& emptied(Weighting weighting);
 
-  /// Appends a corner of a polygon with the vertices `loop`. One number must always mean the same polygon.
+  /// Appends a corner of a polygon whose vertices are `loop`. The same number must always mean the same polygon.
   template <class PositionOf>
   void add(std::uint32_t polygon, std::span<const std::uint32_t> loop, std::size_t corner, const PositionOf& position) {
     const Face& face = face_of(polygon, loop, position);
@@ -45,15 +45,15 @@ class CornerTerms {
   /// Computes the terms of all corners that were appended. Call it once.
   void finish();
 
-  /// In the order in which they were appended: the terms, and the lengths of the normals of their polygons.
+  /// Return, in the order of appending, the terms and the lengths of the normals of their polygons.
   [[nodiscard]] std::span<const Vec3d> terms() const noexcept { return terms_; }
   [[nodiscard]] std::span<const double> areas() const noexcept { return areas_; }
 
  private:
   struct Face {
-    std::uint64_t use = 0;  // of the object, in which this is known
+    std::uint64_t use = 0;  // the use of the object in which this entry was made
     std::uint32_t polygon = 0;
-    Vec3d term;  // the whole of it, or what an angle is multiplied by
+    Vec3d term;  // the whole term, or the vector that the angle multiplies
     double area = 0;
   };
   static constexpr std::size_t kFaces = 512;

@@ -25,7 +25,7 @@ std::string mesh_place(const GltfDocument& document, std::size_t mesh) {
   return (document.name() + ", /meshes/").append(std::to_string(mesh));
 }
 
-// Appends count vertices of `width` numbers each, zeros where values has none, at the end of all vertices before.
+// Appends `count` vertices of `width` numbers each to those of earlier primitives; zeros if `values` is empty.
 void append(std::vector<float> values, std::size_t first_vertex, std::size_t count, std::size_t width,
             std::vector<float>& all) {
   if (values.empty()) {
@@ -40,7 +40,7 @@ void append(std::vector<float> values, std::size_t first_vertex, std::size_t cou
   all.insert(all.end(), values.begin(), values.end());
 }
 
-// Adds deltas of some vertices to a target, without those that are zero.
+// Appends the nonzero deltas of some vertices to a target.
 void append_deltas(const std::vector<float>& deltas, std::size_t first_vertex, BlendTarget& target) {
   const auto is_moved = [&](std::size_t v) { return deltas[v] != 0 || deltas[v + 1] != 0 || deltas[v + 2] != 0; };
   std::size_t count = 0;
@@ -56,7 +56,7 @@ void append_deltas(const std::vector<float>& deltas, std::size_t first_vertex, B
   }
 }
 
-// The arrays of all primitives with faces, one after the other; of targets one at a time.
+// Reads the arrays of all primitives with faces, one after the other. Targets are read one at a time, to save memory.
 Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& shading) {
   const GltfMesh& mesh = document.meshes()[shading.mesh];
   std::vector<std::uint32_t> corners;
@@ -116,7 +116,7 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
   return Success{};
 }
 
-// Numbers classes of vertices, named by anything, in the order of their first vertices.
+// Renumbers classes of vertices in the order of their first vertices. class_of_vertex may number them in any way.
 Points to_points(const std::vector<std::uint32_t>& class_of_vertex, std::size_t class_count) {
   constexpr std::uint32_t kNone = GltfShading::kNoElement;
   std::vector<std::uint32_t> number(class_count, kNone);
@@ -129,8 +129,8 @@ Points to_points(const std::vector<std::uint32_t>& class_of_vertex, std::size_t 
   return points;
 }
 
-// Vertices that are at one place in the base and move alike in every target: classes of the base, which each target
-// takes apart. The motion is the base alone.
+// Joins vertices that share a place in the base and move alike in every target: it starts from the classes of the base,
+// and each target splits them. The motion is the base alone.
 Points weld(const Motion& base, const std::vector<BlendTarget>& targets) {
   Points points = weld_coincident(base);
   for (const BlendTarget& target : targets) {
@@ -143,7 +143,7 @@ Points weld(const Motion& base, const std::vector<BlendTarget>& targets) {
     };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     std::vector<std::uint32_t> classes = points.point_of_vertex;
-    std::size_t class_count = points.count;  // moved vertices leave their class together
+    std::size_t class_count = points.count;  // vertices of a class that move alike get a new class together
     for (std::size_t n = 0; n < count; ++n) {
       if (n == 0 || key(order[n - 1]) < key(order[n])) ++class_count;
       classes[target.vertices[order[n]]] = static_cast<std::uint32_t>(class_count - 1);
@@ -153,7 +153,7 @@ Points weld(const Motion& base, const std::vector<BlendTarget>& targets) {
   return points;
 }
 
-// Each vertex that `alone` names becomes a point of its own.
+// Makes a point of its own of each vertex that `alone` names.
 Points set_apart(const Points& points, const std::vector<bool>& alone) {
   std::vector<std::uint32_t> classes = points.point_of_vertex;
   std::size_t class_count = points.count;
@@ -162,13 +162,13 @@ Points set_apart(const Points& points, const std::vector<bool>& alone) {
   return to_points(classes, class_count);
 }
 
-// Vertices without stored normals, as the crease angle joins and splits their points: a class for each normal. Others
-// are alone.
+// Groups vertices without stored normals by the crease angle: each class shares a normal. All other vertices stay
+// alone.
 Result<Points> smooth_points(const Motion& base, const Points& points, const std::vector<bool>& has_normal,
                              double crease_angle, std::size_t& split) {
   const Result<NormalGroups> groups = NormalGroups::by_crease_angle(base, set_apart(points, has_normal), crease_angle);
   if (!groups) return groups.error();
-  // A vertex has one normal: its elements are joined.
+  // A vertex has one normal, so all elements at its corners are joined.
   const auto corners = base.topology.corners();
   const auto element_of_corner = groups.value().element_of_corner();
   std::vector<std::uint32_t> parent(groups.value().size());
@@ -198,7 +198,7 @@ Result<Points> smooth_points(const Motion& base, const Points& points, const std
   return to_points(classes, class_count);
 }
 
-// Points of vertices with stored normals from one, and of those without from another.
+// Takes the points of vertices with stored normals from `stored`, and all others from `smooth`.
 Points joined(const Points& stored, const Points& smooth, const std::vector<bool>& has_normal) {
   std::vector<std::uint32_t> classes = stored.point_of_vertex;
   for (std::size_t v = 0; v < classes.size(); ++v)
@@ -206,7 +206,7 @@ Points joined(const Points& stored, const Points& smooth, const std::vector<bool
   return to_points(classes, stored.count + smooth.count);
 }
 
-// Points of vertices whose stored normals may be joined.
+// Returns points whose vertices may share a normal.
 Result<Points> shading_points(const GltfShadingOptions& options, const std::vector<bool>& has_normal,
                               GltfShading& shading) {
   Motion base;  // borrows the arrays for a while
@@ -222,7 +222,7 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
     has_none.flip();
     Result<Points> smooth = set_apart(points, has_none);
     if (options.smooth) smooth = smooth_points(base, points, has_normal, options.crease_angle, shading.split_by_crease);
-    // Apart from each other where both kinds are at one place.
+    // Vertices with and without stored normals stay apart, even at the same place.
     if (smooth)
       all = joined(set_apart(points, has_none), smooth.value(), has_normal);
     else
@@ -233,8 +233,8 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
   return all;
 }
 
-// Splits points by the stored normals of their vertices, which NormalGroups does for corners of faces: so each vertex
-// that shares its point, and has a face, gets all corners of a face that is made up.
+// Splits points by the stored normals of their vertices. NormalGroups splits by the normals of face corners, so each
+// vertex that shares its point, and has a face, gets a made-up face with all corners at that vertex.
 Result<Points> split_by_normals(const Topology& topology, Points points, const std::vector<float>& normals) {
   std::vector<bool> has_face(points.point_of_vertex.size()), is_shared(points.count), is_taken(points.count);
   for (const std::uint32_t v : topology.corners()) has_face[v] = true;
@@ -272,7 +272,7 @@ Result<Points> split_by_normals(const Topology& topology, Points points, const s
   return points;
 }
 
-// Numbers points in the order of their first corners; those of vertices without faces come last.
+// Numbers points in the order of their first corners; points without faces come last.
 void number_by_corners(const Topology& topology, Points& points) {
   constexpr std::uint32_t kNone = GltfShading::kNoElement;
   std::vector<std::uint32_t> number(points.count, kNone);
@@ -287,10 +287,10 @@ void number_by_corners(const Topology& topology, Points& points) {
   points.count = count;
 }
 
-// Which triangles lie back to back: alone, or as two in a row that were cut from a quad.
+// Tells which polygons lie back to back: single triangles, or two in a row that were cut from a quad.
 struct Backs {
-  std::vector<std::uint32_t> polygon;  // of each triangle, named by its first one
-  std::vector<std::uint32_t> back;     // of each triangle: the polygon at the back of its own, or kNoFace
+  std::vector<std::uint32_t> polygon;  // of each triangle, named by its first triangle
+  std::vector<std::uint32_t> back;     // of each triangle: the polygon behind its own, or kNoFace
 
   [[nodiscard]] bool are_apart(std::uint32_t a, std::uint32_t b) const {
     return back[a] != kNoFace && back[a] == polygon[b];
@@ -304,7 +304,7 @@ std::optional<Backs> backs_of_triangles(const GltfShading& shading) {
   const std::vector<BackToBack> triangles = find_backs(count, [&](std::uint32_t f, auto& loop) {
     for (const std::uint32_t v : topology.face(f)) loop.push_back(point(v));
   });
-  // Quads are named by their first triangles.
+  // A quad is named by its first triangle.
   const std::vector<BackToBack> quads = find_backs(count, [&](std::uint32_t f, auto& loop) {
     if (f + 1 == count) return;
     const auto a = topology.face(f), b = topology.face(f + 1);
@@ -326,8 +326,8 @@ std::optional<Backs> backs_of_triangles(const GltfShading& shading) {
   return backs;
 }
 
-// The corners at which a vertex shows the side of a sheet that its stored normal does not look to: one value for each
-// corner, or none.
+// Finds the corners at which a vertex shows the side of a sheet that its stored normal does not face. Returns one value
+// per corner, or an empty vector if there are no such corners.
 std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& points) {
   const Topology& topology = shading.set.topology;
   const auto corners = topology.corners();
@@ -335,7 +335,7 @@ std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& 
   std::vector<bool> result;
   if (!found) return result;
   const Backs& backs = *found;
-  // The corners of each class that is of both sides.
+  // Collects the corners of each class that has corners on both sides.
   std::vector<bool> may_be(points.count);
   for (std::uint32_t c = 0; c < corners.size(); ++c)
     if (backs.back[c / 3] != kNoFace) may_be[points.point_of_vertex[corners[c]]] = true;
@@ -361,7 +361,7 @@ std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& 
     if (apart.empty()) continue;
     const std::vector<std::uint32_t> side = split_sides(here.size(), std::move(edges), apart);
     const std::uint32_t sides = *std::max_element(side.begin(), side.end()) + 1;
-    // The side that looks where the stored normals do.
+    // Finds the side that the stored normals face.
     std::vector<double> along(sides);
     for (std::size_t n = 0; n < here.size(); ++n) {
       const std::uint32_t c = here[n].second;
@@ -419,8 +419,8 @@ Status check_mark(const GltfDocument& document, const GltfShading& shading) {
   return Success{};
 }
 
-// A program that makes normals of its own for every target leaves nothing of extra ones but their names: what stands in
-// the mark is true no more. A bake writes none that turns nothing.
+// Removes a mark that is no longer true. Programs that compute new normals for every target keep the names of
+// correction targets but not their deltas; a bake never writes a target without any.
 void drop_mark_of_emptied_targets(GltfShading& shading) {
   if (!shading.mark || shading.mark->extras.empty()) return;
   for (const GltfExtraTarget& extra : shading.mark->extras)

@@ -1,14 +1,15 @@
-/// What the vertices of one mesh of a glTF file show, and what they should show. Private to workflow.
+/// The normals that a viewer renders for one mesh of a glTF file, and the true ones. Private to workflow.
 ///
-/// A viewer shows normalize(N + sum_i w_i D_i): the stored base normal and the stored deltas. What it should show follows
-/// from the geometry: n(w) of eq. 32, area-weighted, over the faces whose corners share the stored base normal at one
-/// point. Where an author gave base normals of his own (another weighting, a bevel, a lie), that is kept: the smallest
-/// rotation that takes the direction of n(0) to N, fixed per vertex, takes every n(w) to what should be shown.
+/// A viewer renders normalize(N + sum_i w_i D_i): the stored base normal and the stored deltas. The truth follows from
+/// the geometry: n(w) of eq. 32, area-weighted, over the faces whose corners share the stored base normal at one point.
+/// If an author gave other base normals (another weighting, a bevel, bent by hand), the truth keeps them: for each
+/// vertex, the smallest rotation that takes the direction of n(0) to N takes every n(w) to the true normal.
 ///
-///     authored offset    the angle of that rotation: no fault
-///     motion error       the angle between what is shown at w and what should be
+///     authored offset    the angle of that rotation; not an error
+///     motion error       the angle between the rendered and the true normal at w
 ///
-/// A primitive without NORMAL is flat by the specification: viewers compute it from positions, so that it is right.
+/// A primitive without NORMAL is flat by the specification: viewers compute its normals from positions, so they are
+/// true.
 ///
 /// Shapes     V = vertices of all primitives with faces, one primitive after the other (parts); K = targets of the
 /// mesh.
@@ -32,11 +33,11 @@
 namespace chronormal::inline internal {
 
 struct GltfShadingOptions {
-  bool smooth = false;        ///< primitives without NORMAL get vertex normals, instead of being flat
-  double crease_angle = 180;  ///< degrees, for those: edges sharper than this in the base are hard
-  /// Whether normal_deltas, tangents and tangent_deltas are kept; otherwise they are checked only.
+  bool smooth = false;        ///< give vertex normals to primitives without NORMAL, which are flat otherwise
+  double crease_angle = 180;  ///< degrees, for smooth: edges sharper than this in the base are hard
+  /// Keep normal_deltas, tangents and tangent_deltas; otherwise they are only checked.
   bool keep_deltas = true;
-  bool weld = true;  ///< vertices at one point throughout are one
+  bool weld = true;  ///< join vertices at the same point in every pose
 };
 
 struct GltfShading {
@@ -44,60 +45,59 @@ struct GltfShading {
 
   std::size_t mesh = 0;
   std::vector<GltfPart> parts;  ///< node is empty
-  BlendSet set;                 ///< of all parts together; targets as the file has them, extra ones too
-  NormalGroups groups;          ///< of its topology; outputs are vertices, of flat primitives too
-  /// (V), the element of each vertex; kNoElement where it has no face, or its primitive is flat.
+  BlendSet set;                 ///< all parts together, with all targets of the file, correction targets too
+  NormalGroups groups;          ///< of set.topology; outputs are vertices, also those of flat primitives
+  /// (V) The element of each vertex; kNoElement if it has no face, or its primitive is flat.
   std::vector<std::uint32_t> element_of_vertex;
-  /// (V), which vertices are one point: at one place in the base, with the same deltas in all targets. Below V. For
-  /// whoever looks for the author's truth.
+  /// (V) The point of each vertex, a number below V. Vertices are one point if they share a place in the base, and the
+  /// deltas of all targets. Only the author's truth needs it.
   std::vector<std::uint32_t> point_of_vertex;
-  /// Corners of faces that lie at the back of those whose normal their vertex shows; elements leave them out. Empty
-  /// where there are none.
+  /// Marks corners of faces on the back of the side whose normal their vertex shows; elements leave these corners out.
+  /// Empty if there are none.
   std::vector<bool> at_the_back;
   std::vector<float> normals;  ///< (V, 3) N as stored; (0, 0, 0) where a primitive has none
-  /// Per target the stored deltas (V, 3), or empty where no primitive stores any for it.
+  /// Stored deltas of each target, (V, 3); empty if no primitive stores any for it.
   std::vector<std::vector<float>> normal_deltas;
-  std::vector<bool> turns;      ///< per target, whether some of these are other than zero, kept or not
+  std::vector<bool> turns;      ///< per target: any of its normal deltas is not zero, even if they are not kept
   std::vector<float> tangents;  ///< (V, 4), or empty where no primitive has any
   std::vector<std::vector<float>> tangent_deltas;  ///< as normal_deltas
   std::optional<GltfBakeMark> mark;
-  /// Extra targets of an earlier bake that turn nothing, because another program made normals anew: there is no mark
-  /// then.
+  /// The number of correction targets of an earlier bake that lost their deltas because another program made new
+  /// normals; `mark` is empty then.
   std::size_t emptied = 0;
   std::size_t split_by_crease = 0;  ///< vertices that a crease would have split
 
-  /// The number of targets that move vertices by themselves: all but extra ones.
+  /// Returns the number of targets that move vertices by themselves: all but correction targets.
   [[nodiscard]] std::size_t own_targets() const noexcept {
     return set.targets.size() - (mark ? mark->extras.size() : 0);
   }
 };
 
-/// Reads one mesh. Vertices at one place in the base and with the same deltas in all targets are one point, across its
-/// primitives, and share a normal where their stored base normals agree. Vertices of primitives without NORMAL are in
-/// no element, and their faces count for none; with options.smooth they get normals by the crease angle, shared among
-/// such primitives only. A vertex of the file has one normal: where a crease would split one, it stays whole (parts on
-/// both sides of the crease are joined there), and split_by_crease counts it.
+/// Reads one mesh. Vertices that share a place in the base and the deltas of all targets are one point, also across
+/// primitives, and share a normal if their stored base normals agree. Vertices of primitives without NORMAL have no
+/// element, and their faces do not count; with options.smooth they get normals by the crease angle, shared among such
+/// primitives only. A vertex of the file has one normal, so that a crease cannot split it: the parts on both sides of
+/// the crease are joined there, and split_by_crease counts the vertex.
 ///
-/// Errors: of GltfDocument; kUsage for a crease angle outside [0, 180]; kInvalidInput where the mesh has no primitive
+/// Errors: see GltfDocument; kUsage for a crease angle outside [0, 180]; kInvalidInput where the mesh has no primitive
 /// with faces, or extras.chronormal is not what a bake writes, with the JSON pointer.
 [[nodiscard]] Result<GltfShading> read_gltf_shading(const GltfDocument& document, std::size_t mesh,
                                                     const GltfShadingOptions& options = {});
 
-/// n(w) of one element, from the positions of all vertices, (V, 3).
+/// Returns n(w) of one element, from the positions (V, 3) of all vertices.
 [[nodiscard]] Vec3d normal_from_positions(const GltfShading& shading, std::span<const double> positions,
                                           std::size_t element) noexcept;
 
-/// Computes n(w) of all elements from the blended positions, in double, by the cross product: nothing but eq. 1, and
-/// no look at what is rounding. weights must have one for each target. O(corners); on all cores.
+/// Computes n(w) of all elements from the blended positions by cross products in double. It uses nothing but eq. 1, and
+/// treats no result as rounding error. weights must have one value per target. O(corners); uses all cores.
 [[nodiscard]] std::vector<Vec3d> normals_from_positions(const GltfShading& shading, std::span<const double> weights);
 
-/// The direction that a vertex should show: n(w) of its element, turned as the author turned the base. base_normal and
-/// normal are n(0) and n(w) of the element, of any length; zero where n(w) is. Where n(0) or N is zero nothing is
-/// turned. Where N
-/// looks to the other side than n(0), both are those of the other side: -n(0) and -n(w).
+/// Returns the true direction at a vertex: n(w) of its element, rotated as the author rotated the base. base_normal and
+/// normal are n(0) and n(w) of the element, of any length. The result is zero if n(w) is. Nothing is rotated if n(0) or
+/// N is zero. If N faces away from n(0), -n(0) and -n(w) take their places.
 [[nodiscard]] Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d& normal) noexcept;
 
-/// The same for one vertex and many normals: a linear map, which keeps their lengths.
+/// Does the same for one vertex and many normals. It is a linear map, which keeps lengths.
 class ShownTurn {
  public:
   ShownTurn() = default;
@@ -111,11 +111,11 @@ class ShownTurn {
 
  private:
   Vec3d axis_;         // as long as the sine of the angle
-  double cosine_ = 1;  // with a sign where both are those of the other side
+  double cosine_ = 1;  // negative if N faces away from n(0)
 };
 
-/// The weight of every target where those of the mesh's own targets are given: extra ones get theirs.
-/// weights must have one for each target; those of extra ones are written
+/// Computes the weights of correction targets from the weights of the mesh's own targets.
+/// weights must have one value per target; those of correction targets are overwritten
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,12 +1,12 @@
-/// How the skin of a node moves the vertices of a mesh. Private to workflow.
+/// Moves the vertices of a mesh by the skin of a node. Private to workflow.
 ///
-/// Viewers blend the joint matrices of a vertex by its shares, M = sum of w_j M_j, and take its position through M and
-/// its normal through the linear part L of M (docs/decisions/0022, which has those that do otherwise). L is no normal
-/// matrix: where it is more than a turn and a scale, what it makes of a right normal is not the normal of the skinned
-/// surface. No target can mend that. So normals are held against each other as L carries them, and what L itself does
-/// wrong is told apart.
+/// Viewers blend the joint matrices of a vertex by its shares, M = sum of w_j M_j. They transform its position by M,
+/// and its normal by the linear part L of M (docs/decisions/0022 lists viewers that differ). L is not the normal
+/// matrix: unless it only rotates and scales evenly, it does not take the true normal to the normal of the skinned
+/// surface. No target can correct this. So the error is measured between normals that L has transformed, and the error
+/// of L itself is reported apart.
 ///
-/// Copies     share what was read of the file, and each has a pose of its own.
+/// Copies   share the data of the file; each has its own pose.
 /// Threads    const functions may run at once.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
 #define CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
@@ -31,40 +31,40 @@ namespace chronormal::inline internal {
 
 class MeshSkin {
  public:
-  /// Reads what the skin of a node does to the mesh of the shading, and poses it as the file has it. What a skin knows
-  /// of the vertices of the same mesh is not read again. Errors: of GltfSkin
+  /// Reads the skin of a node for the mesh of the shading, and poses it as the file does. The joints and shares of
+  /// `of_same_mesh` are reused instead of being read again. Errors: see GltfSkin
   [[nodiscard]] static Result<MeshSkin> read(const GltfDocument& document, const GltfShading& shading, std::size_t node,
                                              std::optional<std::size_t> animation,
                                              const MeshSkin* of_same_mesh = nullptr);
 
-  /// Poses the joints as they are at a time; where they jump, just after it or just before it. Returns whether that may
-  /// have moved anything.
+  /// Poses the joints as they are at a time; if they jump there, just after the jump or just before it. Returns whether
+  /// the pose may have changed.
   bool pose(double time, bool just_before);
 
-  /// Whether the joints move in the animation.
+  /// Tells whether the joints move in the animation.
   [[nodiscard]] bool moves() const noexcept { return skin_->moves(); }
 
-  /// The times of all keys by which joints move, ascending.
+  /// Returns the times of all keys that move joints, ascending.
   [[nodiscard]] std::vector<double> key_times() const { return skin_->key_times(); }
 
-  /// Whether the blended matrices of these vertices turn and scale evenly in this pose, each for itself, but for what
-  /// is too fine to matter: then they keep the angle between any two normals of a vertex.
+  /// Tells whether the blended matrix of each of these vertices only rotates and scales evenly in this pose, up to
+  /// differences too small to matter. Such a matrix keeps the angle between any two normals of the vertex.
   [[nodiscard]] bool is_even(std::span<const std::uint32_t> vertices) const;
 
-  /// The blended matrix of a vertex in this pose.
+  /// Returns the blended matrix of a vertex in this pose.
   [[nodiscard]] AffineTransform of_vertex(std::size_t vertex) const noexcept;
 
-  /// What is shown of a normal of a vertex, of any length, in this pose: a unit vector, or zero or not finite where it
-  /// has no direction. matrix is that of the vertex, as of_vertex() has it.
+  /// Returns the rendered direction of a vertex's normal (of any length) in this pose: a unit vector, or zero or not
+  /// finite if it has no direction. matrix must be of_vertex(vertex).
   [[nodiscard]] Vec3d carried(SkinRule rule, std::size_t vertex, const AffineTransform& matrix,
                               const Vec3d& normal) const noexcept;
 
  private:
-  // Which joints each vertex follows, whatever nodes these are.
+  // The joints that each vertex follows, as indices into a skin's joints.
   struct Shares {
     std::vector<std::size_t> first;  // (V + 1)
     std::vector<JointShare> all;
-    std::size_t joints = 0;  // that a skin must have at least
+    std::size_t joints = 0;  // the least number of joints that a skin must have
   };
 
   MeshSkin(GltfSkin skin, std::shared_ptr<const Shares> shares)
@@ -74,7 +74,7 @@ class MeshSkin {
 
   std::shared_ptr<const GltfSkin> skin_;
   std::shared_ptr<const Shares> shares_;
-  std::vector<AffineTransform> matrices_;  // of joints
+  std::vector<AffineTransform> matrices_;  // one per joint
 };
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-// A name is taken apart into words where its letters change from small to capital, and at all that is no letter; the
-// words for a side are what tells the left from the right of the same thing.
+// A name is split into words before a capital that follows a small letter, and at all characters that are not letters.
+// Words for a side (left, right) tell the two halves of a symmetric pair.
 #include "workflow/shading/rig_poses.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 10> kEyes = {"eye",  "eyes", "brow",  "br
 enum class Side { kNone, kLeft, kRight };
 
 struct Name {
-  std::vector<std::string> words;  // ascending, but for those of the side
+  std::vector<std::string> words;  // ascending, without the words for a side
   Side side = Side::kNone;
 };
 
@@ -103,7 +103,7 @@ PoseList RigPoses::sample(std::size_t count, unsigned seed) const {
   for (std::size_t p = 0; p < count && (n > 0 || !given_.empty()); ++p) {
     std::vector<double>& pose = poses.emplace_back(target_count_, 0.0);
     if (!given_.empty()) {
-      // The last of these is the rest.
+      // Index given_.size() stands for the rest pose.
       const std::size_t from = random_below(random, given_.size()), to = random_below(random, given_.size() + 1);
       const double part = random_part(random);
       for (std::size_t i = 0; i < target_count_; ++i)
@@ -124,7 +124,7 @@ PoseList RigPoses::sample(std::size_t count, unsigned seed) const {
         if (left < 0) break;
       }
       pose[targets_[drawn]] = 1 - random_part(random);
-      // The chances are the sums over all that are active.
+      // The chance of a target is the sum over all active ones.
       for (std::size_t a = 0; a < n; ++a) {
         if (pose[targets_[a]] != 0)
           chances[a] = 0;

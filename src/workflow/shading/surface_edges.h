@@ -1,10 +1,10 @@
-/// The pairs of vertices between which a picture shows a jump of errors. Private to workflow.
+/// The pairs of vertices between which a jump of the error is visible. Private to workflow.
 ///
-/// Normals are interpolated over faces, so that two neighbours that are wrong alike look right, and two that are wrong in
-/// different ways show a fold that is not there. The *tear* of a pair is the angle that belongs to the length of the
-/// difference of their errors:
+/// Normals are interpolated over faces: two neighbours with the same error look right, and two with different errors
+/// show a fold that is not there. The *tear* of a pair is the angle that belongs to the length of the difference of
+/// their errors:
 ///
-///     tear(a, b) = 2 asin(min(1, |(s_a - u_a) - (s_b - u_b)| / 2)),   s shown and u right, both unit vectors
+///     tear(a, b) = 2 asin(min(1, |(s_a - u_a) - (s_b - u_b)| / 2)),   s rendered and u true, both unit vectors
 #ifndef CHRONORMAL_WORKFLOW_SHADING_SURFACE_EDGES_H_
 #define CHRONORMAL_WORKFLOW_SHADING_SURFACE_EDGES_H_
 
@@ -18,18 +18,18 @@
 
 namespace chronormal::inline internal {
 
-/// A pair of vertices of which the first has the lower number.
+/// A pair of vertices, the lower number first.
 using SurfaceEdge = std::array<std::uint32_t, 2>;
 
-/// Lists the edges of all faces, and the pairs of copies of a point that share a normal (seams of textures), each once,
-/// ascending. Vertices that show no normal of their own are in none. O(corners log corners)
+/// Lists the edges of all faces, and pairs of copies of a point that share a normal (texture seams), each once and
+/// ascending. Vertices without a normal of their own are in no pair. O(corners log corners)
 [[nodiscard]] std::vector<SurfaceEdge> surface_edges(const GltfShading& shading);
 
-/// How many tears there are beyond 10, 20 and 40 degrees.
+/// Counts the tears beyond 10, 20 and 40 degrees.
 struct TearCounts {
   static constexpr std::array<float, 3> kDegrees = {10, 20, 40};
 
-  /// The squares of the lengths of s - u that belong to these angles: (2 sin(angle / 2))^2.
+  /// The squared lengths of s - u that belong to these angles, (2 sin(angle / 2))^2.
   static constexpr std::array<float, 3> kSquares = {0.030384494F, 0.12061476F, 0.46791112F};
 
   std::array<std::size_t, 3> beyond{};
@@ -37,8 +37,8 @@ struct TearCounts {
   void add(const TearCounts& other) noexcept {
     for (std::size_t k = 0; k < beyond.size(); ++k) beyond[k] += other.beyond[k];
   }
-  /// Adds the tears between two vertices in some poses, of which the errors s - u are planes (3, poses). Those that are
-  /// NaN add nothing.
+  /// Adds the tears between two vertices in some poses. a and b are planes (3, poses) of their errors s - u; NaN adds
+  /// nothing.
   void add(const float* a, const float* b, std::size_t poses) noexcept {
     std::array<std::uint32_t, 3> counts{};
     for (std::size_t p = 0; p < poses; ++p) {

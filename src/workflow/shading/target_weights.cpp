@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kSamplesPerPiece = 16;
 
-// How many samples a track has: its keys, and where weights move, every `step`th of those between them.
+// Counts the samples of a track: its keys and, if weights change between keys, every `step`th sample between them.
 std::size_t count_samples(const WeightTrack& track, std::size_t step) {
   if (track.interpolation == GltfInterpolation::kStep || track.size() < 2) return track.size();
   return kSamplesPerPiece / step * (track.size() - 1) + 1;
@@ -116,9 +116,9 @@ std::vector<std::vector<double>> WeightUse::samples(std::size_t most, std::size_
   const std::size_t total = sample_count(step);
   std::vector<std::vector<double>> result;
   const std::size_t count = std::min(total, most);
-  std::size_t track = 0, first = poses_.size();  // of the samples of that track
+  std::size_t track = 0, first = poses_.size();  // the index of the first sample of that track
   for (std::size_t n = 0; n < count; ++n) {
-    // Ends included, without overflow.
+    // Spreads indices evenly, both ends included, without overflow.
     const std::size_t index =
         count < 2 ? 0
                   : static_cast<std::size_t>(std::floor(static_cast<double>(n) * static_cast<double>(total - 1) /
