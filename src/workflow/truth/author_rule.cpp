@@ -14,15 +14,15 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;  // degrees, degrees, a share
-constexpr double kOff = 0.001;                                      // degrees: a normal does not follow the rule
+constexpr double kOff = 0.001;                                      // degrees: above, a normal does not follow the rule
 constexpr std::size_t kMostKeys = 48, kMostAsked = 5000, kMostFollowers = 20000, kAskedAtOnce = 64;
 constexpr std::uint32_t kNoVertex = GltfShading::kNoElement;
-// Candidates are sums of own corners and of whole points, of triangles and of quads, by each weighting.
+// Candidates are sums over own corners or whole points, over triangles or quads, by each weighting.
 constexpr std::size_t kKinds = 4, kCandidates = kKinds * kWeightings.size();
 
 double degrees_between(const Vec3d& a, const Vec3d& b) { return angle_between(a, b) * kDegreesPerRadian; }
 
-// The base and some of the targets that store normals, evenly.
+// Returns the base and some of the targets that store normals, evenly spread.
 std::vector<std::optional<std::size_t>> keys_to_ask(const GltfShading& shading, std::size_t most) {
   const std::vector<std::size_t> targets = targets_with_normals(shading);
   std::vector<std::optional<std::size_t>> keys = {std::nullopt};
@@ -35,7 +35,7 @@ StoredKey key_of(const GltfShading& shading, std::optional<std::size_t> target) 
   return target ? StoredKey(shading, *target) : StoredKey(shading);
 }
 
-// A normal as the author shows it: on the side on which the stored base normal is.
+// Turns normals to the side that the author shows, on which the stored base normal is.
 class Sides {
  public:
   Sides(const GltfShading& shading, std::span<const std::uint32_t> vertex_of) : other_(vertex_of.size()) {
@@ -57,7 +57,7 @@ class Sides {
   std::vector<char> other_;
 };
 
-// The edges around an element, one to each point, where for_edges(visit) visits all.
+// Returns the edges around an element, one to each neighbouring point. for_edges(visit) must visit all of them.
 template <class ForEdges>
 std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges& for_edges) {
   std::vector<OffsetEdge> edges;
@@ -69,11 +69,11 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
   return edges;
 }
 
-// Angles between candidates and what is stored, in degrees.
+// Holds the angles between candidates and stored normals, in degrees.
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
-  std::size_t silent = 0, silent_off = 0;  // normals that do not tell, and those of them that no candidate explains
+  std::size_t silent = 0, silent_off = 0;  // normals that do not tell, and how many of them follow no candidate
 
   void add(const Distances& other) {
     for (std::size_t c = 0; c < kCandidates; ++c)
@@ -84,7 +84,7 @@ struct Distances {
   }
 };
 
-// A share of the values is below this.
+// Returns the value that this share of the values is below.
 double quantile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
@@ -115,7 +115,7 @@ class Mending {
                   [&](std::size_t e) { off_[e] = off(static_cast<std::uint32_t>(e), false); });
   }
 
-  // Lets elements add up their whole point that follow that, and not their own corners.
+  // Lets an element add up its whole point if its normals follow that sum, but not the sum of its own corners.
   void choose_whole_points() {
     parallel_each(off_.size(), kAskedAtOnce, [&](std::size_t i) {
       if (whole_[i] != 0 || !(off_[i] > kOff)) return;
@@ -126,7 +126,7 @@ class Mending {
     });
   }
 
-  // Puts triangles together, and takes polygons apart, where that brings normals nearer to the sums.
+  // Joins triangles to polygons, and splits polygons, if that brings normals nearer to the sums.
   void mend_polygons() {
     constexpr std::size_t kSweeps = 8;
     bool any = true;
@@ -140,7 +140,7 @@ class Mending {
 
   [[nodiscard]] std::vector<bool> whole_points() const { return {whole_.begin(), whole_.end()}; }
 
-  // The median over all elements.
+  // Returns the median distance over all elements.
   [[nodiscard]] double distance() const {
     std::vector<float> all;
     for (std::size_t e = 0; e < off_.size(); ++e)
@@ -149,7 +149,7 @@ class Mending {
   }
 
  private:
-  // The triangle corners at each point.
+  // Lists the triangle corners at each point.
   void list_points() {
     const auto corners = shading_.set.topology.corners();
     point_offsets_.assign(shading_.point_of_vertex.size() + 1, 0);
@@ -170,7 +170,7 @@ class Mending {
     return {corners_at_.data() + point_offsets_[p], corners_at_.data() + point_offsets_[p + 1]};
   }
 
-  // A corner of a polygon: the polygon, and which of its corners.
+  // A corner of a polygon.
   struct Part {
     std::uint32_t polygon = 0;
     std::size_t corner = 0;
@@ -190,8 +190,8 @@ class Mending {
     return sides_(element, unit(sum));
   }
 
-  // Returns the worst distance of an element from its sums, in degrees: at keys beyond what the base is off by, and in
-  // the base alone where no key turns it.
+  // Returns the worst distance of an element from its sums, in degrees: at keys, the distance that the base does not
+  // explain; if no key turns the element, the distance in the base.
   [[nodiscard]] double off(std::uint32_t element, bool whole) const {
     if (vertex_of_[element] == kNoVertex) return 0;
     // Each corner of a polygon counts once, however many triangles have a part in it.
@@ -239,7 +239,7 @@ class Mending {
     return false;
   }
 
-  // Makes the best polygon of triangles from this one on. Returns whether any is better than what there is.
+  // Makes the best polygon that begins with this triangle. Returns whether any is better than the present ones.
   bool mend_at(std::size_t t, std::size_t end) {
     constexpr std::size_t kLongest = 130;
     std::size_t best = 0, most = 0;
@@ -259,10 +259,10 @@ class Mending {
     return best > 0;
   }
 
-  // Counts how many more elements around follow their sums with a run of triangles as one polygon. What is merely
-  // nearer may be so by chance.
+  // Counts how many more elements nearby follow their sums if a run of triangles is one polygon. Elements that only
+  // come nearer do not count: that may be chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
-    std::vector<std::pair<std::size_t, std::size_t>> before;  // polygons that it takes apart
+    std::vector<std::pair<std::size_t, std::size_t>> before;  // polygons that the run takes apart
     for (std::size_t t = first; t < first + count; t = before.back().first + before.back().second)
       before.emplace_back(polygons_.of_triangle(t), polygons_.triangle_count(polygons_.of_triangle(t)));
     if (!polygons_.join(first, count)) return 0;
@@ -296,10 +296,10 @@ class Mending {
   std::vector<char> whole_;  // of each element
   std::vector<double> off_;
   std::vector<std::uint32_t> point_offsets_, corners_at_;
-  std::size_t budget_ = 400000;  // elements that are tried: what no polygon mends costs no more
+  std::size_t budget_ = 400000;  // elements that may still be tried; bounds the cost of normals that no polygon mends
 };
 
-// The candidates of a mesh, held against what it stores.
+// Compares the candidates of a mesh with its stored normals.
 class Candidates {
  public:
   Candidates(const GltfShading& shading, const Polygons& plain, const Polygons& quads,
@@ -342,9 +342,9 @@ class Candidates {
   [[nodiscard]] static Weighting weighting_of(std::size_t c) { return kWeightings[c % kWeightings.size()].weighting; }
   [[nodiscard]] static bool is_of_polygons(std::size_t c) { return c / kWeightings.size() >= 2; }
 
-  // The candidate at the smallest distance, by keys or else by the base: the distance that a share of the normals is
-  // within. Nothing where that is beyond `follows`, or not within the part `clear` of that by area, which is itself
-  // found where or_area says so.
+  // Returns the candidate at the smallest distance, by keys or, if no key tells, by the base. The distance of a
+  // candidate is the angle that this share of the normals is within. Returns nothing if it is beyond `follows`, or more
+  // than `clear` times the distance of area; or_area accepts area in the second case.
   [[nodiscard]] std::optional<std::size_t> closest(double share, double follows, double clear, bool or_area) {
     for (Distances* of : {&keys_, &of_base_}) {
       if (of->told[0].empty()) continue;
@@ -359,8 +359,8 @@ class Candidates {
         best = area();
       }
       if (!(distance[best] <= follows)) continue;
-      // Takes, among those that are as near, the one that most normals follow to the last digit; among these quads, if
-      // the file was cut from them and there are keys, and else triangles, and own corners.
+      // Among candidates that are equally near, takes the one that most normals follow exactly. If several do, it
+      // prefers quads if the file was cut from them and has keys, and otherwise triangles and own corners.
       constexpr double kAlike = 0.003, kAsMany = 0.005;
       std::size_t found = best;
       double most = -1;
@@ -381,12 +381,12 @@ class Candidates {
     return std::nullopt;
   }
 
-  // Returns whether keys agree with all candidates: nothing speaks then against the quads that the file was cut from.
+  // Returns whether keys agree with all candidates: then nothing contradicts the quads that the file was cut from.
   [[nodiscard]] bool are_quads_as_good() const {
     return is_of_quads_ && keys_.silent > keys_.told[0].size() && 2 * keys_.silent_off < keys_.silent;
   }
 
-  // Returns whether many elements follow a candidate to the last digit, so that there is nothing to mend.
+  // Returns whether all elements that are asked follow a candidate exactly, so that there is nothing to mend.
   [[nodiscard]] bool do_all_follow(std::size_t c) const {
     if (keys_.silent_off > 0 || of_base_.silent_off > 0) return false;
     const AuthorSums& sums = of_kinds_[sums_of_kind_[c / kWeightings.size()]];
@@ -419,7 +419,7 @@ class Candidates {
     return false;
   }
 
-  // So many of the elements whose normals a key turns, evenly.
+  // Returns up to about `most` elements whose normals a key turns, evenly spread.
   [[nodiscard]] std::vector<std::uint32_t> elements_to_ask(std::optional<std::size_t> target, std::size_t most) const {
     const StoredKey key = key_of(shading_, target);
     std::vector<std::uint32_t> elements;
@@ -443,7 +443,8 @@ class Candidates {
                                      [](Distances& sum, const Distances& each) { sum.add(each); }));
   }
 
-  // The angle between what is stored of an element and what follows of one candidate, in degrees; 0 where nothing does.
+  // Returns the angle between the stored normal of an element and the normal by one candidate, in degrees; 0 if there
+  // is none.
   [[nodiscard]] double distance_of(std::uint32_t e, const StoredKey* key, const AuthorSums& of,
                                    Weighting weighting) const {
     const auto of_base = [&](std::uint32_t v) { return base_.position(v); };
@@ -496,7 +497,7 @@ class Candidates {
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<AuthorSums> of_kinds_;
-  std::vector<std::size_t> sums_of_kind_;  // whole points are own corners where no point has several elements
+  std::vector<std::size_t> sums_of_kind_;  // whole points are the same as own corners if no point has several elements
   std::optional<Sides> sides_;
   std::vector<std::optional<std::size_t>> asked_keys_;
   std::vector<std::vector<std::uint32_t>> followers_;  // of each key: the elements that must all follow a rule
@@ -540,7 +541,8 @@ FoundRule find_author_rule(const GltfShading& shading) {
       rule.is_followed = false;
       return false;
     };
-    // A rule that a tenth follows to the last digit is that of the mesh, however much of it was cut or bent otherwise.
+    // A rule that a tenth of the normals follow exactly is the rule of the mesh, even if most of it was cut or bent
+    // later.
     constexpr double kTenth = 0.1, kExactly = 0.003, kMuchClearer = 1.0 / 3;
     std::optional<std::size_t> found = candidates.closest(kTenth, kExactly, kMuchClearer, false);
     if (!found || !accept(*found, false)) {

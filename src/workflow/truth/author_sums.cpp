@@ -7,7 +7,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The outline of triangles that fill it without a vertex inside; empty where that is not what they do.
+// Returns the outline of triangles that fill it without a vertex inside; empty if they do not.
 std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first, std::size_t count) {
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Edge> edges;
@@ -21,7 +21,7 @@ std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first,
   for (const auto& [from, to] : edges)
     if (!std::binary_search(edges.begin(), edges.end(), Edge(to, from))) border.emplace_back(from, to);
   if (border.size() != count + 2) return {};
-  // It begins where the first triangle does, as far as that is on it.
+  // The outline begins at the first corner of the first triangle, if that is on it.
   const std::uint32_t start = triangles.face(first)[0];
   const auto leaves = [&border](std::uint32_t from) {
     return std::lower_bound(border.begin(), border.end(), Edge(from, 0));
@@ -36,7 +36,7 @@ std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first,
     const std::uint32_t next = at->second;
     at = leaves(next);
     if (at == border.end() || at->first != next) return {};
-    if (at + 1 != border.end() && (at + 1)->first == next) return {};  // it touches itself there
+    if (at + 1 != border.end() && (at + 1)->first == next) return {};  // the outline touches itself there
   } while (at->first != begin);
   return loop.size() == count + 2 ? loop : std::vector<std::uint32_t>();
 }
@@ -109,7 +109,7 @@ AuthorSums::AuthorSums(const GltfShading& shading, const Polygons& polygons, Wei
   constexpr std::uint32_t kNone = GltfShading::kNoElement;
   const std::size_t triangles = shading.set.topology.face_count(), elements = shading.groups.size();
   const auto is_wanted = [&](std::uint32_t e) { return e != kNone && (wanted.empty() || wanted[e]); };
-  // The elements that add up all corners at a point, where there are any.
+  // Lists the elements that add up all corners at a point.
   std::vector<std::vector<std::uint32_t>> whole_at;
   std::vector<std::uint32_t> list_of_point;
   if (std::find(whole_point.begin(), whole_point.end(), true) != whole_point.end()) {

@@ -6,9 +6,9 @@
 ///     quad         (a, b, c), (a, c, d)     consecutive, with the shared edge at places 0, 2 and 0, 1
 ///     larger       any number of triangles in a row, in any order, that fill an outline without a vertex inside
 ///
-/// The pattern of quads is strict because pairs that share any edge are often halves of two neighbours. Which faces an
-/// element adds up is a question, too: those whose corners show its normal, or all around the point, as tools do that
-/// give corners of flat faces a normal of their own and go on counting these faces for the others.
+/// The pattern of quads is strict because pairs that share any edge are often halves of two neighbours. An element adds
+/// up either the faces whose corners show its normal, or all faces around the point: some tools give the corners of
+/// flat faces their own normal, but still count these faces for the other corners.
 ///
 /// Which sums are right is found out by holding them against what the file stores (author_rule.h).
 ///
@@ -34,14 +34,14 @@
 
 namespace chronormal::inline internal {
 
-/// A weighted sum, and the faces behind it.
+/// A weighted sum of face normals, with the size of its terms.
 struct AuthorSum {
   Vec3d normal;
-  double terms = 0;  ///< the lengths of its terms, added up
-  double areas = 0;  ///< the lengths of the normals of its faces, each twice its area long
+  double terms = 0;  ///< the sum of the lengths of its terms
+  double areas = 0;  ///< the sum of the lengths of its face normals, each twice the area of the face
 
-  /// Returns the same direction, as long as a sum by area of faces that look one way would be; shorter where its terms
-  /// cancel but for a twentieth, so that it comes to zero as the direction is lost.
+  /// Returns the same direction, as long as a sum by area would be if its faces looked one way. It is shorter if the
+  /// terms cancel to less than a twentieth, so that the length goes to zero as the direction is lost.
   [[nodiscard]] Vec3d with_area_length() const noexcept {
     constexpr double kLost = 0.05;
     const double size = length(normal);
@@ -49,18 +49,18 @@ struct AuthorSum {
   }
 };
 
-/// Triangles put together to polygons again.
+/// Polygons that are put together from triangles again.
 class Polygons {
  public:
   explicit Polygons(const Topology& triangles);
 
-  /// Makes one polygon of `count` triangles from `first` on, and triangles of those that it takes apart. Returns false,
-  /// and changes nothing, where their outline is no polygon around all of their vertices.
+  /// Makes one polygon of `count` triangles from `first` on, and single triangles of the rest of polygons that it takes
+  /// apart. Returns false, and changes nothing, if their outline is no polygon around all of their vertices.
   bool join(std::size_t first, std::size_t count);
-  /// Makes quads of all pairs that follow the pattern, within the parts of the mesh. Returns how many.
+  /// Makes quads of all pairs that follow the pattern, within the parts of the mesh. Returns their number.
   std::size_t join_quads(std::span<const GltfPart> parts);
 
-  /// The first triangle of the polygon that a triangle belongs to; polygons are named by it.
+  /// Returns the polygon that a triangle belongs to, named by the polygon's first triangle.
   [[nodiscard]] std::uint32_t of_triangle(std::size_t triangle) const noexcept {
     return first_.empty() ? static_cast<std::uint32_t>(triangle) : first_[triangle];
   }
@@ -68,7 +68,7 @@ class Polygons {
   [[nodiscard]] std::size_t triangle_count(std::size_t polygon) const noexcept {
     return count_.empty() ? 1 : count_[polygon];
   }
-  /// Its vertices, in order around it.
+  /// Returns the vertices of a polygon, in order around it.
   [[nodiscard]] std::span<const std::uint32_t> corners(std::size_t polygon) const noexcept;
   /// Returns whether any polygon is more than a triangle.
   [[nodiscard]] bool any_joined() const noexcept { return joined_ > 0; }
@@ -79,7 +79,7 @@ class Polygons {
   const Topology* triangles_;
   // These are empty until something is joined.
   std::vector<std::uint32_t> first_, count_;  // of each triangle: its polygon; of a polygon: its triangles
-  std::vector<std::uint32_t> loop_of_;        // where a larger polygon's corners are in loops_, of its first triangle
+  std::vector<std::uint32_t> loop_of_;        // where a larger polygon's corners are in loops_, by its first triangle
   std::vector<std::uint32_t> loops_;          // a larger polygon has two corners more than triangles
   std::size_t joined_ = 0;
 };
@@ -88,14 +88,15 @@ class Polygons {
 class AuthorSums {
  public:
   AuthorSums() = default;
-  /// Adds up the corners that show each element's normal or, where `whole_point` says so for an element, all at its
-  /// point; of elements that are wanted alone, where `wanted` has any: the others have no corners.
+  /// Adds up the corners that show each element's normal or, if `whole_point` is set for an element, all corners at its
+  /// point. If `wanted` is not empty, only the elements set in it have corners.
   AuthorSums(const GltfShading& shading, const Polygons& polygons, Weighting weighting,
              const std::vector<bool>& whole_point, const std::vector<bool>& wanted = {});
 
   [[nodiscard]] Weighting weighting() const noexcept { return weighting_; }
 
-  /// The sum of an element, from positions that position(vertex) gives. Zero where it is nothing but rounding.
+  /// Returns the sum of an element, from positions that position(vertex) gives. It is zero if it is nothing but
+  /// rounding error.
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position) const {
     return at(element, position, weighting_);
@@ -108,8 +109,8 @@ class AuthorSums {
     return result;
   }
 
-  /// Calls visit(i, sum) for the i-th of some elements, one after the other; visit() may not ask for sums itself. Many
-  /// of them together, kElementsOfBlock or so, take a fraction of the time of one by one.
+  /// Calls visit(i, sum) for the i-th of some elements, one after the other; visit() may not ask for sums itself. Calls
+  /// for kElementsOfBlock elements or so take a fraction of the time of one call each.
   template <class PositionOf, class Visit>
   void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Visit& visit) const {
     for_each(elements, position, visit, weighting_);
@@ -147,7 +148,8 @@ class AuthorSums {
     });
   }
 
-  /// The polygons of which some corner is added up, in the order of their triangles, and the vertices around one.
+  /// Return the number of polygons with a corner that is added up, in the order of their triangles, and the vertices
+  /// around one of them.
   [[nodiscard]] std::size_t polygon_count() const noexcept { return loop_offsets_.size() - 1; }
   [[nodiscard]] std::span<const std::uint32_t> polygon(std::size_t p) const noexcept {
     return {loops_.data() + loop_offsets_[p], loops_.data() + loop_offsets_[p + 1]};
@@ -170,14 +172,14 @@ class AuthorSums {
     }
   }
 
-  /// Calls visit(vertex) for the vertices whose positions an element looks at; some more than once.
+  /// Calls visit(vertex) for the vertices whose positions an element needs; for some more than once.
   template <class Visit>
   void for_vertices(std::uint32_t element, const Visit& visit) const {
     for (std::uint32_t i = offsets_[element]; i < offsets_[element + 1]; ++i)
       for (const std::uint32_t v : polygon(sums_[i].polygon)) visit(v);
   }
 
-  /// Marks the elements that look at a vertex that is marked.
+  /// Marks the elements that need the position of a marked vertex.
   [[nodiscard]] std::vector<bool> elements_around(const std::vector<bool>& vertices) const;
 
  private:

@@ -10,7 +10,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kFramesOfBlock = 256;
-constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: what is nearer to a sum has no offset
+constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: a normal nearer to the sum has no offset
 
 // Returns the angle by which rounding may turn a stored normal, in radians: some exporters store bytes.
 double rounding_of_stored(const GltfShading& shading) {
@@ -28,7 +28,7 @@ double rounding_of_stored(const GltfShading& shading) {
 
 }  // namespace
 
-// Finds which elements have offsets, from which edges these are measured, and which keys are stale.
+// Finds which elements have offsets, the edges from which their azimuths are measured, and stale keys.
 class AuthorTruth::Finder {
  public:
   explicit Finder(AuthorTruth& truth)
@@ -43,7 +43,7 @@ class AuthorTruth::Finder {
         stale_(shading_) {}
 
   void find() {
-    // A key that follows the rule is right, whatever triangles say.
+    // A key that follows the rule found is right, even if plain sums of triangles call it stale.
     if (!stale_.list().empty()) stale_.keep_common(StaleKeys(shading_, &truth_.sums_));
     parallel_each(z0_.size(), kFramesOfBlock, [&](std::size_t i) {
       const auto e = static_cast<std::uint32_t>(i);
@@ -122,7 +122,7 @@ class AuthorTruth::Finder {
     });
   }
 
-  // The offset of what is stored, measured from an edge; nothing where the edge gives no azimuth.
+  // Returns the offset of a stored normal, measured from an edge; nothing if the edge gives no azimuth.
   [[nodiscard]] std::optional<PlaneOffset> by_edge(const StoredKey& key, std::size_t n, std::uint32_t edge,
                                                    const Vec3d& z) const {
     const auto position = [&](std::uint32_t v) { return key.position(v); };
@@ -141,7 +141,7 @@ class AuthorTruth::Finder {
                      mean_edge_angle(truth_.edges_of(frame), z, position));
   }
 
-  // Returns whether a key says anything of a frame; writes its z there.
+  // Returns whether the stored normal of a frame at a key can be used. Writes the unit sum there to z.
   [[nodiscard]] bool tells(const StoredKey& key, std::size_t k, std::size_t n, Vec3d& z) const {
     const std::uint32_t e = element_of_[n];
     if (stale_.is_stale(k, vertex_of_[e])) return false;
@@ -211,7 +211,7 @@ class AuthorTruth::Finder {
   StaleKeys stale_;
   std::vector<std::uint32_t> element_of_;  // of each frame
   std::vector<PlaneOffset> base_offsets_;  // by each edge
-  std::vector<double> differences_;        // of offsets by each edge from those of the base; -1 where it will not do
+  std::vector<double> differences_;        // between offsets by each edge and the base's; -1 if the edge cannot be used
 };
 
 AuthorTruth::AuthorTruth(const GltfShading& shading, Weighting weighting) : shading_(&shading) {
@@ -229,7 +229,7 @@ AuthorTruth::AuthorTruth(const GltfShading& shading, bool any_split) : shading_(
     finder.find();
     stale_ = finder.stale();
   }
-  if (is_plain()) sums_ = AuthorSums();  // nobody asks
+  if (is_plain()) sums_ = AuthorSums();  // not needed
 }
 
 Vec3d AuthorTruth::turned_with(const Frame& frame, const Vec3d& z) { return turned(frame.base_z, z, frame.base_x); }
@@ -254,7 +254,7 @@ AuthorTruth::Pose AuthorTruth::pose_alone(std::size_t target, double weight) con
 }
 
 std::vector<std::uint32_t> AuthorTruth::elements_of(std::size_t target) const {
-  if (target >= shading_->set.targets.size()) return {};  // a bake added it
+  if (target >= shading_->set.targets.size()) return {};  // a bake added the target
   std::vector<bool> moves(shading_->element_of_vertex.size());
   for (const std::uint32_t v : shading_->set.targets[target].vertices) moves[v] = true;
   std::vector<bool> turns = sums_.elements_around(moves);

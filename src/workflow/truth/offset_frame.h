@@ -1,4 +1,4 @@
-/// The offset that an author added to a sum of normals, measured in a frame that the surface carries along. Private to
+/// Measures the offset that an author added to a sum of normals in a frame that the surface carries along. Private to
 /// workflow.
 ///
 /// At a point with the unit sum z and an edge from there, a stored normal s has
@@ -31,7 +31,7 @@ struct OffsetEdge {
   std::uint32_t from = 0, to = 0;
 };
 
-/// The mean angle between z and the edges around its point, in radians; 1 where there is none.
+/// Returns the mean angle between z and the edges around its point, in radians; 1 if there is none.
 template <class PositionOf>
 [[nodiscard]] double mean_edge_angle(std::span<const OffsetEdge> edges, const Vec3d& z, const PositionOf& position) {
   double sum = 0;
@@ -45,7 +45,7 @@ template <class PositionOf>
   return count > 0 && sum > 0 ? sum / static_cast<double>(count) : 1;
 }
 
-/// The direction perpendicular to z in which an edge leaves its point; zero where it has none.
+/// Returns the direction perpendicular to z in which an edge leaves its point; zero if it has none.
 template <class PositionOf>
 [[nodiscard]] Vec3d zero_azimuth(const OffsetEdge& edge, const Vec3d& z, const PositionOf& position) {
   const Vec3d along = unit(position(edge.to) - position(edge.from));
@@ -64,7 +64,7 @@ template <class PositionOf>
   return length(along) > kLeastLength * longest && length(cross(unit(along), z)) > kLeastSine;
 }
 
-/// The offset of a normal; x is the direction of azimuth 0.
+/// Returns the offset of a normal; x is the direction of azimuth 0.
 [[nodiscard]] inline PlaneOffset offset_of(const Vec3d& normal, const Vec3d& z, const Vec3d& x, double mean) {
   const Vec3d s = unit(normal), across = unit(s - dot(s, z) * z);
   if (s == Vec3d{} || x == Vec3d{} || across == Vec3d{}) return {};
@@ -72,7 +72,7 @@ template <class PositionOf>
   return {size * dot(across, x), size * dot(across, cross(z, x))};
 }
 
-/// The unit normal that has an offset, at most a right angle from z.
+/// Returns the unit normal with an offset, at most a right angle from z.
 [[nodiscard]] inline Vec3d with_offset(const PlaneOffset& offset, const Vec3d& z, const Vec3d& x, double mean) {
   const double size = portable::hypot(offset.x, offset.y);
   if (size == 0 || x == Vec3d{}) return z;
@@ -82,12 +82,13 @@ template <class PositionOf>
   return portable::cos(alpha) * z + portable::sin(alpha) * across;
 }
 
-/// Returns the angle between a stored normal at a key and what carries the offset of the base there, in radians: by the
-/// edge with which it is nearest. base and at_key are positions, z0 and z the unit sums there, s0 and s what is stored.
+/// Returns the angle between a stored normal at a key and the base normal whose offset is carried there, in radians, by
+/// the edge for which it is smallest. base and at_key give positions, z0 and z are the unit sums, s0 and s the stored
+/// normals.
 template <class BaseOf, class KeyOf>
 [[nodiscard]] double carried_error(std::span<const OffsetEdge> edges, const Vec3d& z0, const Vec3d& s0,
                                    const BaseOf& base, const Vec3d& z, const Vec3d& s, const KeyOf& at_key) {
-  constexpr double kNoOffset = 1.7e-4;  // a hundredth of a degree
+  constexpr double kNoOffset = 1.7e-4;  // radians; a hundredth of a degree
   double least = angle_between(z, s);
   if (angle_between(z0, s0) <= kNoOffset) return least;
   const double mean0 = mean_edge_angle(edges, z0, base), mean = mean_edge_angle(edges, z, at_key);

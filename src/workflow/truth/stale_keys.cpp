@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr double kTurns = 1 / kDegreesPerRadian;  // radians: what turns less tells little of a key
+constexpr double kTurns = 1 / kDegreesPerRadian;  // radians: a vertex that turns less tells little of a key
 
 double median_of(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -21,7 +21,7 @@ double median_of(std::vector<float>& values) {
   return static_cast<double>(*middle);
 }
 
-// Numbers the connected parts of the surface, of vertices.
+// Numbers the connected parts of the surface. Returns the part of each vertex.
 std::vector<std::uint32_t> connected_parts(const GltfShading& shading, std::size_t& count) {
   std::vector<std::uint32_t> parent(shading.point_of_vertex.size());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -45,7 +45,7 @@ std::vector<std::uint32_t> connected_parts(const GltfShading& shading, std::size
   return result;
 }
 
-// The sums by area over the faces of each vertex.
+// Returns the sums by area over the faces of each vertex.
 std::vector<Vec3d> sums_of_vertices(const Topology& topology, const StoredKey& key) {
   std::vector<Vec3d> sums(topology.vertex_count());
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
@@ -56,7 +56,7 @@ std::vector<Vec3d> sums_of_vertices(const Topology& topology, const StoredKey& k
   return sums;
 }
 
-// The sums of the element of each vertex.
+// Returns, for each vertex, the sum of its element.
 std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums& sums, const StoredKey& key) {
   const std::vector<std::uint32_t> vertex_of = vertices_of_elements(shading);
   std::vector<Vec3d> of_elements(vertex_of.size()), result(shading.element_of_vertex.size());
@@ -69,7 +69,7 @@ std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums
   return result;
 }
 
-// Sums over a connected part of the mesh.
+// Gathers the vertices of a connected part of the mesh that a key turns.
 struct PartOfKey {
   std::vector<float> turned, off;  // radians, of the vertices that turn
   double together = 0, of_surface = 0, of_stored = 0;
@@ -144,7 +144,7 @@ bool split_by_keys(GltfShading& shading) {
   const std::vector<std::size_t> targets = targets_with_normals(shading);
   if (targets.empty() || shading.groups.size() == 0) return false;
   const std::vector<std::uint32_t> vertex_of = vertices_of_elements(shading);
-  // Vertices that share their elements, since others can be split from nobody.
+  // Only vertices that share their elements can be split.
   std::vector<std::uint32_t> sharing;
   for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) {
     const std::uint32_t e = shading.element_of_vertex[v];
@@ -152,14 +152,14 @@ bool split_by_keys(GltfShading& shading) {
   }
   if (sharing.empty()) return false;
   const double chord = kSplitNormalTolerance / kDegreesPerRadian;
-  std::optional<StaleKeys> stale;  // found out where it matters
+  std::optional<StaleKeys> stale;  // found only if needed
   std::vector<std::uint32_t> classes(shading.groups.element_of_output().begin(),
                                      shading.groups.element_of_output().end());
   std::size_t count = shading.groups.size();
-  std::vector<std::uint32_t> first_of = vertex_of;  // of each class, what others are held against
+  std::vector<std::uint32_t> first_of = vertex_of;  // of each class, the vertex that others are compared with
   for (const std::size_t k : targets) {
     const StoredKey key(shading, k);
-    // Classes that come apart at this key: the vertices that began each new one.
+    // Lists, for each class that this key splits, the first vertex of each new class.
     std::vector<std::vector<std::uint32_t>> apart;
     std::vector<std::uint32_t> apart_of;
     for (const std::uint32_t v : sharing) {

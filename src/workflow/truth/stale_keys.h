@@ -1,15 +1,15 @@
-/// Which stored normals of targets tell nothing of their author. Private to workflow.
+/// Finds stored normals of targets that tell nothing of their author. Private to workflow.
 ///
 /// Another program may have moved vertices after the normals of a target were made, or stored none. A target is *stale*
 /// on a connected part of the mesh where its normals
 ///
-///     are no nearer to where the surface turned than those of the base: the median angle between them and what the
-///     faces of their vertices turn the base normals to is at least three quarters of the median of that turn; and
-///     do not turn as the surface does: over the part, their turns and those of the surface, as axes times sines, have
-///     a correlation below a half.
+///     are no nearer to the turned surface than the base normals: turn the base normals as the faces around their
+///     vertices turn; the median angle to the results is at least three quarters of the median turn; and
+///     do not turn as the surface does: over the part, the turns of normals and surface, as axes times sines, have a
+///     correlation below a half.
 ///
 /// The first alone would find a target whose author weighs faces otherwise. Vertices around which the surface turns by
-/// less than a degree are not asked. It is decided for parts, since exporters drop small deltas.
+/// less than a degree do not count. Connected parts are judged as a whole, since exporters drop small deltas.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_STALE_KEYS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_STALE_KEYS_H_
 
@@ -31,29 +31,29 @@ struct StaleKey {
 class StaleKeys {
  public:
   StaleKeys() = default;
-  /// Judges all targets that store normals: by the sums of elements, or else by area around each vertex. O(corners) for
-  /// each, on all cores.
+  /// Judges all targets that store normals, by the sums of elements if given, and otherwise by area around each vertex.
+  /// O(corners) for each target, on all cores.
   explicit StaleKeys(const GltfShading& shading, const AuthorSums* sums = nullptr);
-  /// Keeps those that others find stale, too.
+  /// Keeps the parts of targets that `others` find stale too.
   void keep_common(const StaleKeys& others);
 
   [[nodiscard]] bool is_stale(std::size_t target, std::uint32_t vertex) const {
     return !stale_[target].empty() && stale_[target][part_of_vertex_[vertex]];
   }
-  /// Returns whether no part of the mesh that the target turns follows it.
+  /// Returns whether the target is stale on all parts of the mesh that it turns.
   [[nodiscard]] bool is_stale_everywhere(std::size_t target) const { return is_all_stale_[target]; }
   [[nodiscard]] const std::vector<StaleKey>& list() const noexcept { return list_; }
 
  private:
   std::vector<std::uint32_t> part_of_vertex_;
-  std::vector<std::vector<bool>> stale_;  // of each target: its parts; empty where none is
+  std::vector<std::vector<bool>> stale_;  // of each target: whether each part is stale; empty if none is
   std::vector<bool> is_all_stale_;        // of each target
   std::vector<StaleKey> list_;
 };
 
-/// Makes elements of their own of copies of a point whose base normals agree and whose normals at a key do not, unless
-/// the key is stale: an edge may be hard in a target alone. The groups must have their corners. Returns whether there
-/// are any.
+/// Splits the elements of copies of a point whose base normals agree but whose normals at a key differ, unless the key
+/// is stale: an edge may be hard in a target alone. The groups must have their corners. Returns whether anything was
+/// split.
 bool split_by_keys(GltfShading& shading);
 
 }  // namespace chronormal::inline internal

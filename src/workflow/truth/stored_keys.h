@@ -1,8 +1,7 @@
-/// The normals of its author that a file stores: those of the base, and those of each target at weight 1. Private to
-/// workflow.
+/// The normals of the author that a file stores, of the base and of each target at weight 1. Private to workflow.
 ///
-/// A bake spreads the normals of a target over its own deltas and those of extra targets that follow its weight. Where
-/// its mark says that they are still the author's, they are added up again.
+/// A bake spreads the normals of a target over the target's own deltas and those of correction targets that follow its
+/// weight. If its mark says that the sums are still the author's normals, they are added up again here.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 
@@ -17,21 +16,21 @@
 
 namespace chronormal::inline internal {
 
-/// The base or one target at weight 1, of all vertices.
+/// The positions and normals of all vertices, in the base or in one target at weight 1.
 class StoredKey {
  public:
-  /// The base.
+  /// Takes the base.
   explicit StoredKey(const GltfShading& shading);
-  /// A target at weight 1.
+  /// Takes a target at weight 1.
   StoredKey(const GltfShading& shading, std::size_t target);
 
   [[nodiscard]] Vec3d position(std::uint32_t vertex) const noexcept {
     const float* const p = (moved_.empty() ? shading_->set.base : moved_).data() + 3 * std::size_t{vertex};
     return {p[0], p[1], p[2]};
   }
-  /// The normal that is shown there, of any length.
+  /// Returns the rendered normal of a vertex, of any length.
   [[nodiscard]] Vec3d normal(std::uint32_t vertex) const noexcept;
-  /// Returns whether the target turns what is stored for the vertex.
+  /// Returns whether the target changes the stored normal of the vertex.
   [[nodiscard]] bool turns(std::uint32_t vertex) const noexcept;
 
  private:
@@ -43,14 +42,15 @@ class StoredKey {
     double weight = 1;
   };
   const GltfShading* shading_;
-  std::vector<float> moved_;  // all positions; or empty, where they are those of the base
-  std::vector<Part> parts_;   // of the target and the extra ones that follow it
+  std::vector<float> moved_;  // all positions; empty if they are those of the base
+  std::vector<Part> parts_;   // the target and the correction targets that follow it
 };
 
-/// The targets whose normals are their author's, ascending: none of an earlier bake that wrote its own over them.
+/// Lists the targets that have their author's normals, ascending. It is empty if an earlier bake replaced them.
 [[nodiscard]] std::vector<std::size_t> targets_with_normals(const GltfShading& shading);
 
-/// A vertex of each element, GltfShading::kNoElement where no vertex shows it. All of an element store the same.
+/// Returns a vertex of each element, or GltfShading::kNoElement if no vertex shows it. All vertices of an element store
+/// the same normal.
 [[nodiscard]] std::vector<std::uint32_t> vertices_of_elements(const GltfShading& shading);
 
 }  // namespace chronormal::inline internal
