@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kHalfTurn = 3.14159265358979323846;
 
-// Formulas in float32 take another way for shorter vectors than 1e-8.
+// Float32 formulas treat vectors shorter than 1e-8 in another way.
 constexpr double kShortest = 1.1e-8;
 
-// Products of what is as long as 1 are off by less than this, in a sum of a few of them.
+// Bounds the rounding error of a sum of a few products of numbers up to 1.
 constexpr double kRounding = 32 * kUnitRoundoff;
 
-// The share of coefficient i of degree M and j of degree N in the coefficient i + j of their product.
+// The share of coefficient i of degree M times coefficient j of degree N in coefficient i + j of their product.
 template <std::size_t M, std::size_t N>
 constexpr auto kShares = [] {
   std::array<std::array<double, N + 1>, M + 1> shares{};
@@ -30,13 +30,13 @@ constexpr auto kShares = [] {
   return shares;
 }();
 
-// At least asin(x), and pi / 2 from x = 1 on.
+// Returns an upper bound of asin(x), which is pi / 2 from x = 1 on.
 double arc_sine_bound(double x) {
   if (!(x < 1)) return kHalfTurn / 2;
   return x <= 0.5 ? x * (1 + 0.25 * x * x) : x * (kHalfTurn / 2);
 }
 
-// p(1/2).
+// Returns p(1/2).
 template <class T>
 T in_the_middle(const Bernstein<T, 2>& p) {
   return 0.25 * (p[0] + p[2]) + 0.5 * p[1];
@@ -74,13 +74,12 @@ double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcep
   for (const double d : dot_products) largest_dot = std::max(largest_dot, std::fabs(d));
   const double p_length = std::sqrt(p_square), n_length = std::sqrt(n_square);
   if (!(p_length > 0 && n_length > 0 && std::isfinite(p_length))) return kHalfTurn;
-  // S and D themselves are off by a rounding of the lengths, which counts as an error of p; their squares by one of
-  // their own.
+  // The rounding of the lengths changes S and D, which counts as an error of p. Rounding of their squares comes on top.
   const double cross_slack = kRounding * largest_cross, dot_slack = kRounding * largest_dot * largest_dot;
   const bool is_ahead = *std::min_element(dot_products.begin(), dot_products.end()) > kRounding * p_length * n_length;
 
   double smallest = std::numeric_limits<double>::infinity();
-  double steepest = 0, flattest = std::numeric_limits<double>::infinity();  // squares of tangents
+  double steepest = 0, flattest = std::numeric_limits<double>::infinity();  // squared tangents
   for (std::size_t k = 0; k <= 2 * kDegree; ++k) {
     smallest = std::min(smallest, cross_squares[k] + dot_squares[k]);
     const double below = dot_squares[k] - dot_slack;

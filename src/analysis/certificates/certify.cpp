@@ -21,12 +21,12 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kMostPieces = 256;
-// A piece is not cut further below this; whatever is in there is as good as a single instant.
+// A piece is not split below this width, where it is as good as a single instant.
 constexpr double kNarrowest = 0x1p-40;
 constexpr double kPromisedShare = 0x1p-26;  // of a control normal: see face_control_normals()
 constexpr std::size_t kBlockSize = 1024;
 
-// n(t) over [0, 1] at a size of about 1, and what it may be off by.
+// The normal n(t) over [0, 1], scaled to a size of about 1, and a bound of its error.
 struct Normal {
   Bernstein<Vec3d, 2> n;
   Bernstein<double, 2> error;
@@ -35,13 +35,13 @@ struct Normal {
 };
 
 constexpr double kLongestOfThree = 1.7320509;  // a vector of three components, each up to 1
-constexpr double kCutting = 0x1p-46;           // what cutting a polynomial in double adds, of its largest coefficient
+constexpr double kCutting = 0x1p-46;           // the rounding of splitting a polynomial, per largest coefficient
 
-// Brings the largest component to 1; zero stays what it is, and what it may be off by is all that is known.
+// Returns the factor that brings the largest component to 1. A zero vector is not scaled: only its error counts.
 double scale_of(double largest) { return largest == 0 ? 1 : 1 / largest; }
 
-// A quadratic that is zero at an end for sure has the direction of one of lower degree, which is not: n(t) / t, and
-// likewise at t = 1. Nothing where n is zero throughout for sure.
+// Divides a quadratic that is certainly zero at an end by t or 1 - t: the result has the same direction, and is not
+// zero there. Returns nothing if n is certainly zero throughout.
 std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlErrors& errors) {
   const double largest = std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
   if (largest == 0 && errors == ControlErrors{}) return std::nullopt;
@@ -65,11 +65,11 @@ std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlEr
   return Normal{{n0, m, n1}, error};
 }
 
-// The piece of which the bound is the largest comes first.
+// Pieces are ordered by their bounds; the largest comes first.
 struct Piece {
   double a, b;
   double upper;
-  double uncertainty;  // in its middle
+  double uncertainty;  // in the middle of the piece
 
   friend bool operator<(const Piece& x, const Piece& y) { return x.upper < y.upper; }
 };
@@ -109,8 +109,8 @@ ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOpt
   }
 }
 
-// An arc that is run in warped time x = r t / ((1-r)(1-t) + r t) meets, at x, the normal of t(x), which is again a
-// quadratic but for a factor: control normal k has the weight r^(2-k) (1-r)^k.
+// An arc that runs in warped time x = r t / ((1-r)(1-t) + r t) meets, at x, the normal of t(x). That is again a
+// quadratic, up to a factor: control normal k has the weight r^(2-k) (1-r)^k.
 struct Warp {
   double share;
 
@@ -128,7 +128,7 @@ struct Warp {
 
 constexpr ErrorBounds kUnknown{0, std::numbers::pi, 0, 0, 1};
 
-// All elements of a block share these.
+// Holds what all elements of a block share.
 class Certifier {
  public:
   explicit Certifier(const Scheme& scheme)

@@ -1,5 +1,5 @@
-/// How far a straight line between two directions, as viewers draw it between two keys, is from the normal over a piece
-/// of a segment. Private: certificates of analysis/certify.h for what is no scheme.
+/// Bounds the error of a straight line between two directions, as viewers draw it between two keys, over a piece of a
+/// segment. Private: serves the certificates of analysis/certify.h for normals that no scheme made.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFICATES_LINE_BOUND_H_
 #define CHRONORMAL_ANALYSIS_CERTIFICATES_LINE_BOUND_H_
 
@@ -8,13 +8,13 @@
 
 namespace chronormal::inline internal {
 
-/// What a viewer may add to a line of unit vectors, in float32: two deltas of up to 2 are rounded, their weights, and a
-/// sum of three terms, whose rounding is below 25 of 2^-24.
+/// The largest error that a viewer may add to a line of unit vectors in float32. It rounds two deltas of up to 2, their
+/// weights, and a sum of three terms: less than 25 times 2^-24.
 inline constexpr double kViewerRounding = 32 * 0x1p-24;
 
-/// An upper bound of the angle, in radians, between n(t) and the line from `from` (t = a) to `to` (t = b), for all t in
-/// [a, b] and at any length of the two. It is as close as it has to be: at most `enough`, or above it for sure. 0 where
-/// n is zero throughout. Pure.
+/// Returns an upper bound of the angle, in radians, between n(t) and the line from `from` (t = a) to `to` (t = b), for
+/// all t in [a, b] and at any length of the two. The bound is only as close as it must be to tell that the angle is at
+/// most `enough`, or certainly above it. 0 if n is zero throughout. Pure.
 /// 0 <= a < b <= 1
 [[nodiscard]] double line_error(const ControlNormals& normals, double a, double b, const Vec3d& from, const Vec3d& to,
                                 double enough) noexcept;

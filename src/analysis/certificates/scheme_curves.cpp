@@ -17,8 +17,8 @@ constexpr double kE = kFloatUnitRoundoff;
 constexpr double kScaling = 2 * kE;  // radians
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What a weighted sum of this many vectors adds, for a sum of |weights| |vectors| of 1: the rounding of a weight, a
-// product and the additions, and one more for weights that are rounded in double before.
+// Returns the rounding error of a weighted sum of this many vectors, if the sum of |weights| |vectors| is 1: of a
+// weight, a product, the additions, and the weights that were rounded in double before.
 constexpr double rounding_of_sum(std::size_t count) { return (static_cast<double>(count) + 2) * kE; }
 
 double length_of(const Vec3d& v) { return std::sqrt(dot(v, v)); }
@@ -38,7 +38,7 @@ CubicCurve::CubicCurve(const WeightBasis& basis, ElementCoefficients c) noexcept
   assert(degree <= 3);
   const double rounding = rounding_of_sum(basis.count());
   std::array<Vec3d, 4> p{};
-  std::array<double, 4> sizes{};  // of what is added up for each
+  std::array<double, 4> sizes{};  // the sum of the sizes of the terms of each coefficient
   double largest = 0;
   for (std::size_t k = 0; k < basis.count(); ++k) {
     const Vec3d v = to_double(c.vector(k));
@@ -94,8 +94,8 @@ CurvePiece SumCurve::over(double a, double b) const noexcept {
   std::array<Vec3d, WeightBasis::kMostDegree + 1> coefficients = p_;
   const std::span<Vec3d> p(coefficients.data(), degree_ + 1);
   restrict_in_place(p, a, b);
-  // The cubic of the same ends and slopes at the ends; raised to the degree of p, it has a coefficient beside each of
-  // p.
+  // Takes the cubic with the same ends and end slopes. Raised to the degree of p, it has a coefficient to compare with
+  // each one of p.
   const double degree = static_cast<double>(degree_), steps = degree / 3;
   const Bernstein<Vec3d, 3> cubic = {p[0], p[0] + steps * (p[1] - p[0]),
                                      p[degree_] + steps * (p[degree_ - 1] - p[degree_]), p[degree_]};
@@ -123,10 +123,11 @@ ArcCurve::ArcCurve(Formula formula, ElementCoefficients c) noexcept {
   angle_ = static_cast<double>(c[is_great ? 6 : 9]);
   const double w = length_of(w_), p = length_of(p_), q = length_of(q_);
   largest_ = std::max(p, q);
-  // t and its product with A; sine and cosine within 1.2e-7 = 2.02 e; two products and two additions.
+  // Bounds the rounding of t and its product with A; of sine and cosine, within 1.2e-7 = 2.02 e; of two products and
+  // two additions.
   double time_error = 2.01 * kE;
   if (formula == Formula::kTimedCircleArc) {
-    // The warped time moves by at most `steepest` times the rounding of t, and by a few roundings of its own.
+    // The warped time changes by at most `steepest` times the rounding of t, and by a few roundings of its own.
     const double share = static_cast<double>(c[10]);
     const double steepest = share > 0 && share < 1 ? std::max(share / (1 - share), (1 - share) / share) : kInfinity;
     time_error += (steepest + 6) * kE;
@@ -138,8 +139,8 @@ CurvePiece ArcCurve::over(double a, double b) const noexcept {
   const double at = (a + (b - a) / 2) * angle_, beta = (b - a) / 2 * angle_;
   const double cosine = portable::cos(at), sine = portable::sin(at);
   const Vec3d p = cosine * p_ + sine * q_, q = cosine * q_ - sine * p_;
-  // From here x in [-beta, beta] further: cos x = 1 - x^2 / 2 + x^4 / 24 of which x^4 is beta^2 x^2 - beta^4 / 8 to
-  // within beta^4 / 8, and sin x = x - x^3 / 6.
+  // From here on, x is in [-beta, beta]. In cos x = 1 - x^2 / 2 + x^4 / 24, the term x^4 is within beta^4 / 8 of beta^2
+  // x^2 - beta^4 / 8; and sin x = x - x^3 / 6.
   const double square = beta * beta, fourth = square * square;
   const double constant = 1 - fourth / 192, quadratic = square / 24 - 0.5;
   const Vec3d outer = w_ + (constant + quadratic * square) * p, inner = w_ + (constant - quadratic * square / 3) * p;
@@ -154,7 +155,7 @@ CurvePiece ArcCurve::over(double a, double b) const noexcept {
 }
 
 SphericalCurve::SphericalCurve(std::size_t count, ElementCoefficients c) noexcept : count_(count) {
-  constexpr double kMostOff = 4 * kE;  // of the square of a unit vector in float32
+  constexpr double kMostOff = 4 * kE;  // relative to the square of a unit vector in float32
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3d v = to_double(c.vector(k));
     points_[k] = unit(v);
@@ -163,10 +164,11 @@ SphericalCurve::SphericalCurve(std::size_t count, ElementCoefficients c) noexcep
 }
 
 CurvePiece SphericalCurve::over(double a, double b) const noexcept {
-  constexpr double kMostTurn = std::numbers::pi - 1e-3;  // beyond, a slerp is not known in float32
+  constexpr double kMostTurn = std::numbers::pi - 1e-3;  // beyond, float32 does not determine a slerp
   if (!are_unit_) return {{}, kInfinity, {}, kInfinity, 0};
   const double t = a + (b - a) / 2, half = (b - a) / 2;
-  // A point in the middle of the piece, how fast it may move anywhere on it, and its rounding across and along itself.
+  // A point at the middle of the piece, its largest speed anywhere on the piece, and its rounding across and along
+  // itself.
   struct Moving {
     Vec3d at;
     double speed = 0, across = 0, along = 0;
@@ -179,7 +181,7 @@ CurvePiece SphericalCurve::over(double a, double b) const noexcept {
       const double turn = angle_between(from.at, to.at);
       const double most = turn + half * (from.speed + to.speed) + from.across + to.across + 1e-9;
       if (!(most < kMostTurn)) return {{}, kInfinity, {}, kInfinity, 0};
-      // What a motion of one end by 1 moves the point by: sin(share T) / sin T, at most, for shares on this piece.
+      // If one end moves by 1, the point moves by at most the largest sin(share T) / sin T for shares on this piece.
       const double sine = portable::sin(most);
       const auto factor = [most, sine](double share) {
         if (most < 1e-6) return share * (1 + 1e-9);

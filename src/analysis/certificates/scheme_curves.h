@@ -1,7 +1,8 @@
-/// The curves of schemes, piece by piece: on any [a, b], a cubic and a ball around it that holds what is shown.
+/// Bounds the curves of schemes piece by piece: on any [a, b], by a cubic with a ball around it that contains the
+/// rendered vector.
 ///
-/// Everything is taken from the float32 coefficients that the scheme evaluates (schemes/fitted_curves.h), so fits have
-/// no rounding of their own. What one evaluation adds, with e = 2^-24, is bounded for each formula of
+/// Everything is computed from the float32 coefficients that the scheme evaluates (schemes/fitted_curves.h), so the
+/// rounding of fits does not matter. The rounding of one evaluation, with e = 2^-24, is bounded for each formula of
 /// schemes/kernels/formulas-inl.h, operation by operation (docs/theory.md, section 19):
 ///
 ///     weighted sums of K + 1       (K + 3) e sum |w_k| |c_k|
@@ -9,7 +10,7 @@
 ///     slerp of slerp, each         40 e, or 20 e (1 + 1 / sin T) beyond a right angle
 ///     scaling to length 1          2 e, an angle
 ///
-/// Threads    pure: no allocation, no throw, but where a class says so.
+/// Threads  pure: no allocation, no throw, unless a class says so.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFICATES_SCHEME_CURVES_H_
 #define CHRONORMAL_ANALYSIS_CERTIFICATES_SCHEME_CURVES_H_
 
@@ -25,16 +26,16 @@
 
 namespace chronormal::inline internal {
 
-/// Weighted sums whose weights are cubics at most, and quadratics: cubics as they stand.
+/// Weighted sums with weights of degree 3 at most, and quadratics; both are exact cubics.
 class CubicCurve {
  public:
   /// basis.degree() must be 3 at most
   CubicCurve(const WeightBasis& basis, ElementCoefficients c) noexcept;
-  /// The quadratic of `rational`, whose weights are those of Bernstein.
+  /// Takes the quadratic of `rational`, whose weights are Bernstein polynomials.
   explicit CubicCurve(ElementCoefficients c) noexcept;
-  /// A line between two vectors, in balls of these radii around its ends.
+  /// Takes a line between two vectors, which may be anywhere in balls of these radii.
   CubicCurve(const Vec3d& from, double from_radius, const Vec3d& to, double to_radius) noexcept;
-  /// A quadratic that is shown to within an angle, and may itself be off by an error.
+  /// Takes a quadratic that is rendered to within an angle, and may itself have an error.
   CubicCurve(const Bernstein<Vec3d, 2>& n, double angle, const Bernstein<double, 2>& error = {}) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
@@ -59,11 +60,11 @@ class SumCurve {
   double radius_ = 0;
 };
 
-/// Arcs of great circles and of others. An arc that meets its middle at another time is given by its share before that,
-/// and runs in that warped time; see warped_normal().
+/// Great arcs and other circular arcs. If an arc reaches its middle at another time, it is given by the share of time
+/// before that, and runs in warped time; see warped_normal().
 class ArcCurve {
  public:
-  /// w, p, q, A in the planes of the formula, kGreatArc, kCircleArc or kTimedCircleArc.
+  /// Takes w, p, q, A in the planes of the formula: kGreatArc, kCircleArc or kTimedCircleArc.
   ArcCurve(Formula formula, ElementCoefficients c) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
@@ -73,7 +74,7 @@ class ArcCurve {
   double angle_ = 0, largest_ = 0, rounding_ = 0;
 };
 
-/// De Casteljau's algorithm with slerp: a ball around the vector in the middle of a piece.
+/// De Casteljau's algorithm with slerp, bounded by a ball around the vector in the middle of a piece.
 class SphericalCurve {
  public:
   SphericalCurve(std::size_t count, ElementCoefficients c) noexcept;
@@ -83,7 +84,7 @@ class SphericalCurve {
  private:
   std::size_t count_;
   std::array<Vec3d, kMaxDeCasteljauNormals> points_;
-  bool are_unit_ = true;  // else nothing is known
+  bool are_unit_ = true;  // if false, nothing is known
 };
 
 }  // namespace chronormal::inline internal

@@ -18,11 +18,11 @@ namespace {
 constexpr std::size_t kAxisRefinements = 10;
 constexpr double kWidest = 0.995;         // the sine of 84 degrees: beyond it the test would hardly ever reject
 constexpr double kTestSlack = 0x1p-20;    // for the test in float32: some ten roundings of 2^-24
-constexpr double kRoundUp = 1 + 0x1p-22;  // to float, and what was rounded before that
+constexpr double kRoundUp = 1 + 0x1p-22;  // for rounding to float, and the rounding before that
 constexpr double kSumRounding = 0x1p-46;  // of sums of products in double
 constexpr double kSteps = 127;            // of a component in 8 bits
 
-// Where a vertex is at both ends of the interval, and how far that is rounded.
+// The places of a vertex at both ends of the interval, and a bound of their rounding error.
 struct Ends {
   Vec3d from, to;
   double error = 0;
@@ -35,7 +35,8 @@ class Cluster {
     load_normals();
   }
 
-  // The smallest sphere around all vertices, nearly (Badoiu, Clarkson 2003). Points move on lines, so their ends do.
+  // Finds nearly the smallest sphere around all vertices (Badoiu, Clarkson 2003). Points move on lines, so both ends of
+  // each line suffice.
   void set_sphere(ClusterBounds& bounds) const {
     if (faces_.empty()) return;
     std::vector<std::uint32_t> vertices;
@@ -62,7 +63,7 @@ class Cluster {
     bounds.radius = static_cast<float>(kRoundUp * (length(off) + error));
   }
 
-  // Around the cones of all faces.
+  // Returns a cone around the cones of all faces.
   [[nodiscard]] NormalCone cone() const {
     std::vector<NormalCone> cones(faces_.size());
     for_runs([&](IndexRange run, std::size_t at) {
@@ -71,9 +72,10 @@ class Cluster {
     return enclosing_cone(cones);
   }
 
-  // The point center - s axis with the least s >= 0 that lies behind all faces, none if float32 has no such point:
+  // Returns the point center - s axis with the least s >= 0 that lies behind all faces, or nothing if float32 has no
+  // such point:
   //     s n(t).axis >= n(t).(center - p(t))
-  // where both sides are cubics in t; it holds where it does for each of their Bernstein coefficients.
+  // Both sides are cubics in t, so it holds if it holds for each of their Bernstein coefficients.
   [[nodiscard]] std::optional<Vec3f> apex(const Vec3d& center, const NormalCone& cone) const {
     const Vec3d axis = to_double(cone.axis);
     double s = 0;
@@ -94,7 +96,7 @@ class Cluster {
         s = std::fmax(s, (height[k] + error * distance + 2 * p.error * size[k]) / (along[k] - error));
       }
     }
-    // Rounding moves the point, by less than this share of the way that it may go back along the axis.
+    // Rounding moves the point by less than this share of its way back along the axis.
     const double cosine = std::sqrt((1 - double{cone.sine}) * (1 + double{cone.sine}));
     s += 0x1p-22 * (length(center) + s) / cosine + 0x1p-120;
     const Vec3d point = center - s * axis;
@@ -110,13 +112,14 @@ class Cluster {
   }
 
  private:
-  // The Bernstein coefficients of n(t).l(t), a quadratic and a line: dot products of n0, m, n1 with both ends of l.
+  // Returns the Bernstein coefficients of n(t).l(t), for a quadratic and a line, from the dot products of n0, m, n1
+  // with both ends of l.
   [[nodiscard]] static std::array<double, 4> cubic(double n0_from, double m_from, double n1_from, double n0_to,
                                                    double m_to, double n1_to) {
     return {n0_from, (n0_to + 2 * m_from) / 3, (2 * m_to + n1_from) / 3, n1_to};
   }
 
-  // Calls body(run, at) for faces that follow each other, from faces_[at] on.
+  // Calls body(run, at) for each run of consecutive faces, which begins at faces_[at].
   template <class Body>
   void for_runs(const Body& body) const {
     for (std::size_t first = 0; first < faces_.size();) {
@@ -165,8 +168,8 @@ class Cluster {
   std::vector<IntervalNormals> normals_;
 };
 
-// The axis and the cutoff in 8 bits each: n.v >= 0 holds for all n of the cone where v.axis_s8 / 127 is no less than
-// the sine and what rounding the axis can make of v.axis.
+// Rounds the axis and the cutoff to 8 bits each: n.v >= 0 holds for all n of the cone if v.axis_s8 / 127 is at least
+// the sine plus the error that rounding the axis can make in v.axis.
 void set_8_bits(const NormalCone& cone, ClusterBounds& bounds) {
   const Vec3d axis = unit(to_double(cone.axis));
   const auto rounded = [](double x) { return std::nearbyint(kSteps * x); };

@@ -22,8 +22,8 @@ bool is_zero(const Vec3d& v) { return v == Vec3d{}; }
 
 bool is_whole(double t0, double t1) { return t0 == 0 && t1 == 1; }
 
-// Writes the cones of up to kBlock elements. settle(i) gives that of an element of which double cannot say where a
-// control normal of the part points.
+// Writes the cones of up to kBlock elements. It calls settle(i) for the cone of an element if double cannot tell where
+// a control normal of the part points.
 template <class Settle>
 void cones_of_block(std::span<const ControlNormals> normals, double t0, double t1, std::span<NormalCone> result,
                     const Settle& settle) noexcept {
@@ -44,16 +44,17 @@ void cones_of_block(std::span<const ControlNormals> normals, double t0, double t
   }
 }
 
-// The direction of a cone that is farthest from a unit axis, as the sine and the cosine of its angle.
+// The direction in a cone that is farthest from a unit axis, by the sine and cosine of its angle to the axis.
 struct Farthest {
   double sine = 0, cosine = 2;
   Vec3d axis;  // of the cone
 
-  // Falls as the angle grows from 0 to 270 degrees.
+  // Returns a number that falls as the angle grows from 0 to 270 degrees.
   [[nodiscard]] double nearness() const noexcept { return sine >= 0 ? cosine : -2 - cosine; }
 };
 
-// across_of(v, along) is the length of the part of v that is perpendicular to the axis.
+// Finds the farthest direction in some cones. across_of(v, along) is the length of the part of v that is perpendicular
+// to the axis.
 template <class AcrossOf>
 Farthest farthest_of(std::span<const NormalCone> cones, const Vec3d& axis, const AcrossOf& across_of) noexcept {
   Farthest farthest;
@@ -72,7 +73,7 @@ struct Split {
   double along = 0, across = 0;
 };
 
-// Of a unit vector as float32 has it; near enough to look for an axis.
+// Splits a unit vector stored in float32. The result is accurate enough to search for an axis.
 Split rough_split(const Vec3d& v, const Vec3d& axis) noexcept {
   const double along = dot(v, axis);
   return {v, along, std::sqrt(std::fmax(0, (1 - along) * (1 + along)))};
@@ -130,8 +131,7 @@ NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {
   if (count == 0) return NormalCone::empty();
   if (count == 1) return *only;
 
-  // Move towards the farthest direction by ever smaller steps (Badoiu, Clarkson 2003), and keep the best axis on the
-  // way.
+  // Moves towards the farthest direction by ever smaller steps (Badoiu, Clarkson 2003), and keeps the best axis.
   Vec3d axis = unit(sum), best = axis;
   double best_nearness = -3;
   for (std::size_t i = 0; i < kRefinements && !is_zero(axis); ++i) {

@@ -1,4 +1,4 @@
-/// Control normals of a part [t0, t1] of a segment, and how well they are known.
+/// The control normals of a part [t0, t1] of a segment, and a bound of their error.
 #ifndef CHRONORMAL_ANALYSIS_CONES_INTERVAL_NORMALS_H_
 #define CHRONORMAL_ANALYSIS_CONES_INTERVAL_NORMALS_H_
 
@@ -11,8 +11,7 @@
 
 namespace chronormal::inline internal {
 
-/// Three control normals, each of which is exactly zero or within `unknown` of its largest component from the exact
-/// one.
+/// Three control normals. Each is exactly zero, or has an error of at most `unknown` times its largest component.
 struct IntervalNormals {
   ControlNormals normals;
   double unknown = kNormalShare;
@@ -20,14 +19,15 @@ struct IntervalNormals {
   [[nodiscard]] bool is_known() const noexcept { return unknown <= kLargestUnknown; }
 };
 
-/// Those of an element whose control normals are within kNormalShare. Where they cancel, much of them is unknown.
+/// Restricts the control normals of an element, which are within kNormalShare. If they cancel, the error is a large
+/// share of the result.
 [[nodiscard]] IntervalNormals part_of(const ControlNormals& normals, const Restriction& part) noexcept;
 
-/// Those of a face, from integers.
+/// Computes the control normals of a part for one face, exactly, from integers.
 [[nodiscard]] IntervalNormals exact_part_of(const Segment& segment, std::span<const std::uint32_t> face, double t0,
                                             double t1) noexcept;
 
-/// The cone around those that are not zero.
+/// Returns the cone around the control normals that are not zero.
 [[nodiscard]] NormalCone cone_around(IntervalNormals part) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,7 @@
-// In a piece of the interval n(s) = a + b s + c s^2 with s in [-1, 1], and |n(s)|^2 = q(s) is a quartic with q(0) =
-// |a|^2. For complex s with |s| <= R
+// The mean of the unit normal is computed by Gauss's rule on small pieces of the interval, with a bound of its error.
+//
+// In a piece n(s) = a + b s + c s^2 with s in [-1, 1], and |n(s)|^2 = q(s) is a quartic with q(0) = |a|^2. For complex
+// s with |s| <= R
 //     |q(s) - q(0)| <= |q1| R + |q2| R^2 + |q3| R^3 + |q4| R^4 = k |a|^2
 // so where k < 1 the unit normal n(s) / sqrt(q(s)) is analytic in that disc, and its component along any direction is
 // at most M = (|a| + |b| R + |c| R^2) / (|a| sqrt(1 - k)). The disc with R = (4 + 1/4) / 2 contains the ellipse with
@@ -24,16 +26,16 @@ namespace {
 
 constexpr double kRadius = 2.125;
 constexpr double kGaussError = 32.0 / 15 * 0x1p-32 / (1 - 0x1p-4);
-constexpr double kNearness = 0.5;           // of q to q(0), at which a piece is small enough
+constexpr double kNearness = 0.5;           // of q to q(0): a piece with at most this is small enough
 constexpr int kDeepest = 28;                // halvings
-constexpr double kCurveRounding = 0x1p-47;  // of n(t) against its control normals, and of sums of unit vectors
+constexpr double kCurveRounding = 0x1p-47;  // of n(t) from its control normals, and of sums of unit vectors
 
 constexpr std::array<double, 4> kNodes{0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
                                        0.96028985649753623};
 constexpr std::array<double, 4> kWeights{0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
                                          0.10122853629037626};
 
-// A piece of the curve, and the lengths of the vectors that its control normals are made of.
+// A piece of the curve, and the lengths of the vectors that its control normals are sums of.
 struct Piece {
   Bernstein<Vec3d, 2> n;
   Bernstein<double, 2> size;
@@ -44,14 +46,14 @@ struct Sum {
   double error = 0;
 };
 
-// n(s) = a + b s + c s^2.
+// The quadratic n(s) = a + b s + c s^2.
 struct Centred {
   Vec3d a, b, c;
 
   explicit Centred(const Bernstein<Vec3d, 2>& n)
       : a(0.25 * (n[0] + 2.0 * n[1] + n[2])), b(0.5 * (n[2] - n[0])), c(0.25 * (n[0] - 2.0 * n[1] + n[2])) {}
 
-  // The k of the page above; infinite or NaN where n(0) = 0.
+  // Returns k as defined at the top of this file; infinite or NaN if n(0) = 0.
   [[nodiscard]] double nearness() const {
     const double q1 = 2 * dot(a, b), q2 = dot(b, b) + 2 * dot(a, c), q3 = 2 * dot(b, c), q4 = dot(c, c);
     const double sum = kRadius * (std::fabs(q1) + kRadius * (std::fabs(q2) + kRadius * (std::fabs(q3) + kRadius * q4)));
@@ -77,7 +79,7 @@ void add_piece(const Piece& piece, double share, int depth, Sum& sum) noexcept {
     const double a = length(n.a), root = std::sqrt(1 - nearness);
     const double bound = (a + kRadius * (length(n.b) + kRadius * length(n.c))) / (a * root);
     const double size = std::max({piece.size[0], piece.size[1], piece.size[2]});
-    // Two vectors that differ by e have unit vectors that differ by up to 2 e through the sum of their lengths.
+    // If two vectors differ by e, their unit vectors differ by at most 2 e divided by the sum of their lengths.
     const double of_input = std::fmin(2 * (kNormalShare + kCurveRounding) * size / (a * root), 2.0);
     sum.unit = sum.unit + share * n.mean_unit();
     sum.error += share * (1.01 * kGaussError * bound + of_input + kCurveRounding);
@@ -91,14 +93,14 @@ void add_piece(const Piece& piece, double share, int depth, Sum& sum) noexcept {
   }
 }
 
-// Of control normals that are made of vectors of these lengths, of which each is within kNormalShare.
+// Returns the means for control normals that are sums of vectors of these lengths, each within kNormalShare.
 ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& lengths) noexcept {
   const auto& [n0, m, n1] = c;
   const double largest = std::max({lengths[0], lengths[1], lengths[2]});
   if (largest == 0) return {};
   const Vec3d mean = 1.0 / 3 * (n0 + m + n1);
   if (!std::isfinite(largest)) return {mean, {}, 1};
-  // A power of two keeps squares in range.
+  // Scaling by a power of two keeps squares in range.
   int exponent = 0;
   (void)std::frexp(largest, &exponent);
   const auto scaled = [exponent](double x) { return std::ldexp(x, -exponent); };
@@ -112,7 +114,7 @@ ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& leng
 
 Bernstein<double, 2> lengths_of(const ControlNormals& c) { return {length(c.n0), length(c.m), length(c.n1)}; }
 
-// From the normals of the whole segment.
+// Returns the means over a part, from the control normals of the whole segment.
 ShutterNormal means_of_part(const ControlNormals& c, const IntervalNormals& part,
                             const Restriction& restriction) noexcept {
   const Bernstein<double, 2> whole = lengths_of(c);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kPointsPerBlock = 64;
 
-// An edge as a face passes it.
+// An edge in the direction in which a face runs along it.
 struct PassedEdge {
   std::uint32_t low, high;  // points
   bool upwards;
@@ -60,14 +60,15 @@ EdgeFaults find_edge_faults(const Topology& topology, const Points& points) {
   return faults;
 }
 
-// The triangles of all faces, with each point by its first vertex. Those with a point twice have no area at any time.
+// The triangles of all faces, with each point named by its first vertex. Triangles that have a point twice are left
+// out: they have no area at any time.
 struct Triangles {
   std::vector<std::uint32_t> corners;  // three each
   std::vector<std::uint32_t> faces;
 };
 
 Triangles triangles_of(const Topology& topology, const Points& points, VectorView<const float> positions) {
-  std::vector<float> places;  // of polygons that have to be cut
+  std::vector<float> places;  // of polygons that must be triangulated
   for (std::size_t v = 0; v < positions.count && !topology.all_triangles(); ++v) {
     const Vec3f place = positions[v];
     places.insert(places.end(), {place.x, place.y, place.z});
@@ -89,7 +90,7 @@ Triangles triangles_of(const Topology& topology, const Points& points, VectorVie
   return triangles;
 }
 
-// The axis along which n(t) is largest, of the lengths that it may have; kNoAxis where it is zero throughout.
+// Returns the axis along which n(t) may be largest; kNoAxis if it is zero throughout.
 constexpr std::size_t kNoAxis = 3;
 std::size_t axis_of(const ControlNormals& n) {
   const auto size = [&n](double Vec3d::*axis) {
@@ -102,8 +103,8 @@ std::size_t axis_of(const ControlNormals& n) {
 
 constexpr std::size_t kUpwards = 2;
 
-// A root in [0, 1], as far as double can tell; the first, where there is no change of sign between the ends. By
-// Newton's method, which is kept between the ends that bracket the root.
+// Returns a root in [0, 1] to the precision of double; the first one if the ends have the same sign. It uses Newton's
+// method, kept between the ends that bracket the root.
 std::optional<double> first_root(const Bernstein<double, 3>& p) {
   if (!(p[0] < 0 && p[3] > 0) && !(p[0] > 0 && p[3] < 0)) {
     const Roots<3> roots = roots_in_unit_interval(p);
@@ -122,7 +123,7 @@ std::optional<double> first_root(const Bernstein<double, 3>& p) {
   return t;
 }
 
-// What all points need of a segment.
+// Holds what all points need of a segment.
 struct MeshInSegment {
   Segment segment;  // of the triangles
   std::span<const std::uint32_t> faces;
@@ -152,7 +153,7 @@ class Passage {
  public:
   Passage(const MeshInSegment& mesh, const MovingPoint& point) : mesh_(mesh), point_(point) {}
 
-  // By the signed crossings of the half-line upwards from the point.
+  // Returns the winding number by the signed crossings of the half-line upwards from the point.
   [[nodiscard]] std::int32_t winding_number(Tick t) const {
     std::int32_t sum = 0;
     const double share = static_cast<double>(t) / static_cast<double>(kTicks);
@@ -180,7 +181,7 @@ class Passage {
   }
 
  private:
-  // The only root in a cell of the volume of a triangle, which is between the edges there.
+  // The only root of the volume of a triangle in a cell. At the root, the point is between the edges.
   struct Root {
     std::uint32_t triangle;
     Cell cell;
@@ -196,7 +197,7 @@ class Passage {
     return {{corner(0), corner(1), corner(2)}, point_};
   }
 
-  // Whether a triangle needs a closer look than at this cell. Keeps its root where it is certain.
+  // Tells whether a triangle must be examined in parts of this cell. Records its root if it is certain.
   bool is_open(const CrossingSigns& signs, std::uint32_t i, const Cell& cell) {
     const std::size_t axis = axis_of(mesh_.normals[i]);
     if (axis == kNoAxis) return false;
@@ -205,7 +206,8 @@ class Passage {
     return verdict.kind == Verdict::kOpen;
   }
 
-  // Cuts a cell in which some triangles are open: around a root of the first, or where that has led no further in half.
+  // Splits a cell in which some triangles are open: around a root of the first of them or, if that did not help, in
+  // half.
   void cut(const Cell& cell, const std::vector<std::uint32_t>& open, int level) {
     const Tick width = cell.to - cell.from;
     if (width <= 2) {
@@ -232,14 +234,14 @@ class Passage {
     }
   }
 
-  // The sign of the volume behind a root, at t: as it is before the root or after.
+  // Returns the sign of the volume at t, by which side of the root t is on.
   [[nodiscard]] static int sign_at(const Root& root, const CrossingSigns& signs, Tick t) {
     if (t <= root.cell.from) return -root.change;
     if (t >= root.cell.to) return root.change;
     return signs.volume_at(t);
   }
 
-  // What open triangles do in a moment is the change of the winding number that certain roots leave unexplained.
+  // Within a moment, open triangles account for the change of the winding number that certain roots do not explain.
   void sum_up(const Cell& moment, std::vector<std::uint32_t> open) {
     int change = winding_number(moment.to) - winding_number(moment.from);
     for (const Root& root : roots_) {
@@ -258,7 +260,7 @@ class Passage {
       summed_.push_back(crossing_at(open[i % open.size()], t, direction));
   }
 
-  // Where a root is: as double says where exact signs around it agree, else by bisection.
+  // Returns the time of a root: the value in double if exact signs around it agree, and otherwise by bisection.
   [[nodiscard]] double time_of(const Root& root) const {
     constexpr Tick kMargin = 8;
     const CrossingSigns signs = signs_of(root.triangle);
@@ -287,7 +289,7 @@ class Passage {
   std::vector<Crossing> summed_;
 };
 
-// Calls body(first, end) for blocks of points, in parallel.
+// Calls body(block, range) for blocks of points, in parallel.
 template <class Body>
 void for_blocks(std::size_t count, const Body& body) {
   parallel_for((count + kPointsPerBlock - 1) / kPointsPerBlock, [&](std::size_t block) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<std::size_t, 3> kNext{1, 2, 0};
 
-// The axes that follow one.
+// Return the two axes that follow an axis.
 constexpr std::size_t first_of(std::size_t axis) noexcept { return kNext[axis]; }
 constexpr std::size_t second_of(std::size_t axis) noexcept { return kNext[kNext[axis]]; }
 
@@ -31,7 +31,7 @@ Triple cross_of(const Triple& b, const Triple& c) noexcept {
 double dot_of(const Triple& a, const Triple& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Triple sum_of(const Triple& a, const Triple& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
-// The volume over a cell, each coefficient times its binomial.
+// Returns the coefficients of the volume over a cell, each times its binomial coefficient.
 Bernstein<double, 3> volume_sums(const std::array<Triple, 3>& from, const std::array<Triple, 3>& to) noexcept {
   const Triple before = cross_of(from[1], from[2]), after = cross_of(to[1], to[2]);
   const Triple between = sum_of(cross_of(from[1], to[2]), cross_of(to[1], from[2]));
@@ -39,8 +39,8 @@ Bernstein<double, 3> volume_sums(const std::array<Triple, 3>& from, const std::a
           dot_of(from[0], after) + dot_of(to[0], between), dot_of(to[0], after)};
 }
 
-// A coordinate has 24 + 253 bits, one more for a difference and 48 for the time; a volume is a sum of six products of
-// three of these.
+// A coordinate has 24 + 253 bits, one more for a difference and 48 for the time. A volume is a sum of six products of
+// three coordinates.
 constexpr std::size_t kCoordinateDigits = 15, kProductDigits = 31, kVolumeDigits = 46;
 using Coordinate = WideInteger<kCoordinateDigits>;
 using Product = WideInteger<kProductDigits>;
@@ -63,7 +63,7 @@ ExactVector difference(const ExactVector& a, const ExactVector& b) noexcept {
   return result;
 }
 
-// Adds a x b, component by component; to be settled.
+// Adds a x b, component by component. The sums must be settled afterwards.
 void add_cross(const ExactVector& a, const ExactVector& b, ProductVector& sum) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
@@ -72,7 +72,8 @@ void add_cross(const ExactVector& a, const ExactVector& b, ProductVector& sum) n
   }
 }
 
-// The corners seen from the point at both ends of a cell, as integers of one unit; each is made when it is asked for.
+// Holds the corners seen from the point at both ends of a cell, as integers of one unit. Each is computed when it is
+// first needed.
 class ExactCell {
  public:
   ExactCell(const std::array<MovingPoint, 3>& corners, const MovingPoint& point, const Cell& cell) noexcept
@@ -97,8 +98,8 @@ class ExactCell {
     weights_ = {{{weight(kTicks - cell.from), weight(cell.from)}, {weight(kTicks - cell.to), weight(cell.to)}}};
   }
 
-  // The sign of coefficient i of the volume: of the sum over all ways to take i corners at the end of the cell and the
-  // others at its beginning.
+  // Returns the sign of coefficient i of the volume: a sum over all ways to take i corners at the end of the cell and
+  // the others at its beginning.
   [[nodiscard]] int volume(std::size_t i) noexcept {
     Volume value;
     for (const auto& at : choices(3, i)) {
@@ -111,7 +112,7 @@ class ExactCell {
       }
     }
     if (const int sign = settled_sign(value); sign != 0) return sign;
-    // -n = (c - a) x (b - a), by degree 3: each choice leaves out a factor, which is 1.
+    // Expands -n = (c - a) x (b - a) to degree 3: each choice leaves out a factor, which is 1.
     ProductVector normal;
     for (const auto& at : choices(3, i)) {
       add_cross(difference(seen(at[0], 2), seen(at[0], 0)), difference(seen(at[1], 1), seen(at[1], 0)), normal);
@@ -122,7 +123,7 @@ class ExactCell {
     return 0;
   }
 
-  // The same of the side of an edge.
+  // Does the same for coefficient i of the side of an edge.
   [[nodiscard]] int side(std::size_t edge, std::size_t axis, std::size_t i) noexcept {
     const std::size_t next = kNext[edge], x = first_of(axis), y = second_of(axis);
     Product value;
@@ -132,7 +133,7 @@ class ExactCell {
       value.add_product(seen(a, edge, y), seen(b, next, x), -1);
     }
     if (const int sign = settled_sign(value); sign != 0) return sign;
-    // - e_x (b - a)_y + e_y (b - a)_x, by degree 2: each choice leaves out a factor, which is 1.
+    // Expands -e_x (b - a)_y + e_y (b - a)_x to degree 2: each choice leaves out a factor, which is 1.
     Coordinate along_x, along_y;
     for (const auto& at : choices(2, i)) {
       along_x.add(seen(at[0], edge, y), 1);
@@ -160,7 +161,7 @@ class ExactCell {
     return {{{{0, 1, 1}, {1, 0, 1}, {1, 1, 0}}}, 3};
   }
 
-  // At one end of the cell, a corner, or one coordinate of it.
+  // Return a corner at one end of the cell, and one coordinate of it.
   const ExactVector& seen(std::size_t end, std::size_t corner) noexcept {
     for (std::size_t k = 0; k < 3; ++k) (void)seen(end, corner, k);
     return seen_[end][corner];
@@ -176,12 +177,12 @@ class ExactCell {
     return result;
   }
 
-  // A coordinate at an end of the segment, and what it lacks.
+  // A coordinate at an end of the segment, and the residual that its float lacks.
   struct Unrounded {
     float value;
     double residual;
 
-    // Calls body(part) for floats that add up to it.
+    // Calls body(part) for floats whose sum is the coordinate.
     template <class Body>
     void for_parts(const Body& body) const {
       body(value);
@@ -198,12 +199,12 @@ class ExactCell {
     return {axis == 0 ? at.x : axis == 1 ? at.y : at.z, axis == 0 ? left.x : axis == 1 ? left.y : left.z};
   }
 
-  // Adds (a - b) * weight.
+  // Adds (p - q) * weight.
   void add_difference(const Unrounded& p, const Unrounded& q, const UnitFraction& weight,
                       Coordinate& result) const noexcept {
     if (weight.digits[0] == 0 && weight.digits[1] == 0) return;
     WideInteger<kCoordinateDigits> difference;
-    // Most differences are exact in double, and whole numbers of few bits.
+    // Most differences are exact in double, and whole numbers of few bits; they need no wide integers.
     constexpr double kMost = 0x1p62;
     const float a = p.value, b = q.value;
     const double rounded = double{a} - double{b}, back = double{a} - rounded;
@@ -235,7 +236,7 @@ class ExactCell {
   std::array<std::array<std::array<bool, 3>, 3>, 2> is_made_{};
 };
 
-// An ExactCell that is made when it is asked for.
+// An ExactCell that is made only when it is needed.
 struct Integers {
   const std::array<MovingPoint, 3>& corners;
   const MovingPoint& point;
@@ -245,7 +246,7 @@ struct Integers {
   ExactCell& get() noexcept { return made ? *made : made.emplace(corners, point, cell); }
 };
 
-// The sign that all have, 0 where they differ or one is 0.
+// Returns the sign that all have; 0 if they differ or one is 0.
 template <std::size_t kCount>
 int common_sign(const std::array<int, kCount>& signs) noexcept {
   for (const int sign : signs) {
@@ -254,7 +255,7 @@ int common_sign(const std::array<int, kCount>& signs) noexcept {
   return signs[0];
 }
 
-// Those that double is sure of; 0 is any other.
+// Returns the signs that double is sure of, and 0 for the others.
 template <std::size_t kCount>
 std::array<int, kCount> rounded_signs(const std::array<double, kCount>& values, double bound) noexcept {
   std::array<int, kCount> signs;
@@ -278,10 +279,10 @@ CrossingSigns::CrossingSigns(const std::array<MovingPoint, 3>& corners, const Mo
     for (std::size_t i = 0; i < 3; ++i)
       size[i] = std::max(size[i], std::max(std::fabs(from_[k][i]), std::fabs(to_[k][i])));
   }
-  // A difference has one rounding and a position at t three more, so each is within 4 u of the largest coordinate along
-  // its axis. A coefficient of a side is a sum of 4 products, that of a volume one of 18, each with the errors of its
-  // factors and its own roundings, and every sum adds at most one rounding of the whole: below 4 (8 + 1 + 2) u = 44 u
-  // of the product of the sizes, and 18 (12 + 2 + 5) u = 342 u.
+  // A difference has one rounding and a position at t three more, so each has an error of at most 4 u of the largest
+  // coordinate along its axis. A coefficient of a side is a sum of 4 products, and one of a volume a sum of 18; each
+  // has the errors of its factors and its own roundings, and every sum adds at most one rounding of the whole. This is
+  // below 4 (8 + 1 + 2) u = 44 u of the product of the sizes, and 18 (12 + 2 + 5) u = 342 u.
   constexpr double kRounding = 0x1p-53;
   for (std::size_t axis = 0; axis < 3; ++axis)
     side_bound_[axis] = 64 * kRounding * size[first_of(axis)] * size[second_of(axis)];

@@ -1,24 +1,27 @@
-/// The signs that decide whether a moving point crosses a moving triangle: never wrong, and never zero by chance.
+/// Computes the signs that decide whether a moving point crosses a moving triangle: never wrong, and never zero by
+/// chance.
 ///
-/// Seen from the point, the corners a, b, c of the triangle move on straight lines, and two kinds of polynomials in t
-/// say everything:
+/// Seen from the point, the corners a, b, c of the triangle move on straight lines. Two kinds of polynomials in t
+/// decide:
 ///
-///     volume     V(t) = a . (b x c)                 cubic; zero where the point is in the plane of the triangle
-///     side       S_ab(t) = a_x b_y - a_y b_x        quadratic, one for each edge; all three have the same sign where the
+///     volume     V(t) = a . (b x c)                 cubic; zero if the point is in the plane of the triangle
+///     side       S_ab(t) = a_x b_y - a_y b_x        quadratic, one for each edge; all three have the same sign if the
 ///                                                   line through the point along z meets the triangle
 ///
-/// Sides may be taken along any axis along which the normal n(t) is not zero throughout: where the point is in the
-/// plane of the triangle, it is between the edges if and only if the line meets the triangle.
-/// V goes from - to + where the point goes from the side to which the normal points to the other. A polynomial over a
-/// cell [t0, t1] of time is looked at by the signs of its Bernstein coefficients, which are polynomials themselves in
-/// the corners at t0 and at t1: no sign change, no root; one sign change, one root (Descartes).
+/// Sides may be taken along any axis along which the normal n(t) is not zero throughout: if the point is in the plane
+/// of the triangle, it is between the edges if and only if the line meets the triangle. V changes from - to + when the
+/// point leaves the side to which the normal points. A polynomial over a cell [t0, t1] of time is judged by the signs
+/// of its Bernstein coefficients, which are polynomials in the corners at t0 and t1: no sign change, no root; one sign
+/// change, one root (Descartes).
 ///
-/// Ties       A point may go exactly through an edge, or stay in a plane. So all signs are those for the point moved by
-///            e = (e1, e2, e3), infinitely small and e1 >> e2 >> e3 > 0 (simulation of simplicity):
+/// Ties       A point may go exactly through an edge, or stay in a plane. So all signs are computed as if the point
+/// were moved
+///            by e = (e1, e2, e3), infinitely small with e1 >> e2 >> e3 > 0 (simulation of simplicity):
 ///                V - e . n(t)   and   S_ab - e1 (b - a)_y + e2 (b - a)_x
-///            The first term that is not zero decides. A sign is 0 only where the triangle is then without area.
-/// Numbers    In double with a bound on the rounding error, and where that is not enough in integers of any size
-///            (core/wide_integer.h), on the floats and their residuals as they are. Times are multiples of 2^-48.
+///            The first term that is not zero decides. A sign is 0 only if the triangle then has no area.
+/// Numbers    Signs are computed in double with a bound of the rounding error; if that is not enough, in integers of
+/// any
+///            size (core/wide_integer.h), from the floats and their residuals. Times are multiples of 2^-48.
 ///
 /// Source: Edelsbrunner, Muecke, Simulation of Simplicity (1990); for the cubic, Provot, Collision and self-collision
 /// handling (1997).
@@ -39,18 +42,18 @@ using Tick = std::int64_t;
 inline constexpr int kTickBits = 48;
 inline constexpr Tick kTicks = Tick{1} << kTickBits;
 
-/// A piece of a segment; from == to is a moment.
+/// A piece of a segment; if from == to, it is a moment.
 struct Cell {
   Tick from = 0, to = kTicks;
 };
 
-/// A point on its straight line through a segment.
+/// A point that moves on a straight line through a segment.
 struct MovingPoint {
   Vec3f from, to;
-  Vec3d from_residual = {}, to_residual = {};  ///< what these lack (motion/segment_end.h)
+  Vec3d from_residual = {}, to_residual = {};  ///< what the floats lack (motion/segment_end.h)
 };
 
-/// What a triangle does in a cell.
+/// The behaviour of a triangle in a cell.
 struct Verdict {
   enum Kind {
     kNothing,   ///< the point does not cross it
@@ -58,27 +61,27 @@ struct Verdict {
     kOpen       ///< the cell is too long to tell
   };
   Kind kind = kNothing;
-  int change = 0;  ///< of a crossing: the sign of the volume behind it, which is what the winding number changes by
+  int change = 0;  ///< of a crossing: the sign of the volume after it, by which the winding number changes
 };
 
 class CrossingSigns {
  public:
   CrossingSigns(const std::array<MovingPoint, 3>& corners, const MovingPoint& point) noexcept;
 
-  /// Whether all corners are, along one axis, on the same side of the point throughout: then nothing is crossed.
+  /// Tells whether all corners are throughout on the same side of the point along one axis, so that nothing is crossed.
   [[nodiscard]] bool is_beside() const noexcept;
 
-  /// What the triangle does in a cell, with sides along axis 0, 1 or 2.
+  /// Returns the behaviour of the triangle in a cell, with sides along axis 0, 1 or 2.
   [[nodiscard]] Verdict judge(std::size_t axis, const Cell& cell) const noexcept;
 
-  /// What the triangle adds to the winding number at a moment: 1 where the half-line from the point along the axis
-  /// leaves through it, -1 where it enters, else 0.
+  /// Returns what the triangle adds to the winding number at a moment: 1 if the half-line from the point along the axis
+  /// leaves through it, -1 if it enters, and otherwise 0.
   [[nodiscard]] int crossing_of_ray(std::size_t axis, Tick t) const noexcept;
 
-  /// The sign of the volume at a moment.
+  /// Returns the sign of the volume at a moment.
   [[nodiscard]] int volume_at(Tick t) const noexcept;
 
-  /// The volume over a cell as far as double can tell.
+  /// Returns the volume over a cell, to the precision of double.
   [[nodiscard]] Bernstein<double, 3> rounded_volume(const Cell& cell) const noexcept;
 
  private:
@@ -89,7 +92,7 @@ class CrossingSigns {
   std::array<MovingPoint, 3> corners_;
   MovingPoint point_;
   Corners from_, to_;  // seen from the point, rounded
-  Seen side_bound_{};  // of the rounding errors, by axis
+  Seen side_bound_{};  // bounds of the rounding errors, by axis
   double volume_bound_ = 0;
 };
 

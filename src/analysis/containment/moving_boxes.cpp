@@ -14,7 +14,7 @@ struct Range {
   std::uint32_t node, first, count;
 };
 
-// The axis along which the middles are farthest apart.
+// Returns the axis along which the centres are farthest apart.
 std::size_t longest_axis(const Middle* begin, const Middle* end) {
   std::size_t longest = 0;
   float most = -1;
@@ -29,7 +29,7 @@ std::size_t longest_axis(const Middle* begin, const Middle* end) {
   return longest;
 }
 
-// Coordinates that were rounded lie between their neighbours.
+// Extends a box to include coordinates; if they were rounded, up to their neighbours.
 void enclose(std::array<float, 3>& low, std::array<float, 3>& high, const std::array<float, 3>& least,
              const std::array<float, 3>& most, bool are_rounded = false) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -45,7 +45,7 @@ BoxTree build_box_tree(VectorView<const float> positions, std::span<const std::u
   std::vector<Middle> middles(corners.size() / 3);
   for (std::size_t i = 0; i < middles.size(); ++i) {
     const auto v = corners.subspan(3 * i, 3);
-    // A third of each, so that no sum overflows.
+    // Adds a third of each position, so that no sum overflows.
     const Vec3f middle = (1.0F / 3) * positions[v[0]] + (1.0F / 3) * positions[v[1]] + (1.0F / 3) * positions[v[2]];
     middles[i] = {{middle.x, middle.y, middle.z}, static_cast<std::uint32_t>(i)};
   }
@@ -78,7 +78,7 @@ std::vector<MovingBox> moving_boxes(std::span<const BoxNode> nodes, const Segmen
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr std::array<float, 3> kLow{kInfinity, kInfinity, kInfinity}, kHigh{-kInfinity, -kInfinity, -kInfinity};
   std::vector<MovingBox> boxes(nodes.size(), {kLow, kLow, kHigh, kHigh});
-  // Children stand behind their parents.
+  // Children come after their parents in the list.
   for (std::size_t n = nodes.size(); n-- > 0;) {
     const BoxNode& node = nodes[n];
     MovingBox& box = boxes[n];

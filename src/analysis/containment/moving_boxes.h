@@ -1,9 +1,9 @@
 /// A hierarchy of boxes around the triangles of a mesh that deforms.
 ///
-/// A box has its corners at both ends of a segment and moves between them on straight lines, as all within it does. A
-/// point that moves too is asked for the times at which it is inside: six linear inequalities, cut one after the other.
-/// So a fast mesh does not mean large boxes. The order of the triangles, a binary tree split at medians, is made once;
-/// every segment puts its own boxes around it.
+/// A box has its corners at both ends of a segment and moves between them on straight lines, as everything inside does.
+/// For a point that also moves, the times at which it is inside are given by six linear inequalities. So a fast mesh
+/// does not need large boxes. The order of the triangles, a binary tree split at medians, is made once; every segment
+/// puts its own boxes around it.
 ///
 /// Threads    const functions may run at the same time.
 /// Source     Gruenschloss et al., MSBVH: an efficient acceleration data structure for ray traced motion blur (2011).
@@ -25,10 +25,10 @@
 
 namespace chronormal::inline internal {
 
-/// A node of the tree. Its children, where it has some, follow each other.
+/// A node of the tree. If it has children, they follow each other.
 struct BoxNode {
-  std::uint32_t first = 0;  ///< child, or triangle
-  std::uint32_t count = 0;  ///< of triangles; 0: it has two children
+  std::uint32_t first = 0;  ///< the first child, or the first triangle
+  std::uint32_t count = 0;  ///< of triangles; 0: the node has two children
 };
 
 struct BoxTree {
@@ -36,15 +36,15 @@ struct BoxTree {
   std::vector<std::uint32_t> order;  ///< the triangles, so that those of a node follow each other
 };
 
-/// Puts together what is near to each other in these positions. Corners are the vertices of the triangles, three each.
-/// O(n log n).
+/// Groups triangles that are near each other in these positions. corners has three vertices for each triangle. O(n log
+/// n).
 [[nodiscard]] BoxTree build_box_tree(VectorView<const float> positions, std::span<const std::uint32_t> corners);
 
-/// Closed below and above, at both ends of a segment.
+/// A box that moves, with its limits at both ends of a segment; the limits belong to it.
 struct MovingBox {
   std::array<float, 3> low_from, low_to, high_from, high_to;
 
-  /// Whether a point is inside at some time.
+  /// Tells whether a point is inside at some time.
   [[nodiscard]] bool meets(const MovingPoint& point) const noexcept {
     double begin = 0, end = 1;
     return cut(low_from[0], low_to[0], point.from.x, point.to.x, 1, begin, end) &&
@@ -55,7 +55,7 @@ struct MovingBox {
            cut(high_from[2], high_to[2], point.from.z, point.to.z, -1, begin, end);
   }
 
-  /// Whether the half-line upwards (z) from the point meets the box at t.
+  /// Tells whether the half-line upwards (z) from the point meets the box at t.
   [[nodiscard]] bool is_above(const MovingPoint& point, double t) const noexcept {
     return reaches(low_from[0], low_to[0], point.from.x, point.to.x, 1, t) &&
            reaches(high_from[0], high_to[0], point.from.x, point.to.x, -1, t) &&
@@ -65,7 +65,7 @@ struct MovingBox {
   }
 
  private:
-  // Keeps the times at which the point is above the bound (below it, with the sign -1).
+  // Keeps the times at which the point is above the limit (below it, with the sign -1).
   static bool cut(float from, float to, float point_from, float point_to, double sign, double& begin,
                   double& end) noexcept {
     const double at_from = sign * (double{point_from} - from), at_to = sign * (double{point_to} - to);
@@ -82,10 +82,10 @@ struct MovingBox {
   static constexpr double kSlack = 1e-14;  // more than four roundings
 };
 
-/// The boxes of all nodes in a segment, whose topology has the triangles in the order of the tree. O(n).
+/// Returns the boxes of all nodes in a segment, whose topology has the triangles in the order of the tree. O(n).
 [[nodiscard]] std::vector<MovingBox> moving_boxes(std::span<const BoxNode> nodes, const Segment& segment);
 
-/// Calls visit(triangle) for the triangles in all leaves whose boxes, and those above, pass the test.
+/// Calls visit(triangle) for the triangles in all leaves that pass the test together with all nodes above them.
 template <class Test, class Visit>
 void visit_boxes(std::span<const BoxNode> nodes, std::span<const MovingBox> boxes, const Test& test,
                  const Visit& visit) {

@@ -12,14 +12,14 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Of the mean of the diagonal: pulls what the rows leave open to the deltas at the start.
+// Relative to the mean of the diagonal. It keeps deltas that the rows do not determine near the deltas at the start.
 constexpr double kRidge = 1e-9;
 
 Vec3d at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-// The system of the targets that are named, from the normal equations of all.
+// Factors the system of the named targets, a part of the normal equations of all.
 Cholesky factor(const std::vector<double>& matrix, std::size_t size, std::span<const std::uint32_t> named) {
   const std::size_t count = named.size();
   std::vector<double> part(count * count);
@@ -33,7 +33,7 @@ Cholesky factor(const std::vector<double>& matrix, std::size_t size, std::span<c
   return Cholesky(std::move(part), count, ridge);
 }
 
-// Which targets have a delta at each element, and where in its list.
+// A target with a delta at an element, and the place of the delta in the target's list.
 struct Entry {
   std::uint32_t target = 0;
   std::size_t place = 0;

@@ -1,7 +1,7 @@
-/// The normal deltas that a viewer should add up, by least squares.
+/// Fits the normal deltas that a viewer should add up, by least squares.
 ///
-/// A viewer shows normalize(N + sum_i w_i D_i) for the weights w. DeltaFit starts from some D, is told for weight vectors
-/// of interest how much is missing, and finds what to add to every D so that as little as possible is:
+/// A viewer renders normalize(N + sum_i w_i D_i) for the weights w. DeltaFit starts from given deltas D, is told what
+/// is missing for some weight vectors, and then changes every D so that as little as possible is missing:
 ///
 ///     DeltaFit fit(start);
 ///     for (each weight vector w) {
@@ -23,36 +23,36 @@
 
 namespace chronormal::inline internal {
 
-/// What a viewer adds up.
+/// The normals that a viewer adds up.
 struct DeltaNormals {
   std::vector<float> base;          ///< N, (elements, 3)
-  std::vector<BlendTarget> deltas;  ///< D_i, of elements in place of vertices
+  std::vector<BlendTarget> deltas;  ///< D_i, by elements instead of vertices
 };
 
-/// Writes N + sum_i w_i D_i of all elements: what a viewer shows, of any length.
-/// weights must have one for each delta, result one for each element
+/// Writes N + sum_i w_i D_i of all elements: the direction that a viewer renders, of any length.
+/// weights must have one value per delta, result one vector per element
 void shown_normals(const DeltaNormals& deltas, std::span<const double> weights, std::span<Vec3d> result) noexcept;
 
 class DeltaFit {
  public:
   explicit DeltaFit(DeltaNormals start);
 
-  /// The deltas as they are: those of the start, or of the last solve().
+  /// Returns the present deltas: the ones at the start, or the result of the last solve().
   [[nodiscard]] const DeltaNormals& deltas() const noexcept { return deltas_; }
 
   /// Asks for shown_normals(deltas(), weights) + missing. O(entries of deltas + targets^2).
-  /// weights must have one for each delta, missing one for each element
+  /// weights must have one value per delta, missing one vector per element
   void add(std::span<const double> weights, std::span<const Vec3d> missing);
 
-  /// Adds to the deltas what makes the sum of |missing|^2 over all rows since the last solve() smallest, for each
-  /// element on its own. Where the rows do not tell deltas apart (fewer rows than targets, weights that always go
-  /// together), the deltas nearest to those at the start. Cost: for each element a system of as many equations as it
-  /// has deltas.
+  /// Changes the deltas so that the sum of |missing|^2 over all rows since the last solve() is smallest, for each
+  /// element separately. If the rows do not determine the deltas (fewer rows than targets, weights that always go
+  /// together), it takes the deltas nearest to the start. Cost: for each element, a linear system with one equation for
+  /// each of its deltas.
   void solve();
 
  private:
   DeltaNormals deltas_;
-  // The normal equations: one matrix, of which each element has a part, and what is missing for each entry.
+  // The normal equations: one matrix, of which each element uses a part, and the missing vector for each entry.
   std::vector<double> matrix_;
   std::vector<std::vector<Vec3d>> right_;
 };

@@ -1,10 +1,10 @@
 // The direction of the line u0 + w (s u1 - u0) runs along the great circle from u0 to u1, and s only decides how fast
-// where. So for each w the angle to n(w) falls with s while the line is behind n(w), seen along the circle, and grows
-// once it is ahead. Hence, as long as all angles stay below 90 degrees, their maximum over w has one valley, and the
+// it runs where. So for each w, the angle to n(w) falls with s while the line is behind n(w), seen along the circle,
+// and grows once it is ahead. Hence, if all angles are below 90 degrees, their maximum over w has one valley, and the
 // best s is where the worst angle behind equals the worst ahead: the root of a monotone function.
 //
-// The maximum over w is taken over samples; then the true maxima at that s join the samples, until nothing is gained.
-// (An exchange as in the algorithm of Remez.)
+// The maximum over w is taken over samples; then the true maxima at that s are added to the samples, until the result
+// no longer improves (an exchange as in the algorithm of Remez).
 
 #include "analysis/fits/end_delta.h"
 
@@ -21,8 +21,8 @@ namespace {
 constexpr double kHalfPi = 1.57079632679489661923;
 constexpr double kRange = 11.090354888959125;  // log of 2^16, the largest s
 
-// Angles are compared by a number that ascends with them and needs no trigonometry: the square of the sine, and from 90
-// degrees on 2 minus it.
+// Angles are compared by a number that grows with them and needs no trigonometry: the square of the sine or, from 90
+// degrees on, 2 minus the square.
 double angle_of_key(double key) noexcept {
   return key <= 1 ? portable::asin(std::sqrt(key)) : 2 * kHalfPi - portable::asin(std::sqrt(std::max(2 - key, 0.0)));
 }
@@ -37,7 +37,7 @@ double key_between(const Vec3d& line, const Vec3d& u) noexcept {
   return key_of(dot(c, c) / dot(line, line), dot(line, u));
 }
 
-// Ascending w, and what is known there.
+// A weight w, and the normal there; kept in ascending order of w.
 struct Sample {
   double w = 0;
   Vec3d u;  // the exact unit normal
@@ -47,7 +47,7 @@ class Samples {
  public:
   static constexpr std::size_t kMost = 128;
 
-  // Equidistant at first, then denser where the normal turns fast.
+  // Places equidistant samples first, then denser ones where the normal turns fast.
   explicit Samples(const ControlNormals& normals) noexcept : normals_(normals) {
     constexpr std::size_t kIntervals = 16, kMostTurning = 80;
     constexpr int kLevels = 20;
@@ -68,7 +68,7 @@ class Samples {
   [[nodiscard]] const Sample& operator[](std::size_t i) const noexcept { return samples_[i]; }
   [[nodiscard]] Sample at(double w) const noexcept { return {w, unit_normal_at(normals_, w).vector}; }
 
-  // Does nothing where it is full, or has this w.
+  // Does nothing if the list is full, or has this w.
   void insert(double w) noexcept {
     if (count_ == kMost) return;
     const auto end = samples_.begin() + static_cast<std::ptrdiff_t>(count_);
@@ -79,7 +79,7 @@ class Samples {
     ++count_;
   }
 
-  // Adds points at which the line from `from` to `to` has equal shares of both behind it: it may turn fast near an end.
+  // Adds weights at which the line from `from` to `to` has covered equal shares: it may turn fast near an end.
   void follow(const Vec3d& from, const Vec3d& to) noexcept {
     const double ratio = length(to) / length(from);
     constexpr int kShares = 8;
@@ -97,15 +97,16 @@ struct Peak {
   double w = 0, key = 0;
 };
 
-// Where the line is zero, it jumps: both sides count.
+// Returns the key of the angle between the line and a sample. Where the line is zero, its direction jumps, and both
+// sides count.
 double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexcept {
   const Vec3d line = (1 - sample.w) * from + sample.w * to;
   if (max_abs(line) > 1e-15 * std::max(max_abs(from), max_abs(to))) return key_between(line, sample.u);
   return std::max(key_between(from, sample.u), key_between(to, sample.u));
 }
 
-// Finds the largest angle between the line and the exact normal over w: refines the highest of the local maxima among
-// the samples by golden section.
+// Finds the largest angle between the line and the exact normal over w, by golden section around the highest local
+// maxima of the samples.
 Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) noexcept {
   constexpr double kGolden = 0.6180339887498949, kWorthwhile = 0.8;
   constexpr int kSteps = 12;
@@ -143,7 +144,7 @@ Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) no
   return best;
 }
 
-// The samples as functions of s alone.
+// Holds the samples as functions of s alone.
 class ScaleSearch {
  public:
   ScaleSearch(const Vec3d& u0, const Vec3d& u1) noexcept : u0_(u0), u1_(u1), pole_(unit(cross(u0, u1))) {}
@@ -163,7 +164,7 @@ class ScaleSearch {
   }
   void clear() noexcept { count_ = 0; }
 
-  // The best log s over the samples, and the largest angle over them there, as a key.
+  // Returns the best log s over the samples, and writes the largest angle over them as a key.
   [[nodiscard]] double best_log_scale(double guess, double& key) const noexcept {
     double low = -kRange, high = kRange;
     const double best = below_right_angle(low, high) ? balance(low, high, guess) : best_of_grid();
@@ -172,13 +173,13 @@ class ScaleSearch {
   }
 
  private:
-  // Of one w: pole . (line x u), the cosine, the height of u above the circle, and the squared length of the line are
-  // polynomials in s.
+  // The polynomials in s for one w: pole . (line x u), the cosine, and the squared length of the line; and the height
+  // of u above the circle.
   struct Term {
     double ahead0, ahead1, cosine0, cosine1, height, square0, square1, square2;
   };
   struct Worst {
-    double behind = 0, ahead = 0;  // of the line against the normal: keys
+    double behind = 0, ahead = 0;  // of the line relative to the normal, as keys
   };
 
   [[nodiscard]] Worst worst(double log_scale) const noexcept {
@@ -200,7 +201,7 @@ class ScaleSearch {
     return std::max(w.behind, w.ahead);
   }
 
-  // Narrows [low, high] to the log s for which all angles are below 90 degrees: each w asks for an interval.
+  // Narrows [low, high] to the log s for which all angles are below 90 degrees: each w allows an interval.
   [[nodiscard]] bool below_right_angle(double& low, double& high) const noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
       const Term& t = terms_[i];
@@ -239,7 +240,7 @@ class ScaleSearch {
     return x;
   }
 
-  // Some angle is 90 degrees or more for every s, and there may be several valleys: walks over all.
+  // Searches a grid: some angle is 90 degrees or more for every s, so there may be several valleys.
   [[nodiscard]] double best_of_grid() const noexcept {
     constexpr int kGrid = 44, kHalvings = 20;
     double step = 2 * kRange / kGrid, best = 0, best_key = largest(0);
@@ -265,7 +266,7 @@ class ScaleSearch {
   std::size_t count_ = 0;
 };
 
-// log s of the line that is n(w) itself where its degree is 0 or 1, or where it is w or 1 - w times such a line.
+// Returns log s of the line that is n(w) itself if its degree is 0 or 1, or if n(w) is w or 1 - w times such a line.
 double log_of_degree_1(const ControlNormals& normals) noexcept {
   const Vec3d from = max_abs(normals.n0) == 0 ? 2 * normals.m : normals.n0;
   const Vec3d to = max_abs(normals.n1) == 0 ? 2 * normals.m : normals.n1;
@@ -292,11 +293,11 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   Samples samples(normals);
   const double key_of_one = highest_peak(samples, u0, u1).key;
   const EndDelta plain{u1 - u0, 1, angle_of_key(key_of_one)};
-  // Below this sine, which way is ahead is mostly rounding: equal or antipodal.
+  // Below this sine, the directions are equal or antipodal, and rounding decides which way is ahead.
   constexpr double kSmallestSine = 1e-10;
   if (length(cross(u0, u1)) < kSmallestSine) return plain;
 
-  // Round 0 tries what meets an element of degree 1 exactly, which no search can.
+  // Round 0 tries the s that fits an element of degree 1 exactly, which no search can.
   double log_scale = log_of_degree_1(normals), lowest_possible = 0;
   Peak best{0, 3};
   double best_scale = 1;

@@ -1,8 +1,9 @@
-/// The best single delta for a viewer that can only add one: base + w delta, for w in [0, 1].
+/// Finds the best single delta for a viewer that can only add one: base + w delta, for w in [0, 1].
 ///
-/// A straight line between normals has both end directions right however long its ends are: u0 + w (s u1 - u0) for any
-/// s > 0. The s that keeps the largest angle to the exact normals smallest is a search in one dimension for each
-/// element (docs/theory.md, section 4.8). Where the normal is of degree 0 or 1 the line is exact: s = |n1| / |n0|.
+/// A straight line between normals has the right direction at both ends, whatever their lengths: u0 + w (s u1 - u0) for
+/// any s > 0. The s that keeps the largest angle to the exact normals smallest is found by a search in one dimension
+/// for each element (docs/theory.md, section 4.8). If the normal is of degree 0 or 1 the line is exact: s = |n1| /
+/// |n0|.
 ///
 /// Threads    pure: no allocation, no throw.
 #ifndef CHRONORMAL_ANALYSIS_FITS_END_DELTA_H_
@@ -19,14 +20,14 @@ struct EndDelta {
   double error = 0;  ///< the largest angle to the exact direction over [0, 1], radians, to 1e-3 of itself
 };
 
-/// Finds it for one element: to 1e-3 of the smallest possible error, and never worse than s = 1. Where n0 or n1 is zero
-/// its limit direction stands for it (control_normals.h); where all are zero, the delta is zero. Where u1 = u0 the
-/// direction of the line does not depend on s, and where u1 = -u0 no s is good: s = 1 and the error is what it is.
-/// Cost: some 5 microseconds.
+/// Finds the best delta of one element: to 1e-3 of the smallest possible error, and never worse than s = 1. If n0 or n1
+/// is zero its limit direction is used (control_normals.h); if all are zero, the delta is zero. If u1 = u0 the
+/// direction of the line does not depend on s, and if u1 = -u0 no s is good: then s = 1, and error is its error. Cost:
+/// some 5 microseconds.
 [[nodiscard]] EndDelta best_end_delta(const ControlNormals& normals) noexcept;
 
-/// The largest angle over w in [0, 1] between from + w (to - from) and n(w), radians, to 1e-3 of itself. Where one of
-/// the two turns to its antipode at once (the line does where to and from are opposite), both sides count. 0 where all
+/// Returns the largest angle over w in [0, 1] between from + w (to - from) and n(w), in radians, to 1e-3 of itself. If
+/// one of the two jumps to its antipode (as the line does if to and from are opposite), both sides count. 0 if all
 /// control normals are zero. from and to must not be zero
 [[nodiscard]] double largest_line_error(const ControlNormals& normals, const Vec3d& from, const Vec3d& to) noexcept;
 

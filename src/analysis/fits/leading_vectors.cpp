@@ -1,6 +1,6 @@
 // Subspace iteration (Halko, Martinsson and Tropp, Finding Structure with Randomness, 2011, algorithm 4.4): a block of
-// random columns is multiplied by the matrix and made orthonormal, again and again. The eigenvectors of the small
-// matrix that the large one is in this block, by Jacobi's rotations, turn the block into eigenvectors of the large one.
+// random columns is multiplied by the matrix and made orthonormal, again and again. Restricted to this block, the
+// matrix is small; its eigenvectors, found by Jacobi's rotations, turn the block into eigenvectors of the large matrix.
 #include "analysis/fits/leading_vectors.h"
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::size_t kMore = 8;  // columns beyond those that are asked for, which make the iteration converge
 constexpr int kIterations = 16, kMostSweeps = 30;
-constexpr double kNothing = 1e-12;  // of the largest eigenvalue: what is rounding
+constexpr double kNothing = 1e-12;  // of the largest eigenvalue: smaller ones are rounding
 constexpr double kDiagonal = 1e-13;
 
-// Columns side by side: (columns, n).
+// Columns side by side, (columns, n).
 using Columns = std::vector<std::vector<double>>;
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -29,7 +29,7 @@ void add(std::span<double> to, double factor, std::span<const double> what) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * what[i];
 }
 
-// Numbers around zero that are the same with every library.
+// Returns pseudo-random numbers around zero, which do not depend on the standard library.
 Columns some_columns(std::size_t n, std::size_t count) {
   Columns columns(count, std::vector<double>(n));
   std::uint64_t state = 1;
@@ -42,7 +42,8 @@ Columns some_columns(std::size_t n, std::size_t count) {
   return columns;
 }
 
-// Makes columns orthonormal; what depends on those before becomes zero. Twice is enough (Kahan and Parlett).
+// Makes columns orthonormal; a column that depends on earlier ones becomes zero. Two passes are enough (Kahan and
+// Parlett).
 void make_orthonormal(Columns& columns) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const double before = std::sqrt(dot(columns[c], columns[c]));
@@ -58,14 +59,15 @@ Columns multiplied(std::span<const double> matrix, const Columns& columns) {
   Columns result;
   for (const std::vector<double>& column : columns) {
     std::vector<double>& product = result.emplace_back(column.size(), 0.0);
-    // Row by row of a symmetric matrix is column by column.
+    // The matrix is symmetric, so that its rows are its columns.
     for (std::size_t r = 0; r < column.size(); ++r)
       if (column[r] != 0) add(product, column[r], matrix.subspan(r * column.size(), column.size()));
   }
   return result;
 }
 
-// Eigenvalues of a small symmetric matrix on its diagonal, and its eigenvectors (one a row), by Jacobi's rotations.
+// Leaves the eigenvalues of a small symmetric matrix on its diagonal, and returns its eigenvectors (one per row), by
+// Jacobi's rotations.
 Columns diagonalize(Columns& matrix) {
   const std::size_t n = matrix.size();
   Columns vectors(n, std::vector<double>(n, 0.0));

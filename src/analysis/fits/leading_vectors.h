@@ -1,4 +1,5 @@
-/// The leading eigenvectors of a matrix of inner products, and so the leading singular vectors of what it was made of.
+/// Finds the leading eigenvectors of a matrix of inner products, which give the leading singular vectors of the vectors
+/// multiplied.
 ///
 /// Threads    pure: the same bits everywhere
 #ifndef CHRONORMAL_ANALYSIS_FITS_LEADING_VECTORS_H_
@@ -10,10 +11,10 @@
 
 namespace chronormal::inline internal {
 
-/// Finds the eigenvectors (n, count) of the largest eigenvalues, in descending order of these: orthonormal columns, the
-/// last of which are zero where the rank of the matrix is below count. Eigenvalues that are within a few per cent of
-/// that of the last column may be mixed with it. The matrix (n, n) must be symmetric without negative eigenvalues but
-/// for rounding. O(n^2 count) with a factor of 20, and O(count^3)
+/// Finds the eigenvectors (n, count) of the largest eigenvalues, in descending order of the eigenvalues. The columns
+/// are orthonormal; the last ones are zero if the rank of the matrix is below count. Vectors with eigenvalues within a
+/// few per cent of the last column's may be mixed with it. The matrix (n, n) must be symmetric, with no negative
+/// eigenvalues except by rounding. O(n^2 count) with a factor of 20, and O(count^3)
 [[nodiscard]] std::vector<double> leading_vectors(std::span<const double> matrix, std::size_t n, std::size_t count);
 
 }  // namespace chronormal::inline internal

@@ -1,8 +1,8 @@
-/// How far normals are off in viewers that add one normal delta per target, at any weights.
+/// Measures the error of normals in viewers that add one normal delta per target, at any weights.
 ///
-/// A viewer shows normalize(N + sum_i w_i D_i). The true normal is a quadratic form in the weights (docs/theory.md,
-/// section 14), so no choice of D is right everywhere. Three of them are compared: what a file stores; the end-point
-/// deltas, right for each target alone at weight 1; and those that are best on the whole for given weights:
+/// A viewer renders normalize(N + sum_i w_i D_i). The true normal is a quadratic form in the weights (docs/theory.md,
+/// section 14), so no choice of D is right everywhere. Three choices are compared: the deltas that a file stores; the
+/// end-point deltas, right for each target alone at weight 1; and the deltas that are best overall for given weights:
 ///
 ///     const std::vector<double> weights = random_blend_weights({.targets = 102, .rows = 200, .active = 8});
 ///     BlendNormals normals = BlendNormals::of_groups(set, groups);
@@ -26,30 +26,31 @@
 
 namespace chronormal::inline internal {
 
-/// Exact base normals, and what is missing to the exact ones of each target alone at weight 1.
+/// Returns exact base normals, and for each target the delta to its exact normals alone at weight 1.
 [[nodiscard]] DeltaNormals endpoint_deltas(BlendNormals& normals);
 
-/// Exact base normals, and the deltas that make sum |N + sum_i w_i D_i - u(w)|^2 over all rows smallest, for each
-/// element on its own. Where the rows do not tell deltas apart (fewer rows than targets, weights that always go
-/// together), those nearest to the end-point deltas. Cost: an evaluation for each row, and for each element a system of
-/// as many equations as targets touch it.
+/// Returns exact base normals, and the deltas that make sum |N + sum_i w_i D_i - u(w)|^2 over all rows smallest, for
+/// each element separately. If the rows do not determine the deltas (fewer rows than targets, weights that always go
+/// together), it takes the ones nearest to the end-point deltas. Cost: an evaluation for each row, and for each element
+/// a linear system with one equation for each target that moves it.
 /// weights must be (rows, targets)
 [[nodiscard]] DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights);
 
-/// The angles between what a viewer shows and the exact normals, over all rows, and all elements of which one of the two
-/// is not as in the base. max_at has the row as its segment.
-/// weights must be (rows, targets), deltas of the elements and targets of normals
+/// Returns the angles between the rendered and the exact normals, over all rows, and all elements for which one of the
+/// two differs from the base. max_at has the row as its segment.
+/// weights must be (rows, targets), deltas those of the elements and targets of normals
 [[nodiscard]] Quality delta_quality(const DeltaNormals& deltas, BlendNormals& normals, std::span<const double> weights);
 
 struct BlendWeightOptions {
   std::size_t targets = 0;
   std::size_t rows = 100;
-  std::size_t active = 0;  ///< targets with a weight other than 0 in each row; 0, or more than there are: all
+  std::size_t active = 0;  ///< targets with a nonzero weight in each row; 0, or more than there are: all
   double low = 0, high = 1;
   std::uint64_t seed = 1;
 };
 
-/// Rows of random weights, evenly between low and high, of as many random targets. Pure: the same on every system.
+/// Returns rows of random weights of `active` random targets, uniform between low and high. Pure: the same on every
+/// system.
 [[nodiscard]] std::vector<double> random_blend_weights(const BlendWeightOptions& options);
 
 }  // namespace chronormal::inline internal

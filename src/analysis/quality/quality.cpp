@@ -1,4 +1,4 @@
-// Adds up angular errors.
+// Sums of angular errors.
 #include "chronormal/analysis/quality.h"
 
 #include <algorithm>

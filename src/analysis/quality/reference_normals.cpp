@@ -1,5 +1,5 @@
-// The exact normals that everything is held against: cross products of vertices at t in double, and the same in
-// integers where double cannot tell them from rounding.
+// The exact normals that everything is compared with. They are cross products of vertices at t in double, or in
+// integers if double cannot tell them from rounding error.
 #include "chronormal/analysis/quality.h"
 
 #include <algorithm>
@@ -15,12 +15,12 @@
 namespace chronormal {
 namespace {
 
-// Some 500,000 rounding errors: the direction of what double gives is right to 1e-5 rad at least.
+// Some 500,000 rounding errors: a result above this share has a direction that is right to at least 1e-5 rad.
 constexpr double kDoubtfulShare = 1e-10;
-// A normal that a rounding of t turns by more than this is that of no particular moment.
+// A normal that a rounding of t turns by more than this has no definite direction at t.
 constexpr double kMostTurned = 1e-5;
 
-// A vector between two others, and the size of what it was made of: its error is a rounding of that size.
+// A vector between two others, and the size of its terms, which bounds its rounding error.
 struct Interpolated {
   Vec3d vector;
   double size;
@@ -55,8 +55,8 @@ ReferenceArea vector_area_at(const Segment& segment, std::span<const std::uint32
 constexpr std::size_t kPointDigits = 24, kAreaDigits = 50;
 using Point = std::array<WideInteger<kPointDigits>, 3>;
 
-// The sum of n(t) of some faces without any rounding but that of the result. All coordinates are integers in units of
-// 2^(base - 149), and those at t in units 2^-t.scale as large.
+// Computes the sum of n(t) of some faces with no rounding but that of the result. All coordinates are integers in units
+// of 2^(base - 149), and places at t in units 2^-t.scale as large.
 class ExactArea {
  public:
   ExactArea(const SharedFaces& shared, std::span<const std::uint32_t> faces) : segment_(shared.segment()) {
@@ -81,7 +81,7 @@ class ExactArea {
     }
   }
 
-  // The products of neighbouring corners add up to the area, wherever the origin is.
+  // The products of neighbouring corners add up to the area for any origin.
   [[nodiscard]] Vec3d at(double time) const {
     const UnitFraction t = UnitFraction::of(time < 0x1p-200 ? 0 : time);
     std::array<WideInteger<kAreaDigits>, 3> sum;
@@ -111,7 +111,7 @@ class ExactArea {
   }
 
  private:
-  // from 2^t.scale + (to - from) t 2^t.scale
+  // Returns from 2^t.scale + (to - from) t 2^t.scale.
   [[nodiscard]] Point point(std::uint32_t vertex, const UnitFraction& t) const {
     std::array<WideInteger<14>, 3> start, step;
     const auto add = [this](const SegmentEnd& end, std::uint32_t of, auto& sum, std::int64_t sign) {
@@ -140,8 +140,8 @@ class ExactArea {
   }
 
   const Segment& segment_;
-  std::vector<std::uint32_t> faces_;  // those of few corners, which are added up from their places at t
-  std::vector<ExactCurve> large_;     // the others
+  std::vector<std::uint32_t> faces_;  // faces of few corners, which are added up from their places at t
+  std::vector<ExactCurve> large_;     // the other faces
   unsigned base_ = 253;               // the highest shift of a float
 };
 

@@ -10,7 +10,7 @@
 
 namespace chronormal::inline internal {
 
-/// Returns reference_normal() of these faces from what reference_area() has of them at t.
+/// Returns reference_normal() of these faces, from the results of reference_area() at t.
 [[nodiscard]] Vec3d reference_normal(const SharedFaces& shared, std::span<const std::uint32_t> faces,
                                      std::span<const ReferenceArea> areas, double t) noexcept;
 

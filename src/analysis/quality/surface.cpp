@@ -22,13 +22,13 @@ void for_each_group(Iterator first, Iterator last, Equal equal, WithGroup with_g
   }
 }
 
-// Items in buckets: those of bucket b are items[offsets[b]] ... items[offsets[b + 1] - 1], in the order of visits.
+// Sorts items into buckets: bucket b has items[offsets[b]] ... items[offsets[b + 1] - 1], in the order of visits.
 template <class Item>
 struct Buckets {
   std::vector<std::size_t> offsets;
   std::vector<Item> items;
 
-  // visit(put) calls put(bucket, item) for every item, and does the same on both of its calls.
+  // Calls visit(put) twice, which must call put(bucket, item) for the same items each time.
   template <class Visit>
   Buckets(std::size_t count, Visit visit) : offsets(count + 1, 0) {
     visit([this](std::size_t bucket, const Item&) { ++offsets[bucket + 1]; });
@@ -39,7 +39,7 @@ struct Buckets {
   }
 };
 
-// A face at an edge, from the lower point, whose bucket it is in, to the higher one.
+// A face at an edge. The edge runs from the lower point, in whose bucket this is, to the higher one.
 struct EdgeUse {
   std::uint32_t far = 0;
   std::uint32_t face = 0;
@@ -47,8 +47,8 @@ struct EdgeUse {
   bool is_forward = false;                        // the face goes from near to far
 };
 
-// is_copy says of each face whether a lower one has the same vertices, wound the same way: an edge that only these two
-// have is open, and they are not wound against each other.
+// Counts the kinds of edges. is_copy tells of each face whether a lower one has the same vertices, wound the same way:
+// an edge that only these two have is open, and they do not count as wound against each other.
 void survey_edges(const Topology& topology, const Points& points, const std::vector<bool>& is_copy, Surface& surface) {
   Buckets<EdgeUse> uses(points.count, [&](auto put) {
     for (std::size_t f = 0; f < topology.face_count(); ++f) {
@@ -82,7 +82,7 @@ void survey_edges(const Topology& topology, const Points& points, const std::vec
   }
 }
 
-// Whether a face has a point twice. `sorted` is memory for that.
+// Tells whether a face has a point twice. `sorted` is scratch memory.
 bool has_twice(std::span<const std::uint32_t> outline, std::vector<std::uint32_t>& sorted) {
   if (outline.size() == 3) return outline[0] == outline[1] || outline[1] == outline[2] || outline[2] == outline[0];
   sorted.assign(outline.begin(), outline.end());
@@ -90,9 +90,9 @@ bool has_twice(std::span<const std::uint32_t> outline, std::vector<std::uint32_t
   return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
-// Turns the points of a face, which are all different, so that the lowest comes first, and reverses them if need be so
-// that the lower one of its neighbours is next. Faces with the same outline are equal then, and wound the same way if
-// they agree in the result: whether it was not reversed.
+// Rotates the points of a face, which are all different, so that the lowest comes first, and reverses them if necessary
+// so that the lower one of its neighbours is next. Faces with the same outline are then equal. Returns whether the
+// points were not reversed: faces that agree in this are wound the same way.
 bool make_canonical(std::span<std::uint32_t> outline) {
   std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
   if (outline[1] < outline.back()) return true;
@@ -101,7 +101,7 @@ bool make_canonical(std::span<std::uint32_t> outline) {
 }
 
 void survey_faces(const Topology& topology, const Points& points, std::vector<bool>& is_copy, Surface& surface) {
-  // The outline of every face, as make_canonical() has it; `starts` is where that of a face begins.
+  // The outlines of all faces, as make_canonical() returns them; `starts` has the beginning of each.
   std::vector<std::uint32_t> corners;
   corners.reserve(topology.corner_count());
   std::vector<std::size_t> starts = {0};
@@ -143,7 +143,7 @@ void survey_faces(const Topology& topology, const Points& points, std::vector<bo
       return a < b;
     });
     for_each_group(begin, end, same_outline, [&](auto first, auto last) {
-      std::array<std::size_t, 2> seen{};  // by the way they are wound
+      std::array<std::size_t, 2> seen{};  // by the direction in which they are wound
       for (auto f = first; f != last; ++f) {
         std::size_t& alike = seen[starts_low[*f] ? 1 : 0];
         if (alike++ == 0) continue;
@@ -199,7 +199,7 @@ Surface survey(const Topology& topology, const Points& points) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
   Surface surface;
   std::vector<bool> is_copy(topology.face_count());
-  // Each writes members of its own.
+  // The two run at once: each writes members of its own.
   parallel_for(2, [&](std::size_t i) {
     if (i == 0)
       survey_faces(topology, points, is_copy, surface);

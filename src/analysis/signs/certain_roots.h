@@ -1,10 +1,10 @@
-/// Roots of a polynomial whose coefficients are only known to a bound, as far as that bound lets them be certain.
+/// Finds the roots of a polynomial whose coefficients are known only up to a bound, if that bound lets them be certain.
 ///
 /// In Bernstein form the coefficients bound the polynomial, and by Descartes' rule one change of sign among them is
-/// exactly one root. So a part of [0, 1] is settled where all coefficients are beyond the bound on one side, or where
-/// those beyond it on one side come first, those beyond it on the other side last, and only those of which the sign is
-/// unknown between. Any other part is halved, a few times; what is not settled then is for integers
-/// (analysis/signs/exact_roots.h). The only root of a part is bracketed by two values that are beyond the bound.
+/// exactly one root. So a part of [0, 1] is settled if all coefficients are beyond the bound on one side; or if they
+/// come in the order: beyond the bound on one side, of unknown sign, beyond the bound on the other side. Any other part
+/// is halved, a few times; what is not settled then is left to integers (analysis/signs/exact_roots.h). The only root
+/// of a part is bracketed by two values beyond the bound.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 
@@ -22,8 +22,8 @@ namespace chronormal::inline internal {
 template <std::size_t M>
 class CertainRoots {
  public:
-  /// Finds the roots of all polynomials with coefficients within error of these; false where they differ in the number
-  /// of roots, or where it takes more to see that they do not. (A root has no part in 0 or 1 then.)
+  /// Finds the roots of all polynomials with coefficients within `error` of p. Returns false if they differ in the
+  /// number of roots, or if it would take more to see that they do not. (No root is at 0 or 1 then.)
   [[nodiscard]] static bool find(const std::array<double, M>& p, double error, ExactRoots& found) noexcept {
     double size = 0;
     for (const double b : p) size = std::max(size, std::fabs(b));
@@ -39,11 +39,11 @@ class CertainRoots {
 
   [[nodiscard]] int sign_of(double value) const noexcept { return value > error_ ? 1 : value < -error_ ? -1 : 0; }
 
-  // Settles the part of [0, 1] from t0 on, of this width, on which the polynomial is p.
+  // Settles the part of [0, 1] of this width that begins at t0, on which the polynomial is p.
   bool settle(const std::array<double, M>& p, double t0, double width, int halvings) noexcept {
     const int first = sign_of(p[0]), last = sign_of(p[M - 1]);
     if (first != 0 && last != 0) {
-      // One side, then unknown ones, then the other: at most one change, whatever the unknown ones are.
+      // One side, then unknown ones, then the other: at most one change of sign, whatever the unknown ones are.
       bool is_settled = true;
       std::size_t k = 0;
       while (k < M && sign_of(p[k]) == first) ++k;
@@ -67,11 +67,11 @@ class CertainRoots {
   }
 
   struct Guess {
-    double root = 0, slope = 0;  // slope: of p there, without its sign
+    double root = 0, slope = 0;  // slope: |p'| at the root
   };
 
-  // The only root of a quadratic with values of different signs at its ends: that of p2 s^2 + 2 p1 s + p0 with
-  // s = t / (1 - t) > 0, in the form in which nothing cancels.
+  // Returns the only root of a quadratic with values of different signs at its ends: the root of p2 s^2 + 2 p1 s + p0
+  // with s = t / (1 - t) > 0, in the form in which nothing cancels.
   static double root_of_quadratic(double p0, double p1, double p2) noexcept {
     const double w = p1 + std::copysign(std::sqrt(p1 * p1 - p0 * p2), p1);
     return (w < 0) == (p2 < 0) ? p0 / (p0 - w) : w / (w - p2);
@@ -82,10 +82,10 @@ class CertainRoots {
     return {t, std::fabs(2 * ((1 - t) * (p[1] - p[0]) + t * (p[2] - p[1])))};
   }
 
-  // By Newton's method from the root of the quadratic that is closest at the ends and in the middle, kept between values
-  // of different signs by bisection; rounding decides how good it is.
+  // Uses Newton's method, from the root of a quadratic that agrees at the ends and in the middle, and bisection to keep
+  // it between values of different signs. Rounding limits its accuracy.
   static Guess only_root(const std::array<double, 4>& p) noexcept {
-    constexpr double kLastStep = 0x1p-28;  // the error of what follows such a step is about its square
+    constexpr double kLastStep = 0x1p-28;  // the error after such a step is about its square
     const double a1 = 3 * (p[1] - p[0]), a2 = 3 * ((p[2] - p[1]) - (p[1] - p[0])),
                  a3 = (p[3] - p[0]) - 3 * (p[2] - p[1]);
     double low = 0, high = 1, slope = 0;
@@ -108,7 +108,7 @@ class CertainRoots {
     const double per_width = 1 / width;  // a power of two
     double step = 2 * error_ / slope + 2 * kUnitRoundoff;
     for (int i = 0; i < 4; ++i, step *= 8) {
-      // The sums may round; the fractions of the part that they stand for are exact again.
+      // The sums may round, but dividing the part out again is exact.
       const double lower = std::max(t0 + width * std::max(root - step, 0.0), t0);
       const double upper = std::min(t0 + width * std::min(root + step, 1.0), t0 + width);
       const auto sign_at = [&](double t) { return sign_of(evaluate(p, (t - t0) * per_width)); };

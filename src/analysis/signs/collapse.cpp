@@ -1,11 +1,11 @@
-// Three stages, of which each decides what it is sure of.
+// Decides in three stages, each of which settles the faces that it is sure of.
 //
 // 1. A half space: if all control normals have a positive dot product with one direction, so has n(t), which is a
 // convex
 //    combination of them. This takes three dot products, and proves it for almost every face.
-// 2. The determinant: n(t) = 0 is a linear relation between the control normals, so there is none while they span
-// space. 3. Integers: n(t) has three components, each a quadratic. If all are multiples of one, its roots are the
-// collapses. If
+// 2. The determinant: n(t) = 0 is a linear relation between the control normals, so there is none if they span space.
+// 3. Integers: n(t) has three components, each a quadratic. If all are multiples of one, its roots are the collapses.
+// If
 //    two differ, the combination of the two without t^2 is linear, and its root is the only candidate.
 //
 // Control normals are within 2^-26 of their length of the exact ones, which both bounds in floating point allow for.
@@ -29,7 +29,7 @@ using Vectors = std::array<ExactCurve::CoefficientVector, 3>;  // c0, c1, c2
 constexpr std::size_t kDigits = ExactCurve::kDigits;
 using Product = WideInteger<2 * kDigits + 1>;
 
-// The dot product of exact vectors is within 2^-25 (|c| |w|) of that of rounded ones, where only c is rounded.
+// A dot product of an exact vector c and a rounded one w is within 2^-25 (|c| |w|) of the rounded dot product.
 constexpr double kShare = 0x1p-24;
 
 bool is_in_half_space(const ControlNormals& c) noexcept {
@@ -42,14 +42,14 @@ bool is_in_half_space(const ControlNormals& c) noexcept {
 bool spans_space(const ControlNormals& c) noexcept {
   const double size = length_1(c.n0) * length_1(c.m) * length_1(c.n1);
   const double determinant = std::fabs(dot(c.n0, cross(c.m, c.n1)));
-  // Where products underflow, nothing is proved.
+  // If products underflow, nothing is proved.
   return size > 0x1p-900 && size < 0x1p900 && determinant > 8 * kShare * size;
 }
 
-// Without negative zeros, which nobody likes to read.
+// Changes the sign of a vector, and leaves no negative zeros, which are ugly to read.
 Vec3d signed_by(int sign, const Vec3d& v) noexcept { return Vec3d{} + static_cast<double>(sign) * v; }
 
-// The direction of integers whose common unit does not matter.
+// Returns the direction of a vector of integers, whose common unit does not matter.
 template <std::size_t kMost>
 Vec3d direction(const std::array<WideInteger<kMost>, 3>& v, int sign = 1) noexcept {
   std::size_t size = 0;
@@ -63,7 +63,7 @@ IntegerPolynomial<2, kDigits> component(const Vectors& c, std::size_t k) noexcep
   return {{c[0][k], c[1][k], c[2][k]}};
 }
 
-// p.a[i] q.a[j] - p.a[j] q.a[i].
+// Returns p.a[i] q.a[j] - p.a[j] q.a[i].
 Product minor(const IntegerPolynomial<2, kDigits>& p, const IntegerPolynomial<2, kDigits>& q, std::size_t i,
               std::size_t j) noexcept {
   Product result;
@@ -73,7 +73,7 @@ Product minor(const IntegerPolynomial<2, kDigits>& p, const IntegerPolynomial<2,
   return result;
 }
 
-// Every n(t) is a multiple of one vector, by the quadratic f, which is one of its components.
+// Finds the collapses if every n(t) is a multiple of one vector, by the quadratic f, which is one of its components.
 Collapses on_a_line(const Vectors& c, const IntegerPolynomial<2, kDigits>& f) noexcept {
   std::size_t k = 0;
   while (f.a[k].sign() == 0) ++k;
@@ -86,13 +86,13 @@ Collapses on_a_line(const Vectors& c, const IntegerPolynomial<2, kDigits>& f) no
   return found;
 }
 
-// At most one collapse, at the root of a linear polynomial.
+// Finds the one possible collapse, at the root of a linear polynomial.
 Collapses at_root_of(const IntegerPolynomial<1, 2 * kDigits + 1>& linear, const Vectors& c) noexcept {
   const auto& [l0, l1] = linear.a;
   if (l1.sign() == 0) return {};
   const ExactRoots roots = exact_roots(linear);
   if (roots.count == 0) return {};
-  // With t = -l0 / l1: l1^2 n(t) and |l1| n'(t).
+  // Computes l1^2 n(t) and |l1| n'(t) at t = -l0 / l1.
   std::array<WideInteger<5 * kDigits + 4>, 3> value;
   std::array<WideInteger<3 * kDigits + 3>, 3> slope;
   const auto square = [](const Product& p, const Product& q) {
@@ -131,7 +131,7 @@ Collapses in_integers(const Vectors& c) noexcept {
   for (std::size_t k = first + 1; k < 3; ++k) {
     const IntegerPolynomial<2, kDigits> g = component(c, k);
     const IntegerPolynomial<1, 2 * kDigits + 1> linear{{minor(f, g, 0, 2), minor(f, g, 1, 2)}};
-    // Where both are linear themselves and no multiples of each other, they have no common root.
+    // If both are linear and no multiples of each other, they have no common root.
     if (linear.terms() == 0 && minor(f, g, 0, 1).sign() != 0) return {};
     if (linear.terms() != 0) return at_root_of(linear, c);
   }

@@ -1,14 +1,15 @@
-/// Where a polynomial with integer coefficients is zero in [0, 1], and its sign everywhere else, without any rounding.
+/// Finds where a polynomial with integer coefficients is zero in [0, 1], and its sign everywhere else, without any
+/// rounding.
 ///
 ///     f(t) = a[0] + a[1] t + ... + a[N] t^N,   N = 1, 2 or 3
 ///
-/// Sturm's theorem counts: in the chain f, f', -(f mod f'), ... the number of changes of sign drops by one at each root
-/// of f, whatever its multiplicity, and nowhere else. All signs are those of integers (core/wide_integer.h), taken just
-/// after t, so that a t which is a root itself needs no exception. The count is monotone in t, so a search among the
-/// doubles finds the neighbours between which it steps. The search starts from a guess in floating point, which decides
-/// nothing but how long it takes: a few microseconds from a good one.
+/// Sturm's theorem counts the roots: in the chain f, f', -(f mod f'), ... the number of changes of sign drops by one at
+/// each root of f, whatever its multiplicity, and nowhere else. All signs are signs of integers (core/wide_integer.h),
+/// taken just after t, so that a t which is itself a root needs no exception. The count is monotone in t, so a search
+/// among the doubles finds the neighbours between which it steps. The search starts from a guess in floating point,
+/// which only affects how long it takes: a few microseconds from a good one.
 ///
-/// Roots between the same two neighbouring doubles are given as one. No root can be told from 0 below 2^-200.
+/// Roots between the same two neighbouring doubles are returned as one. Roots below 2^-200 cannot be told from 0.
 ///
 /// Source: Basu, Pollack, Roy, Algorithms in Real Algebraic Geometry (2006), chapter 2.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_EXACT_ROOTS_H_
@@ -27,16 +28,16 @@
 
 namespace chronormal::inline internal {
 
-/// A root, or several that no double lies between: in [lower, upper], which are equal or neighbours.
+/// A root, or several with no double between them: in [lower, upper], which are equal or neighbours.
 struct ExactRoot {
   double lower = 0, upper = 0;
-  int before = 0, after = 0;  ///< signs of f beside it; 0 before t = 0 and after t = 1
+  int before = 0, after = 0;  ///< signs of f on both sides; 0 before t = 0 and after t = 1
 };
 
 struct ExactRoots {
   std::array<ExactRoot, 3> at;  ///< ascending
   std::size_t count = 0;
-  int sign = 0;  ///< where there is no root, the sign of f; 0: f is zero throughout
+  int sign = 0;  ///< the sign of f if it has no root; 0: f is zero throughout
 
   [[nodiscard]] std::span<const ExactRoot> all() const& noexcept { return {at.data(), count}; }
   void all() && = delete;  // a loop over a temporary would outlive it
@@ -47,14 +48,14 @@ template <std::size_t N, std::size_t kDigits>
 struct IntegerPolynomial {
   std::array<WideInteger<kDigits>, N + 1> a;
 
-  /// How many coefficients there are up to the last that is not zero.
+  /// Returns the number of coefficients up to the last that is not zero.
   [[nodiscard]] std::size_t terms() const noexcept {
     std::size_t count = N + 1;
     while (count > 0 && a[count - 1].sign() == 0) --count;
     return count;
   }
 
-  /// The sign of f^(derivative) at t.
+  /// Returns the sign of f^(derivative) at t.
   [[nodiscard]] int sign_at(const UnitFraction& t, std::size_t derivative = 0) const noexcept {
     constexpr std::size_t kDigitsOfFactor = 11;  // t = integer 2^-scale, with scale < 264
     using Value = WideInteger<kDigits + N * kDigitsOfFactor + 4>;
@@ -74,7 +75,7 @@ struct IntegerPolynomial {
     return value.sign();
   }
 
-  /// The sign of f just after t: that of its first derivative which is not zero there.
+  /// Returns the sign of f just after t, which is that of its first derivative that is not zero there.
   [[nodiscard]] int sign_after(const UnitFraction& t) const noexcept {
     for (std::size_t derivative = 0; derivative <= N; ++derivative) {
       if (const int sign = sign_at(t, derivative); sign != 0) return sign;
@@ -90,7 +91,7 @@ struct IntegerPolynomial {
   }
 };
 
-/// f, f' and the remainders, each times a positive factor.
+/// The polynomials f and f' and the remainders, each times a positive factor.
 template <std::size_t N, std::size_t kDigits>
 class SturmChain {
  public:
@@ -106,7 +107,7 @@ class SturmChain {
     }
   }
 
-  /// How many changes of sign there are just after t, and just before 0.
+  /// Return the number of changes of sign just after t, and just before 0.
   [[nodiscard]] int variations_after(const UnitFraction& t) const noexcept {
     return variations(f_.sign_after(t), slope_.sign_after(t), remainder_.sign_after(t));
   }
@@ -124,7 +125,7 @@ class SturmChain {
     return count;
   }
 
-  // f = q f' - r with r = (a1^2 - 4 a0 a2) / (4 a2).
+  // Uses f = q f' - r with r = (a1^2 - 4 a0 a2) / (4 a2).
   void take_quadratic() noexcept {
     const int sign = f_.a[2].sign();
     Wide fourfold;
@@ -135,8 +136,8 @@ class SturmChain {
     remainder_.a[0].settle();
   }
 
-  // f = q f' - r with 9 a3 r = (2 a2^2 - 6 a1 a3) t + (a1 a2 - 9 a0 a3); and f' = q r - s with
-  // r_1^2 s = -(3 a3 r_0^2 - 2 a2 r_0 r_1 + a1 r_1^2).
+  // Uses f = q f' - r with 9 a3 r = (2 a2^2 - 6 a1 a3) t + (a1 a2 - 9 a0 a3), and f' = q r - s with r_1^2 s = -(3 a3
+  // r_0^2 - 2 a2 r_0 r_1 + a1 r_1^2).
   void take_cubic() noexcept {
     const auto& a = f_.a;
     const int sign = a[3].sign();
@@ -169,7 +170,7 @@ class SturmChain {
   int last_ = 0;
 };
 
-// The doubles 0 and [2^-200, 1] by number, ascending.
+// These number the doubles 0 and [2^-200, 1] in ascending order.
 inline constexpr std::uint64_t kBelowFirstDouble = (std::uint64_t{1023 - 200} << 52) - 1;
 inline constexpr std::uint64_t kLastDouble = (std::uint64_t{1023} << 52) - kBelowFirstDouble;
 [[nodiscard]] inline double numbered_double(std::uint64_t number) noexcept {

@@ -1,11 +1,11 @@
-// Three stages, of which each decides what it is sure of.
+// Decides in three stages, each of which settles the faces that it is sure of.
 //
 // 1. The Bernstein coefficients of f, from control normals that are within 2^-26 of their length of the exact ones:
-//    where all are clearly positive, or all negative, so is f. This is the answer for most faces.
-// 2. The same coefficients with the bound that the face's own rounding has, and their roots: the only one in lanes
-//    (analysis/signs/kernels/facing_lanes.h), several one face at a time (analysis/signs/certain_roots.h).
-// 3. Integers (analysis/signs/exact_roots.h), for what touches edge-on, is edge-on at an end or in the middle, or has
-//    no area. Where a bracket of the second stage is too wide, their signs close it in.
+//    if all are clearly positive, or all negative, so is f. This is the answer for most faces.
+// 2. The same coefficients with the bound of the face's own rounding, and their roots: the only root in lanes
+//    (analysis/signs/kernels/facing_lanes.h), several roots one face at a time (analysis/signs/certain_roots.h).
+// 3. Integers (analysis/signs/exact_roots.h), for faces that touch edge-on, are edge-on at an end or in the middle, or
+//    have no area. If a bracket of the second stage is too wide, signs of integers narrow it.
 
 #include "chronormal/analysis/signs.h"
 
@@ -31,7 +31,7 @@ namespace {
 
 Side side_of(int sign) { return static_cast<Side>(sign); }
 
-// Returns true if products with the way to the viewer stay in the range of double, because no component is smaller than
+// Returns whether products with the way to the viewer stay in the range of double, because no component is smaller than
 // a position can be.
 bool fits_double(const View& view) noexcept {
   const auto fits = [](double component) { return component == 0 || std::fabs(component) >= 0x1p-149; };
@@ -39,7 +39,7 @@ bool fits_double(const View& view) noexcept {
          fits(view.to.z);
 }
 
-// The eye somewhere on its way, within 3 u of the largest component of both ends.
+// Returns a place of the eye on its way, within 3 u of the largest component of both ends.
 Vec3d eye_at(const View& view, const LocalTime& on_way) noexcept {
   if (on_way.t == 0) return view.from;
   return on_way.rest == 0 ? view.to : on_way.rest * view.from + on_way.t * view.to;
@@ -53,7 +53,7 @@ void leave(std::size_t i, FacingCoefficients& f) noexcept {
   for (auto& bounds : f.bounds) bounds[i] = std::numeric_limits<double>::infinity();
 }
 
-// The coefficients of f by the control normals of a block of faces.
+// Computes the coefficients of f from the control normals of a block of faces.
 void glance(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
             FacingCoefficients& result) noexcept {
   const bool fits = fits_double(view);
@@ -72,7 +72,7 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
     ways.at[3][i] = at_end.x, ways.at[4][i] = at_end.y, ways.at[5][i] = at_end.z;
   }
   facing_of_eye(normals, faces.count, ways, result);
-  // A place on the way is rounded to 3 u of the eye, which is at most 6 u of a way to it that is half as long.
+  // A place on the way is rounded to 3 u of the eye: at most 6 u of a way to it that is half as long.
   const double shortest = is_whole_way(view) ? 0 : 0.5 * std::max(max_abs(view.from), max_abs(view.to));
   if (fits && shortest == 0) return;
   for (std::size_t i = 0; i < faces.count; ++i) {
@@ -82,7 +82,7 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
   }
 }
 
-// What a shutter sees by the control normals alone, where they can tell.
+// Returns what a shutter sees, by the control normals alone; nothing if they cannot tell.
 template <std::size_t M>
 std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size_t i, double t0, double t1) noexcept {
   if (f.signs[i] != 0) return static_cast<ShutterSide>(f.signs[i]);
@@ -100,7 +100,7 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
   }
   constexpr double kRoundings = 64;  // of restrict_to() and of the coefficients
   bound += kRoundings * kUnitRoundoff * size;
-  // A front and a back that are seen for certain settle it: at the ends, or between them.
+  // Seeing a front and a back for certain settles it, be it at the ends or between them.
   bool shows_front = false, shows_back = false;
   for (const double share : {0.0, 1.0, 0.5, 0.25, 0.75}) {
     const double t = share == 1 ? t1 : t0 + share * (t1 - t0);
@@ -115,9 +115,10 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
   return std::nullopt;
 }
 
-// How far any component of the control normals of a triangle may be off. Each is a sum of products of a component of
-// one edge and a component of the other, of two of them in n0 and n1, and half of a sum of four of them in m: at most
-// 48 u of the largest such product by core/rounding.h, and less for what was made of integers.
+// Returns a bound of the error of any component of the control normals of a triangle. Each is a sum of products of a
+// component of one edge and a component of the other: two products in n0 and n1, and half of a sum of four in m. The
+// error is at most 48 u of the largest such product by core/rounding.h, and less for normals that were made of
+// integers.
 double rounding_of_triangle(const Segment& segment, std::span<const std::uint32_t> corners) noexcept {
   const auto largest_edge = [&segment, corners](std::size_t c) {
     const auto edge = [corners, c](const SegmentEnd& end) { return max_abs(end.edge(corners[0], corners[c])); };
@@ -133,7 +134,7 @@ double rounding_of(const Segment& segment, std::size_t face) noexcept {
   return *std::max_element(polygon.errors.begin(), polygon.errors.end());
 }
 
-// Puts the polynomial of face i of a block into a lane.
+// Writes the polynomial of face i of a block to a lane.
 template <std::size_t M>
 void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, std::size_t i, std::size_t lane,
          SingleRoots& roots) noexcept {
@@ -143,20 +144,20 @@ void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, 
     roots.p[k][lane] = k == 0 || k == M - 1 ? f.values[k][i] : kShareOfInner * f.values[k][i];
     bound = std::max(bound, f.bounds[k][i]);
   }
-  // Up to 16 roundings of the eye and the way, of the products and sums of a dot product, and of a mean of three: the
-  // terms of one are at most bound / kDotShare.
+  // Allows up to 16 roundings of the eye and the way, of the products and sums of a dot product, and of a mean of
+  // three: the terms of a dot product are at most bound / kDotShare.
   constexpr double kRoundings = 16;
   roots.error[lane] = f.reach[i] * rounding_of(segment, face) + kRoundings * kUnitRoundoff / kDotShare * bound;
 }
 
-// Differences of doubles up to 2^128, and so of 1,203 bits; and the way, which is some of them, or their multiples by
-// integers of two times.
+// Bounds the size of integers: differences of doubles up to 2^128 have 1,203 bits, and a way is a sum of some of them,
+// or of their multiples by the integers of two times.
 constexpr std::size_t kNormalDigits = ExactCurve::kDigits, kPlaceDigits = 52;
 constexpr std::size_t kWayDigits = kPlaceDigits + 1, kPartDigits = kPlaceDigits + 2 * TimeFraction::kDigits + 2;
 template <std::size_t kDigits>
 using WideVector = std::array<WideInteger<kDigits>, 3>;
 
-// The smallest shift of a component of some vectors.
+// Returns the smallest shift of a component of some vectors.
 unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
   unsigned lowest = std::numeric_limits<unsigned>::max();
   for (const Vec3d& v : vectors) {
@@ -177,7 +178,7 @@ struct Place {
   }
 };
 
-// p - q in integers of one unit.
+// Returns p - q in integers of one unit.
 WideVector<kPlaceDigits> difference(const Place& p, const Place& q, unsigned shift) noexcept {
   WideVector<kPlaceDigits> result;
   const auto add = [&](const Vec3d& v, std::int64_t sign) {
@@ -193,7 +194,7 @@ WideVector<kPlaceDigits> difference(const Place& p, const Place& q, unsigned shi
   return result;
 }
 
-// w(t) = start + t change, times a positive number.
+// The way w(t) = start + t change, times a positive number.
 template <std::size_t kDigits>
 struct Way {
   WideVector<kDigits> start, change;
@@ -206,7 +207,8 @@ struct Way {
   }
 };
 
-// The way from a corner to an eye that is at view.from and view.to at the ends of the segment, or to a direction.
+// Returns the way from a corner to an eye that is at view.from and view.to at the ends of the segment, or to a
+// direction.
 Way<kWayDigits> whole_way(const View& view, const Place& from_corner, const Place& to_corner) noexcept {
   Way<kWayDigits> way;
   const Place from = view.is_eye ? from_corner : Place{}, to = view.is_eye ? to_corner : Place{};
@@ -222,8 +224,8 @@ Way<kWayDigits> whole_way(const View& view, const Place& from_corner, const Plac
   return way;
 }
 
-// The way to an eye on a part of its own way, times both wholes of the times: with p / q and r / s for these,
-// q s (view.from - from) + p s (view.to - view.from), and what is added to that until t = 1.
+// Returns the way to an eye on a part of its own way, times the denominators of both times: with the times p / q and r
+// / s, q s (view.from - from) + p s (view.to - view.from), and its change until t = 1.
 Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& to) noexcept {
   constexpr std::size_t kProductDigits = 2 * TimeFraction::kDigits;
   const TimeFraction start = TimeFraction::of(view.start), end = TimeFraction::of(view.end);
@@ -248,7 +250,7 @@ Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& t
   return way;
 }
 
-// f of one face, times a positive number.
+// Returns f of one face, times a positive number.
 template <std::size_t kDegree, std::size_t kDigits>
 auto times_normal(const Segment& segment, std::span<const std::uint32_t> vertices, const Way<kDigits>& way) noexcept {
   IntegerPolynomial<kDegree, kNormalDigits + kDigits + 1> f;
@@ -263,7 +265,7 @@ auto times_normal(const Segment& segment, std::span<const std::uint32_t> vertice
   return f;
 }
 
-// Calls body(f) with the exact f of one face; M as in find_in_block().
+// Calls body(f) with the exact f of one face. M is as in find_in_block().
 template <std::size_t M, class Body>
 void in_integers(const Segment& segment, std::size_t face, const View& view, const Body& body) noexcept {
   const auto vertices = segment.topology->face(face);
@@ -275,13 +277,13 @@ void in_integers(const Segment& segment, std::size_t face, const View& view, con
   body(times_normal<M - 1>(segment, vertices, whole_way(view, from, to)));
 }
 
-// Closes in a bracket of the only root between its ends, at which the signs are known and differ. Its middle is a good
-// guess of the root: a step to either side of it mostly does.
+// Narrows a bracket of the only root between its ends, at which the signs are known and differ. Its middle is a good
+// guess of the root, so one step to either side of it is mostly enough.
 template <class Polynomial>
 void close_in(const Polynomial& f, int before, double& lower, double& upper) noexcept {
   double step = 0x1p-49, probe = lower + (upper - lower) / 2 - step;
   while (upper - lower > kWidestBracket) {
-    // Beyond the ends there is nothing to find; and no t below 2^-200 is told from 0.
+    // A probe must lie between the ends; and no t below 2^-200 is told from 0.
     if (!(lower < probe && probe < upper && probe >= 0x1p-200)) probe = lower + (upper - lower) / 2;
     const int sign = f.sign_at(UnitFraction::of(probe));
     if (sign == 0) {
@@ -299,7 +301,7 @@ void close_in(const Polynomial& f, int before, double& lower, double& upper) noe
 
 bool is_wide(const ExactRoot& root) noexcept { return root.upper - root.lower > kWidestBracket; }
 
-// All roots of one face.
+// Finds all roots of one face.
 template <std::size_t M>
 Facing facing_by_roots(const Segment& segment, std::size_t face, const View& view, const SingleRoots& from,
                        std::size_t lane) noexcept {
@@ -353,7 +355,7 @@ void find_in_block(const Segment& segment, IndexRange faces, const ControlNormal
   }
 }
 
-// The sides that may be seen in [t0, t1].
+// Returns the sides that may be seen in [t0, t1].
 ShutterSide side_over(const Facing& facing, double t0, double t1) noexcept {
   bool shows_front = false, shows_back = false;
   const auto show = [&](Side side) {

@@ -10,14 +10,15 @@ namespace {
 
 double length_squared(const Vec3d& v) { return dot(v, v); }
 
-// Whether a half space proves that |n(t)| stays above the share: n(t) . w is at least the smallest c_k . w.
+// Tells whether a half space proves that |n(t)| stays above the share: n(t) . w is at least the smallest c_k . w.
 bool stays_long(const ControlNormals& c) {
   const Vec3d w = c.n0 + c.n1;
   const double smallest = std::min({dot(c.n0, w), dot(c.m, w), dot(c.n1, w)});
   return smallest > 0 && smallest * smallest > kCollapseShare * kCollapseShare * length_squared(w);
 }
 
-// n where it has got clear of the collapse between `from` and the end of the segment: far enough to have a direction.
+// Returns n at a distance from the collapse at which it has a direction again, between `from` and `end`, an end of the
+// segment.
 Vec3d clear_of(const ControlNormals& c, double from, double end) {
   constexpr double kClear = 4 * kCollapseShare;
   double step = kCollapseMargin;

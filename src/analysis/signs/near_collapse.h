@@ -1,5 +1,5 @@
-/// When a normal nearly vanishes on the way: the instants inside a segment at which its direction is as good as
-/// discontinuous, for whoever interpolates or looks at it.
+/// Finds the instants inside a segment at which a normal nearly vanishes, so that its direction is as good as
+/// discontinuous when it is interpolated or rendered.
 ///
 /// "Nearly" means that |n(t)| falls below kCollapseShare of the largest control normal: far above what float32 rounds,
 /// so that a face which was made to collapse and then rounded is among them, and far below any length that was meant.
@@ -19,15 +19,15 @@
 
 namespace chronormal::inline internal {
 
-/// Far above the rounding of float32 positions, far below any length that was meant.
+/// Far above the rounding of float32 positions, far below any intended length.
 inline constexpr double kCollapseShare = 1e-6;
 
-/// Nearer to an end than this, it is the keyframe that has no area.
+/// A collapse nearer to an end than this is one of the keyframe there, whose face has no area.
 inline constexpr double kCollapseMargin = 1e-6;
 
 struct NearCollapse {
-  double t = 0;             ///< where |n(t)| is smallest
-  bool turns_over = false;  ///< whether the direction after is opposed to that before
+  double t = 0;             ///< |n(t)| is smallest here
+  bool turns_over = false;  ///< the direction after it is opposed to the direction before
 };
 
 struct NearCollapses {
@@ -36,8 +36,8 @@ struct NearCollapses {
   bool everywhere = false;  ///< n is zero in the whole segment; count is 0
 };
 
-/// Whether a half space proves at a glance that a normal neither nearly vanishes nor vanishes (find_collapses()). It proves
-/// that of almost every face, and says nothing of the others.
+/// Tells whether a half space proves at a glance that a normal neither nearly vanishes nor vanishes (find_collapses()).
+/// It proves this for almost every face, and says nothing of the others.
 [[nodiscard]] inline bool is_far_from_collapse(const ControlNormals& c) noexcept {
   const Vec3d w = c.n0 + c.n1;
   const double least = std::min({dot(c.n0, w), dot(c.m, w), dot(c.n1, w)});
@@ -46,7 +46,7 @@ struct NearCollapses {
 }
 
 /// Finds where n(t) vanishes, or nearly, for t in (0, 1). Zeros so close together that |n(t)| stays below the share
-/// between them are one. Cost: three dot products for most faces, the roots of a cubic for those that turn far.
+/// between them are one. Cost: three dot products for most faces, the roots of a cubic for faces that turn far.
 [[nodiscard]] NearCollapses find_near_collapses(const ControlNormals& normals) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,12 +1,12 @@
-// The smallest cone around three unit vectors is that of the widest pair where the third lies in it, that is, where
-// their triangle has no acute angle there; else it goes through all three, around the centre of the triangle's circle.
-// It is found in float32, and whatever axis comes out, the cone is then made wide enough: the largest sine of the
-// angles between the axis as rounded and the three vectors, and to it, with u = 2^-24,
+// The smallest cone around three unit vectors is that of the widest pair if the third vector lies in it, that is, if
+// their triangle has no acute angle there; otherwise it goes through all three, around the centre of the triangle's
+// circle. Its axis is found in float32, and the cone is then made wide enough for the rounded axis: its sine is the
+// largest sine of the angles between the axis and the three vectors, plus, with u = 2^-24,
 //     2^-20 of itself, for the lengths of axis and vectors, the root and the quotient
 //     5 u: a vector loses 2 u to float32, and a cross product of unit vectors 2.5 u
-//     the share of its length by which a vector may be off: the sine of the angle that it may be off by
-// With sin(a + b) <= sin a + sin b this sum is no less than the sine of the angle to any vector as it is, and where it
-// is at most 1 that angle is at most 90 degrees.
+//     the relative error of a vector, which is the sine of the angle of that error
+// By sin(a + b) <= sin a + sin b, this sum is at least the sine of the angle to any exact vector, and if it is at most
+// 1 that angle is at most 90 degrees.
 #include "analysis/cones/kernels/cones_of_three.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Of kLanes elements: three vectors each, scaled by powers of two, and by how much a vector may be off.
+// Holds kLanes elements: three vectors each, scaled by powers of two, and the error bounds of the vectors.
 struct Scaled {
   alignas(64) double vectors[9][kLanes];
   alignas(64) double errors[3][kLanes];
@@ -30,14 +30,14 @@ struct Scaled {
 
 HWY_INLINE Doubles MaxAbs(const Doubles3& v) { return LargerAbs(LargerAbs(v.x, v.y), v.z); }
 
-// The power of two that brings a normal number into [1, 2).
+// Returns the power of two that brings a normal number into [1, 2).
 HWY_INLINE Doubles ScaleOf(Doubles size) {
   const hn::RebindToUnsigned<DoubleTag> bits;
   const auto exponent = hn::And(hn::BitCast(bits, size), hn::Set(bits, 0x7FF0000000000000));
   return hn::BitCast(kDoubles, hn::Sub(hn::Set(bits, 0x7FE0000000000000), exponent));
 }
 
-// Reads kDoubleLanes elements from the lane `at` on.
+// Reads kDoubleLanes elements into the lanes from `at` on.
 template <bool kIsPart>
 HWY_INLINE void Load(const double* rows, const Restriction& part, std::size_t at, Scaled& scaled) {
   Doubles column[9];
@@ -74,17 +74,17 @@ HWY_INLINE Lanes3 Select(hn::Mask<FloatTag> mask, const Lanes3& yes, const Lanes
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-// The direction in the middle of three unit vectors, of any length.
+// Returns the direction in the middle of three unit vectors, of any length.
 HWY_INLINE Lanes3 MiddleOf(const Lanes3 (&u)[3]) {
   const auto square = [](const Lanes3& v) HWY_ATTR { return Dot(v, v); };
-  // The squares of the sides of their triangle, and how far each angle opposite to one is from a right one.
+  // Computes the squared sides of their triangle, and how far the opposite angles are from right angles.
   const Floats c0 = square(u[1] - u[2]), c1 = square(u[0] - u[2]), c2 = square(u[0] - u[1]);
   const Floats e0 = hn::Sub(hn::Add(c1, c2), c0), e1 = hn::Sub(hn::Add(c0, c2), c1), e2 = hn::Sub(hn::Add(c0, c1), c2);
   const Floats longest = hn::Max(hn::Max(c0, c1), c2);
   const auto is0 = hn::Eq(c0, longest), is1 = hn::Eq(c1, longest);
   const Floats e = hn::IfThenElse(is0, e0, hn::IfThenElse(is1, e1, e2));
   const Lanes3 pair = Select(is0, u[1] + u[2], Select(is1, u[0] + u[2], u[0] + u[1]));
-  // The centre of the circle through all three, in barycentric coordinates.
+  // Computes the centre of the circle through all three, in barycentric coordinates.
   const Floats inverse = hn::Div(hn::Set(kFloats, 1), longest);
   const auto weight = [inverse](Floats side, Floats angle)
                           HWY_ATTR { return hn::Mul(hn::Mul(side, inverse), hn::Mul(angle, inverse)); };
@@ -92,7 +92,7 @@ HWY_INLINE Lanes3 MiddleOf(const Lanes3 (&u)[3]) {
   return Select(hn::Le(e, hn::Mul(hn::Set(kFloats, 1e-4F), longest)), pair, centre);
 }
 
-// Writes kLanes cones, and returns which lanes are not to be trusted.
+// Writes kLanes cones, and returns the lanes that cannot be trusted, as bits.
 template <bool kIsPart>
 HWY_INLINE std::uint32_t Cones(const double* rows, float share, const Restriction& part, float* result) {
   Scaled scaled;

@@ -1,6 +1,7 @@
 /// The kernel of dense linear algebra: sums of outer products of rows.
 ///
-/// Every sum runs over the rows in their order, each step rounded by itself: the same bits on every instruction set.
+/// Every sum runs over the rows in their order, and each step is rounded by itself, so that the result has the same
+/// bits on every instruction set.
 #ifndef CHRONORMAL_ANALYSIS_FITS_KERNELS_PRODUCTS_H_
 #define CHRONORMAL_ANALYSIS_FITS_KERNELS_PRODUCTS_H_
 
@@ -14,8 +15,8 @@ struct StridedMatrix {
   std::size_t rows = 0, columns = 0, row_stride = 0, column_stride = 1;
 };
 
-/// Adds the product of the transpose of a with b to sums (a.columns, b.columns), of which a row begins every `stride`
-/// floats:
+/// Adds the product of the transpose of a with b to sums (a.columns, b.columns), a matrix with `stride` floats from one
+/// row to the next:
 ///
 ///     sums[i][j] += sum over r of a[r][i] b[r][j]
 ///

@@ -1,9 +1,4 @@
-// A triangle with the first corner a and the others b and c keeps what does not depend on t. With the first corner at
-// the start of the segment as origin, its corners are
-//
-//     a(t) = t a1        b(t) = (1 - t) b0 + t b1        c(t) = (1 - t) c0 + t c1
-//
-// and the largest component of each of a1, b0, b1, c0, c1, by which the rounding of n(t) = (b - a) x (c - a) is judged.
+// and the largest component of each of a1, b0, b1, c0, c1 tells the rounding error of n(t) = (b - a) x (c - a).
 #include "analysis/quality/kernels/reference_angles.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -25,7 +20,7 @@ namespace chronormal::inline internal {
 namespace {
 
 // Triangles lie in groups of eight, as many as there are doubles in the widest vector: value k of triangle i of a group
-// at k * kGroup + i.
+// is at k * kGroup + i.
 constexpr std::size_t kGroup = 8, kValues = 20;
 // The same constant as in reference_normals.cpp.
 constexpr double kZeroShare = 1e-10;
@@ -41,7 +36,7 @@ HWY_INLINE Real3 load3(const double* first) {
   return {Real::load(first), Real::load(first + kGroup), Real::load(first + 2 * kGroup)};
 }
 
-// The normals of as many triangles as there are lanes, each divided by its largest component.
+// Returns the normals of as many triangles as there are lanes, each divided by its largest component.
 HWY_INLINE Real3 NormalOf(const double* group, Real s, Real t) {
   const Real3 a1 = load3(group), b0 = load3(group + 3 * kGroup), b1 = load3(group + 6 * kGroup),
               c0 = load3(group + 9 * kGroup), c1 = load3(group + 12 * kGroup);
@@ -75,7 +70,7 @@ void Normals(const double* groups, std::size_t count, double t, Vec3d* result) {
   }
 }
 
-// The angles of kGroup pairs.
+// Computes the angles of kGroup pairs.
 HWY_INLINE void Angles(const Vec3d* exact, const float* x, const float* y, const float* z, double* angles) {
   const Real zero(0.0), one(1.0);
   const auto promoted = [](const float* from)

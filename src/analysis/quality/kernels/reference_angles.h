@@ -1,6 +1,6 @@
 /// Reference normals of triangles at many times, and the angles between exact normals and others, in lanes of double.
 ///
-/// Both give the bits of their scalar forms: reference_normals() of analysis/quality.h, but for its length, and
+/// Both return the bits of their scalar forms: reference_normals() of analysis/quality.h, but for its length, and
 /// portable::atan2(|n x u|, n . u).
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
@@ -15,30 +15,30 @@
 
 namespace chronormal::inline internal {
 
-/// The reference normals of some triangles of a segment. Positions are gathered once, so that each t costs one pass
-/// over contiguous memory.
+/// Computes the reference normals of some triangles of a segment. Positions are gathered once, so that each t costs one
+/// pass over contiguous memory.
 class ReferenceTriangles {
  public:
-  /// All faces of the segment must be triangles. What it views must outlive the object, which looks at it again where
-  /// double is not enough.
+  /// Takes faces of a segment, which must all be triangles. The arrays that the segment views must outlive the object,
+  /// which reads them again if double is not accurate enough.
   ReferenceTriangles(const Segment& segment, IndexRange faces);
 
   /// Writes n(t) of each face divided by its largest component, and (0, 0, 0) where reference_normals() does.
-  /// result must have as many elements as there are faces; t in [0, 1]
+  /// result must have one element per face; t in [0, 1]
   void normals(double t, std::span<Vec3d> result) const noexcept;
 
  private:
   Segment segment_;
   IndexRange faces_;
-  std::vector<double> edges_;  // in groups of lanes, 20 values of each triangle
+  std::vector<double> edges_;  // in groups of lanes, 20 values per triangle
 };
 
-/// Values that stand for an angle where there is none.
+/// Values that stand for an angle if there is none.
 inline constexpr double kNoExactNormal = -1, kNoNormal = -2;
 
-/// Writes the angle between each exact normal, of any length, and the normal shown; kNoExactNormal where the first is
-/// zero, or else kNoNormal where the second is zero or not finite. Fastest where the largest component of exact normals
-/// is 1. All three must have the same size.
+/// Writes the angle between each exact normal, of any length, and the normal rendered: kNoExactNormal if the exact one
+/// is zero, or else kNoNormal if the other is zero or not finite. Fastest if the largest component of exact normals is
+/// 1. All three must have the same size.
 void angles_to_exact(std::span<const Vec3d> exact, VectorView<const float> shown, std::span<double> angles) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
 // Computes the normals of moving triangles and the angles of an audit in lanes. Operations come in the order of the
-// scalar forms, so that the bits are the same.
+// scalar functions, so that the bits are the same.
 #include "analysis/quality/kernels/shown_angles.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -19,7 +19,7 @@ namespace chronormal::inline internal {
 namespace {
 
 // Triangles lie in groups of eight, as many as there are doubles in the widest vector: value k of triangle i of a group
-// at k * kTriangles + i. The values are x, y, z of each corner, first of all at the start and then at the end.
+// is at k * kTriangles + i. The values are x, y, z of each corner, first of all at the start and then at the end.
 constexpr std::size_t kTriangles = 8, kPositionValues = 18;
 
 }  // namespace
@@ -63,7 +63,8 @@ void TriangleNormals(const float* groups, std::size_t count, double t, Triangles
   }
 }
 
-// A row is added to a sum of four numbers at once; sums become columns as many at a time as there are lanes.
+// Each row is added to a sum of four numbers at once. The sums are then transposed to columns, as many at a time as
+// there are lanes.
 void SumsAround(const TrianglesInMotion::Normal* normals, const std::uint32_t* faces,
                 std::span<const std::uint32_t> ends, PlanesOf4& sums) {
   alignas(64) double rows[kDoubleLanes][4];
@@ -137,7 +138,7 @@ void ShownAngles(const ShownElements& elements, double time, std::span<double> d
                Real::load(right.w.data() + i), rounding, t)
         .store(degrees.data() + i);
   }
-  // One element at a time, in all lanes.
+  // The rest is computed one element at a time, in all lanes.
   const auto all3 = [](const PlanesOf4& planes, std::size_t k) HWY_ATTR {
     return Real3{Real(planes.x[k]), Real(planes.y[k]), Real(planes.z[k])};
   };
@@ -154,7 +155,7 @@ void AnglesOfPairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span
     Real3 u, v;
     hn::LoadInterleaved3(kDoubles, &of_a->x, u.x.v, u.y.v, u.z.v);
     hn::LoadInterleaved3(kDoubles, &of_b->x, v.x.v, v.y.v, v.z.v);
-    // As in angle_between(): -0 becomes 0.
+    // Adding 0 turns -0 into 0, as angle_between() does.
     (upper_angle(Scaled(cross(u, v)).whole_length(), dot(u, v) + Real(0.0)) * Real(per_radian)).store(result);
   };
   std::size_t i = 0;

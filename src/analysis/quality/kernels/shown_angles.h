@@ -1,8 +1,8 @@
 /// Computes for every vertex and sample of an audit, in lanes of double, the normals of moving triangles, and the
-/// angles between right normals and those that are shown.
+/// angles between the true normals and the rendered ones.
 ///
-/// All give the bits of their scalar forms: sums from left to right, twice_vector_area() of positions interpolated in double, and
-/// angle_between() of what unit() and lerp() of core/vec3.h make.
+/// All functions return the bits of their scalar forms: sums from left to right, twice_vector_area() of positions
+/// interpolated in double, and angle_between() of the results of unit() and lerp() of core/vec3.h.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
 
@@ -21,7 +21,7 @@ namespace chronormal::inline internal {
 /// memory. An object can be reused for other triangles, and keeps its memory.
 class TrianglesInMotion {
  public:
-  /// corners: three vertices for each triangle
+  /// Gathers triangles; corners has three vertices for each.
   void gather(VectorView<const float> from, VectorView<const float> to, std::span<const std::uint32_t> corners);
 
   struct Normal {
@@ -33,7 +33,7 @@ class TrianglesInMotion {
 
  private:
   std::size_t count_ = 0;
-  std::vector<float> positions_;  // in groups of lanes, 18 values of each triangle
+  std::vector<float> positions_;  // in groups of lanes, 18 values per triangle
 };
 
 /// Vectors as planes, with a fourth number w for each.
@@ -45,34 +45,34 @@ struct PlanesOf4 {
   }
 };
 
-/// Adds up the normals of the faces around elements. `faces` are the places of normals, of one element after the other;
-/// ends[e] is where those of element e end. The sums are x, y and z, and w that of the sizes.
+/// Adds up the normals of the faces around elements. `faces` are indices of normals, for one element after the other;
+/// ends[e] is where the faces of element e end. x, y and z are the sums of normals, and w is the sum of their sizes.
 void sums_around(const std::vector<TrianglesInMotion::Normal>& normals, std::span<const std::uint32_t> faces,
                  std::span<const std::uint32_t> ends, PlanesOf4& sums);
 
-/// Values that stand for an error where there is none.
+/// Values that stand for an error if there is none.
 inline constexpr double kNotLit = -1, kNotJudged = -2;
 
-/// The shown and the right normals of some elements at a sample between two keyframes.
+/// The rendered and the true normals of some elements at a sample between two keyframes.
 struct ShownElements {
-  const PlanesOf4& from;   ///< stored normals, of any length; w is the least length of a right normal
+  const PlanesOf4& from;   ///< stored normals, of any length; w is the least length of a true normal
   const PlanesOf4& to;     ///< w is not used
-  const PlanesOf4& right;  ///< right normals, of any length; w is the size of the terms that they are sums of
-  double rounding = 0;     ///< the share of that size which is nothing but rounding
+  const PlanesOf4& right;  ///< true normals, of any length; w is the size of the terms that they are sums of
+  double rounding = 0;     ///< the share of that size that is rounding error
 };
 
-/// Writes, in degrees, the angles between unit(lerp(from, to, t)), rounded to float32, and the right normals. kNotLit
-/// where an element is drawn and shows nothing; else kNotJudged where it is not drawn or has no right normal.
+/// Writes, in degrees, the angles between unit(lerp(from, to, t)), rounded to float32, and the true normals: kNotLit if
+/// an element is drawn but has no direction, or else kNotJudged if it is not drawn or has no true normal.
 /// All planes must have as many elements as the result; no number may be infinite or NaN.
 void shown_angles(const ShownElements& elements, double t, std::span<double> degrees) noexcept;
 
-/// Writes the angles between pairs of vectors of any length, times a factor: in degrees, or 1 for radians. 0 where one
-/// vector is zero. All three must have the same size; no number may be infinite or NaN.
+/// Writes the angles between pairs of vectors of any length, times a factor: in degrees, or 1 for radians. The angle is
+/// 0 if one vector is zero. All three must have the same size; no number may be infinite or NaN.
 void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> angles,
                      double per_radian = kDegreesPerRadian) noexcept;
 
-/// Writes, in radians, the angles of the vectors (x, y): those of portable::atan2(), but NaN where both are infinite.
-/// All three must have the same size; no y may be below 0.
+/// Writes, in radians, the angles of the vectors (x, y), as portable::atan2() does, but NaN if both are infinite. All
+/// three must have the same size; no y may be below 0.
 void upper_angles(std::span<const double> y, std::span<const double> x, std::span<double> radians) noexcept;
 
 }  // namespace chronormal::inline internal

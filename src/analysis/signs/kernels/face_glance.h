@@ -1,5 +1,4 @@
-/// A glance at sixteen faces between two keyframes, which shows of almost all of them that nothing about them is
-/// unusual.
+/// Takes a glance at sixteen faces between two keyframes, which proves for almost all of them that nothing is unusual.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 
@@ -10,14 +9,14 @@
 namespace chronormal::inline internal {
 
 struct GlanceLimits {
-  /// The least length of a normal at either end, for each unit of the longest edge; below 0 where an end is not judged.
+  /// The least length of a normal at either end, per unit of the longest edge; below 0 if an end is not judged.
   double length_from = 0, length_to = 0;
   /// The square of the cosine of an angle between 0 and 90 degrees: faces must turn less.
   double square_of_cosine = 0;
 };
 
-/// Returns the faces, as bits, of which this is not certain at a glance: the largest component of their normals is
-/// above the limit at both ends, they turn less than the angle, and is_far_from_collapse() is true of them.
+/// Returns the faces, as bits, that are not certainly usual. A face is usual if the largest component of its normal is
+/// above the limit at both ends, it turns less than the angle, and is_far_from_collapse() is true of it.
 [[nodiscard]] std::uint32_t unusual_faces(const EdgedTile& tile, const GlanceLimits& limits) noexcept;
 
 }  // namespace chronormal::inline internal

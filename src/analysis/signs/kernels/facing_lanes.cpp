@@ -1,6 +1,6 @@
-// Coefficients by dot products in double; roots of quadratics in closed form, and of cubics by Newton's method from
-// there. A bracket counts where the values at its ends are beyond the bound on different sides, so that it does not
-// matter how the root was found.
+// Computes coefficients by dot products in double, roots of quadratics in closed form, and roots of cubics by Newton's
+// method, starting from a quadratic. A bracket counts only if the values at its ends are beyond the bound on different
+// sides, so it does not matter how the root was found.
 #include "analysis/signs/kernels/facing_lanes.h"
 
 #include <algorithm>
@@ -78,7 +78,7 @@ struct WaysTo {
   }
 };
 
-// Calls body for all faces; what is beyond them repeats the last.
+// Calls body for all faces; lanes beyond the last face repeat it.
 template <class Body>
 HWY_INLINE void ForNormals(const double* rows, std::size_t count, FacingCoefficients& result, const Body& body) {
   constexpr std::size_t kRow = 9;
@@ -106,8 +106,8 @@ struct Guess {
   Doubles root, slope;  // slope: without its sign
 };
 
-// The only root in [0, 1] of a quadratic that is positive at 0 and negative at 1: with s = t / (1 - t), that of
-// p2 s^2 + 2 p1 s + p0, in the form in which nothing cancels.
+// Returns the only root in [0, 1] of a quadratic that is positive at 0 and negative at 1: with s = t / (1 - t), the
+// root of p2 s^2 + 2 p1 s + p0, in the form in which nothing cancels.
 HWY_INLINE Doubles RootOfQuadratic(Doubles p0, Doubles p1, Doubles p2) {
   const Doubles w = hn::Add(p1, hn::CopySign(hn::Sqrt(hn::Sub(hn::Mul(p1, p1), hn::Mul(p0, p2))), p1));
   const auto is_negative = hn::Lt(w, hn::Zero(kDoubles));
@@ -129,7 +129,8 @@ HWY_INLINE Guess OnlyRoot(const Doubles (&p)[4]) {
   const Doubles middle =
       hn::Mul(hn::Set(kDoubles, 0.25), hn::Sub(hn::Mul(three, hn::Add(p[1], p[2])), hn::Add(p[0], p[3])));
   Doubles t = RootOfQuadratic(p[0], middle, p[3]), slope = zero;
-  // Each lane stops by itself, so that none depends on its neighbours; what has not come to rest is left to others.
+  // Each lane stops by itself, so that none depends on its neighbours. Lanes that have not converged are left to
+  // CertainRoots.
   auto is_done = hn::Lt(one, zero);
   for (int i = 0; i < kMostSteps && !hn::AllTrue(kDoubles, is_done); ++i) {
     const Doubles value = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Add(hn::Mul(a3, t), a2), t), a1), t), p[0]);
@@ -142,7 +143,7 @@ HWY_INLINE Guess OnlyRoot(const Doubles (&p)[4]) {
   return {t, hn::IfThenElseZero(is_done, hn::Abs(slope))};
 }
 
-// By de Casteljau's algorithm.
+// Evaluates a polynomial by de Casteljau's algorithm.
 template <std::size_t M>
 HWY_INLINE Doubles ValueAt(const Doubles (&p)[M], Doubles t) {
   const Doubles s = hn::Sub(hn::Set(kDoubles, 1), t);
@@ -154,7 +155,7 @@ HWY_INLINE Doubles ValueAt(const Doubles (&p)[M], Doubles t) {
   return row[0];
 }
 
-// Whether the signs of the inner coefficients leave room for one root only: see CertainRoots.
+// Tells whether the signs of the inner coefficients allow only one root; see CertainRoots.
 HWY_INLINE hn::Mask<DoubleTag> HasOneRoot(const Doubles (&/*p*/)[3], Doubles error) { return hn::Eq(error, error); }
 HWY_INLINE hn::Mask<DoubleTag> HasOneRoot(const Doubles (&p)[4], Doubles error) {
   const Doubles below = hn::Neg(error);
@@ -182,7 +183,7 @@ HWY_INLINE void SingleRootsOf(std::size_t at, SingleRoots& roots) {
   const Doubles lower = hn::Max(zero, hn::Sub(root, step)), upper = hn::Min(one, hn::Add(root, step));
   const auto is_bracketed = hn::And(hn::Gt(ValueAt(p, lower), error), hn::Lt(ValueAt(p, upper), below));
   const auto changes = hn::And(hn::Gt(p[0], error), hn::Lt(p[M - 1], below));
-  // Where the guess is not near the root, the bracket may be right and yet too wide to be of use.
+  // If the guess is not near the root, the bracket may be right and yet too wide to be of use.
   const auto is_narrow = hn::Lt(step, hn::Set(kDoubles, 0x1p-16));
   const auto is_found = hn::And(hn::And(changes, is_bracketed), hn::And(is_narrow, HasOneRoot(p, error)));
   hn::Store(lower, kDoubles, roots.lower + at);

@@ -1,7 +1,7 @@
-/// The kernels of analysis/signs/facing.cpp: coefficients of f(t) = n(t) . w(t) of many faces at a time, and the roots of
-/// those that change their sign once.
+/// The kernels of analysis/signs/facing.cpp: the coefficients of f(t) = n(t) . w(t) of many faces at a time, and the
+/// roots of polynomials that change their sign once.
 ///
-/// Every face is computed in its own lane with the same operations, so that a result depends on nothing but its face.
+/// Every face is computed in its own lane with the same operations, so that its result depends on nothing else.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACING_LANES_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACING_LANES_H_
 
@@ -12,11 +12,11 @@
 
 namespace chronormal::inline internal {
 
-/// How many faces are one block, at most.
+/// The largest number of faces in a block.
 inline constexpr std::size_t kFacingBlock = 32;
 
-/// By how much a dot product with a control normal may be off, against the sum of the absolute components of that and
-/// the largest component of the other vector: sqrt(3) 2^-26 and a few roundings.
+/// The relative error of a dot product with a control normal, against the sum of the absolute components of the control
+/// normal times the largest component of the other vector: sqrt(3) 2^-26 and a few roundings.
 inline constexpr double kDotShare = 0x1p-25;
 
 /// The way to the eye of each face at t = 0 (x, y, z) and at t = 1.
@@ -27,9 +27,9 @@ struct alignas(64) FacingWays {
 /// Bernstein coefficients of f, each times its binomial coefficient: three for a direction, four for an eye.
 struct alignas(64) FacingCoefficients {
   double values[4][kFacingBlock];
-  double bounds[4][kFacingBlock];  ///< how far each may be off, by control normals that are within 2^-26 of theirs
+  double bounds[4][kFacingBlock];  ///< the error of each, by control normals within 2^-26 of the exact ones
   double reach[kFacingBlock];      ///< the sum of the absolute components of the way to the viewer, the larger one
-  int signs[kFacingBlock];         ///< 1 or -1 where all coefficients are beyond their bounds on that side; else 0
+  int signs[kFacingBlock];         ///< 1 or -1 if all coefficients are beyond their bounds on that side; else 0
 };
 
 /// count <= kFacingBlock
@@ -41,12 +41,13 @@ void facing_of_eye(const ControlNormals* normals, std::size_t count, const Facin
 /// Polynomials in Bernstein form, and brackets of their roots.
 struct alignas(64) SingleRoots {
   double p[4][kFacingBlock];   ///< the coefficients of each: three, or four
-  double error[kFacingBlock];  ///< how far each of them may be off, without the rounding of what follows
+  double error[kFacingBlock];  ///< the error of each coefficient, without the rounding of later operations
   double lower[kFacingBlock], upper[kFacingBlock];
-  int before[kFacingBlock];  ///< the sign below the only root; 0 where it takes more to find all roots
+  int before[kFacingBlock];  ///< the sign below the only root; 0 if finding all roots takes more
 };
 
-/// Finds the only root of those that have one for certain, as CertainRoots does; the others are left to that.
+/// Finds the only root of each polynomial that certainly has just one, as CertainRoots does; it leaves the others to
+/// CertainRoots.
 void find_single_roots(std::size_t degree, std::size_t count, SingleRoots& roots) noexcept;
 
 }  // namespace chronormal::inline internal
