@@ -1,4 +1,4 @@
-// Bakes a glTF file. A mesh goes through these steps, each a function of the values of those before it:
+// Bakes a glTF file. A mesh goes through these steps, each a function of the results of the steps before it:
 //
 //     read_gltf_shading     what its vertices show, and the faces whose normals that should be      shading/
 //     plan_mesh             how it is encoded, and for exact which pairs the animations need         plan
@@ -36,14 +36,14 @@
 namespace chronormal {
 namespace {
 
-// What became of one mesh.
+// The result of the bake of one mesh.
 struct MeshBake {
   BakedMesh report;
   std::vector<MeshWarning> warnings;
-  GrownMesh grown;  // where it has extra targets
+  GrownMesh grown;  // if it has correction targets
 };
 
-// The meshes that might move: only their arrays tell whether they do.
+// Returns the meshes that might move; only their arrays tell whether they do.
 std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   std::vector<std::size_t> result;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
@@ -59,7 +59,7 @@ std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   return result;
 }
 
-// Whether a target changes what is shown: by vertices that it moves, or by normals alone.
+// Tells whether a target changes what is rendered: by vertices that it moves, or by normals alone.
 bool changes(const GltfShading& shading, std::size_t target) { return moves(shading, target) || shading.turns[target]; }
 
 bool any_changes(const GltfShading& shading) {
@@ -80,7 +80,7 @@ Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::siz
                        "it is no object, so that there is no place to say what was baked");
 }
 
-// The parts whose base normals are made anew.
+// Returns which parts get new base normals.
 std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
   std::vector<bool> result;
   for (const GltfPart& part : shading.parts)
@@ -88,20 +88,21 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
   return result;
 }
 
-// Finds what the author would see, unless a weighting is asked for. Base normals that are made anew have no author.
+// Finds what the author would see, unless a weighting is asked for. Recomputed base normals have no author.
 AuthorTruth truth_of(GltfShading& shading, const BakeOptions& options) {
   if (options.recompute_base) return {shading, options.weighting.value_or(Weighting::kArea)};
   return author_truth(shading, options.weighting);
 }
 
-// Lets curves between keys follow what is no quadratic: in short tracks, since the gaps of long ones are small.
+// Splits the gaps between keys into pieces, so that curves can follow weights that are not quadratic there. Only short
+// tracks need it, since the gaps of long ones are small.
 void cut_gaps(MeshWeights& weights) {
   constexpr std::size_t kNodes = 128, kMostPieces = 8;
   for (WeightTrack& track : weights.tracks)
     track.pieces_of_line = std::clamp<std::size_t>(kNodes / std::max<std::size_t>(1, track.size()), 1, kMostPieces);
 }
 
-// The report as far as it follows from the plan.
+// Fills in what the report takes from the plan.
 void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.encoding = plan.encoding;
   report.elements = static_cast<std::size_t>(std::count(plan.is_shown.begin(), plan.is_shown.end(), true));
@@ -111,7 +112,7 @@ void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.resampling_error = plan.left_out;
 }
 
-// The poses that a mesh is made for when a program poses it.
+// Returns the poses that a mesh is made for when a program poses it.
 RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given) {
   std::vector<std::size_t> moving;
   for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
@@ -121,10 +122,10 @@ RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given
 
 // The arrays of a mesh, one target at a time.
 struct MeshDeltas {
-  std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // nothing where it stays as it is
+  std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // nothing if it stays as it is
   std::function<TargetDeltas(std::size_t extra)> extra;
   GrownMesh grown;
-  bool is_new = true;  // something becomes other than it is
+  bool is_new = true;  // something changes
 };
 
 MeshDeltas exact_deltas(const DeltaSource& source) {
@@ -134,7 +135,7 @@ MeshDeltas exact_deltas(const DeltaSource& source) {
           true};
 }
 
-// Those of the other encodings, with what there is to say of them.
+// Returns the deltas of the other encodings, and fills in the report on them.
 MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                          std::size_t tangent_bytes, BakedMesh& report, bool& is_of_animations) {
   ChosenCandidate chosen = choose_candidate(source, weights, options, tangent_bytes);
@@ -151,7 +152,7 @@ MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, 
           changes(source.shading, *candidate)};
 }
 
-// About how many bytes new tangents take.
+// Estimates the bytes of new tangents.
 std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>& is_stale) {
   std::size_t bytes = 0;
   const SharedParts parts(source.shading);
@@ -164,7 +165,7 @@ std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>
   return bytes;
 }
 
-// How far a bake is: each target of a mesh counts once when its candidate is chosen, and once when it is written.
+// Reports progress: each target of a mesh counts once when its candidate is chosen, and once when it is written.
 class Course {
  public:
   using Tell = std::function<void(std::size_t done, std::size_t total)>;
@@ -177,7 +178,7 @@ class Course {
     targets_ = targets;
     reach(first_);
   }
-  // While a candidate is chosen.
+  // Reports progress while a candidate is chosen.
   [[nodiscard]] Tell of_choice() {
     return [this](std::size_t done, std::size_t total) { reach(first_ + targets_ * done / total); };
   }
@@ -192,7 +193,7 @@ class Course {
   std::size_t total_ = 0, first_ = 0, next_ = 0, targets_ = 0;
 };
 
-// Bakes what was read of one mesh, which moves and has normals.
+// Bakes one mesh that was read, moves and has normals.
 Status bake_shading(const GltfDocument& document, const GltfShading& shading, const AuthorTruth& truth,
                     const BakeOptions& options, Course& course, ZeroVectors& zeros, GltfEdit& edit, MeshBake& baked) {
   const GltfMesh& mesh = document.meshes()[shading.mesh];
@@ -280,15 +281,15 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   return Success{};
 }
 
-// A mesh is baked once: a second time would add targets to targets. One that has none of them can be baked in another
-// way.
+// Tells whether a mesh needs no bake: a second one would add correction targets to correction targets. A mesh without
+// them can be baked in another encoding.
 bool is_baked(const GltfShading& shading, const BakeOptions& options) {
   return shading.mark &&
          (shading.mark->sequence || !shading.mark->extras.empty() || shading.mark->encoding == encoding_of(options));
 }
 
-// Judges a mesh that was baked before, so that a tolerance that it is beyond does not go unnoticed. Keyframes of a
-// sequence mean nothing alone, and cost more: they are judged where a tolerance is asked for.
+// Judges a mesh that was baked before, so that an error beyond the tolerance is reported. Single keyframes of a
+// sequence mean nothing, and cost more: they are judged only if a tolerance is asked for.
 Status judge_again(const GltfDocument& document, const BakeOptions& options, GltfShading& shading, MeshBake& baked) {
   const bool is_asked = options.tolerance || options.plan || !shading.mark->sequence;
   if (encoding_of(options) != BakeEncoding::kSmallest || !is_asked || !any_changes(shading) || !any_shaded(shading))
@@ -308,7 +309,7 @@ Status judge_again(const GltfDocument& document, const BakeOptions& options, Glt
   return Success{};
 }
 
-// Nothing for a mesh that does not move.
+// Bakes one mesh. Returns nothing if it does not move.
 Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::size_t index, const BakeOptions& options,
                                           Course& course, ZeroVectors& zeros, GltfEdit& edit) {
   const GltfMesh& mesh = document.meshes()[index];
@@ -332,7 +333,7 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   baked.report.weighting = truth.rule().weighting;
   if (truth.is_plain()) {
     shading.value().groups.forget_corners();
-    shading.value().point_of_vertex = std::vector<std::uint32_t>();  // it was for the truth alone
+    shading.value().point_of_vertex = std::vector<std::uint32_t>();  // only the truth needed it
   }
   for (const GltfPrimitive& primitive : mesh.primitives) {
     if (primitive.has_faces() && !primitive.has_normals && !options.smooth) ++baked.report.left_flat;

@@ -12,22 +12,22 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Products of two weights that are worth a look: each takes an extra target.
+// The largest number of products of two weights to try; each takes a correction target.
 constexpr std::size_t kMostProducts = 48;
-// Extra targets are tried so often in smaller numbers, where a limit of bytes is exceeded.
+// The number of attempts with fewer correction targets to meet the byte limit.
 constexpr int kTries = 5;
-// Means that differ by no more of themselves are alike.
+// Means that differ by no more than this part of themselves count as equal.
 constexpr double kAlike = 1e-3;
-// Where a skin alone keeps candidates beyond the tolerance, they are made again, so often at most, for a smaller one.
+// If only a skin keeps candidates beyond the tolerance, they are made again for a smaller one, at most this many times.
 constexpr int kMostTightened = 3;
 constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
-// A glance that shows a mean so many times that of the best candidate ends the look at another.
+// If a glance at a candidate shows a mean this many times that of the best, the candidate is not examined further.
 constexpr double kHopeless = 2;
-// A file bears more bytes where it gets few extra targets. An extra target has deltas for most vertices.
+// A file may grow more if it gets few correction targets. A correction target has deltas for most vertices.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
-// A candidate is better than what is stored if it leaves at most this part of the mean.
+// A candidate is better than the stored deltas if it leaves at most this part of the mean error.
 constexpr double kBetter = 0.95;
-// Twice as many extra targets of a rig are worth it if they leave at most this part of the mean.
+// Twice as many correction targets of a rig are worth it if they leave at most this part of the mean error.
 constexpr double kWorthIt = 0.9;
 
 bool has_new_base(const DeltaSource& source) {
@@ -39,7 +39,7 @@ bool has_unit(std::span<const Viewer> viewers) {
                      [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
 }
 
-// Returns how many extra targets all viewers and the options have room for.
+// Returns how many correction targets all viewers and the options have room for.
 std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   std::size_t most = 10000;
   const auto limit = [&](std::size_t all) { most = std::min(most, all - std::min(all, targets)); };
@@ -49,8 +49,8 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Returns whether an error grew by more than it may, and for some thresholds whether tears did: of a hundred edges that
-// were torn, one more may be. A mean may not reach the tolerance and grow; single normals may turn by so much.
+// Returns whether an error grew by more than it may, or tears did at the first `thresholds` angles. A mean may grow up
+// to the tolerance, and single normals may turn by the tolerance; one more edge may be torn per hundred torn edges.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
   constexpr std::size_t kOneOf = 100;
   const double turn = std::fmax(tolerance, kHarmless);
@@ -60,15 +60,15 @@ bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance
          after.worst > before.worst + turn;
 }
 
-// A candidate as it was judged.
+// A candidate and how it was judged.
 struct Judged {
   BakedCandidate choice;
-  std::size_t better = 0, unharmed = 0;  // of the named viewers and of the others, as chooser.h has it
+  std::size_t better = 0, unharmed = 0;  // of the named viewers and of the others, as in chooser.h
   bool is_affordable = true, is_bearable = true;
   double mean = 0, mean_of_spared = 0;  // of the worst of the named viewers, and of the others
 };
 
-// Holds one candidate against the next.
+// Compares candidates one after the other, and keeps the best.
 class Chooser {
  public:
   Chooser(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, std::size_t tangent_bytes)
@@ -100,7 +100,7 @@ class Chooser {
             has_unit(options_.viewers)};
   }
 
-  // Looks at a candidate, and returns the bytes that it takes.
+  // Judges a candidate, and returns its bytes.
   std::size_t consider(Candidate candidate) {
     const std::size_t targets = source_.shading.set.targets.size();
     Judged judged;
@@ -130,7 +130,8 @@ class Chooser {
     return bytes;
   }
 
-  // Returns whether a glance shows that a candidate is beyond the tolerance, unless a plan asks for all of them.
+  // Returns whether a glance shows that a candidate is beyond the tolerance. A plan asks for all candidates, so none is
+  // far.
   [[nodiscard]] bool is_far(const Candidate& candidate) const {
     if (options_.plan) return false;
     const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
@@ -143,20 +144,21 @@ class Chooser {
     const std::size_t most = options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
     return most - std::min(most, tangent_bytes_);
   }
-  // Returns the bytes that deltas may take where nobody asked for a tolerance or a limit.
+  // Returns the bytes that deltas may take if no tolerance or limit is given.
   [[nodiscard]] std::size_t bearable_bytes(std::size_t extras) const {
     const bool is_asked = options_.tolerance || options_.most_targets || options_.most_delta_bytes;
     if (is_asked || options_.bytes_of_file == 0) return most_bytes();
     return extras > kFewExtras ? options_.bytes_of_file : options_.bytes_of_file + options_.bytes_of_file / 2;
   }
-  // About how many extra targets of all vertices there is room for beside deltas that take so many bytes.
+  // Estimates the number of correction targets of all vertices that fit beside own deltas of this size.
   [[nodiscard]] std::size_t extras_within(std::size_t bytes_of_own) const {
     const std::size_t of_one = std::max<std::size_t>(1, kBytesOfExtra * judge_->vertices().size());
     const auto room = [&](std::size_t bytes) { return (bytes - std::min(bytes, bytes_of_own)) / of_one; };
-    if (options_.most_delta_bytes) return room(most_bytes()) + 1;  // what is too much is tried again with fewer
+    if (options_.most_delta_bytes) return room(most_bytes()) + 1;  // too large a candidate is tried again with fewer
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
-  // Returns whether a candidate of no more bytes than these is near enough, unless a plan asks for all others.
+  // Returns whether the best candidate is accurate enough, and has no more bytes than these, so that others need not be
+  // tried. A plan asks for all candidates.
   [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
     return best_ && of_best_.choice.within && of_best_.better + of_best_.unharmed == viewers_.size() &&
            of_best_.choice.bytes - tangent_bytes_ <= bytes && !options_.plan;
@@ -164,8 +166,8 @@ class Chooser {
   [[nodiscard]] bool plans() const noexcept { return options_.plan; }
   [[nodiscard]] const Judged& of_best() const { return of_best_; }
 
-  // Asks for candidates that are made for a smaller tolerance, where skins keep all of them beyond the one that is asked
-  // for. Returns whether that may help.
+  // Asks for candidates that are made for a smaller tolerance, because skins keep all of them beyond the given one.
+  // Returns whether that may help.
   bool tighten() {
     if (!best_ || of_best_.choice.within || !weights_.skins.any()) return false;
     const double now = made_within_.value_or(tolerance_);
@@ -192,20 +194,21 @@ class Chooser {
   }
 
  private:
-  // Returns the errors that a choice is made by: those of what the file plays or, without an animation, all of them.
+  // Returns the errors that decide: those in the poses that the file plays or, without an animation, in all poses.
   [[nodiscard]] ShownErrors file_of(const ErrorsOfKinds& kinds) const {
     return weights_.is_driven ? kinds[static_cast<std::size_t>(PoseKind::kFile)].errors()
                               : errors_of_all(kinds).errors();
   }
 
-  // The smallest mean of the viewers that are named: some gain where others lose.
+  // Returns the smallest mean of the named viewers: some gain where others lose.
   [[nodiscard]] double mean_of(const std::vector<ErrorsOfKinds>& errors) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t v = 0; v < options_.viewers.size(); ++v) least = std::fmin(least, file_of(errors[v]).mean);
     return least;
   }
 
-  // The changes of viewers that compressors round for, and of the others as they are known.
+  // Returns the changes of all viewers: measured anew if compressors round for the viewer, and as they are known for
+  // the others.
   [[nodiscard]] std::vector<ViewerChange> changes(const std::vector<ErrorsOfKinds>& before,
                                                   const std::vector<ErrorsOfKinds>& after,
                                                   std::vector<ViewerChange> known) const {
@@ -236,7 +239,8 @@ class Chooser {
         return choice.animations_only ? kinds[0].errors() : errors_of_all(kinds).errors();
       };
       const ShownErrors then = all_of(before_[v]), now = all_of(after[v]);
-      // What is asked for by name is taken where it is nearer in what the file plays, or in all, and tears nothing.
+      // A candidate that is asked for by name counts as better if it has a smaller mean, in what the file plays or in
+      // all poses, and tears nothing.
       const bool is_asked = source_.plan.encoding != BakeEncoding::kSmallest;
       const bool is_nearer = now.mean < then.mean || file_of(after[v]).mean < file_of(before_[v]).mean;
       change.is_better = is_asked ? is_nearer && (now.tears[0] <= then.tears[0] || !any_grows)
@@ -257,7 +261,7 @@ class Chooser {
   }
 
   [[nodiscard]] bool is_better(const Judged& judged, const Judged& than) const {
-    // What is stored gives way to whatever is better in some viewer, unless it is near enough.
+    // The stored deltas give way to any candidate that is better in some viewer, unless they are accurate enough.
     const bool is_stored = judged.choice.name == stored_.name, was_stored = than.choice.name == stored_.name;
     if (was_stored && !is_stored)
       return judged.is_affordable && judged.better > 0 && !(than.choice.within && prefers_bytes_);
@@ -275,7 +279,7 @@ class Chooser {
     return is_alike ? judged.choice.bytes < than.choice.bytes : judged.mean < than.mean;
   }
 
-  // The worst that compressors leave of the chosen candidate, where some are named.
+  // Returns the worst error of the chosen candidate after compression, over named viewers that compressors round for.
   [[nodiscard]] double rounded_worst() const {
     double worst = 0;
     const std::vector<ErrorsOfKinds> rounded = judge_->measure(*best_, Judge::Depth::kGlance, true);
@@ -288,10 +292,10 @@ class Chooser {
   const DeltaSource& source_;
   const MeshWeights& weights_;
   const BakeOptions& options_;
-  std::vector<Viewer> viewers_;  // those that are named, then the others
+  std::vector<Viewer> viewers_;  // the named ones, then the others
   RightNormals rights_;
   double tolerance_;
-  std::optional<double> made_within_;  // what candidates are made for, where that is less than the tolerance
+  std::optional<double> made_within_;  // the tolerance that candidates are made for, if it is smaller
   bool prefers_bytes_;
   std::size_t tangent_bytes_;
   std::optional<Judge> judge_;
@@ -299,13 +303,13 @@ class Chooser {
   std::vector<ErrorsOfKinds> before_;
   std::optional<Candidate> best_;
   Judged of_best_;
-  std::size_t of_choice_ = 0;  // of the best, in candidates_
+  std::size_t of_choice_ = 0;  // index of the best in candidates_
   double best_glance_ = 0;
   std::vector<BakedCandidate> candidates_;
 };
 
-// Looks at extra targets of low rank: as many as the tolerance needs and the file bears, and fewer where these take too
-// many bytes.
+// Tries correction targets of low rank: as many as the tolerance needs and the file may grow by, and fewer if they take
+// too many bytes.
 void look_at_low_rank(const Making& making, const Candidate& own, std::size_t bytes_of_own, Chooser& chooser) {
   Making of_try = making;
   of_try.most_extras = std::min(of_try.most_extras, chooser.extras_within(bytes_of_own));
@@ -321,7 +325,7 @@ void look_at_low_rank(const Making& making, const Candidate& own, std::size_t by
   }
 }
 
-// Looks at extra targets of a mesh that nothing drives: more and more of them, as long as each step is worth it.
+// Tries correction targets of a mesh that nothing drives: more and more of them, as long as each step is worth it.
 void look_at_quadratics(const Making& making, const Candidate& own, Chooser& chooser) {
   double mean = std::numeric_limits<double>::infinity();
   quadratics_candidates(making, own, [&](Candidate candidate) {
@@ -332,14 +336,15 @@ void look_at_quadratics(const Making& making, const Candidate& own, Chooser& cho
   });
 }
 
-// Whether pairs of targets are few enough to be worth a look each.
+// Tells whether pairs of targets are few enough to try a correction target for each.
 bool has_few_products(const Making& making, const MeshWeights& weights) {
   const MeshPlan& plan = making.source.plan;
   return making.most_extras > 0 && (plan.is_driven || weights.rig) && plan.products_fit &&
          count_products(making, kMostProducts) <= kMostProducts;
 }
 
-// Looks at deltas of any length, which viewers that add up show right, and the others no worse than before in many files.
+// Tries deltas of any length. Viewers that add deltas as stored then render the truth, and in many files the others get
+// no worse than before.
 void look_at_any_lengths(Making making, const MeshWeights& weights, Chooser& chooser) {
   making.lengths = Lengths::kFree;
   if (making.rights.are_by_area()) chooser.consider(own_candidate(making.source, making.rights, making.lengths));
@@ -350,7 +355,7 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
                  const std::function<void(std::size_t)>& reach) {
   Candidate own = own_candidate(source, making.rights, making.lengths);
   own.animations_only = false;
-  // Where extra targets may bring more, deltas that are far off at a glance are looked at in the end.
+  // If correction targets may help, own deltas with a large error at a glance are judged last.
   const bool has_extras = source.plan.is_driven && source.plan.products_fit && making.most_extras > 0;
   const bool waits = has_extras && chooser.is_far(own);
   if (!waits) chooser.consider(own);
@@ -364,7 +369,7 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   reach(40);
   if (weights.rig && !chooser.is_found() && source.plan.products_fit) look_at_quadratics(making, own, chooser);
   if (has_extras) {
-    // What turns normals across N alone is shown alike in every viewer, but may take more extra targets.
+    // Corrections across N alone are rendered alike in every viewer, but may take more correction targets.
     Making across = making;
     across.keeps_across |= making.lengths == Lengths::kShort;
     look_at_low_rank(across, own, bytes, chooser);
@@ -379,7 +384,7 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
 
 ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                                  std::size_t tangent_bytes) {
-  // About how much of the time has gone by.
+  // Reports roughly how much of the time has passed.
   const auto reach = [&options](std::size_t percent) {
     if (options.progress) options.progress(percent, 100);
   };
@@ -390,12 +395,13 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
     alone.lines = FittedLines();
     const RightNormals& rights = chooser.making(false).rights;
     chooser.consider(own_candidate({source.shading, source.terms, alone, source.base_normals}, rights, Lengths::kFree));
-    // Keys of a file whose author is known may be right as they are: nothing that is fitted to animations may turn them.
+    // Keys of a file whose author is known may be right as they are, so deltas that are fitted to animations must not
+    // change them.
     const bool has_author = source.terms.follow_keys() && !options.weighting;
     if (source.plan.lines.elements() == 0 || has_author) return chooser.take();
     chooser.consider(own_candidate(source, rights, Lengths::kFree));
     ChosenCandidate chosen = chooser.take();
-    // Nothing is known of deltas of targets alone, where these are played together, but what was measured.
+    // If targets are played together, the error of their single deltas is known only where it was measured.
     if (chosen.candidate.fit_error < source.plan.lines.largest_error())
       for (const ViewerChange& change : chosen.viewers)
         if (change.is_named)
@@ -412,7 +418,7 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
   }
   if (chooser.is_found(0)) return chooser.take();
   for (int tries = 0; tries <= kMostTightened; ++tries) {
-    // Only viewers that add up deltas of any length gain by deltas that are fitted to animations.
+    // Only viewers that add deltas of any length gain by deltas that are fitted to animations.
     Making making = chooser.making(options.animations_only);
     if (options.animations_only && source.plan.is_driven && making.lengths == Lengths::kFree) {
       look_at_low_rank(making, own_candidate(source, making.rights, making.lengths), 0, chooser);
@@ -437,7 +443,7 @@ BakedCandidate judge_baked(const DeltaSource& source, const MeshWeights& weights
     played.is_driven = true;
   }
   BakeOptions without_alone = options;
-  without_alone.animations_only = true;  // so that no extra target is judged alone
+  without_alone.animations_only = true;  // so that no correction target is judged alone
   Chooser chooser(source, played, without_alone, 0);
   return chooser.take().candidates.front();
 }

@@ -1,16 +1,16 @@
 /// Chooses what a bake writes for a mesh. Private to workflow.
 ///
-/// Makers make candidates, the judge measures what viewers show of each, and this picks one. A candidate is better or worse
-/// as a whole, because the eye sees a surface: a vertex that decides by itself tears it from its neighbours.
+/// Makers make candidates, the judge measures what viewers render with each, and the chooser picks one. It picks for
+/// the mesh as a whole, because the eye sees a surface: a vertex that decides by itself tears it from its neighbours.
 ///
-///     better in a viewer    the mean over all poses is smaller, by a twentieth at least; and in what the file plays, in
-///                           each target alone, and in poses that a program sets, none of mean, 99.9 %, worst and torn
-///                           edges (beyond 10, 20 and 40 degrees) grows beyond the tolerance
+///     better in a viewer    the mean over all poses is smaller, by a twentieth at least; and in what the file plays,
+///                           in each target alone, and in poses that a program sets, none of mean, 99.9 %, worst and
+///                           torn edges (beyond 10, 20 and 40 degrees) grows beyond the tolerance
 ///
-/// Of all candidates the best comes first by these, in this order: within the limits; better in most of the viewers that
-/// are named; no worse in most of the others; within the tolerance; of a size that its file bears; and then the smallest
-/// of those within the tolerance, unless another is much nearer in the viewers that are not named, or the nearest of those
-/// beyond.
+/// The criteria are, in this order: within the limits; better in most of the named viewers; no worse in most of the
+/// others; within the tolerance; of a size that is in proportion to the file. If several candidates are equal by these,
+/// the smallest of those within the tolerance is chosen, unless another has a much smaller error in the viewers that
+/// are not named; beyond the tolerance, the one with the smallest error.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CHOOSER_H_
 #define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CHOOSER_H_
 
@@ -24,20 +24,19 @@
 
 namespace chronormal::inline internal {
 
-/// The candidate that was chosen, and all that were looked at.
+/// The candidate that was chosen, and all that were tried.
 struct ChosenCandidate {
   Candidate candidate;
-  std::vector<ViewerChange>
-      viewers;  ///< what each viewer shows before and after: those that are named, then the others
-  std::vector<BakedCandidate> candidates;  ///< every candidate that was looked at
+  std::vector<ViewerChange> viewers;  ///< what each viewer renders before and after: the named ones, then the others
+  std::vector<BakedCandidate> candidates;  ///< every candidate that was tried
 };
 
-/// Chooses by the encoding of the plan. tangent_bytes are those that new tangents take beside any candidate.
+/// Chooses a candidate of the encoding in the plan. tangent_bytes are the bytes of new tangents, beside any candidate.
 [[nodiscard]] ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& weights,
                                                const BakeOptions& options, std::size_t tangent_bytes);
 
-/// Judges what a mesh shows that an earlier bake wrote, by the tolerance and the limits of options; extra targets that
-/// nothing drives are given the weights that their formulas have.
+/// Judges a mesh that an earlier bake wrote, by the tolerance and the limits of options. Correction targets that
+/// nothing drives get the weights of their formulas.
 [[nodiscard]] BakedCandidate judge_baked(const DeltaSource& source, const MeshWeights& weights,
                                          const BakeOptions& options);
 

@@ -12,11 +12,12 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kMostPieces = 16, kMostKeys = 20000;
-// Of what straight pieces may leave: what cubics may, whose bound is the sum of all that might be off at once.
+// Splines may leave this many times what straight pieces may: their bound is the sum of all errors, as if they came at
+// once.
 constexpr double kPartOfSplines = 2;
 
-// Where the straight line of an extra weight between two keys is farthest from what it should be, in the middle, it is
-// off by a quarter of its second difference; this is what that turns, in radians, for each gap.
+// Returns, for each gap between keys, the angle in radians by which straight lines of correction weights turn normals.
+// A straight line has its largest error in the middle of the gap: a quarter of its second difference.
 std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
                                   const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                   const VertexColumns& columns) {
@@ -58,13 +59,13 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
   return {worst.begin(), worst.end()};
 }
 
-// Cuts the gaps of a LINEAR track until straight pieces of extra weights turn no normal by more than the tolerance
-// (radians), as far as a limit of pieces allows; `left` becomes no less than what they turn.
+// Splits the gaps of a LINEAR track until straight pieces of correction weights turn no normal by more than the
+// tolerance (radians), within a limit of pieces. Raises `left` to the angle by which they still turn one.
 std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
                                      const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                      const VertexColumns& columns, double tolerance, double& left) {
   const std::vector<double> of_gaps = middle_errors(rights, track, extra_count, extras_at, vertices, columns);
-  // No gap gets more pieces than all of them may have.
+  // A gap gets at most `most` pieces; `most` falls until all gaps together keep to the limit.
   for (std::size_t most = kMostPieces;; --most) {
     std::vector<std::uint32_t> pieces;
     std::size_t keys = 1;
@@ -81,8 +82,8 @@ std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTra
   }
 }
 
-// Says of each formula how far a normal turns, at most, where its weight is off by 1 and the normal is as long as the
-// stored one.
+// Sets the gain of each formula: the largest angle by which a normal turns if the weight has an error of 1 and the
+// normal is as long as the stored one.
 void set_gains(const RightNormals& rights, std::span<const std::uint32_t> vertices, const VertexColumns& columns,
                ExtraDrivers& drivers) {
   const std::size_t own = rights.targets();

@@ -1,4 +1,4 @@
-/// How tracks carry the weights of extra targets. Private to workflow.
+/// Decides how tracks carry the weights of correction targets. Private to workflow.
 ///
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CUT_TRACKS_H_
@@ -14,13 +14,13 @@
 
 namespace chronormal::inline internal {
 
-/// Decides how the tracks of a file carry the weights of extra targets, so that they turn no normal by more than the
-/// tolerance (radians):
+/// Decides how the tracks of a file carry the weights of correction targets, so that they turn no normal by more than
+/// the tolerance (radians):
 ///
-///     LINEAR        straight pieces of each gap, as far as a limit of their number allows; track_error becomes no less
-///                   than what they turn. Where all viewers play cubic splines and a spline takes fewer numbers, or pieces
-///                   leave too much, the track becomes one, which is exact
-///     CUBICSPLINE   more keys where all viewers play them as the specification says, for formulas
+///     LINEAR        straight pieces of each gap, within a limit of their number; track_error is raised to the angle by
+///                   which they turn normals. If all viewers play cubic splines, and a spline takes fewer numbers or
+///                   pieces leave too much, the track becomes a spline, which is exact
+///     CUBICSPLINE   more keys for formulas, if all viewers play splines as specified
 ///
 /// The candidate must have its deltas, and its formulas or curves.
 void cut_tracks(const RightNormals& rights, const MeshWeights& weights, std::span<const Viewer> viewers,

@@ -1,13 +1,13 @@
-// Extra targets of low rank: what the deltas of a mesh's own targets lack along the animations of a file, as the sum
+// Correction targets of low rank: the errors of a mesh's own deltas along the animations of a file, written as the sum
 // of a few deltas whose weights are curves in time (docs/theory.md, section 17).
 //
 //     n(w(t)) / |n(0)|  =  N + sum_i w_i(t) D_i + sum_k s_k(t) E_k, nearly
 //
-// The s_k are the leading left singular vectors of what is missing, in which points where n(w) gets short count more;
-// the E_k are the right ones. Where that leaves a point far off, its own E_k are fitted again by least squares of the
-// angles, in which the length of n(w) is free at every instant and bad instants count more.
+// The s_k are the leading left singular vectors of the missing normals, in which points count more where n(w) gets
+// short; the E_k are the right ones. If a point still has a large error, its own E_k are fitted again by least squares
+// of the angles, in which the length of n(w) is free at every instant and bad instants count more.
 //
-// Rows are the nodes of the curves (extra_curves.h), or where there are too many of them, those of some gaps between
+// Rows are the nodes of the curves (extra_curves.h). If there are too many, the rows are the nodes of some gaps between
 // keys, and of some tracks; the curves at all other nodes follow from the deltas by least squares.
 #include "workflow/bake/candidates/makers.h"
 
@@ -34,23 +34,25 @@ namespace {
 
 constexpr std::size_t kMostRows = 480, kBytes = std::size_t{700} << 20, kFewestRows = 48;
 constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
-// Of the tolerance: what needs nothing, what singular vectors alone should leave in 99.9 % of all pairs, and what least
-// squares should then leave at worst.
+// Parts of the tolerance: an error that needs no correction; the error that singular vectors alone should leave in 99.9
+// % of all samples; and the worst error that least squares should then leave.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
-// What so many times as many extra targets do not make smaller than this is not made smaller by more.
+// A number of correction targets is enough if its error is within this factor of the smallest, though kManyMore times
+// as many were tried.
 constexpr double kNoGain = 1.05;
 constexpr std::size_t kManyMore = 2;
-// Parts of a gap at which a fit is judged, and not made.
+// Parts of a gap at which a fit is judged but not made.
 constexpr std::array<double, 2> kUnseen = {0.11, 0.63};
 constexpr int kFits = 4;
-// Of the tolerance: how far the lack of one entry of a delta may turn a normal.
+// Relative to the tolerance: how far one entry of a delta that is left out may turn a normal.
 constexpr double kPartOfEntry = 1.0 / 2000;
 constexpr double kLeastRidge = 1e-9;
 constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14, 16, 20, 24,
                                                  28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128};
 
-// One extra target made of another: its weight is `factor` times that one's, or what of this is above zero.
+// One correction target made of another: its weight is `factor` times that of the other, or the part of this above
+// zero.
 struct Share {
   std::size_t of = 0;
   double factor = 1;
@@ -58,35 +60,35 @@ struct Share {
   VertexVectors vectors;
 };
 
-// What short shares are like.
+// The properties of short shares.
 struct ShortShares {
-  bool are_units = false;   // N + E is as long as N, but for what goes along N: viewers that keep directions keep it
-  bool keep_along = false;  // and what goes along N stays
+  bool are_units = false;   // N + E is as long as N except for its part along N: viewers that keep directions keep it
+  bool keep_along = false;  // the part along N stays
 };
 
 struct LowRank {
   std::vector<VertexVectors> own;     // of each target of the mesh
   std::vector<VertexVectors> extras;  // of any length, for weights from -1 to 1
-  TrackCurves curves;                 // of the extra targets, for each track
+  TrackCurves curves;                 // of the correction targets, for each track
   PoseList rest;                      // their weights in the poses that the file stores
   double worst = 0;                   // degrees: of all points at the instants that were fitted to
 };
 
 struct LowRankLimits {
   std::size_t most_extras = 0;
-  double tolerance = 0;       // degrees: extra targets are added until the worst that is seen is within it
-  bool keeps_across = false;  // extra targets make up for what is missing across N alone
+  double tolerance = 0;       // degrees: correction targets are added until the worst sample is within it
+  bool keeps_across = false;  // correction targets correct only what is missing across N
   bool refits_own = false;    // the deltas of own targets are fitted to the animations too, and to nothing else
 };
 
-// Which instants are fitted to.
+// The instants that are fitted to.
 struct Rows {
   std::vector<std::size_t> instants;  // ascending
   std::vector<PlaceOfRows> places;    // half-way between neighbouring nodes of a piece
-  std::vector<PlaceOfRows> unseen;    // others, which nothing is fitted to
+  std::vector<PlaceOfRows> unseen;    // other places, which nothing is fitted to
 };
 
-// The tracks that have a place among so many rows, if each of them has its most telling piece there.
+// Returns the tracks that fit into this many rows, if each of them contributes its most telling piece.
 std::vector<std::size_t> tracks_within(const FileInstants& all, const std::vector<WeightTrack>& tracks,
                                        std::size_t most) {
   std::size_t least = 0;
@@ -107,7 +109,7 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
   };
   for (const std::size_t t : tracks_within(all, tracks, most)) {
     const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
-    // A piece between others that are left out takes three rows, and else two.
+    // A piece whose neighbours are left out takes three rows, and others take two.
     const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
     std::vector<std::size_t> keys(tracks[t].size());
     std::iota(keys.begin(), keys.end(), std::size_t{0});
@@ -140,14 +142,14 @@ PoseList poses_of(const FileInstants& all, std::span<const std::size_t> instants
   return poses;
 }
 
-// The weights of own targets in each row.
+// Returns the weights of own targets in each row.
 std::vector<float> own_weights(const PoseList& poses) {
   std::vector<float> result;
   for (const std::vector<double>& pose : poses) result.insert(result.end(), pose.begin(), pose.end());
   return result;
 }
 
-// What the deltas of own targets should be as well, by least squares over the rows, for each point: (3, targets).
+// Returns a change of the deltas of own targets for each point, (3, targets), by least squares over the rows.
 std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   const std::vector<float> weights = own_weights(missing.poses());
   std::vector<double> matrix(targets * targets, 0.0);
@@ -185,7 +187,7 @@ std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   return result;
 }
 
-// How many products of two weights there are: by area, n(w) has no more terms that are missing.
+// Counts the products of two weights: by area, n(w) has no more terms that are missing.
 std::size_t products_of(const PoseList& poses) {
   std::size_t active = 0;
   for (std::size_t i = 0; !poses.empty() && i < poses[0].size(); ++i)
@@ -193,7 +195,7 @@ std::size_t products_of(const PoseList& poses) {
   return active * (active + 1) / 2;
 }
 
-// Fits with as few extra targets as the tolerance needs, as far as a look at some points and three tries can tell.
+// Fits with as few correction targets as the tolerance needs, as far as some points and three tries can tell.
 void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float> weights, std::size_t own_targets) {
   std::vector<std::size_t> counts;
   for (const std::size_t count : kCounts)
@@ -206,7 +208,7 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   while (at < counts.size() && errors[at] > near && !(errors[at] <= least && kManyMore * counts[at] <= counts.back()))
     ++at;
   std::size_t extras = counts[std::min(at, counts.size() - 1)];
-  // Between two counts the logarithm of the error falls about evenly.
+  // Between two counts, the logarithm of the error is taken as a straight line.
   if (at > 0 && at < counts.size() && errors[at] > 0 && errors[at] < near) {
     const double part = portable::log(errors[at - 1] / near) / portable::log(errors[at - 1] / errors[at]);
     extras =
@@ -221,7 +223,8 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   }
 }
 
-// The weights of extra targets at instants that were not fitted to, by least squares over all points: (poses, extras).
+// Returns the weights of correction targets at instants that were not fitted to, by least squares over all points:
+// (poses, extras).
 std::vector<double> weights_at(const LowRankFit& fit, const MissingNormals& missing, const Cholesky& gram) {
   const std::size_t extras = fit.extras(), padded = fit.padded(), stride = missing.stride();
   constexpr std::size_t kParts = 32;
@@ -270,7 +273,7 @@ Cholesky gram_of_deltas(const LowRankFit& fit, std::size_t points) {
   return {std::move(matrix), extras, ridge};
 }
 
-// A vertex with the place of its point among those that are fitted.
+// A vertex, with the index of its point among the fitted ones.
 struct FittedVertex {
   std::uint32_t vertex;
   std::size_t point;
@@ -311,7 +314,7 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
   fit_few(fit, limits, limits.refits_own ? own_weights(missing.poses()) : std::vector<float>(), own_targets);
   found.worst = fit.worst();
 
-  // The deltas, point by point and then vertex by vertex.
+  // Collects the deltas, point by point and then vertex by vertex.
   std::vector<FittedVertex> all;
   for (std::size_t p = 0; p < fitted.size(); ++p)
     for (const std::uint32_t v : fitted[p]) all.push_back({v, p});
@@ -344,7 +347,7 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
     }
   }
 
-  // The curves at all nodes.
+  // Computes the curves at all nodes.
   const std::size_t extras = fit.extras();
   std::vector<double> curves(instants.poses.size() * extras);
   std::vector<char> is_row(instants.poses.size(), 0);
@@ -370,7 +373,7 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
     }
   }
 
-  // Weights become at most 1, and entries that turn nothing become zero.
+  // Scales weights to at most 1, and sets entries that turn nothing to zero.
   std::vector<std::size_t> kept;
   std::vector<double> largest(extras, 0.0);
   for (std::size_t n = 0; n < curves.size(); ++n)
@@ -407,8 +410,8 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
   return found;
 }
 
-// Multiplies vectors, and makes N + E as long as N where that is asked for; the part of E along N stays where it is asked
-// for, too.
+// Multiplies vectors by a factor or, if is_unit, makes N + E as long as N; keeps_along then keeps the part of E along
+// N.
 void shorten(const RightNormals& rights, double factor, bool is_unit, bool keeps_along, VertexVectors& vectors) {
   for (std::size_t n = 0; n < vectors.vertices.size(); ++n) {
     Vec3f& vector = vectors.vectors[n];
@@ -423,7 +426,7 @@ void shorten(const RightNormals& rights, double factor, bool is_unit, bool keeps
   }
 }
 
-// Makes targets of these lengths that add up to the given ones: one for each, or two of unit length.
+// Makes targets of these lengths whose sums are the given ones: one for each, or two of unit length.
 std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras, Lengths lengths,
                              const ShortShares& how) {
   std::vector<Share> shares;
@@ -443,7 +446,7 @@ std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVecto
   return shares;
 }
 
-// Replaces the weights of so many extra targets, (poses, extras), by those of shares.
+// Replaces the weights of correction targets, (poses, extras), by the weights of their shares.
 void take_shares(std::span<const Share> shares, std::size_t extras, std::vector<double>& values) {
   std::vector<double> result;
   for (std::size_t first = 0; first < values.size(); first += extras) {
@@ -467,7 +470,8 @@ Candidate low_rank_candidate(const Making& making, Candidate own) {
       find_low_rank(making.rights, making.weights, making.judge.vertices(), making.source.shading.element_of_vertex,
                     result.own, {making.most_extras / for_each, making.tolerance, making.keeps_across, refits_own});
   const std::size_t extras = found.extras.size();
-  // What goes along N turns normals by more than a right angle where deltas are added up, and wrongly elsewhere.
+  // Parts along N matter only to viewers that add up deltas, where they allow turns by more than a right angle; in
+  // others they are wrong.
   const bool keeps_along = std::none_of(making.viewers.begin(), making.viewers.end(),
                                         [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
   std::vector<Share> shares = shares_of(making.rights, std::move(found.extras), making.lengths,

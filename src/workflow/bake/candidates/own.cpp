@@ -1,4 +1,4 @@
-// New deltas for the targets of a mesh, without any extra target.
+// New deltas for the targets of a mesh, without correction targets.
 #include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
@@ -26,10 +26,11 @@ Candidate stored_candidate(const DeltaSource& source) {
 Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths) {
   Candidate result;
   result.name = "own deltas";
-  // Where the truth is no quadratic, terms are fitted, and what is right at the end is known better.
+  // If the truth is no quadratic, its terms are fitted, and the normal at weight 1 is known more exactly.
   const bool is_of_truth = source.plan.encoding == BakeEncoding::kSmallest && !rights.are_by_area();
   if (lengths != Lengths::kFree || is_of_truth) {
-    // Those that the author stored have the length of N: what is right stays as it is on the whole way.
+    // Normals that the author stored have the length of N, so that deltas that are right stay nearly the same all the
+    // way.
     result.own =
         end_deltas(source.shading, source.terms, rights, lengths == Lengths::kUnit ? lengths : Lengths::kShort);
     return result;

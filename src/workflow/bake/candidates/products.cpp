@@ -1,18 +1,18 @@
-// A candidate with extra targets that products of weights drive (docs/theory.md, section 16).
+// A candidate with correction targets that products of weights drive (docs/theory.md, section 16).
 //
-// Each target of the mesh gets the delta to the right normal at its weight 1. What this leaves wrong on the way, and
-// where targets meet, extra targets correct; they move no vertex, and their weights follow from those of the targets:
+// Each target of the mesh gets the delta to the true normal at its weight 1. Correction targets correct the errors on
+// the way there, and where targets meet. They move no vertex, and their weights follow from the weights of the targets:
 //
-//     turn      w_i            where a turn to weight 1 is so large that a delta of unit length would not fit; two
+//     turn      w_i            if a turn to weight 1 is so large that a delta of unit length would not fit; two targets
 //     self      4 w_i (1-w_i)  right at w_i = 1/2 as well
-//     pair      s w_i w_j      right where both are strongest in the file; one or two
+//     pair      s w_i w_j      right where both are strongest in the file; one target or two
 //
-// Where lengths are not free, every one of them is a unit normal beside N, with a weight from 0 to 1 where those of the
-// file are: what a viewer leaves of it, be it the direction or 8 bits, is the same.
+// If lengths are not free, every correction is a unit normal beside N, with a weight from 0 to 1 if the weights of the
+// file are: viewers that keep only its direction, or 8 bits of it, all render the same.
 //
 // Corrections are made one after the other, each so that the sum of all before it and itself has the right direction in
-// one pose: in what order is therefore part of the form. Which of them are worth a target is measured at poses of the
-// file: by how far the lack of one would turn a normal.
+// one pose: their order is therefore part of the candidate. Which of them are worth a target is measured at poses of
+// the file: by how far leaving one out would turn a normal.
 #include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
@@ -31,20 +31,22 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kProductsBlock = 64;
-// Lengths of a sum of unit normals that are tried.
+// Lengths of a sum of unit normals that are tried, from the longest down by a factor.
 constexpr double kLongestSum = 2.5, kNextSum = 0.9;
 constexpr int kTriedSums = 31;  // the shortest is a tenth
-// Of the tolerance: what one extra target of a pair may leave half-way, and in squares how little worse it may be.
+// Relative to the tolerance, the error that one correction target of a pair may leave half-way; and how much worse it
+// may be, in squares, than two.
 constexpr double kPartOfPairs = 0.25, kAsGood = 1.1;
-// Corrections that are shorter turn nothing that is judged.
+// Shorter corrections turn nothing that is judged.
 constexpr double kLeastCorrection = 1e-5;
-// Radians: what is this near needs no correction.
+// In radians: a smaller error needs no correction.
 constexpr double kRight = 1e-5;
-// Lengths of n(w) in those of n(0), where they are stored.
+// Limits for the lengths of n(w) that are stored, relative to n(0).
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
-// A pair that is never stronger would need weights beyond 1 elsewhere.
+// A pair with a smaller product everywhere in the file would need weights beyond 1 elsewhere.
 constexpr double kMostScale = 4, kLeastProduct = 1e-6, kStrongest = 0.95;
-// Targets of which all pairs are looked at, pairs that are kept in mind, and poses at which they are measured.
+// Limits for the targets whose pairs are all examined, the pairs that are remembered, and the poses at which they are
+// measured.
 constexpr std::size_t kMostSampled = 400;
 constexpr unsigned kRigSeed = 4;
 constexpr std::size_t kMostActive = 512, kMostHarmlessPairs = 6000, kMostHarmlessPoses = 96, kMeasured = 6000000;
@@ -55,15 +57,15 @@ struct ProductLimits {
   double tolerance = 0;  // degrees
 };
 
-// A candidate before its extra targets are driven.
+// A candidate whose correction targets are not driven yet.
 struct Products {
   std::vector<VertexVectors> own;    // of each target of the mesh
-  std::vector<ExtraWeight> weights;  // of the extra targets, whose gain is not set
+  std::vector<ExtraWeight> weights;  // of the correction targets; their gains are not set
   std::vector<VertexVectors> extras;
   std::size_t left_out = 0;
 };
 
-// Which vertices show an element.
+// Lists the vertices that show each element.
 class VerticesOfElements {
  public:
   explicit VerticesOfElements(const GltfShading& shading) : first_(shading.groups.size() + 1) {
@@ -91,7 +93,7 @@ struct Asked {
   Vec3d of_element;
 };
 
-// The vertices of some elements, ascending.
+// Returns the vertices of some elements, ascending.
 std::vector<Asked> asked_vertices(const VerticesOfElements& shown, const RightNormals& rights,
                                   const std::vector<double>& pose, std::span<const std::uint32_t> elements) {
   const std::vector<Vec3d> normals = rights.of_elements(pose, elements);
@@ -103,7 +105,7 @@ std::vector<Asked> asked_vertices(const VerticesOfElements& shown, const RightNo
   return result;
 }
 
-// Gathers what vector_of(asked) is for all of these, but zeros.
+// Gathers the nonzero vectors that vector_of(asked) returns.
 template <class VectorOf>
 VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
   std::vector<Vec3f> all(asked.size());
@@ -132,7 +134,7 @@ class Corrector {
         form_(form),
         of_target_(form.own.size()) {}
 
-  // Adds the correction with a weight, which is right in a pose.
+  // Adds a correction with a weight that is right in a pose.
   void add(const ExtraWeight& weight, const std::vector<double>& pose) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -141,8 +143,8 @@ class Corrector {
     append(weight, gather(asked, [&](const Asked& of) { return correction(of, weight, pose, t); }));
   }
 
-  // Adds what a target lacks of its turn at weight 1: two extra targets with its own weight, which bring the sum to
-  // length 1, so that it turns as evenly as it would by itself.
+  // Adds the missing part of a target's turn at weight 1: two correction targets with the weight of the target, which
+  // bring the sum to length 1, so that it turns as evenly as it would with free lengths.
   void add_turn(std::size_t i, const std::vector<double>& pose) {
     const ExtraWeight weight{i, i, 1, 0};
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -163,8 +165,8 @@ class Corrector {
     append_parts(weight, asked, vectors);
   }
 
-  // Adds a correction for two targets that is right in a pose, and as near as may be in the middle of the way there:
-  // two extra targets with one weight, or one where that is as good, to a part of the tolerance (radians).
+  // Adds a correction for two targets that is right in a pose, and as good as possible half-way there: two correction
+  // targets with one weight, or one if that is as good, to a part of the tolerance (radians).
   void add_pair(const ExtraWeight& weight, const std::vector<double>& pose, double tolerance) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -191,7 +193,7 @@ class Corrector {
   }
 
  private:
-  // The elements that all targets of a weight move, and that need something.
+  // Returns the elements that all targets of a weight move, and that need a correction.
   [[nodiscard]] std::vector<std::uint32_t> elements_of(const ExtraWeight& weight) const {
     std::vector<std::uint32_t> elements = terms_.elements(weight.i);
     if (weight.i != weight.j) {
@@ -213,7 +215,7 @@ class Corrector {
     form_.extras.push_back(std::move(vectors));
   }
 
-  // Extra targets that are nothing are none.
+  // Appends correction targets, except empty ones.
   void append_parts(const ExtraWeight& weight, std::span<const Asked> asked,
                     const std::vector<std::array<Vec3d, 2>>& vectors) {
     for (const std::size_t part : {std::size_t{0}, std::size_t{1}}) {
@@ -248,7 +250,7 @@ class Corrector {
       if (right_half == Vec3d{}) return 0.0;
       return max_abs(now) > 0 ? angle_between(now, right_half) : std::numbers::pi;
     };
-    // What is right by itself stays as it is.
+    // A normal that is right by itself stays as it is.
     const bool is_right = max_abs(shown) > 0 && angle_between(shown, right) < kRight;
     result.error_of_one = result.error_of_two = error_with({});
     if (is_right && result.error_of_two < kRight) return result;
@@ -295,7 +297,7 @@ class Corrector {
     return max_abs(vector) > kLeastCorrection * base.length ? vector : Vec3d{};
   }
 
-  // What a target adds by itself.
+  // Returns what a target adds by itself.
   [[nodiscard]] Vec3d sum_of(std::size_t i, std::size_t vertex, const std::vector<double>& pose) const {
     Vec3d sum = pose[i] * to_double(form_.own[i].at(vertex));
     for (const std::size_t k : of_target_[i])
@@ -309,7 +311,7 @@ class Corrector {
   std::vector<bool> needs_element_;
   Lengths lengths_;
   Products& form_;
-  std::vector<std::vector<std::size_t>> of_target_;  // the extras of each target alone
+  std::vector<std::vector<std::size_t>> of_target_;  // the correction targets of each target alone
 };
 
 // Two targets, with the pose of the file in which both are strongest.
@@ -319,7 +321,7 @@ struct Pair {
   std::size_t pose = 0;
 };
 
-// The targets that some pose has active, those of the largest weights where they are many; ascending.
+// Returns the targets that are active in some pose, ascending; if there are too many, those with the largest weights.
 std::vector<std::size_t> active_targets(std::size_t targets, const PoseList& poses) {
   std::vector<double> largest(targets, 0.0);
   for (const std::vector<double>& pose : poses)
@@ -356,20 +358,20 @@ std::vector<Pair> active_pairs(std::size_t all_targets, const PoseList& poses) {
   return of_all;
 }
 
-// How much the extra targets of a form are worth.
+// The effect of a correction target.
 struct Worth {
   double squares = 0;  // of angles, over vertices and poses
   double worst = 0;    // degrees
 };
 
-// Measures at poses, and at vertices that have need.
+// Measures the effects at poses, on vertices that need corrections.
 std::vector<Worth> worths(const RightNormals& rights, const Products& form, std::span<const std::uint32_t> vertices,
                           const PoseList& all_poses) {
   const std::size_t most = std::clamp(kMeasured / (vertices.size() + 1), std::size_t{8}, kMostHarmlessPoses);
   PoseList poses;
   const std::size_t count = std::min(most, all_poses.size());
   for (std::size_t n = 0; n < count; ++n) poses.push_back(all_poses[n * all_poses.size() / count]);
-  // The weights of extra targets, side by side.
+  // Holds the weights of correction targets, side by side.
   std::vector<float> weights(form.weights.size() * count);
   for (std::size_t k = 0; k < form.weights.size(); ++k) {
     const ExtraWeight& extra = form.weights[k];
@@ -380,7 +382,7 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   for (const VertexVectors& column : form.own) own_columns.push_back(&column);
   for (const VertexVectors& column : form.extras) extra_columns.push_back(&column);
   const VertexColumns own = by_vertex(own_columns, vertices), extra = by_vertex(extra_columns, vertices);
-  // (entries of extras, 2): squares and worst, added up afterwards in a fixed order.
+  // Holds (entries of extras, 2): squares and worst, which are added up afterwards in a fixed order.
   std::vector<std::pair<float, float>> of_entries(extra.entries.size());
   rights.for_each(vertices, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
     const Vec3f normal = to_float(rights.stored(vertices[n]));
@@ -415,7 +417,8 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   return result;
 }
 
-// Leaves out what turns least, together no more than half the tolerance, and what is beyond the limit.
+// Drops the correction targets that turn normals least, together by at most half the tolerance, and those beyond the
+// limit.
 void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& limits, Products& form) {
   std::vector<std::size_t> order(worths.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
@@ -443,7 +446,7 @@ void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& l
   form.extras = std::move(kept.extras);
 }
 
-// Adds extra targets for some poses, to vertices that have need of them: `worst` is what each is off by, in degrees.
+// Adds correction targets for some poses, to vertices that need them: `worst` is the error of each vertex, in degrees.
 void add_corrections(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
                      const PoseList& poses, std::span<const std::uint32_t> vertices, std::span<const float> worst,
                      const ProductLimits& limits, Products& form) {
