@@ -1,3 +1,8 @@
+// The values of a triangle that do not depend on t are computed once. Let its first corner be a and the others b and c.
+// With the first corner at the start of the segment as origin, its corners are
+//
+//     a(t) = t a1        b(t) = (1 - t) b0 + t b1        c(t) = (1 - t) c0 + t c1
+//
 // and the largest component of each of a1, b0, b1, c0, c1 tells the rounding error of n(t) = (b - a) x (c - a).
 #include "analysis/quality/kernels/reference_angles.h"
 
