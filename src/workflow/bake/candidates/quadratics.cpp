@@ -1,5 +1,5 @@
-// What a weight does to the vectors is linear, so that where viewers keep directions alone each vector becomes two: one
-// with the terms above zero, and one with those below.
+// A weight changes its vectors linearly. For viewers that keep only directions each vector therefore becomes two: one
+// for the terms above zero, and one for those below.
 
 #include "workflow/bake/candidates/makers.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 constexpr unsigned kSizeSeed = 5;
 constexpr std::size_t kSizePoses = 1000;
-// Numbers of extra targets, each of which is looked at.
+// The numbers of correction targets that are tried.
 constexpr std::array<std::size_t, 7> kExtraCounts = {2, 4, 8, 16, 32, 64, 128};
 
 GltfExtraTarget scaled(GltfExtraTarget weight, double factor) {
@@ -25,7 +25,7 @@ GltfExtraTarget scaled(GltfExtraTarget weight, double factor) {
   return weight;
 }
 
-// The terms of one sign, made positive.
+// Returns the terms of one sign, made positive.
 GltfExtraTarget terms_of_sign(const GltfExtraTarget& weight, double sign) {
   GltfExtraTarget result;
   for (const auto& term : weight.linear)
@@ -35,7 +35,7 @@ GltfExtraTarget terms_of_sign(const GltfExtraTarget& weight, double sign) {
   return result;
 }
 
-// Weights and vectors as viewers keep them.
+// Returns weights and vectors of the lengths that the viewers keep.
 QuadraticFit::Extras kept_by_viewers(const RightNormals& rights, const RigPoses& rig, QuadraticFit::Extras extras,
                                      Lengths lengths) {
   QuadraticFit::Extras result;
@@ -66,7 +66,7 @@ QuadraticFit::Extras kept_by_viewers(const RightNormals& rights, const RigPoses&
   return result;
 }
 
-// Sums drive the extra targets; along tracks, which move nothing, they are at rest.
+// Makes drivers from sums. Along tracks, which move nothing, the correction targets rest.
 ExtraDrivers drivers_of(const MeshWeights& weights, std::vector<GltfExtraTarget> sums) {
   ExtraDrivers drivers;
   const std::size_t extras = sums.size();

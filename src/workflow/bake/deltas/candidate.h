@@ -1,5 +1,5 @@
-/// What a bake might write for a mesh: deltas of the mesh's own targets, extra targets, and what drives these. Private to
-/// workflow.
+/// A candidate for what a bake writes for a mesh: deltas of the mesh's own targets, correction targets, and their
+/// drivers. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CANDIDATE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CANDIDATE_H_
 
@@ -19,42 +19,43 @@
 namespace chronormal::inline internal {
 
 struct Candidate {
-  std::string_view name;              ///< as BakedCandidate::name has it
+  std::string_view name;              ///< as in BakedCandidate::name
   std::vector<VertexVectors> own;     ///< of each target of the mesh: the deltas of all vertices that show a normal
-  std::vector<VertexVectors> extras;  ///< of each extra target
-  ExtraDrivers drivers;               ///< of the extra targets
-  std::size_t left_out = 0;           ///< extra targets beyond a limit, which would have gained least
-  double track_error = 0;             ///< radians: of straight pieces between keys, at worst
-  double fit_error = 0;               ///< radians: a bound for the deltas of targets alone
+  std::vector<VertexVectors> extras;  ///< of each correction target
+  ExtraDrivers drivers;               ///< of the correction targets
+  std::size_t left_out = 0;           ///< correction targets beyond a limit, which would have gained least
+  double track_error = 0;             ///< radians: the worst error of straight pieces between keys
+  double fit_error = 0;               ///< radians: a bound for the deltas of single targets
   bool animations_only = false;       ///< its deltas mean nothing for a target alone
 };
 
-/// The same deltas by vertex: those of targets of the mesh, and then those of extra ones.
+/// Returns the same deltas by vertex: columns of the mesh's own targets first, and then of correction targets.
 [[nodiscard]] VertexColumns columns_of(const Candidate& candidate, std::span<const std::uint32_t> vertices);
 
-/// What the file stores, other than zero, of vertices that show a normal.
+/// Returns the nonzero deltas that the file stores, of vertices that show a normal.
 [[nodiscard]] std::vector<VertexVectors> stored_deltas(const GltfShading& shading);
 
-/// Arrays that were computed for one target, as a column.
+/// Returns the arrays that were computed for one target as a column.
 [[nodiscard]] VertexVectors as_column(const GltfShading& shading, const TargetDeltas& deltas);
 
-/// The vertices whose normal a target may turn: by its faces, or by what is stored.
+/// Returns the vertices whose normal a target may turn, by its faces or by its stored deltas.
 [[nodiscard]] std::vector<std::uint32_t> judged_vertices(const DeltaSource& source,
                                                          const std::vector<VertexVectors>& stored);
 
-/// Which of these each target may turn, as they are numbered there.
+/// Returns, for each target, the indices in `vertices` of those that it may turn.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> numbers_of_targets(const DeltaSource& source,
                                                                          const std::vector<VertexVectors>& stored,
                                                                          std::span<const std::uint32_t> vertices);
 
-/// The deltas of a target of the mesh as the file will have them; nothing where all of them stay as they are.
+/// Returns the deltas of a target of the mesh as the file will store them; nothing if all of them stay as they are.
 [[nodiscard]] std::optional<TargetDeltas> own_deltas(const GltfShading& shading, const Candidate& candidate,
                                                      std::size_t target);
-/// Those of an extra target.
+/// Returns the deltas of a correction target.
 [[nodiscard]] TargetDeltas extra_deltas(const GltfShading& shading, const Candidate& candidate, std::size_t extra);
-/// Whether anything becomes other than it is stored.
+/// Tells whether anything changes from what is stored.
 [[nodiscard]] bool changes(const GltfShading& shading, const Candidate& candidate);
-/// About how many bytes its arrays of deltas take, what says how extra targets are driven, and what their tracks grow by.
+/// Estimates the bytes of its arrays of deltas, of the drivers of its correction targets, and of the growth of their
+/// tracks.
 [[nodiscard]] std::size_t bytes_of(const GltfShading& shading, const MeshWeights& weights, const Candidate& candidate);
 
 }  // namespace chronormal::inline internal

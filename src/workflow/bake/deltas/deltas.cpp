@@ -1,5 +1,5 @@
 // Every delta starts as a term of the quadratic form n(w) of an element (terms.h), or as the best single delta made of
-// two of them, and is turned and scaled for each vertex that shows the element, so that it adds to the stored normal.
+// two of them. It is turned and scaled for each vertex that shows the element, so that it adds to the stored normal.
 #include "workflow/bake/deltas/deltas.h"
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kDeltasBlock = 1024;
-// Stored base normals must have length 1; viewers can show nothing right with those that are shorter than this.
+// Stored base normals should have length 1; with shorter ones than this no viewer renders anything right.
 constexpr double kShortest = 1e-3;
 // A normal of this length, with deltas of 1e6 times that, can be squared in float32, and so can its inverse.
 constexpr double kLongestStored = 1e10;
@@ -26,7 +26,7 @@ VertexTerms terms_of_vertex(const DeltaSource& source, std::uint32_t element, st
   return {source.terms.base_of(element), source.plan.largest[element], stored_normal(source.base_normals, vertex)};
 }
 
-// The largest angle of the best single delta, over the weights of a file.
+// Returns the largest error of the best single delta, over the weights of a file.
 double error_within(const WeightRange& range, const ControlNormals& normals, const EndDelta& best) {
   if (range.low == 0 && range.high == 1) return best.error;
   const Vec3d base = unit_normal_at(normals, 0).vector;
@@ -35,14 +35,14 @@ double error_within(const WeightRange& range, const ControlNormals& normals, con
   return largest_line_error(normals_between(normals, range.low, range.high), from, to);
 }
 
-// What is known of a block of deltas.
+// Describes a block of deltas.
 struct Found {
   bool any = false;
   double error = 0;
 };
 
-// Gathers what find_delta(element, vertex, delta, error) writes for the vertices of all parts that show one of these
-// elements. It returns whether there is a delta.
+// Gathers the deltas that find_delta(element, vertex, delta, error) writes for the vertices of all parts that show one
+// of these elements. find_delta returns whether there is a delta.
 template <class FindDelta>
 TargetDeltas gather(const GltfShading& shading, std::span<const std::uint32_t> elements, const FindDelta& find_delta) {
   TargetDeltas result;

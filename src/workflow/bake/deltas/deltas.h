@@ -1,5 +1,5 @@
-/// The numbers of a bake: base normals and deltas of one mesh as arrays, and how far they are off. Everything here is a
-/// function of what was read and planned; write_mesh.h puts the arrays into the file. Private to workflow.
+/// Computes the arrays of a bake: base normals and deltas of one mesh, and their errors. Everything here is a function
+/// of what was read and planned; write_mesh.h puts the arrays into the file. Private to workflow.
 ///
 /// Shapes     V = vertices of the shading, part after part; a part has a contiguous range of them.
 /// Threads    on all cores; the same bits on any number of them.
@@ -16,7 +16,7 @@
 
 namespace chronormal::inline internal {
 
-/// What the deltas of a mesh are computed from.
+/// The input from which the deltas of a mesh are computed.
 struct DeltaSource {
   const GltfShading& shading;
   const NormalTerms& terms;
@@ -24,21 +24,21 @@ struct DeltaSource {
   std::span<const float> base_normals;  ///< (V, 3), as the file will store them
 };
 
-/// The base normals of a file that are not as they were.
+/// The base normals of a file that change.
 struct NewBaseNormals {
-  std::vector<float> normals;     ///< (V, 3), those that stay among them; empty where all stay
+  std::vector<float> normals;     ///< (V, 3), with the unchanged ones; empty if all stay
   std::vector<bool> is_replaced;  ///< of each part: some of its normals are new
   std::size_t rescaled = 0;       ///< vertices whose normal was brought to length 1
 };
 
-/// Replaces the base normals of some parts by those of the geometry. A vertex without one keeps what is stored, or gets
-/// (0, 0, 1) where that is zero: a file cannot say that there is none. Elsewhere only normals that are longer than
-/// 1e10, or shorter than 1e-10, are brought to length 1: no viewer can square those in float32, nor add deltas to them.
+/// Replaces the base normals of some parts by those of the geometry. A vertex without one keeps its stored normal, or
+/// gets (0, 0, 1) if that is zero: a file cannot say that there is none. In other parts, only normals longer than 1e10,
+/// or shorter than 1e-10, are brought to length 1: no viewer can square them in float32, nor add deltas to them.
 /// is_recomputed has one entry for each part.
 [[nodiscard]] NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
                                               const std::vector<bool>& is_recomputed);
 
-/// Vertices to which no right delta can be added.
+/// Counts vertices to which no right delta can be added.
 struct BaseFaults {
   std::size_t without_base = 0;    ///< the faces have no area in the base
   std::size_t without_stored = 0;  ///< the stored base normal is zero, or nearly
@@ -46,19 +46,19 @@ struct BaseFaults {
 
 [[nodiscard]] BaseFaults find_base_faults(const DeltaSource& source);
 
-/// What one target adds to the normals of a mesh.
+/// The deltas that one target adds to the normals of a mesh.
 struct TargetDeltas {
-  /// (vertices, 3) of each part; empty where no normal changes.
+  /// (vertices, 3) of each part; empty if no normal changes.
   std::vector<std::vector<float>> of_parts;
-  double error = 0;  ///< a bound of the angle that is left, over the weights of the file, in radians
+  double error = 0;  ///< a bound of the remaining angle, over the weights of the file, in radians
 };
 
-/// The deltas of one of the mesh's own targets: what its own terms come to at weight 1, or the best single delta where
-/// the plan says so; none where it moves no vertex. The error does not cover fitted lines, which state their own.
+/// Returns the deltas of one of the mesh's own targets: the sum of its own terms at weight 1, or the best single delta
+/// if the plan says so; none if it moves no vertex. The error does not cover fitted lines, which state their own.
 [[nodiscard]] TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target);
 
-/// The deltas of the extra target of two others; of one target with itself, what goes out again between weight 0 and 1
-/// (docs/theory.md, eq. 45).
+/// Returns the deltas of the correction target of two targets or, for one target with itself, of the term that is zero
+/// at the weights 0 and 1 (docs/theory.md, eq. 45).
 [[nodiscard]] TargetDeltas extra_target_deltas(const DeltaSource& source, const ExtraWeight& extra);
 
 }  // namespace chronormal::inline internal

@@ -15,31 +15,31 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A viewer scales what it adds up to length 1, so that any length will do: each round takes those that come nearest to
-// what the round before shows.
+// A viewer scales the sum to length 1, so that any length will do: each round takes the length that comes nearest to
+// the result of the round before.
 constexpr int kRounds = 12;
-// A round that leaves more than this of the squares before it is the last.
+// A round that leaves more than this part of the squares of the round before is the last.
 constexpr double kStandstill = 0.99;
-// What points away from the right normal is asked to have this much of its length along it.
+// If a sum points away from the right normal, the fit asks it to have this much of its length along the normal.
 constexpr double kLeastPart = 0.1;
-// Below this part of the terms that it is made of the direction of a normal is not judged.
+// Below this part of its terms, the direction of a normal is not judged.
 constexpr double kLeastLine = 1e-4;
-// What pulls to the best of each target alone: relative to what the weights tell on average, so that those which differ
-// by a thousandth of themselves tell no deltas apart, and to weights of a thousandth, which tell nothing.
+// The pull towards the best delta of each target alone, relative to what the weights tell on average: weights that
+// differ by a thousandth of themselves do not tell deltas apart, and weights of a thousandth tell nothing.
 constexpr double kRidge = 1e-4, kLeastWeight = 1e-3;
-// Less than this, radians, is not worth it: directions are rounded to a third of it.
+// Radians: a smaller error is not worth a fit, since directions are rounded to a third of it.
 constexpr double kLeastError = 1e-4;
-// More targets than these at one element keep what each has alone.
+// If an element has more targets than this, it keeps the deltas of each alone.
 constexpr std::size_t kMostTargets = 64;
-// Weighted deltas that a round adds up, and within limits the fewest poses for each target.
+// Limits for the weighted deltas that a round adds up, and for the fewest poses per target.
 constexpr std::size_t kSums = 50000000, kPosesPerTarget = 4, kLeastPoses = 17, kEnoughPoses = 256, kMostPoses = 2000;
-// Poses to state the error at: all keys, where elements are few.
+// Poses at which the error is stated: all keys, if there are few elements.
 constexpr std::size_t kMostStated = 100000;
 constexpr std::size_t kLineBlock = 64;
 
 using Matrix = std::vector<std::vector<double>>;  // weights: a row for each pose
 
-// A direction, to 3e-5; (0, 0, 0) where it is not judged.
+// A direction, to 3e-5; (0, 0, 0) if it is not judged.
 using Rounded = std::array<std::int16_t, 3>;
 
 Rounded rounded(const Vec3d& unit) {
@@ -65,7 +65,7 @@ struct Element {
   }
 };
 
-// How far one element is off, over all poses.
+// The error of one element over all poses.
 struct Misfit {
   double squares = 0, worst = 0;
 };
@@ -74,7 +74,7 @@ double angle_to(const Vec3d& shown, const Vec3d& right) {
   return max_abs(shown) > 0 ? angle_between(shown, right) : std::numbers::pi;
 }
 
-// The fit of one element.
+// Fits the deltas of one element.
 class Fit {
  public:
   Fit(const Element& alone, const Matrix& poses, std::span<const Rounded> right) : alone_(alone) {
@@ -95,7 +95,7 @@ class Fit {
     worst_ = before_.worst;
   }
 
-  // Replaces the deltas of each target alone by the best of all rounds. Returns whether these are better.
+  // Replaces the deltas of each target alone by the best of all rounds. Returns whether they are better.
   bool improve(std::vector<Vec3d>& deltas) {
     if (!(before_.worst > kLeastError) || deltas.size() > kMostTargets || !take_matrix()) return false;
     Misfit best = before_, last = before_;
@@ -113,19 +113,19 @@ class Fit {
     }
     return best.squares < before_.squares;
   }
-  /// The largest angle that is left.
+  /// Returns the largest remaining angle.
   [[nodiscard]] double worst() const noexcept { return worst_; }
 
  private:
-  // A target, by its place in the element, and its weight.
+  // A target, by its index in the element, and its weight.
   struct Active {
     std::size_t k;
     double w;
   };
   struct Row {
-    Vec3d right, alone, shown;         // what it should be, and is: at first, and now
+    Vec3d right, alone, shown;         // the right direction, and the sum: of single deltas, and now
     std::size_t first = 0, count = 0;  // of active_
-    double part = 0;                   // how much it counts: angles, as far as that is linear
+    double part = 0;                   // its weight in the fit: errors count as angles, as far as that is linear
   };
   [[nodiscard]] std::span<const Active> active(const Row& row) const {
     return std::span(active_).subspan(row.first, row.count);
@@ -154,7 +154,7 @@ class Fit {
     for (const Row& row : rows_) {
       for (const auto& [i, w] : active(row)) {
         for (const auto& [j, v] : active(row)) {
-          if (j > i) break;  // they ascend
+          if (j > i) break;  // they are ascending
           matrix[i * size + j] += row.part * w * v;
         }
         trace += row.part * w * w;
@@ -188,7 +188,7 @@ class Fit {
   double worst_ = 0;
 };
 
-// What the elements are that targets move which are active at once somewhere.
+// Finds elements with targets that are active at once somewhere.
 class Together {
  public:
   Together(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use)
@@ -206,7 +206,7 @@ class Together {
     }
   }
 
-  // With the best deltas of each target alone.
+  // Returns them with the best deltas of each target alone.
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {
@@ -240,15 +240,15 @@ class Together {
     if (!has_linear && !has_square) return;
     const ControlNormals normals = of_powers(terms_.base_of(element.index), a, c);
     element.targets.push_back(static_cast<std::uint32_t>(target));
-    // Where there is no base to begin at, the sum is to be right at the end.
+    // Without a base to begin at, the sum should be right at the end.
     element.deltas.push_back(max_abs(element.base) > 0 ? best_end_delta(normals).delta
                                                        : unit_normal_at(normals, 1).vector);
   }
 
   const NormalTerms& terms_;
   std::vector<std::size_t> active_;                     // targets
-  std::vector<std::vector<std::uint32_t>> targets_of_;  // of each element, those that are active
-  std::vector<std::size_t> place_;                      // of each target, in active_
+  std::vector<std::vector<std::uint32_t>> targets_of_;  // of each element, the active ones
+  std::vector<std::size_t> place_;                      // of each target, its index in active_
   std::vector<bool> pairs_;                             // (active, active), below the diagonal
 };
 
@@ -284,7 +284,7 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
     std::vector<Vec3d> deltas = elements[n].deltas;
     Fit fit(elements[n], poses, std::span(right).subspan(n * poses.size(), poses.size()));
     is_fitted[n] = fit.improve(deltas) ? 1 : 0;
-    if (fit.worst() > kLeastError) errors[n] = fit.worst();  // else it is the rounding
+    if (fit.worst() > kLeastError) errors[n] = fit.worst();  // a smaller error is rounding
     elements[n].deltas = std::move(deltas);
   });
   right = std::vector<Rounded>();

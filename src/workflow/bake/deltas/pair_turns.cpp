@@ -1,6 +1,6 @@
-// A bound of what an entry of a term comes to, over all poses, is its length by the shortest normal of its element. A
-// heap gives the entries in the order of that bound; the search ends where it is below what has been found. Angles are
-// compared by their tangents, and only the largest becomes an angle.
+// The effect of an entry of a term, over all poses, is bounded by its length divided by the shortest normal of its
+// element. A heap yields the entries in the order of that bound; the search ends when the bound is below the largest
+// effect found. Angles are compared by their tangents, and only the largest becomes an angle.
 #include "workflow/bake/deltas/pair_turns.h"
 
 #include <algorithm>
@@ -14,40 +14,40 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Normals that are held at once: all of a mesh, or where these are too many, those of some elements.
+// The number of normals that are held at once: all of a mesh or, if they are too many, those of some elements.
 constexpr std::size_t kHeldNormals = std::size_t{1} << 22, kSomeElements = std::size_t{1} << 12;
-// Terms that are held in memory at a time, to measure them.
+// The number of terms that are held in memory at a time, to measure them.
 constexpr std::size_t kHeldEntries = 1000000;
-// Below this part of the terms that it is made of the direction of a normal is not judged.
+// Below this part of its terms, the direction of a normal is not judged.
 constexpr double kLeastLength = 1e-4;
-// By more than this part rounding takes no bound below what it bounds.
+// Rounding never takes a bound with this factor below what it bounds.
 constexpr double kSlack = 1 + 1e-9;
 constexpr std::size_t kPairBlock = 1024, kElements = 16;
 
-// The extra target of a pair. That of a target with itself only takes away what its end point has too much on the way,
-// so that weight 1 is right without it.
+// Returns the correction target of a pair. For a target with itself, it only takes away the excess that the end point
+// has on the way, so that weight 1 is right without it.
 ExtraWeight extra_weight(std::size_t i, std::size_t j) { return i == j ? ExtraWeight{i, i, 1, -1} : ExtraWeight{i, j}; }
 
-// What multiplies the term of an extra target in a pose.
+// Returns the factor of the term of a correction target in a pose.
 double weight_of_term(const ExtraWeight& extra, const std::vector<double>& pose) {
   const double of_extra = extra.at(pose[extra.i], pose[extra.j]);
   return extra.i == extra.j ? -of_extra : of_extra;
 }
 
-// The tangent of the angle between a unit vector and another one; infinity from a right angle on.
+// Returns the tangent of the angle between a unit vector and another one; infinity from a right angle on.
 double tangent_between(const Vec3d& unit, const Vec3d& other) {
   const double along = dot(unit, other);
   return along > 0 ? length(cross(unit, other)) / along : std::numeric_limits<double>::infinity();
 }
 
-// The largest that it can be where they differ by a vector of such a length.
+// Returns the largest possible tangent if the vectors differ by a vector of this length.
 double tangent_bound(double difference) {
   return difference < 1 ? difference / std::sqrt(1 - difference * difference) : std::numeric_limits<double>::infinity();
 }
 
 double angle_of_tangent(double tangent) { return std::isfinite(tangent) ? portable::atan(tangent) : std::numbers::pi; }
 
-// The term of a pair where it is shown and not zero.
+// Returns the entries of the term of a pair that are shown and not zero.
 BlendTerm shown_term(const NormalTerms& terms, std::size_t i, std::size_t j, const std::vector<bool>& is_shown) {
   BlendTerm term = terms.pair(i, j);
   std::size_t kept = 0;
@@ -113,14 +113,14 @@ void PosedNormals::hold(std::size_t first) {
   });
 }
 
-// One pair while it is weighed.
+// One pair while it is measured.
 struct PairMeter::Candidate {
   ExtraWeight extra;
-  BlendTerm term;                                       // only where it is shown; given back when it was measured
+  BlendTerm term;                                       // only shown entries; freed once it is measured
   double aside = 0;                                     // the largest part of it across a normal, in lengths of that
   double size = 0;                                      // the largest of all of it
   double tangent = 0;                                   // of the largest angle
-  std::vector<std::pair<double, std::uint32_t>> poses;  // what multiplies it, largest first, and in which pose
+  std::vector<std::pair<double, std::uint32_t>> poses;  // the factor of the term in each pose, largest first
 };
 
 PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses,
@@ -132,7 +132,7 @@ PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const
       longest_base_(longest_base_normal(shading, terms)),
       normals_(shading, terms, poses) {}
 
-// Most normals are longer than any base asks for.
+// Most normals are longer than any base requires.
 bool PairMeter::is_judged(std::uint32_t element, double size) const {
   if (size > kLeastLength * std::fmax(longest_base_, largest_[element])) return true;
   return size > kLeastLength * std::fmax(length(terms_.base_of(element)), largest_[element]);
@@ -189,7 +189,7 @@ void PairMeter::measure(std::span<Candidate> candidates) {
   }
   for (std::size_t first = 0; first < elements && !candidates.empty(); first += normals_.chunk()) {
     normals_.hold(first);
-    // Of each element, one by the length of its shortest normal that is judged.
+    // Finds, for each element, the inverse length of its shortest normal that is judged.
     std::vector<double> inverse(std::min(normals_.chunk(), elements - first), 0.0);
     parallel_each(inverse.size(), kElements, [&](std::size_t n) {
       const auto e = static_cast<std::uint32_t>(first + n);
@@ -226,7 +226,7 @@ std::vector<MeasuredPair> PairMeter::measure(std::span<const Pair> pairs) {
   measure_held();
   std::vector<MeasuredPair> result;
   for (Candidate& candidate : candidates) {
-    // Along the normal a small error turns nothing, but only as long as it is small.
+    // Along the normal an error turns nothing only as long as it is small.
     candidate.extra.gain = 1.02 * candidate.aside + 1e-3 * candidate.size;
     result.push_back({candidate.extra, candidate.size, angle_of_tangent(candidate.tangent)});
   }
@@ -247,7 +247,7 @@ double PairMeter::turn_without(std::span<const ExtraWeight> extras) {
     const std::size_t count = std::min(normals_.chunk(), elements - first);
     std::vector<double> tangents(count, 0.0);
     parallel_blocks(count, kElements, [&](IndexRange range) {
-      // What is left of the normals of these elements, in all poses: (elements, poses).
+      // Holds what is left of the normals of these elements, in all poses: (elements, poses).
       std::vector<Vec3d> left(range.count * poses);
       std::vector<bool> is_touched(range.count, false);
       const std::size_t begin = first + range.first;

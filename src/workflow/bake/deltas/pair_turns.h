@@ -1,9 +1,9 @@
-/// How far normals turn where the extra target of a pair is left out: measured at poses of the file. Private to
+/// Measures how far normals turn if the correction target of a pair is left out, at poses of the file. Private to
 /// workflow.
 ///
-/// A pair whose term is T turns the normal n(w) of an element by the angle between n(w) and n(w) - weight(w) T. Of all
-/// elements and poses only the largest angle counts, and it is below asin(|weight| |T| / |n|): elements are looked at
-/// in the order of that bound, and most of them never.
+/// A pair with the term T turns the normal n(w) of an element by the angle between n(w) and n(w) - weight(w) T. Over
+/// all elements and poses only the largest angle counts, and it is below asin(|weight| |T| / |n|): elements are
+/// examined in the order of that bound, and most of them never.
 ///
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_PAIR_TURNS_H_
@@ -22,14 +22,14 @@
 
 namespace chronormal::inline internal {
 
-/// A pair of targets, or one with itself, and what its extra target is worth.
+/// A pair of targets, or one with itself, and the effect of its correction target.
 struct MeasuredPair {
   ExtraWeight extra;  ///< with its gain
-  double size = 0;    ///< the largest length of its term, in those of the normals where it is
-  double turn = 0;    ///< radians: the largest angle by which its lack turns a normal, in the poses that were measured
+  double size = 0;    ///< the largest length of its term, relative to the normals where it is
+  double turn = 0;    ///< radians: the largest angle by which leaving it out turns a normal, in the measured poses
 };
 
-/// Normals of elements in poses, as many elements at a time as may be held.
+/// Normals of elements in poses, for as many elements at a time as may be held.
 class PosedNormals {
  public:
   struct Normal {
@@ -37,15 +37,15 @@ class PosedNormals {
     double size = 0;
   };
 
-  /// All of these must outlive this. Computes nothing yet.
+  /// Computes nothing yet. All arguments must outlive this.
   PosedNormals(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses);
 
   [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
-  /// The elements that are held at once: those of hold(first) are [first, first + chunk()).
+  /// Returns how many elements are held at once: hold(first) holds [first, first + chunk()).
   [[nodiscard]] std::size_t chunk() const noexcept { return chunk_; }
-  /// Computes those from an element on, unless they are there.
+  /// Computes the normals of elements from `first` on, unless they are held already.
   void hold(std::size_t first);
-  /// One of them in all poses.
+  /// Returns the normals of one element in all poses.
   [[nodiscard]] std::span<const Normal> of(std::uint32_t element) const {
     return std::span(normals_).subspan((element - first_) * poses_.size(), poses_.size());
   }
@@ -63,13 +63,13 @@ class PairMeter {
   using Pair = std::pair<std::size_t, std::size_t>;
 
   /// is_shown tells of each element whether some vertex shows it; largest has the length of its largest term so far.
-  /// All of these must outlive this.
+  /// All arguments must outlive this.
   PairMeter(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses,
             const std::vector<bool>& is_shown, std::vector<double>& largest);
 
-  /// Measures those of the pairs (i <= j) that have a term at all; `largest` learns of these terms.
+  /// Measures the pairs (i <= j) that have a term at all; `largest` is updated with their terms.
   [[nodiscard]] std::vector<MeasuredPair> measure(std::span<const Pair> pairs);
-  /// How far leaving out all of these together turns a normal, in radians.
+  /// Returns how far leaving out all of these together turns a normal, in radians.
   [[nodiscard]] double turn_without(std::span<const ExtraWeight> extras);
 
  private:

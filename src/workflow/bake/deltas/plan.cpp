@@ -1,6 +1,6 @@
-// A target's own terms are always written; what has to be chosen are the pairs. Each pair of targets that some pose has
-// active at once is a candidate for an extra target. It is measured by how far its lack would turn a normal at poses of
-// the file, and those that turn least are left out until, all together, they might turn one by the tolerance.
+// A target's own terms are always written; only the pairs are chosen. Each pair of targets that some pose has active at
+// once is a candidate for a correction target. It is measured by how far leaving it out would turn a normal at poses of
+// the file. The pairs that turn normals least are left out, until all of them together might turn one by the tolerance.
 #include "workflow/bake/deltas/plan.h"
 
 #include <algorithm>
@@ -15,21 +15,21 @@ namespace {
 
 constexpr std::size_t kPlanBlock = 1024;
 constexpr std::size_t kMostExtras = 10000;
-// Poses to measure at: all of them on small meshes.
+// The number of poses to measure at: all of them on small meshes.
 constexpr std::size_t kLeastSamples = 17, kMostSamples = 2000, kSampledCorners = 20000000;
 
 std::string place_of(const GltfDocument& document, std::size_t mesh) {
   return (document.name() + ", /meshes/").append(std::to_string(mesh));
 }
 
-// What the file says about a mesh.
+// The data of the file about a mesh.
 struct MeshUse {
   const GltfShading& shading;
   const NormalTerms& terms;
   const WeightUse& use;
   bool is_driven;
 
-  // Without animations a viewer may do what it likes.
+  // Without animations a viewer may set any weights.
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const { return !is_driven || use.together(i, j); }
   [[nodiscard]] double largest_weight(const ExtraWeight& extra) const {
     const auto largest = [this](std::size_t i) { return is_driven ? use.largest(i) : std::fmax(1, use.largest(i)); };
@@ -39,7 +39,7 @@ struct MeshUse {
   }
 };
 
-// Whether float32 can hold the products of weights, and deltas of any size that these multiply.
+// Tells whether float32 can hold the products of weights, and deltas of any size that they multiply.
 bool products_fit(const MeshUse& mesh) {
   constexpr double kLargestProduct = 1e30;
   double largest = 0;
@@ -48,7 +48,7 @@ bool products_fit(const MeshUse& mesh) {
   return largest * largest <= kLargestProduct;
 }
 
-// Weights to measure at.
+// The weights to measure at.
 struct Poses {
   std::vector<std::vector<double>> weights;
   bool are_all = false;  // the file has no others
@@ -68,7 +68,7 @@ std::vector<WeightRange> weight_ranges(const WeightUse& use) {
   return ranges;
 }
 
-// The targets that get the best single delta: those that nothing drives, or all that move.
+// Returns the targets that get the best single delta: those that nothing drives, or all that move.
 std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encoding) {
   std::vector<bool> result(mesh.use.targets(), false);
   for (std::size_t i = 0; i < result.size(); ++i)
@@ -78,7 +78,7 @@ std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encodin
 
 void note_length(const Vec3d& value, double& largest) { largest = std::fmax(largest, length(value)); }
 
-// Of each element, the length of the largest term that targets have by themselves.
+// Returns, for each element, the length of the largest term that single targets have there.
 std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<bool>& is_line) {
   std::vector<double> largest(mesh.shading.groups.size(), 0.0);
   const auto note_lengths = [&](const std::vector<std::uint32_t>& elements, const NormalTerms::Term& term) {
@@ -98,7 +98,7 @@ std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<boo
 
 using Pairs = std::vector<PairMeter::Pair>;
 
-// The pairs of targets that move a normal at once.
+// Returns the pairs of targets that move a normal at once.
 Result<Pairs> find_pairs(const GltfDocument& document, const MeshUse& mesh) {
   Pairs pairs;
   for (std::size_t i = 0; i < mesh.use.targets(); ++i) {
@@ -130,10 +130,11 @@ Poses poses_to_measure_at(const MeshUse& mesh) {
   return poses;
 }
 
-// Leaves out what turns least, until together that may turn a normal by the tolerance; the rest gets extra targets.
+// Leaves out the pairs that turn least, until together they may turn a normal by the tolerance; the rest get correction
+// targets.
 void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, const Poses& poses, PairMeter& meter,
                    double tolerance, MeshPlan& plan) {
-  // Weights that no pose shows, such as one wink in a long animation, are bounded instead.
+  // Weights that no measured pose has, such as one wink in a long animation, are bounded instead.
   for (MeasuredPair& candidate : candidates)
     if (!poses.are_all) candidate.turn = candidate.size * mesh.largest_weight(candidate.extra);
   std::vector<std::size_t> order(candidates.size());
@@ -145,7 +146,7 @@ void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, co
   while (count < order.size() && (turn + candidates[order[count]].turn) * kDegreesPerRadian <= tolerance)
     turn += candidates[order[count++]].turn;
   order.resize(count);
-  // Terms along a normal turn nothing one by one; together they may be longer than it is.
+  // Terms along a normal turn nothing one by one, but together they may be longer than it is.
   while (!order.empty() && poses.are_all) {
     std::vector<ExtraWeight> left_out;
     left_out.reserve(order.size());

@@ -1,4 +1,5 @@
-/// What the bake of one mesh needs: which pairs of targets get an extra one, and what is left out. Private to workflow.
+/// Plans the bake of one mesh: which pairs of targets get a correction target, and which are left out. Private to
+/// workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_
 #define CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_
 
@@ -13,7 +14,7 @@
 
 namespace chronormal::inline internal {
 
-/// 0 and 1, and what lies beyond them of the weights of a file.
+/// The range of the weights of a file, extended to contain 0 and 1.
 struct WeightRange {
   double low = 0, high = 1;
 };
@@ -21,23 +22,23 @@ struct WeightRange {
 struct MeshPlan {
   BakeEncoding encoding = BakeEncoding::kExact;
   bool is_driven = false;           ///< an animation gives some moving target a weight
-  bool products_fit = true;         ///< of weights, into float32: or nothing can be exact
+  bool products_fit = true;         ///< products of weights fit into float32; otherwise nothing can be exact
   std::vector<bool> is_line;        ///< of each target: it gets the best single delta
-  std::vector<WeightRange> ranges;  ///< of each target: what its error is stated for
-  FittedLines lines;                ///< those of targets that are active together, of endpoint
+  std::vector<WeightRange> ranges;  ///< of each target: the weights that its error is stated for
+  FittedLines lines;                ///< of targets that are active together, for the encoding endpoint
   std::vector<ExtraWeight> extras;  ///< ascending (i, j)
   std::vector<bool> is_shown;       ///< of each element: some vertex shows it
   std::vector<double> largest;      ///< of each element: the length of its largest term
   double left_out = 0;              ///< degrees: how far the pairs that were left out turn a normal
 };
 
-/// How a mesh is encoded, whether that was asked for or not.
+/// Returns the encoding of a mesh, also if none was asked for.
 [[nodiscard]] inline BakeEncoding encoding_of(const BakeOptions& options) {
   return options.encoding.value_or(BakeEncoding::kSmallest);
 }
 
 /// Decides what to write. use has the weights that the file gives the mesh; is_driven says whether animations give any.
-/// Pure. Errors: kInvalidInput where there would be too many pairs.
+/// Pure. Errors: kInvalidInput if there would be too many pairs.
 [[nodiscard]] Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shading,
                                          const NormalTerms& terms, const WeightUse& use, bool is_driven,
                                          const BakeOptions& options);

@@ -1,5 +1,5 @@
-// The length of a right normal is by area, whatever weighs its direction (AuthorSum::with_area_length()), in the base and
-// in every pose alike.
+// The length of a right normal is by area, whatever weighs its direction (AuthorSum::with_area_length()), in the base
+// as in every pose.
 #include "workflow/bake/deltas/right_normals.h"
 
 #include <cmath>
@@ -8,8 +8,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kRightBlock = 256;
-// Below this part of the terms that it is made of the direction of a normal is not judged. An audit draws the line at
-// five times that.
+// Below this part of its terms, the direction of a normal is not judged. An audit draws the line at five times this.
 constexpr double kLeastTerms = 2e-5;
 
 }  // namespace

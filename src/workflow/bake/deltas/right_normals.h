@@ -1,8 +1,8 @@
-/// The normals that vertices should show in any pose. Private to workflow.
+/// The true normals of vertices in any pose. Private to workflow.
 ///
-/// Units      a right normal has the direction that is asked for and the length |n(w)| / |n(0)|, by area (1 where n(0)
-///            is zero); it is (0, 0, 0) where n(w) is so short beside its terms that its direction means nothing.
-/// Poses       weights of the mesh's own targets, one for each; more weights may follow, which are not looked at.
+/// Units      a right normal has the true direction and the length |n(w)| / |n(0)|, by area (1 if n(0) is zero); it is
+///            (0, 0, 0) if n(w) is so short beside its terms that its direction means nothing.
+/// Poses      weights of the mesh's own targets, one for each; further weights may follow, which are ignored.
 /// Threads    const functions may run at once; they run on all cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
@@ -22,26 +22,27 @@ namespace chronormal::inline internal {
 
 class RightNormals {
  public:
-  /// base_normals (V, 3) are those that the file will store; largest has the length of the largest term of each
-  /// element. All of them must outlive this.
+  /// Takes the base normals (V, 3) that the file will store, and the length of the largest term of each element. All
+  /// arguments must outlive this.
   RightNormals(const GltfShading& shading, const NormalTerms& terms, std::span<const float> base_normals,
                const std::vector<double>& largest);
 
   [[nodiscard]] std::size_t targets() const noexcept { return shading_.set.targets.size(); }
-  /// Whether they are by area, and so quadratic in the weights.
+  /// Tells whether the normals are by area, and so quadratic in the weights.
   [[nodiscard]] bool are_by_area() const noexcept { return !terms_.is_fitted(); }
-  /// The stored normal of a vertex.
+  /// Returns the stored normal of a vertex.
   [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
-  /// Of all elements or some of them, before an author's own turn of the base. O(vertices + elements)
+  /// Return the normals of all elements or some of them, before an author's own rotation of the base. O(vertices +
+  /// elements)
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose) const;
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose,
                                                std::span<const std::uint32_t> elements) const;
-  /// What a vertex should show where that of its element is given.
+  /// Returns the right normal of a vertex, from that of its element.
   [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
 
-  /// Calls visit(n, first, right) for vertex number n of a list and batches of poses: right are the unit normals of the
-  /// vertex in the poses from number `first` on. Different n are visited at once, the batches one after the other.
-  /// Cost: for each pose all positions, and the normals that these vertices show.
+  /// Calls visit(n, first, right) for vertex number n of a list and batches of poses: `right` has the unit normals of
+  /// the vertex in the poses from number `first` on. Different n are visited at once, the batches one after the other.
+  /// Cost: for each pose all positions, and the normals of these vertices.
   template <class Visit>
   void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
     constexpr std::size_t kBytes = std::size_t{32} << 20, kFewest = 4, kVertices = 64;
@@ -68,7 +69,7 @@ class RightNormals {
   }
 
  private:
-  // The elements of some vertices, ascending, and where in that list each vertex finds its own.
+  // The elements of some vertices, ascending, and the index of each vertex's element in that list.
   struct Places {
     Places(const GltfShading& shading, std::span<const std::uint32_t> vertices);
     std::vector<std::uint32_t> elements;
@@ -80,8 +81,8 @@ class RightNormals {
   const NormalTerms& terms_;
   std::span<const float> base_normals_;
   const std::vector<double>& largest_;
-  std::vector<Vec3d> base_;           // n(0) of each element: many ask for it
-  std::vector<double> base_lengths_;  // and how long it is
+  std::vector<Vec3d> base_;           // n(0) of each element, which is often needed
+  std::vector<double> base_lengths_;  // the length of each
   std::vector<std::uint32_t> all_elements_;
   std::vector<ShownTurn> turns_;  // of each vertex
 };

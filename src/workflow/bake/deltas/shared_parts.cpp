@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kComponents = 3;
 
-// Whether the floats of two parts are the same in an array of so many for each vertex, which may be empty.
+// Tells whether two parts have the same floats in an array of `width` numbers per vertex, which may be empty.
 bool have_same(const std::vector<float>& all, std::size_t width, const GltfPart& a, const GltfPart& b) {
   const auto begin = [&](const GltfPart& part) {
     return all.begin() + static_cast<std::ptrdiff_t>(width * part.first_vertex);

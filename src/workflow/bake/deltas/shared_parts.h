@@ -1,8 +1,8 @@
-/// Primitives of a mesh that have the same vertices, of which each shows some: exporters cut a mesh into one for each
-/// material, with arrays that all of them share. What a bake writes for them is one array too. Private to workflow.
+/// Primitives of a mesh that share their vertices, of which each shows some: exporters split a mesh into one primitive
+/// per material, with arrays that all of them share. A bake then writes one array for them too. Private to workflow.
 ///
-///     part 0 shows the vertices 0, 1, 2 of some arrays, and part 1 shows 2, 3, 4 of the same ones: the deltas of both
-///     are one array, of the vertices 0 to 4
+///     part 0 shows the vertices 0, 1, 2 of some arrays, and part 1 shows 2, 3, 4 of the same arrays: the deltas of
+///     both are one array, of the vertices 0 to 4
 ///
 /// Threads    pure
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_
@@ -19,21 +19,21 @@ namespace chronormal::inline internal {
 
 class SharedParts {
  public:
-  /// The shading must have its deltas, and outlive this. O(bytes of all arrays) where there are several parts.
+  /// The shading must have its deltas, and outlive this. O(bytes of all arrays) if there are several parts.
   explicit SharedParts(const GltfShading& shading);
 
-  /// Gives parts of the same vertices the same array, where no vertex has two different deltas.
+  /// Gives parts with the same vertices the same array, unless a vertex has two different deltas.
   void join(TargetDeltas& deltas) const;
-  /// How many bytes of arrays these deltas take, sparse or not, each array once. They must be joined.
+  /// Returns the bytes of the arrays for these deltas, sparse or not, each array once. The deltas must be joined.
   [[nodiscard]] std::size_t bytes_of(const TargetDeltas& deltas) const;
-  /// The same of deltas of some vertices, which need not be joined.
+  /// Returns the bytes for deltas of some vertices, which need not be joined.
   [[nodiscard]] std::size_t bytes_of(const VertexVectors& deltas) const;
 
  private:
   [[nodiscard]] bool are_alike(const GltfPart& a, const GltfPart& b) const;
 
   const GltfShading& shading_;
-  std::vector<std::vector<std::size_t>> groups_;  // of parts that have the same vertices, one part at least
+  std::vector<std::vector<std::size_t>> groups_;  // of parts that have the same vertices, at least one each
 };
 
 }  // namespace chronormal::inline internal

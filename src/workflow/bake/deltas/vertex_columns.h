@@ -1,5 +1,5 @@
-/// Vectors of vertices in columns, each of which has a weight: by column, as files store them, or by vertex, as they
-/// are added up. Private to workflow.
+/// Vectors of vertices in columns, each with a weight: by column, as files store them, or by vertex, as they are added
+/// up. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
 
@@ -20,7 +20,7 @@ struct VertexVectors {
   [[nodiscard]] Vec3f at(std::size_t vertex) const noexcept;
 };
 
-/// What a vertex adds up in one form: deltas other than zero with their columns.
+/// The nonzero deltas of each vertex in one candidate, with their columns.
 struct VertexColumns {
   struct Entry {
     std::uint32_t column = 0;
@@ -36,7 +36,7 @@ struct VertexColumns {
   }
 };
 
-/// Turns columns of vectors, of which each may have its own vertices, into columns of vertices.
+/// Turns columns of vectors, each with its own vertices, into columns of vertices.
 [[nodiscard]] VertexColumns by_vertex(std::span<const VertexVectors* const> columns,
                                       std::span<const std::uint32_t> vertices);
 
