@@ -16,31 +16,32 @@ namespace {
 
 constexpr std::size_t kPointBlock = 16;  // points at a time
 constexpr std::size_t kSampledPoints = 1500;
-// A point counts by the 2 % quantile of the lengths of its normals, down to a thousandth, and to a part of what it
-// lacks at most: what is off by a right angle can be off by no more, and must not drown the others.
+// A point counts by the 2 % quantile of the lengths of its normals, but as no shorter than a thousandth, and than a
+// part of what it lacks at most: errors stop at a right angle, and must not drown the other points.
 constexpr double kShortQuantile = 0.02;
 constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kFitRounds = 3;
-// Of the tolerance: what points beyond it count more for, and what they are fitted by themselves from.
+// Parts of the tolerance: beyond the first, points count more; beyond the second, they are fitted by themselves.
 constexpr double kPartThatCounts = 0.6, kPartToRefit = 0.4, kPartOfBad = 0.3;
 constexpr std::size_t kMostRefitted = 1500;
-// Multiplications of all least squares: where many extra targets make each dear, there are fewer of them.
+// A limit for the multiplications of all least squares: if many correction targets make each refit expensive, there are
+// fewer.
 constexpr double kRefitWork = 1e10;
-// Of n(0): the direction of a shorter normal is not fitted to.
+// Relative to n(0): the direction of a shorter normal is not fitted to.
 constexpr float kLeastLength = 1e-3F;
 constexpr int kRefits = 4;
-// Between nodes a normal may be much shorter than at them. It is looked for in so many steps, where one of the nodes is
-// shorter than this (squared, of n(0)), and counts where it is so much shorter (squared) than they are.
+// Between nodes a normal may be much shorter than at them. The search takes this many steps, where one of the nodes is
+// shorter than kNearDip (squared, of n(0)); a dip counts if it is shorter than the nodes by kDip (squared).
 constexpr int kDipSteps = 32;
 constexpr double kNearDip = 0.25, kDip = 0.5;
 constexpr double kRidgeOfRefit = 1e-4, kLeastSquare = 1e-6;
 
-// A place of a piece between three nodes, at 0, 1/2 and 1.
+// Returns a place of a piece between its three nodes at 0, 1/2 and 1.
 PlaceOfRows place_at(const std::array<std::size_t, 3>& nodes, double t) {
   return {nodes, {(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)}};
 }
 
-// The value at a place of what rows have.
+// Interpolates the values of rows at a place.
 float at_place(const PlaceOfRows& place, const float* of_rows) {
   double sum = 0;
   for (std::size_t n = 0; n < 3; ++n) sum += place.factors[n] * static_cast<double>(of_rows[place.nodes[n]]);
@@ -97,7 +98,7 @@ void LowRankFit::take_weights(std::span<const double> vectors, std::size_t colum
     for (std::size_t k = 0; k < extras; ++k) weights_[r * padded_ + k] = static_cast<float>(vectors[r * columns + k]);
 }
 
-// The weights are orthonormal, so that the deltas are inner products with them.
+// The weights are orthonormal, so the deltas are inner products with them.
 void LowRankFit::project() {
   deltas_.assign(missing_.points() * 3 * padded_, 0.0F);
   parallel_blocks(missing_.points(), kPointBlock, [&](IndexRange points) {
@@ -190,14 +191,14 @@ LowRankFit::Course LowRankFit::course_of(std::size_t point, std::span<const Plac
   return course;
 }
 
-// The largest error of each point at its rows.
+// Finds the largest error of each point at its rows.
 void LowRankFit::measure_rows() {
   const Basis basis = basis_of({}, {});
   parallel_each(missing_.points(), kPointBlock, [&](std::size_t p) { errors_[p] = error_of(p, basis, {}); });
 }
 
-// The largest error of each point at rows, places, unseen ones and its dips. own_weights go with the corrections of own
-// deltas, where there are any.
+// Finds the largest error of each point at rows, places, unseen places and its dips. own_weights go with the
+// corrections of own deltas, if there are any.
 void LowRankFit::measure(std::span<const float> own_weights) {
   std::vector<PlaceOfRows> places(places_.begin(), places_.end());
   places.insert(places.end(), unseen_.begin(), unseen_.end());
@@ -237,8 +238,8 @@ float LowRankFit::error_of(std::size_t point, const Basis& basis, std::span<cons
   return static_cast<float>(degrees_of(worst));
 }
 
-// The places between nodes where the right normal of a point is much shorter than at the nodes around, and still has a
-// direction: there it turns fastest, and what is missing counts most.
+// Returns the places between nodes where the right normal of a point is much shorter than at the nodes around, and
+// still has a direction: it turns fastest there, and missing parts count most.
 std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
   const std::size_t stride = missing_.stride();
   const float *const shown = missing_.shown(point), *const lack = missing_.missing(point);
@@ -269,8 +270,8 @@ std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
   return result;
 }
 
-// Least squares of |(I - u u^T) (shown + basis x)|^2 over the instants, u the right direction, with weights that grow
-// with the error and a ridge towards the singular vectors. The best of all rounds stays.
+// Minimizes |(I - u u^T) (shown + basis x)|^2 over the instants, where u is the right direction, with weights that grow
+// with the error and a ridge towards the singular vectors. Keeps the best of all rounds.
 void LowRankFit::refit(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places, double tolerance) {
   const std::size_t columns = basis.columns, size = 3 * columns, instants = basis.instants, plane = basis.stride;
   const Course course = course_of(point, places);

@@ -1,7 +1,7 @@
-/// The numbers behind extra targets of low rank: singular vectors of what is missing, and least squares of angles point
-/// by point. Private to workflow.
+/// Fits correction targets of low rank: by singular vectors of what is missing, and by least squares of angles for each
+/// point. Private to workflow.
 ///
-/// Shapes     points, rows and stride as MissingNormals has them; extras = columns, in rows of `padded()` floats, of
+/// Shapes   points, rows and stride are those of MissingNormals; extras = columns, in rows of `padded()` floats, of
 ///            which those beyond extras() are zero.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
@@ -16,46 +16,46 @@
 
 namespace chronormal::inline internal {
 
-/// An instant between rows: what any quantity is there, as parabolas have it, follows from three rows.
+/// An instant between rows: values there follow from three rows, by a parabola.
 using PlaceOfRows = CurveNodes::Place;
 
 class LowRankFit {
  public:
-  /// Fits are made to all rows and these places, and judged at unseen ones too. All arguments must outlive this.
+  /// Fits to all rows and these places, and also judges at the unseen places. All arguments must outlive this.
   LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRows> places, std::span<const PlaceOfRows> unseen);
 
-  /// What is left with so many extra targets, of singular vectors alone: the error in degrees that 99.9 % of pairs of
-  /// some points and rows are within, for each count.
+  /// Returns, for each count of correction targets, the error in degrees that 99.9 % of the samples of some points and
+  /// rows are within, with singular vectors alone.
   [[nodiscard]] std::vector<double> errors_with(std::span<const std::size_t> extras);
 
-  /// Fits so many extra targets. Points that are beyond some degrees get least squares of their own, and where
-  /// own_weights (rows, targets) are given, corrections of the deltas of the mesh's own targets with them.
+  /// Fits this many correction targets. Points with errors beyond the tolerance (degrees) get least squares of their
+  /// own; if own_weights (rows, targets) are given, these also correct the deltas of the mesh's own targets.
   void fit(std::size_t extras, double tolerance, std::span<const float> own_weights, std::size_t own_targets);
 
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
   [[nodiscard]] std::size_t padded() const noexcept { return padded_; }
-  /// (rows, padded): the weights of the extra targets.
+  /// Returns the weights of the correction targets: (rows, padded).
   [[nodiscard]] std::span<const float> weights() const noexcept { return weights_; }
-  /// (3, padded): the deltas of a point.
+  /// Returns the deltas of a point: (3, padded).
   [[nodiscard]] std::span<const float> deltas(std::size_t point) const {
     return std::span(deltas_).subspan(3 * padded_ * point, 3 * padded_);
   }
-  /// (3, own targets): the corrections of a point; empty without own weights.
+  /// Returns the corrections of a point's own deltas: (3, own targets); empty without own weights.
   [[nodiscard]] std::span<const float> own_deltas(std::size_t point) const {
     return std::span(own_deltas_).subspan(3 * own_targets_ * point, 3 * own_targets_);
   }
-  /// How much a point counts.
+  /// Returns the weight of a point in the fit.
   [[nodiscard]] float importance(std::size_t point) const { return importance_[point]; }
-  /// The largest error of all points, at unseen places too, degrees.
+  /// Returns the largest error of all points, at unseen places too, in degrees.
   [[nodiscard]] double worst() const;
 
  private:
-  // A basis at rows and places: (instants, columns), padded, and the same turned round.
+  // A basis at rows and places: (instants, columns), padded, and its transpose.
   struct Basis {
     std::size_t columns = 0, padded = 0, instants = 0, stride = 0;
     std::vector<float> by_instant, by_column;
   };
-  // What a point shows, and should, at rows and places: three planes.
+  // The rendered and the right normals of a point at rows and places, as three planes each.
   struct Course {
     std::vector<float> shown, right;
     std::vector<char> is_known;

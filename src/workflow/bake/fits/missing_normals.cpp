@@ -19,8 +19,8 @@ constexpr std::size_t kMissingBlock = 64;
 constexpr std::size_t kPosesAtOnce = 16;    // whose normals are held
 constexpr std::size_t kStridePadding = 16;  // floats: the widest vector
 
-// The vector in a right direction that a sum comes to by what is added to it across the normal N; where that would be far
-// off, the right normal itself.
+// Returns the vector in the right direction that a sum reaches if only vectors across the normal N are added to it; if
+// that is too far, the right normal itself.
 Vec3d reached_across(const Vec3d& base, const Vec3d& sum, const Vec3d& right) {
   constexpr double kLeastAlong = 0.2;
   const Vec3d u = unit(right);
@@ -49,7 +49,7 @@ std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const
     if (is_new) points.emplace_back();
     points.back().push_back(vertex);
   }
-  // By vertex, so that neighbours in the file are neighbours here.
+  // Sorting by vertex makes neighbours in the file neighbours here.
   std::sort(points.begin(), points.end());
   return points;
 }
@@ -119,7 +119,7 @@ std::vector<double> MissingNormals::inner_products(std::span<const float> import
         for (std::size_t c = 0; c < 3 * stride_; ++c) scaled[3 * stride_ * n + c] = importance[point] * lack[c];
       }
       std::fill(products.begin(), products.end(), 0.0F);
-      for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {  // what is right of the diagonal
+      for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {  // the part right of the diagonal
         const StridedMatrix a{scaled.data() + i, 3 * count, std::min(kColumnsAtOnce, rows - i), stride_, 1};
         const StridedMatrix b{scaled.data() + i, 3 * count, stride_ - i, stride_, 1};
         add_products(a, b, products.data() + i * stride_ + i, stride_);

@@ -1,7 +1,7 @@
-/// What the deltas of a mesh's own targets lack at the instants of its file: the matrix that extra targets of low rank
-/// stand for (docs/theory.md, section 17). Private to workflow.
+/// The errors of the deltas of a mesh's own targets at the instants of its file: the matrix that correction targets of
+/// low rank approximate (docs/theory.md, section 17). Private to workflow.
 ///
-/// Points     vertices that show the same normal: of one element, and with the same stored base normal.
+/// Points   vertices that show the same normal: of one element, with the same stored base normal.
 /// Shapes     (points, 3, stride) floats, of which the first rows() of each run of `stride` count and the rest is zero.
 /// Units      lengths of the stored base normal.
 /// Threads    on all cores; the same bits on any number of them.
@@ -20,7 +20,7 @@
 
 namespace chronormal::inline internal {
 
-/// Rounds a number of floats up to whole groups, which loops over them take at once.
+/// Rounds a number of floats up to whole groups, so that loops process groups at once.
 [[nodiscard]] constexpr std::size_t padded_to(std::size_t count) noexcept {
   constexpr std::size_t kPadding = 16;
   return (count + kPadding - 1) / kPadding * kPadding;
@@ -29,11 +29,12 @@ namespace chronormal::inline internal {
 /// Vertices that show the same normal; the first stands for all.
 using PointVertices = std::vector<std::uint32_t>;
 
-/// Groups vertices into points. Those whose base normal is too short to add to are left out.
+/// Groups vertices into points. Vertices whose base normal is too short to add to are left out.
 [[nodiscard]] std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                                    std::span<const std::uint32_t> element_of_vertex);
 
-/// All instants of a file that a curve has a value at: the nodes of each track, and then the poses that the file stores.
+/// All instants of a file at which a curve has a value: the nodes of each track, and then the poses that the file
+/// stores.
 struct FileInstants {
   explicit FileInstants(const MeshWeights& weights);
 
@@ -42,11 +43,11 @@ struct FileInstants {
   PoseList poses;
 };
 
-/// The weights of own targets beside the rows, and what normals show and lack there.
+/// The weights of own targets in each row, and the rendered and missing normals there.
 class MissingNormals {
  public:
-  /// own has the deltas of the mesh's own targets for the first vertex of each point. across: what is missing has no part
-  /// along N, as far as the right direction can be reached so; the length that comes of it is any.
+  /// own has the deltas of the mesh's own targets for the first vertex of each point. If `across` is set, the missing
+  /// vectors have no part along N, as far as the right direction can be reached so, and the resulting length is free.
   MissingNormals(const RightNormals& rights, std::span<const PointVertices> points,
                  std::span<const std::uint32_t> element_of_vertex, const VertexColumns& own, PoseList poses,
                  bool across = false);
@@ -55,20 +56,20 @@ class MissingNormals {
   [[nodiscard]] std::size_t rows() const noexcept { return poses_.size(); }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
   [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
-  /// The number of a point among those that this was made of.
+  /// Returns the index of a point among the points given to the constructor.
   [[nodiscard]] std::size_t number(std::size_t point) const { return numbers_[point]; }
-  /// (3, stride): what the own deltas show of a point; zero where the right normal is not known.
+  /// Returns the sums of own deltas for a point, (3, stride); zero where the right normal is not known.
   [[nodiscard]] const float* shown(std::size_t point) const { return shown_.data() + 3 * stride_ * point; }
-  /// (3, stride): what that lacks of the right normal, whose length is |n(w)| / |n(0)|.
+  /// Returns what the sums lack of the right normal, whose length is |n(w)| / |n(0)|: (3, stride).
   [[nodiscard]] const float* missing(std::size_t point) const { return missing_.data() + 3 * stride_ * point; }
 
-  /// The inner products of what is missing in two rows, over every step-th point, each times its importance: (rows,
-  /// rows). Sums of a few points are float32, those of all double.
+  /// Returns the inner products of the missing normals in two rows, over every step-th point, each times its
+  /// importance: (rows, rows). Sums of a few points are float32, and sums of all are double.
   [[nodiscard]] std::vector<double> inner_products(std::span<const float> importance, std::size_t step = 1) const;
 
-  /// Has own deltas show more of a point, so that less is missing; more is (3, stride).
+  /// Adds to the sums of a point, so that less is missing; more is (3, stride).
   void show_more(std::size_t point, std::span<const float> more);
-  /// Leaves out the points that are within some degrees of right in all rows.
+  /// Leaves out the points that are within this many degrees of the right normal in all rows.
   void keep_beyond(double degrees);
 
  private:
@@ -78,15 +79,15 @@ class MissingNormals {
   std::vector<float> shown_, missing_;
 };
 
-/// A measure of the angle between two vectors of any length that grows with it, from 0 to 2, and takes no arc tangent:
-/// its squared sine up to a right angle, and 2 less that beyond. 0 where one vector is zero.
+/// Returns a measure of the angle between two vectors of any length. It grows with the angle, from 0 to 2, and needs no
+/// arc tangent: the squared sine up to a right angle, and 2 minus the squared sine beyond. 0 if one vector is zero.
 [[nodiscard]] inline float openness(const Vec3f& a, const Vec3f& b) noexcept {
   const Vec3f aside = cross(a, b);
   const float across = dot(aside, aside), along = dot(a, b), both = across + along * along;
   const float square = both > 0 ? across / both : 0;
   return along < 0 ? 2 - square : square;
 }
-/// The angle that has this openness, in degrees.
+/// Returns the angle with this openness, in degrees.
 [[nodiscard]] double degrees_of(float openness) noexcept;
 
 }  // namespace chronormal::inline internal

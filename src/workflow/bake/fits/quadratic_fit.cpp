@@ -1,4 +1,4 @@
-// Fits extra targets to the poses of a rig.
+// Fits correction targets to the poses of a rig.
 #include "workflow/bake/fits/quadratic_fit.h"
 
 #include <algorithm>
@@ -20,14 +20,15 @@ constexpr unsigned kFitSeed = 101, kTermSeed = 102;
 constexpr std::size_t kQuadraticBlock = 16;
 constexpr std::size_t kMostRows = 400, kBytes = std::size_t{500} << 20, kFewestRows = 48;
 constexpr std::size_t kQuadraticPoints = 8000;
-// Beyond so many products, weights would have more terms than anybody could evaluate.
+// Beyond this number of products, weights would have more terms than anybody could evaluate.
 constexpr std::size_t kMostFeatures = 20000;
 constexpr std::size_t kPosesOfTerms = 4000;
-// Of the tolerance: what needs nothing, and how far the lack of one entry of a delta may turn a normal.
+// Parts of the tolerance: an error that needs no correction, and how far one entry of a delta that is left out may turn
+// a normal.
 constexpr double kPartOfNeed = 0.05, kPartOfEntry = 0.01;
-// Of n(0): what a normal counts as at least, for shorter ones can hardly be fitted at all.
+// Relative to n(0): shorter normals count as no shorter than this, for they can hardly be fitted at all.
 constexpr float kLeastCounted = 0.1F;
-// What the terms that are left out come to, of all: the root of the mean of squares.
+// The share of all terms that the omitted terms may have, as a root mean square.
 constexpr double kPartOfTerms = 0.02;
 constexpr double kRidgeOfTerms = 1e-5, kLeastRidge = 1e-12;
 
@@ -46,7 +47,7 @@ PoseList poses_to_fit(const RigPoses& rig, std::span<const std::vector<double>> 
   return poses;
 }
 
-// Those that have a base normal to divide by.
+// Returns the points with a base normal to divide by.
 std::vector<PointVertices> points_to_fit(const DeltaSource& source, const RightNormals& rights,
                                          std::span<const std::uint32_t> vertices) {
   const GltfShading& shading = source.shading;
@@ -141,7 +142,8 @@ void QuadraticFit::find_features(const DeltaSource& source) {
       if (a == b || source.terms.overlap(moving[a], moving[b])) features_.push_back({moving[a], moving[b], false});
 }
 
-// What is missing along some poses (rows, extras), for each point: (points, 3, padded).
+// Returns the sums of the missing normals over poses, with these weights (rows, extras), for each point: (points, 3,
+// padded).
 std::vector<float> QuadraticFit::directions(std::span<const double> vectors) const {
   std::vector<float> columns(missing_.rows() * padded_, 0.0F), result(3 * padded_ * points_.size(), 0.0F);
   for (std::size_t r = 0; r < missing_.rows(); ++r)
@@ -154,7 +156,7 @@ std::vector<float> QuadraticFit::directions(std::span<const double> vectors) con
   return result;
 }
 
-// The terms of the weights: those of n(w) by least squares in the directions, over all points.
+// Computes the terms of the weights: the terms of n(w) in the directions, by least squares over all points.
 void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, std::span<const float> directions) {
   const GltfShading& shading = source.shading;
   std::vector<double> matrix(extras_ * extras_, 0.0);
@@ -204,7 +206,7 @@ void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, 
   });
 }
 
-// Leaves out the terms of each weight that count least in the poses of the rig.
+// Drops the terms of each weight that count least in the poses of the rig.
 void QuadraticFit::leave_out_small(const RigPoses& rig) {
   std::vector<double> squares(features_.size(), 0.0);
   for (const std::vector<double>& pose : rig.sample(kPosesOfTerms, kTermSeed)) {
@@ -231,7 +233,7 @@ void QuadraticFit::leave_out_small(const RigPoses& rig) {
   }
 }
 
-// The weights in the poses that are fitted to.
+// Computes the weights in the poses that are fitted to.
 void QuadraticFit::evaluate() {
   weights_.assign(missing_.rows() * padded_, 0.0F);
   parallel_each(missing_.rows(), kQuadraticBlock, [&](std::size_t r) {
@@ -251,7 +253,7 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count, bool keeps_lengths) c
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t k = 0; k < count; ++k) largest[k] = std::fmax(largest[k], std::fabs(weights_[r * padded_ + k]));
 
-  // Least squares point by point, each row as important as its normal is short.
+  // Fits the deltas by least squares for each point. A row counts more the shorter its normal is.
   std::vector<Vec3f> deltas(points_.size() * count);
   const double least = kPartOfEntry * tolerance_ / kDegreesPerRadian;
   parallel_blocks(points_.size(), kQuadraticBlock, [&](IndexRange points) {
@@ -259,7 +261,7 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count, bool keeps_lengths) c
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
       const float *shown = missing_.shown(p), *lack = missing_.missing(p);
       std::copy(lack, lack + 3 * stride, wanted.begin());
-      float most = 0;  // that a row counts
+      float most = 0;  // the largest weight of a row
       for (std::size_t r = 0; r < rows; ++r) {
         const Vec3f now = {shown[r], shown[stride + r], shown[2 * stride + r]};
         const Vec3f right = now + Vec3f{lack[r], lack[stride + r], lack[2 * stride + r]};

@@ -1,13 +1,13 @@
-/// Extra targets of rigs that nothing drives: what the deltas of a mesh's own targets lack in the poses that the rig is
-/// made for, as the sum of a few deltas whose weights are quadratics of the weights (docs/theory.md, section 18).
-/// Private to workflow.
+/// Correction targets of rigs that nothing drives: the errors of a mesh's own deltas in the poses that the rig is made
+/// for, as the sum of a few deltas whose weights are quadratics of the weights (docs/theory.md, section 18). Private to
+/// workflow.
 ///
 ///     n(w) / |n(0)|  =  N + sum_i w_i D_i + sum_k s_k(w) E_k, nearly,   s_k(w) = sum_i l_ki w_i + sum_ij q_kij w_i w_j
 ///
-/// The normals that are missing, in some poses of the rig, form a matrix of low rank; its leading right singular
-/// vectors say which E_k are worth having. Since n(w) is a quadratic form, the weight that each of these should have is
-/// one too, and its terms are the terms of n(w), projected. Small terms are left out. The E_k are then fitted again,
-/// point by point, to what is missing divided by the length of n(w), which is about the angle.
+/// The missing normals in some poses of the rig form a matrix of low rank; its leading right singular vectors are the
+/// E_k worth having. Since n(w) is a quadratic form, the best weight of each E_k is one too, and its terms are the
+/// terms of n(w), projected. Small terms are dropped. The E_k are then fitted again for each point, to the missing
+/// normal divided by the length of n(w), which is about the angle.
 ///
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FIT_H_
@@ -26,26 +26,26 @@
 
 namespace chronormal::inline internal {
 
-/// The most terms of one extra target.
+/// The largest number of terms of one correction target.
 inline constexpr std::size_t kMostTerms = 160;
 
 class QuadraticFit {
  public:
-  /// own has the deltas of the mesh's own targets; of `vertices` only those are fitted that these leave wrong. rights
-  /// must outlive this. Cost: the right normals in 400 poses, and all terms of n(w).
+  /// own has the deltas of the mesh's own targets; only those of `vertices` are fitted that have errors with them.
+  /// rights must outlive this. Cost: the right normals in 400 poses, and all terms of n(w).
   QuadraticFit(const DeltaSource& source, const RightNormals& rights, std::span<const std::uint32_t> vertices,
                const std::vector<VertexVectors>& own, const RigPoses& rig,
                std::span<const std::vector<double>> standing, std::size_t most_extras, double tolerance);
 
-  /// How many extra targets are worth a look.
+  /// Returns how many correction targets are worth trying.
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
 
   struct Extras {
     std::vector<GltfExtraTarget> weights;  ///< about from -1 to 1 in the poses of the rig; no index is set
     std::vector<VertexVectors> vectors;    ///< of any length
   };
-  /// The best so many; count must be no more than extras(). Where viewers keep no lengths, the direction of the sum alone
-  /// is fitted, and its length left as it is.
+  /// Returns the best `count` correction targets; count must be at most extras(). If viewers keep no lengths, only the
+  /// direction of the sum is fitted, and its length stays as it is.
   [[nodiscard]] Extras best(std::size_t count, bool keeps_lengths) const;
 
  private:

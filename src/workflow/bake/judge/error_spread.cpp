@@ -12,13 +12,13 @@ namespace {
 constexpr std::size_t kBins = ErrorSpread::kBins;
 constexpr float kLeastBin = 1e-3F;
 
-// The exponent of a float counts octaves, and the first four bits of its fraction sixteenths of one.
+// The exponent of a float counts octaves, and the first four bits of its fraction count sixteenths of an octave.
 std::size_t bin_of(float degrees) {
   const auto bits = bit_cast<std::uint32_t>(std::max(degrees * (1 / kLeastBin), 1.0F));
   return std::min<std::size_t>(kBins - 1, (bits >> 19) - (127U << 4));
 }
 
-// Returns where such a bin ends.
+// Returns the upper end of a bin.
 double end_of(std::size_t bin) {
   const auto octave = static_cast<int>(bin / 16);
   const double part = 1 + static_cast<double>(bin % 16 + 1) / 16;

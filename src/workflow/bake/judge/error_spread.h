@@ -1,4 +1,4 @@
-/// Errors of many vertices in many poses: their mean, the worst, and what 99.9 % are below. Private to workflow.
+/// Errors of many vertices in many poses: their mean, the worst, and the bound of 99.9 %. Private to workflow.
 ///
 /// Units      degrees
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_ERROR_SPREAD_H_
@@ -13,7 +13,7 @@
 
 namespace chronormal::inline internal {
 
-/// Errors with their spread, to a sixteenth of themselves: how many lie in each sixteenth of an octave.
+/// The distribution of errors, to a sixteenth of themselves: it counts the errors in each sixteenth of an octave.
 struct ErrorSpread {
   static constexpr std::size_t kBins = 320;
 
@@ -22,7 +22,7 @@ struct ErrorSpread {
   std::array<std::size_t, kBins> bins{};
 
   void add(const ErrorSpread& other);
-  /// Adds errors, but for negative ones, which stand for none.
+  /// Adds errors. Negative ones stand for missing errors, and are skipped.
   void add(std::span<const float> errors);
   [[nodiscard]] ShownErrors errors() const;
 };

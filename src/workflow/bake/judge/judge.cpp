@@ -15,28 +15,29 @@ namespace {
 constexpr std::size_t kSamplesOfBlock = 8192, kMostOfBlock = 1024, kEdgeBlock = 1024;
 constexpr int kFineBits = 16;
 constexpr auto kDegrees = static_cast<float>(kDegreesPerRadian);
-// Pairs of a vertex and a pose whose right normals are held, and poses of one kind.
+// Limits for the samples whose right normals are held, and for the poses of one kind.
 constexpr std::size_t kMostPairs = 2500000, kFewestPoses = 12, kMostPoses = 800;
-// At a glance: every eighth pose, but no fewer than these where there are more.
+// A glance takes every eighth pose, but no fewer than this if there are more.
 constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
-// Errors of vertices that are held at once.
+// The number of errors of vertices that are held at once.
 constexpr std::size_t kMostErrors = 4000000;
 
-// The viewer without what is too fine to choose by, or a compressor's own: halves, and numbers of a few bits.
+// Returns the viewer without rounding that is too fine to decide a choice, or comes from compressors: half floats, and
+// numbers of a few bits.
 Viewer without_rounding(Viewer viewer) {
   viewer.bits = viewer.normals == NormalRule::kClamped ? kFineBits : 32;
   viewer.octahedral_base = false;
   return viewer;
 }
 
-// Returns whether two viewers show the same of all deltas.
+// Returns whether two viewers render all deltas alike.
 bool shows_alike(const Viewer& a, const Viewer& b, bool is_skinned) {
   return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
          a.octahedral_base == b.octahedral_base && (a.skins == b.skins || !is_skinned);
 }
 
-// The weights of poses, for each column side by side, and between which poses it has any: where targets are judged
-// alone, most columns have none in most poses.
+// Holds the weights of poses by column, side by side, and the range of poses in which a column has any: if targets are
+// judged alone, most columns have no weight in most poses.
 class PoseWeights {
  public:
   explicit PoseWeights(std::span<const SeenPose> poses)
@@ -55,11 +56,11 @@ class PoseWeights {
       if (active_[c].count > 0) columns_.push_back(c);
   }
 
-  // (poses)
+  // Returns the weights of a column: (poses).
   [[nodiscard]] const float* of(std::size_t column) const { return weights_.data() + column * poses_; }
-  // The columns that have any, ascending.
+  // Returns the columns with any weight, ascending.
   [[nodiscard]] std::span<const std::uint32_t> columns() const { return columns_; }
-  // Beyond these poses the column has no weight.
+  // Returns the range of poses beyond which the column has no weight.
   [[nodiscard]] const IndexRange& active(std::size_t column) const { return active_[column]; }
 
  private:
@@ -69,7 +70,7 @@ class PoseWeights {
   std::vector<float> weights_;
 };
 
-// Sums of one vertex in many poses.
+// Holds the sums of one vertex in many poses.
 class Sums {
  public:
   void add_up(const Viewer& viewer, const Vec3f& normal, std::span<const VertexColumns::Entry> entries,
@@ -90,7 +91,7 @@ class Sums {
         z_[p] += w[p] * kept.z;
       }
     };
-    constexpr std::size_t kFew = 8;  // columns, of so many entries each, that are worth a search
+    constexpr std::size_t kFew = 8;  // a list of entries is searched for columns only if it is this many times longer
     if (kFew * weights.columns().size() > entries.size()) {
       for (const auto& [column, delta] : entries) add(column, delta);
       return;
@@ -102,7 +103,7 @@ class Sums {
     }
   }
 
-  // Makes of the sums what is seen of them.
+  // Replaces the sums by what the skin makes of them.
   void carry(const SkinsInPoses::Vertex& carrying, SkinRule rule) {
     for (std::size_t p = 0; p < x_.size(); ++p) {
       const Vec3f seen = to_float(carrying.seen(rule, p, to_double(Vec3f{x_[p], y_[p], z_[p]})));
@@ -112,8 +113,9 @@ class Sums {
     }
   }
 
-  // Writes the angles to the right normals in degrees, negative where one is not known, and the differences of unit
-  // vectors as planes, NaN where one is not. Returns the largest length of a difference. right are three planes.
+  // Writes the angles to the right normals in degrees, negative where no right normal is known, and the differences of
+  // unit vectors as planes, NaN where none is known. Returns the largest length of a difference. right has three
+  // planes.
   float compare_with(const std::array<const float*, 3>& right, std::span<float> degrees, std::span<float> errors) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     const std::size_t count = degrees.size();
@@ -133,7 +135,7 @@ class Sums {
       const bool is_lit = size > 0 && size <= std::numeric_limits<float>::max() && angle <= 180.5F;
       const bool is_known = u[p] != 0 || v[p] != 0 || w[p] != 0;
       degrees[p] = is_known ? is_lit ? angle : 180 : -1;
-      // What is not lit shows the other side.
+      // A normal that is not lit counts as one that points to the other side.
       const float scale = is_lit ? 1 / size : 0, side = is_known ? is_lit ? 1 : 2 : kNan;
       to_x[p] = (is_lit ? scale * x[p] : 0) - side * u[p];
       to_y[p] = (is_lit ? scale * y[p] : 0) - side * v[p];
@@ -150,7 +152,8 @@ class Sums {
   std::vector<double> across_, along_, angles_;
 };
 
-// The edges with an end among some vertices, by their places there; the place of others is behind all of these.
+// Returns the edges with an end among some vertices, by indices in that list; other vertices have an index beyond its
+// end.
 std::vector<SurfaceEdge> edges_of(std::span<const SurfaceEdge> edges, std::span<const std::uint32_t> vertices,
                                   std::size_t vertex_count) {
   const auto none = static_cast<std::uint32_t>(vertices.size());
@@ -163,7 +166,7 @@ std::vector<SurfaceEdge> edges_of(std::span<const SurfaceEdge> edges, std::span<
   return result;
 }
 
-// Writes vectors as planes that are so far apart.
+// Writes vectors as planes with this distance.
 void write_planes(std::span<const Vec3f> vectors, float* planes, std::size_t stride) {
   for (std::size_t p = 0; p < vectors.size(); ++p) {
     planes[p] = vectors[p].x;
@@ -325,14 +328,14 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
 }
 
 TearCounts Judge::tears_of(const KnownSet& known, const Differences& differences) const {
-  // Vertices that are not looked at show no error.
+  // Vertices that are not judged count as without error.
   const std::size_t count = known.numbers.size(), poses = differences.poses;
   const std::vector<float> none(3 * poses, 0.0F);
   return parallel_fold<TearCounts>(
       known.edges.size(), kEdgeBlock,
       [&](std::size_t edge, TearCounts& counts) {
         const auto [a, b] = known.edges[edge];
-        // No jump is longer than both errors together.
+        // A jump is no larger than the sum of both errors.
         const float most = differences.largest[a] + (b < count ? differences.largest[b] : 0);
         if (most * most < TearCounts::kSquares[0]) return;
         counts.add(differences.planes.data() + 3 * a * poses,

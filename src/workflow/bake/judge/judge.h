@@ -1,10 +1,11 @@
-/// Measures what viewers show of a candidate over the poses of a file: the one judge of a bake. Private to workflow.
+/// Measures what viewers render with a candidate over the poses of a file: the one judge of a bake. Private to
+/// workflow.
 ///
-///     error    the angle between the normal that is shown and the right one, both as the skin of the pose carries them
-///              in the viewer
+///     error    the angle between the rendered normal and the right one, both as the viewer carries them by the skin of
+///              the pose
 ///     tear     the angle by which errors jump between neighbours (surface_edges.h)
 ///
-/// The right normals of all poses are computed once, and so is what viewers show of the file as it is.
+/// The right normals of all poses are computed once, and so are the normals that viewers render of the file as it is.
 ///
 /// Shapes     n = number of a vertex in the list of those that are judged
 /// Units      degrees
@@ -29,10 +30,11 @@
 
 namespace chronormal::inline internal {
 
-/// Degrees by which an error may grow where nothing else is said: rounding to float32 and float16 may turn so much.
+/// Degrees by which an error may grow if nothing else is said: rounding to float32 and float16 may turn a normal by
+/// this.
 inline constexpr double kHarmless = 0.02;
 
-/// The errors that one viewer shows in poses of one kind.
+/// The errors of one viewer in poses of one kind.
 struct JudgedErrors {
   ErrorSpread spread;
   TearCounts tears;
@@ -46,44 +48,45 @@ struct JudgedErrors {
   [[nodiscard]] ShownErrors errors() const;
 };
 
-/// The errors of every kind.
+/// The errors in every kind of poses.
 using ErrorsOfKinds = std::array<JudgedErrors, kPoseKinds>;
 
-/// Over all kinds.
+/// Adds up the errors over all kinds.
 [[nodiscard]] JudgedErrors errors_of_all(const ErrorsOfKinds& kinds);
 
 class Judge {
  public:
-  /// The poses that a judge looks at: about an eighth of them, or all.
+  /// The share of the poses that are judged: about an eighth, or all.
   enum class Depth { kGlance, kAll };
 
   /// All arguments must outlive this.
   Judge(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
         std::span<const Viewer> viewers, bool animations_only);
 
-  /// The vertices that are judged, ascending.
+  /// Returns the vertices that are judged, ascending.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const Viewer> viewers() const noexcept { return viewers_; }
 
-  /// Measures what each viewer shows, in all kinds of poses. What compressors round is left out, unless it is asked for.
+  /// Measures what each viewer renders, in all kinds of poses. The rounding of compressors is left out unless it is
+  /// asked for.
   [[nodiscard]] std::vector<ErrorsOfKinds> measure(const Candidate& candidate, Depth depth,
                                                    bool with_rounding = false) const;
-  /// The largest error of each vertex over some poses, in a viewer that adds up what is stored.
+  /// Returns the largest error of each vertex over some poses, in a viewer that adds deltas as stored.
   [[nodiscard]] std::vector<float> worst(const VertexColumns& columns, const PoseList& poses) const;
 
  private:
-  // Poses with what is right there.
+  // Poses and the right normals there.
   struct KnownSet {
     PoseSet set;
-    std::vector<std::uint32_t> numbers;  // of the vertices that it looks at
-    std::vector<SurfaceEdge> edges;      // by places in `numbers`; the second may be behind all of these
-    std::vector<float> right;            // (vertices, 3, poses): unit vectors, or (0, 0, 0) where none is known
+    std::vector<std::uint32_t> numbers;  // the vertices that it judges
+    std::vector<SurfaceEdge> edges;      // by indices into `numbers`; the second may be beyond its end
+    std::vector<float> right;            // (vertices, 3, poses): unit vectors, or (0, 0, 0) if none is known
   };
 
-  // The differences between shown and right unit normals, of the vertices of a set.
+  // The differences between rendered and right unit normals, for the vertices of a set.
   struct Differences {
     std::vector<float> planes;   // (vertices, 3, poses)
-    std::vector<float> largest;  // (vertices), how long any of them is
+    std::vector<float> largest;  // (vertices), the largest length of a difference
     std::size_t poses = 0;
   };
 

@@ -12,11 +12,12 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kFewestPieces = 2, kMostPieces = 8;
-// How far a parabola may be from the square of a weight, and at how many places of a piece that is looked at.
+// The largest distance of a parabola from the square of a weight, and the number of places of a piece where it is
+// measured.
 constexpr double kNearParabola = 0.002;
 constexpr int kPlacesOfPiece = 4;
 
-// How far the parabolas of so many pieces of a gap are from the square of a weight, at most.
+// Returns the largest distance between the square of a weight and its parabolas in this many pieces of a gap.
 double distance_of_parabolas(const std::array<double, 4>& weight, std::size_t pieces) {
   const auto square = [&weight](double t) {
     const double w = evaluate(weight, t);
@@ -35,7 +36,7 @@ double distance_of_parabolas(const std::array<double, 4>& weight, std::size_t pi
   return most;
 }
 
-// The number of pieces into which each gap of a cubic spline is cut.
+// Returns the number of pieces into which each gap of a cubic spline is split.
 std::size_t pieces_of_spline(const WeightTrack& track) {
   std::size_t pieces = kFewestPieces;
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
@@ -47,7 +48,7 @@ std::size_t pieces_of_spline(const WeightTrack& track) {
   return pieces;
 }
 
-// Values and slopes of all columns at one key of a spline.
+// The values and slopes of all columns at one key of a spline.
 struct SplineKey {
   double time = 0;
   std::vector<double> in, value, out;
@@ -79,7 +80,7 @@ ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& cu
     double start = 0;  // of the piece, as a part of the gap
     for (std::size_t piece = 0; piece < pieces; ++piece) {
       const bool is_last = piece + 1 == pieces;
-      // Times are float32: the new key is where the file can say it is.
+      // Times are float32, so the new key is where the file can place it.
       const double part = static_cast<double>(piece + 1) / static_cast<double>(pieces);
       const double time = is_last ? to : static_cast<double>(static_cast<float>(from + (to - from) * part));
       if (!is_last && !(keys.back().time < time && time < to)) continue;

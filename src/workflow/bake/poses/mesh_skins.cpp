@@ -1,5 +1,5 @@
-// A skin is looked at wherever its joints or the weights have a key while the weights are played, and half-way between:
-// joints that turn against each other squash most at or between keys of theirs.
+// A skin is judged wherever its joints or the weights have a key while the weights are played, and half-way between:
+// joints that turn against each other squash most at their keys or between them.
 #include "workflow/bake/poses/mesh_skins.h"
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Pairs of a vertex and an instant at which a skin is looked at, and the fewest instants.
+// Limits for the samples at which a skin is judged, and the fewest instants.
 constexpr std::size_t kLookedAtPairs = 10000000, kFewestInstants = 64;
 
-// Whether a skin does more than turn and scale these vertices evenly while a track is played.
+// Tells whether a skin does more than turn and scale these vertices evenly while a track is played.
 bool is_uneven(MeshSkin skin, const WeightTrack& track, std::span<const std::uint32_t> vertices) {
   std::vector<double> times;
   const std::vector<double> keys = keys_of_both(track, skin);
@@ -44,7 +44,7 @@ std::vector<double> keys_of_both(const WeightTrack& track, const MeshSkin& skin)
 void read_skins(const GltfDocument& document, const GltfShading& shading, std::span<const std::uint32_t> vertices,
                 MeshWeights& weights) {
   const std::vector<GltfNode>& nodes = document.nodes();
-  std::optional<MeshSkin> any;  // that was read
+  std::optional<MeshSkin> any;  // any skin that was read
   const auto read = [&](std::size_t node, std::optional<std::size_t> animation) -> std::optional<MeshSkin> {
     Result<MeshSkin> skin = MeshSkin::read(document, shading, node, animation, any ? &*any : nullptr);
     if (!skin) return std::nullopt;
@@ -72,7 +72,7 @@ void read_skins(const GltfDocument& document, const GltfShading& shading, std::s
     }
     if (is_any_even) skins.emplace_back();
   }
-  // The same one as audit takes.
+  // This is the skin that audit takes.
   const auto first = std::find_if(nodes.begin(), nodes.end(),
                                   [&](const GltfNode& node) { return node.has_skin && node.mesh == shading.mesh; });
   if (first == nodes.end()) return;

@@ -1,8 +1,8 @@
-/// The skins through which the nodes of a file show one mesh, as far as they matter to the choice of a bake. Private to
+/// The skins by which the nodes of a file deform one mesh, as far as they matter to the choice of a bake. Private to
 /// workflow.
 ///
-/// Where a blended matrix turns and scales evenly, errors are the same on both sides of it. So skins that do no more
-/// than that to any vertex in question are left out, and nothing is computed or chosen in another way for them.
+/// Where a blended matrix turns and scales evenly, errors are the same on both sides of it. So a skin that does no more
+/// than that to any vertex in question is left out, and changes neither results nor choices.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
 
@@ -18,7 +18,8 @@
 
 namespace chronormal::inline internal {
 
-/// The times at which a track or the joints of a skin have a key while the track is played, ascending, each once.
+/// Returns the times at which a track or the joints of a skin have a key while the track is played, ascending, each
+/// once.
 [[nodiscard]] std::vector<double> keys_of_both(const WeightTrack& track, const MeshSkin& skin);
 
 /// Reads into weights.skins what the skins of all nodes of a mesh do to some of its vertices. A skin that cannot be

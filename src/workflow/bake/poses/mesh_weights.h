@@ -21,15 +21,15 @@ struct TrackName {
   friend auto operator<=>(const TrackName&, const TrackName&) = default;
 };
 
-/// The skins through which nodes show a mesh, but for those that turn and scale evenly (mesh_skins.h).
+/// The skins by which nodes deform a mesh, except those that turn and scale evenly (mesh_skins.h).
 struct MeshSkins {
-  /// Of each track, those of all nodes that it drives; nothing stands for nodes without such a skin. Empty: nobody has
-  /// looked, and there is none.
+  /// For each track, the skins of all nodes that it drives; nullopt for nodes without such a skin. Empty if nothing was
+  /// read, or there is none.
   std::vector<std::vector<std::optional<MeshSkin>>> of_tracks;
   std::optional<MeshSkin> standing;  ///< of the first node that has a skin, as the file poses it
 
   [[nodiscard]] bool any() const;
-  /// That of targets alone, and of all else that no animation plays; nullptr: none.
+  /// Returns the skin for poses that no animation plays, as targets alone, or nullptr.
   [[nodiscard]] const MeshSkin* as_standing() const { return standing ? &*standing : nullptr; }
 };
 
@@ -38,15 +38,15 @@ struct MeshWeights {
   std::vector<TrackName> names;     ///< of each track
   std::vector<TimeRange> ranges;    ///< of the animation of each track
   PoseList poses;                   ///< that stand still: of the mesh, its nodes, and the expressions of an avatar
-  std::size_t stored_poses = 0;     ///< of these, the first: the file has weights of extra targets for them
+  std::size_t stored_poses = 0;     ///< how many poses, the first ones, have weights of correction targets in the file
   WeightUse use;
   bool is_driven = false;       ///< an animation gives some moving target a weight
-  std::optional<RigPoses> rig;  ///< where nothing drives it and a bake looks for extra targets: what it is made for
-  MeshSkins skins = {};         ///< once read_skins() has read them
+  std::optional<RigPoses> rig;  ///< the poses to fit to, if nothing drives the mesh and a bake tries correction targets
+  MeshSkins skins = {};         ///< set by read_skins()
 };
 
-/// Reads them. Tracks with the same keys, which drive the mesh through several nodes, count once. Errors: of
-/// GltfDocument
+/// Reads the weights of a mesh. Tracks with the same keys, which drive the mesh through several nodes, count once.
+/// Errors: see GltfDocument
 [[nodiscard]] Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// Chooses the instants at which a bake is judged, and those keys and tracks that tell most where there are too many.
+// Chooses the instants at which a bake is judged; if there are too many, the keys and tracks that tell most.
 #include "workflow/bake/poses/played_poses.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ bool moves_after(const WeightTrack& track, std::size_t key) {
   return false;
 }
 
-// Whether a track that holds its weights between keys has others before a key.
+// Tells whether the weights of a STEP track change at a key.
 bool jumps_at(const WeightTrack& track, std::size_t key) {
   if (key == 0 || track.interpolation != GltfInterpolation::kStep) return false;
   for (std::size_t i = 0; i < track.targets; ++i)
@@ -41,7 +41,7 @@ struct Peak {
   std::size_t number = 0;
 };
 
-// The targets that a track moves most after a key, with bounds of their weights there.
+// Returns the targets that a track moves most after a key, with bounds of their weights there.
 std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
   std::vector<Peak> result;
   for (std::size_t i = 0; i < track.targets; ++i) {
@@ -55,10 +55,10 @@ std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
   return result;
 }
 
-// Where each weight, and each product of two, is largest.
+// Finds where each weight, and each product of two weights, is largest.
 class Peaks {
  public:
-  // The weights that are active at once, in what has this number.
+  // Adds the weights that are active at once in the item with this number.
   void add(const std::vector<Peak>& active, std::size_t number) {
     for (std::size_t a = 0; a < active.size(); ++a) {
       for (std::size_t b = a; b < active.size(); ++b) {
@@ -70,7 +70,7 @@ class Peaks {
     }
   }
 
-  // Of all numbers, ascending, as many as asked for: those with the largest peaks, and a fourth evenly.
+  // Returns `most` of these numbers, ascending: those with the largest peaks, and a fourth of them evenly spread.
   [[nodiscard]] std::vector<std::size_t> telling(std::span<const std::size_t> all, std::size_t most) const {
     std::vector<Peak> order;
     order.reserve(peaks_.size());
@@ -115,10 +115,10 @@ std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std
 
 namespace {
 
-// Parts of a gap between two keys at which a track is looked at, those first that tell most.
+// Parts of a gap between two keys at which a track is judged, the most telling ones first.
 constexpr std::array<double, 5> kParts = {0.63, 0, 0.37, 0.88, 0.11};
 
-// The instants of one track, as its telling keys have room for so many.
+// Returns up to `room` instants of one track, at and after its telling keys.
 std::vector<double> instants_of(const WeightTrack& track, std::size_t room) {
   std::vector<double> times;
   const std::vector<std::size_t> keys = telling_keys(track, room);
@@ -139,7 +139,7 @@ std::vector<double> instants_of(const WeightTrack& track, std::size_t room) {
   return times;
 }
 
-// Adds a pose, but where it looks as the one before.
+// Adds a pose, unless it looks the same as the one before.
 void add_seen(PlayedPose pose, std::vector<PlayedPose>& poses) {
   if (poses.empty() || poses.back().track != pose.track || !(poses.back().seen == pose.seen))
     poses.push_back(std::move(pose));

@@ -1,5 +1,5 @@
-/// The poses of a file: what viewers play of its tracks, its targets alone, and those that a program may set. Private to
-/// workflow.
+/// The poses of a file: those that viewers play from its tracks, its targets alone, and those that a program may set.
+/// Private to workflow.
 ///
 /// Threads    pure; the poses are the same on every system.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_PLAYED_POSES_H_
@@ -18,8 +18,8 @@
 
 namespace chronormal::inline internal {
 
-/// A pose of the mesh's own targets, and where extra targets get their weights from: a track at a time, a pose that the
-/// file stores, or else the weights of the others.
+/// A pose of the mesh's own targets, and the source of the weights of correction targets: a track at a time, a pose
+/// that the file stores, or else the weights of the mesh's own targets.
 struct PlayedPose {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
@@ -29,23 +29,25 @@ struct PlayedPose {
   std::size_t standing = kNone;
 };
 
-/// The keys after which a track shows something new, because weights move, come to rest or jump there; ascending. Where
-/// there are more than `most`, those come first after which a weight is as large as nowhere else, or the product of two
-/// weights is, so that a wink in a long animation is among them; the others are taken evenly.
+/// Returns the keys after which a track shows something new, because weights move, come to rest or jump there;
+/// ascending. If there are more than `most`, it prefers keys after which a weight, or the product of two weights, is
+/// larger than anywhere else, so that a wink in a long animation is included; the others are taken evenly.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
 
-/// The numbers of at most so many tracks, ascending. Where there are more, those come first in which a weight, or the
-/// product of two weights, is as large as nowhere else; the others are taken evenly. All have the same targets.
+/// Returns the indices of at most `most` tracks, ascending. If there are more, it prefers tracks in which a weight, or
+/// the product of two weights, is larger than anywhere else; the others are taken evenly. All tracks must have the same
+/// targets.
 [[nodiscard]] std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std::size_t most);
 
-/// What a viewer plays of the tracks of a mesh, one after the other, but for poses that look as the one before: for each
-/// telling key, itself and instants up to the next one. Where these are more than `most`, fewer instants of each key are
-/// taken, and then fewer keys. Each track gets a share by the number of its telling keys, and one pose at least. Through
-/// each of the skins of its nodes, which must outlive the poses, a track is seen at its keys, those of the joints and
-/// instants between, and only where these are more than `most` at some of them and as above.
+/// Returns the poses that a viewer plays from the tracks of a mesh, one after the other, except poses that look the
+/// same as the one before: for each telling key, the key itself and instants up to the next one. If these are more than
+/// `most`, it takes fewer instants of each key, and then fewer keys. Each track gets a share by the number of its
+/// telling keys, and at least one pose. With each skin of its nodes, which must outlive the poses, a track is judged at
+/// its keys, those of the joints and instants between; only if these are more than `most`, at some of them and as
+/// above.
 [[nodiscard]] std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Viewer& viewer, std::size_t most);
 
-/// Each of these targets alone, at `steps` weights up to 1.
+/// Returns each of these targets alone, at `steps` weights up to 1.
 [[nodiscard]] PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count, std::size_t steps);
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-/// Vectors that were found for poses of a mesh and are asked for again and again: what is judged for one viewer or one form
-/// is judged in the same poses for the next. Private to workflow.
+/// Keeps vectors that were computed for poses of a mesh and are needed again and again: each viewer and each candidate
+/// is judged in the same poses. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
 #define CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
 
@@ -14,13 +14,13 @@
 
 namespace chronormal::inline internal {
 
-/// Keeps what comes first as long as there is room, since poses come in the same order each time, and nothing would be
-/// found where the oldest had to go. Threads: all functions may run at once.
+/// Keeps the first vectors as long as there is room. Poses come in the same order each time, so that nothing would be
+/// found if the oldest were dropped. Threads: all functions may run at once.
 class PoseMemory {
  public:
   explicit PoseMemory(std::size_t most_bytes) : room_(most_bytes) {}
 
-  /// What was kept for a pose; nullptr: nothing was. It stays as long as the memory does.
+  /// Returns the vectors kept for a pose, or nullptr. They stay as long as the memory does.
   [[nodiscard]] const std::vector<Vec3d>* find(std::span<const double> pose) const {
     const std::vector<double> key(pose.begin(), pose.end());
     const std::scoped_lock lock(mutex_);
@@ -28,7 +28,7 @@ class PoseMemory {
     return found == kept_.end() ? nullptr : &found->second;
   }
 
-  /// Keeps a copy of vectors where there is room for them.
+  /// Keeps a copy of vectors if there is room.
   void keep(std::span<const double> pose, const std::vector<Vec3d>& vectors) {
     const std::size_t bytes = vectors.size() * sizeof(Vec3d) + pose.size() * sizeof(double);
     std::vector<double> key(pose.begin(), pose.end());

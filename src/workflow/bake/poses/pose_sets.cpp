@@ -9,11 +9,11 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Weights that are held: of files with thousands of targets, not all are looked at alone.
+// Limits for the weights that are held: in files with thousands of targets, not all are judged alone.
 constexpr std::size_t kMostWeights = 8000000, kMostSteps = 8, kFewestSteps = 2;
 constexpr unsigned kRigSeed = 3;
 
-// Whether two viewers play these tracks alike.
+// Tells whether two viewers play these tracks alike.
 bool plays_alike(const Viewer& a, const Viewer& b, std::span<const WeightTrack> tracks) {
   if (a.tracks == b.tracks && a.weight_bits == b.weight_bits && a.least_weight == b.least_weight) return true;
   return std::all_of(tracks.begin(), tracks.end(), [&](const WeightTrack& track) {

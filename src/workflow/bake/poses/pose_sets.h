@@ -16,27 +16,28 @@
 
 namespace chronormal::inline internal {
 
-/// Kinds of poses, in each of which a bake must be no worse than the file: its animations and the poses that stand still;
-/// each target alone; and poses that a program sets.
+/// The kinds of poses, in each of which a bake must be no worse than the file: its animations and the poses that stand
+/// still; each target alone; and poses that a program sets.
 enum class PoseKind { kFile, kAlone, kPosed };
 inline constexpr std::size_t kPoseKinds = 3;
 
-/// Poses of one kind, and the viewers that come to show them, as they are numbered in a list.
+/// Poses of one kind, and the viewers that render them, by index in a list.
 struct PoseSet {
   PoseKind kind = PoseKind::kFile;
   std::vector<std::size_t> viewers;
   std::vector<PlayedPose> poses;
-  std::vector<std::uint32_t> numbers = {};  ///< of the judged vertices that these poses move, ascending; none: all
+  std::vector<std::uint32_t> numbers = {};  ///< of the judged vertices that these poses move, ascending; empty: all
 };
 
-/// Lists the poses of a mesh: no more than about `most` of its tracks, as each viewer plays them; the poses that stand
-/// still, and unless animations are all that counts, each target alone; and those that the rig is made for. `numbers` has
-/// for each target the judged vertices that it turns; targets that turn none are in no pose.
+/// Lists the poses of a mesh: about `most` poses of its tracks, as each viewer plays them; the poses that stand still;
+/// each target alone, unless only animations count; and those that the rig is made for. `numbers` has for each target
+/// the judged vertices that it turns; targets that turn none are in no pose.
 [[nodiscard]] std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Viewer> viewers,
                                              std::span<const std::vector<std::uint32_t>> numbers, std::size_t most,
                                              bool animations_only);
 
-/// The same poses with the weights of extra targets, as a viewer plays them of the tracks that will be written.
+/// Returns the same poses with the weights of correction targets, as a viewer plays them from the tracks that will be
+/// written.
 [[nodiscard]] std::vector<SeenPose> with_extra_targets(const PoseSet& set, const MeshWeights& weights,
                                                        const ExtraDrivers& drivers, const Viewer& viewer);
 

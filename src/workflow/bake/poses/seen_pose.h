@@ -1,4 +1,4 @@
-/// A pose as it is on the screen: weights, and the skin that carries what they make. Private to workflow.
+/// A pose as it is rendered: weights, and the skin that transforms the blended normals. Private to workflow.
 ///
 /// Threads    const functions may run at once.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_SEEN_POSE_H_
@@ -21,18 +21,18 @@ namespace chronormal::inline internal {
 struct SeenPose {
   std::vector<double> weights;
   const MeshSkin* skin = nullptr;  ///< nullptr: there is none, or it turns and scales evenly
-  double time = 0;                 ///< of the pose of its joints, where they move
+  double time = 0;                 ///< of the pose of its joints, if they move
 
   friend bool operator==(const SeenPose&, const SeenPose&) = default;
 };
 
-/// Whether a skin carries any of these.
+/// Tells whether any of these poses has a skin.
 [[nodiscard]] bool any_skinned(std::span<const SeenPose> poses);
-/// Poses that are seen as they are, or all through the skin that is given.
+/// Returns poses without a skin, or all with the given one.
 [[nodiscard]] std::vector<SeenPose> seen_through(PoseList poses, const MeshSkin* skin);
-/// The weights of each pose.
+/// Returns the weights of each pose.
 [[nodiscard]] PoseList weights_of(std::span<const SeenPose> poses);
-/// The same, once where only the joints of a skin move.
+/// Returns the same, but once for poses that differ only in the joints of a skin.
 [[nodiscard]] PoseList different_weights_of(std::span<const SeenPose> poses);
 
 /// The skins of some poses, with their joints as they are in each.
@@ -42,12 +42,12 @@ class SkinsInPoses {
 
   [[nodiscard]] bool any() const noexcept { return !skins_.empty(); }
 
-  /// How one vertex is carried in the poses from number `first` on.
+  /// The transforms of one vertex in the poses from number `first` on.
   class Vertex {
    public:
     Vertex(const SkinsInPoses& skins, std::uint32_t vertex, std::size_t first, std::size_t count);
-    /// What is seen of a normal of any length in a pose: the normal itself where no skin carries it, else a unit
-    /// vector, or (0, 0, 0) where nothing is left of it.
+    /// Returns the rendered normal in a pose, for a normal of any length: the normal itself if no skin carries it, and
+    /// otherwise a unit vector, or (0, 0, 0) if nothing is left of it.
     [[nodiscard]] Vec3d seen(SkinRule rule, std::size_t pose, const Vec3d& normal) const;
 
    private:
@@ -58,7 +58,7 @@ class SkinsInPoses {
   };
 
  private:
-  std::vector<std::optional<MeshSkin>> skins_;  // empty where there are none
+  std::vector<std::optional<MeshSkin>> skins_;  // empty if there are none
 };
 
 }  // namespace chronormal::inline internal

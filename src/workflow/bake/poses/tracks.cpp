@@ -23,18 +23,18 @@ struct Knot {
 
 constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
 
-// What had to be clamped is no product any more, or no straight line: nothing is known of the normal.
+// A clamped value no longer gives a product or a straight line, so that the error of the normal is unknown.
 double error_of_clamping(const std::vector<float>& values) {
   for (const float value : values)
     if (std::fabs(value) == static_cast<float>(kMost)) return std::numbers::pi;
   return 0;
 }
 
-// The slopes of a cubic at its ends, per second.
+// Return the slopes of a cubic at its ends, per second.
 double slope_at_start(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[1] - b[0]) / duration : 0; }
 double slope_at_end(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[3] - b[2]) / duration : 0; }
 
-// An extra weight on a piece.
+// Returns a correction weight on a piece.
 Sextic extra_weight(const ExtraWeight& extra, const std::vector<Cubic>& weights) {
   const Sextic product = multiply(weights[extra.i], weights[extra.j]);
   const Sextic raised = multiply(weights[extra.i], Cubic{1, 1, 1, 1});
@@ -43,12 +43,12 @@ Sextic extra_weight(const ExtraWeight& extra, const std::vector<Cubic>& weights)
   return result;
 }
 
-// Its slope where its factors have these values and slopes.
+// Returns its slope, from the values and slopes of its factors.
 double slope_of(const ExtraWeight& extra, double a, double b, double slope_a, double slope_b) {
   return extra.linear * slope_a + extra.quadratic * (slope_a * b + a * slope_b);
 }
 
-// How far the cubic through the ends of p, value and slope, is from p: a bound.
+// Returns a bound of the distance between p and the cubic with the values and slopes of its ends.
 double cubic_error(const Sextic& p) {
   const Cubic cubic = {p[0], p[0] + 2 * (p[1] - p[0]), p[6] - 2 * (p[6] - p[5]), p[6]};
   const Sextic raised = multiply(cubic, Cubic{1, 1, 1, 1});
@@ -57,7 +57,8 @@ double cubic_error(const Sextic& p) {
   return error;
 }
 
-// Whether every extra weight is linear in time between all keys: where one factor holds still, or it has none.
+// Tells whether every correction weight is linear in time between all keys: one factor holds still, or it is no
+// product.
 bool extras_are_linear(const WeightTrack& track, std::span<const ExtraWeight> extras) {
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
     const auto moves = [&](std::size_t target) { return track.value(key, target) != track.value(key + 1, target); };
@@ -117,7 +118,7 @@ class TrackExtender {
         most_keys_(most_keys),
         spline_(track.targets + extras.size()) {}
 
-  // The track as a cubic spline.
+  // Returns the track as a cubic spline.
   ExtendedTrack spline() {
     ExtendedTrack result;
     result.interpolation = GltfInterpolation::kCubicSpline;
@@ -129,7 +130,7 @@ class TrackExtender {
     }
     result.keys = keys_;
     if (keys_ > most_keys_) return result;
-    // The outermost slopes shape nothing; those of the file stay.
+    // The outermost slopes have no effect; those of the file stay.
     if (track_.interpolation == GltfInterpolation::kCubicSpline) {
       for (std::size_t i = 0; i < track_.targets; ++i) spline_.last(i).out = track_.tangent(track_.size() - 1, true, i);
     }
@@ -151,7 +152,7 @@ class TrackExtender {
           extras_[p].at(track_.value(0, extras_[p].i), track_.value(0, extras_[p].j));
   }
 
-  // Adds the key at `to`, and those that are needed before it.
+  // Adds the key at `to`, and the keys that are needed before it.
   void add_pieces(double from, double to, const std::vector<Cubic>& weights, int halvings) {
     double error = 0, rounding = 0;
     for (const ExtraWeight& extra : extras_) {
@@ -159,7 +160,7 @@ class TrackExtender {
       error += extra.gain * cubic_error(exact);
       for (const double b : exact) rounding = std::fmax(rounding, 1e-7 * extra.gain * std::fabs(b));
     }
-    // Times are float32: the new key is where the file can say it is.
+    // Times are float32, so the new key is where the file can place it.
     const double middle = static_cast<double>(static_cast<float>(from + (to - from) / 2));
     if (track_.interpolation == GltfInterpolation::kCubicSpline && error > std::fmax(tolerance_, rounding) &&
         halvings > 0 && from < middle && middle < to) {
@@ -179,7 +180,7 @@ class TrackExtender {
   }
 
   void add_piece(double duration, double to, const std::vector<Cubic>& weights) {
-    // Beyond the limit they are only counted.
+    // Beyond the limit, keys are only counted.
     if (++keys_ > most_keys_) return spline_.clear();
     spline_.add_key(to);
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -232,7 +233,7 @@ ExtendedTrack extended_track(const WeightTrack& track, std::span<const ExtraWeig
     result.error = error_of_clamping(result.values);
     return result;
   }
-  // A spline of one key: only its value counts.
+  // In a spline with one key, only the value counts.
   const std::size_t columns = track.targets + extras.size();
   result.values.assign(3 * columns, 0.0F);
   for (std::size_t i = 0; i < track.targets; ++i) {
@@ -276,7 +277,7 @@ ExtendedTrack straight_track(const WeightTrack& track, std::size_t extra_count, 
     if (key + 1 == track.size()) break;
     const double to = track.keys.times[key + 1];
     for (std::uint32_t piece = 1; piece < pieces[key]; ++piece) {
-      // Times are float32: the new key is where the file can say it is.
+      // Times are float32, so the new key is where the file can place it.
       const auto time = static_cast<float>(from + (to - from) * piece / pieces[key]);
       if (!(times.back() < time && static_cast<double>(time) < to)) continue;
       const double t = (static_cast<double>(time) - from) / (to - from);
