@@ -1,5 +1,5 @@
-// Rows of points become areas and sums in blocks (normals/groups/kernels/vector_areas.h); polygons that are no
-// triangles go one by one.
+// Areas and sums are computed from rows of points in blocks (normals/groups/kernels/vector_areas.h); polygons with more
+// than three corners are computed one by one.
 #include "workflow/bake/sequence/area_sums.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kAreaBlock = 4096;            // elements
-constexpr std::size_t kAreaFaces = 8 * kAreaBlock;  // that are computed together where all are computed first
+constexpr std::size_t kAreaFaces = 8 * kAreaBlock;  // faces that are computed together if all areas are computed first
 
 IndexRange faces_around(const NormalGroups& groups, IndexRange elements) {
   std::uint32_t first = ~std::uint32_t{0}, end = 0;
@@ -27,7 +27,7 @@ IndexRange faces_around(const NormalGroups& groups, IndexRange elements) {
   return end == 0 ? IndexRange{} : IndexRange{first, end - first};
 }
 
-// The normal of a polygon, with components that are nothing but the rounding of its products set to zero.
+// Returns the normal of a polygon; components that are only rounding error of its products become zero.
 Vec3d polygon_area(std::span<const std::uint32_t> face, const double* points) {
   const auto point = [&](std::size_t c) {
     const double* const row = points + kAreaRow * std::size_t{face[c]};

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kKeyBlock = 128;
 
-// An instant: the segment it lies in, or at the end of which, and local t.
+// An instant: the segment that it lies in, or at the end of, and local t.
 struct Instant {
   std::size_t segment = 0;
   double t = 0;
@@ -28,14 +28,15 @@ std::vector<ControlNormals> control_normals(const SequenceNormals& normals, std:
   return result;
 }
 
-// An instant of the sequence, whose keyframe k is k: the last one lies at the end of a segment, all others at a start
-// or within.
+// Returns an instant of the sequence from a time, in which keyframe k is k. The last keyframe lies at the end of a
+// segment, and all others at a start.
 Instant instant_of(double time, std::size_t segments) {
   const std::size_t segment = std::min(static_cast<std::size_t>(time), segments - 1);
   return {segment, time - static_cast<double>(segment)};
 }
 
-// The directions that a key has, one for both sides; of the segment before where an element has none in its own.
+// Returns the directions of elements at a key. An element without a direction in its own segment takes the one from the
+// segment before.
 template <class OfSegment>
 std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment) {
   const std::vector<ControlNormals>& normals = of_segment(at.segment);
@@ -48,14 +49,14 @@ std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment
   return result;
 }
 
-// Holds the keyframes from which the directions at two instants follow, and all between: those of the segments that
-// they lie in or begin, and of the one before the first.
+// Holds the keyframes that determine the directions at two instants and everything between: those of the segments that
+// the instants lie in or begin, and of the one before the first.
 Status hold_between(const SequenceNormals& normals, const Instant& from, const Instant& to) {
   return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
 }
 
-// Judges lines between two instants. Times are those of the sequence: keyframe k is k. Where a keyframe cannot be read,
-// status() says so, and no answer counts.
+// Judges lines between two instants. Times are those of the sequence: keyframe k is k. If a keyframe cannot be read,
+// status() says so, and no answer is valid.
 class LineJudge {
  public:
   LineJudge(const Motion& motion, const SequenceNormals& normals, double tolerance)
@@ -74,9 +75,9 @@ class LineJudge {
 
   [[nodiscard]] const Status& status() const { return status_; }
 
-  // Whether a viewer may draw one line from a to b.
+  // Returns whether a viewer may draw one line from a to b.
   [[nodiscard]] bool may_draw(double a, double b) { return is_straight(a, b) && error(a, b) <= tolerance_; }
-  // The bound of the largest error, radians; above the tolerance it is not followed further.
+  // Returns the bound of the largest error, in radians. It stops at a bound above the tolerance.
   [[nodiscard]] double error(double a, double b) {
     if (!hold(a, b)) return 0;
     const std::vector<Vec3d> from = directions(a), to = directions(b);
@@ -100,7 +101,7 @@ class LineJudge {
     }
     return largest;
   }
-  // Leaves out those of one segment for which no line from a to b is within the tolerance.
+  // Leaves out the elements of one segment for which no line from a to b is within the tolerance.
   void leave_out(double a, double b) {
     if (!hold(a, b)) return;
     const Instant start = at(a);
@@ -118,11 +119,11 @@ class LineJudge {
     for (const auto& flags : left_out_) count += static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
     return count;
   }
-  // Frees what is known of segments before one.
+  // Frees the data of segments before this one.
   void forget_before(std::size_t segment) { segments_.erase(segments_.begin(), segments_.lower_bound(segment)); }
 
  private:
-  // What of a line from a to b lies in a segment: local t, and shares of the line.
+  // The part of a line from a to b that lies in a segment: local t, and shares of the line.
   struct Part {
     double from_t, to_t, from_share, to_share;
   };
@@ -154,7 +155,7 @@ class LineJudge {
   [[nodiscard]] Vec3d position(const Instant& at, std::size_t v) const {
     return lerp(to_double(position(at.segment, v)), to_double(position(at.segment + 1, v)), at.t);
   }
-  // Whether all keyframes between lie on the line.
+  // Returns whether all keyframes between a and b lie on the line.
   [[nodiscard]] bool is_straight(double a, double b) {
     if (!hold(a, b)) return false;
     const Instant start = at(a), end = at(b);
@@ -179,7 +180,8 @@ class LineJudge {
 
 double time_of(std::size_t step) { return static_cast<double>(step) / kKeySteps; }
 
-// The last step in (from, to] that a line from `from` may reach, where it may reach `reached`, or `from` itself.
+// Returns the last step up to `to` that a line from `from` may reach. It may certainly reach `reached`, which may be
+// `from`.
 std::size_t farthest(LineJudge& judge, std::size_t from, std::size_t reached, std::size_t to) {
   std::size_t beyond = to + 1;
   while (beyond - reached > 1) {
@@ -204,7 +206,7 @@ std::size_t next_key(LineJudge& judge, std::size_t from, std::size_t last) {
   return last;
 }
 
-// Into how many pieces each segment has to be cut where all are cut alike: as many as the one that needs most.
+// Returns the number of pieces for each segment if all are split alike: as many as the one that needs most.
 std::size_t even_pieces(LineJudge& judge, std::size_t segments, double tolerance) {
   std::size_t pieces = 1;
   const auto suffices = [&](double start) {

@@ -1,14 +1,14 @@
-/// The fewest keys of a sequence for viewers that draw straight lines between the normals of two keys. Private to
+/// Finds the fewest keys of a sequence for viewers that draw straight lines between the normals of two keys. Private to
 /// workflow.
 ///
-/// Every key has the exact unit normals of its instant, and between two keys a viewer shows normalize((1-t) u_0 + t u_1).
-/// From the first key on, the next one is put as late as possible: as long as the line is within the tolerance of n(t)
-/// at every instant, by a certificate and not by samples (analysis/certificates/line_bound.h), and no vertex leaves the
-/// straight line between the two keys. A key may lie between two keyframes, where the motion is straight and the normal
-/// is known; and keyframes that say nothing new, as a motion has them that was sampled by another program, are left
-/// out. As long as a part of what is right is right as well, no choice has fewer keys.
+/// Every key has the exact unit normals of its instant, and between two keys a viewer renders normalize((1-t) u_0 + t
+/// u_1). From the first key on, each next key is put as late as possible: as long as the line is within the tolerance
+/// of n(t) at every instant, by a certificate and not by samples (analysis/certificates/line_bound.h), and no vertex
+/// leaves the straight line between the two keys. A key may lie between two keyframes, where the motion is straight and
+/// the normal is known. Keyframes that add nothing, as in motions sampled by another program, are left out. If any part
+/// of a valid line is also valid, no choice has fewer keys.
 ///
-/// Times      of a sequence: keyframe k is k, and instants between are in steps of 1 / kKeySteps.
+/// Times   of a sequence: keyframe k is k, and instants between are in steps of 1 / kKeySteps.
 /// Threads    on all cores; the same keys on any number of them
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_FEWEST_KEYS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_FEWEST_KEYS_H_
@@ -26,28 +26,28 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kKeySteps = 64;  ///< of a segment
 
-/// How far a vertex may be off the line where a keyframe is left out, as a share of the diagonal of the motion.
+/// The largest distance of a vertex from the line if a keyframe is left out, as a share of the diagonal of the motion.
 inline constexpr double kKeyPositionShare = 1e-6;
 
 struct SequenceKeys {
   std::vector<std::size_t> at;  ///< ascending, in steps: keyframe k is k kKeySteps
-  double largest_error = 0;     ///< radians: no normal is off by more at any instant, but for those that are left out
-  std::size_t beyond = 0;  ///< (normal, segment) pairs left out: not even lines of one step are within the tolerance
-  std::size_t even = 0;    ///< how many keys it takes where all keyframes stay, and all segments are cut alike; at most
+  double largest_error = 0;     ///< radians: the largest error of a normal at any instant, without those left out
+  std::size_t beyond = 0;  ///< (normal, segment) pairs left out, because even lines of one step exceed the tolerance
+  std::size_t even = 0;    ///< the number of keys if all keyframes stay, and all segments are split alike; at most
                            ///< kKeySteps pieces are tried
 };
 
-/// Chooses keys. tolerance: radians, above 0. progress gets the segment that is reached. Reads all keyframes three times,
-/// and holds as many as lie between two keys, with a few around them; key_pose() holds three. Errors, of both: those of
+/// Chooses keys. tolerance is in radians, and above 0. progress gets the segment reached. Reads all keyframes three
+/// times, and holds those between two keys, with a few around them; key_pose() holds three. Errors of both: those of
 /// reading keyframes.
 [[nodiscard]] Result<SequenceKeys> fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
                                                const std::function<void(std::size_t segment)>& progress);
 
-/// What a key has: the positions of its instant, as deltas against keyframe 0 in float32, and the directions of all
+/// The data of a key: the positions of its instant, as float32 deltas from keyframe 0, and the directions of all
 /// elements.
 struct KeyPose {
   std::vector<float> deltas;
-  std::vector<Vec3d> directions;  ///< (0, 0, 0) where there is none in the segment
+  std::vector<Vec3d> directions;  ///< (0, 0, 0) if there is none in the segment
 };
 [[nodiscard]] Result<KeyPose> key_pose(const SequenceNormals& normals, std::size_t step);
 

@@ -1,17 +1,16 @@
-// Bakes a sequence. A viewer shows normalize(N + sum_k w_k D_k). With hat weights over the keys and t (1 - t) on one more
-// target for each segment that is eq. 41, so that the normals are exact (docs/theory.md, section 15).
+// Bakes a sequence. A viewer renders normalize(N + sum_k w_k D_k). With hat weights over the keys and t (1 - t) on one
+// more target for each segment, that is eq. 41, so that the normals are exact (docs/theory.md, section 15).
 //
-//     AreaSums            sums of the areas of faces around elements, in blocks                area_sums
-//     SequenceNormals     normals at keys, and their bends between, from a stream             sequence_normals
-//     sequence_elements   base normals, and which of them the first key cannot have           sequence_deltas
-//     *_deltas, each_exact_segment   what each target adds to the base, as arrays             sequence_deltas
-//     unit_*              the same of what every viewer shows alike                             harmless_sequence
-//     fewest_keys         at which instants there have to be keys                             fewest_keys
-//     SequenceFile        the arrays, the weights that drive them, and the mark, as a GLB     sequence_file
+//     AreaSums                        sums of the areas of faces around elements, in blocks          area_sums
+//     SequenceNormals                 normals at keys, and their bends between, from a stream       sequence_normals
+//     sequence_elements               base normals, and those that the first key cannot have        sequence_deltas
+//     *_deltas, each_exact_segment    the deltas of each target, as arrays                          sequence_deltas
+//     unit_*                          deltas that every viewer renders alike                        harmless_sequence
+//     fewest_keys                     the instants that need keys                                   fewest_keys
+//     SequenceFile                    the arrays, the weights that drive them, and the mark, as a GLB   sequence_file
 //
-// These are passes over the keyframes, of which a pass holds two at a time, and for keys those
-// between two of these. The arrays that they make go to a spool. So memory does not grow with the number of keyframes;
-// it does with fits of a weighting.
+// These are passes over the keyframes. A pass holds two keyframes at a time or, to choose keys, those between two keys.
+// The arrays go to a spool. So memory does not grow with the number of keyframes; only fits of a weighting do.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,8 +44,8 @@ Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options)
                               .normal_of_corner = options.normal_of_corner});
 }
 
-// The weighting that the stored normals of keyframe 0 follow clearly, or else area. What it would take is weighed, too:
-// fits of all segments are held in memory.
+// Returns the weighting that the stored normals of keyframe 0 clearly follow, or else area. It also returns area if the
+// fits of all segments, which are held in memory, would take too much.
 Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const BakeOptions& options) {
   constexpr double kMostBytes = 1 << 30, kBytesOfFit = 80;
   const Motion& motion = stream.motion();
@@ -67,14 +66,14 @@ Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const B
       .detected;
 }
 
-// Times as the file has them: float32, and none before 0.
+// Returns the times as the file stores them: float32, and none before 0.
 Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::string>& warnings) {
   const double shift = std::max(-motion.keyframes[0].time, 0.0);
   if (shift > 0) warnings.push_back("time starts at 0 in the file, and not before it");
   std::vector<float> times;
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
     const auto time = static_cast<float>(keyframe.time + shift);
-    // The slopes of weights between two keys are up to 1 over the time between them.
+    // The slopes of weights between two keys are up to 1 over the time between them, which float32 must hold.
     constexpr double kShortest = 1 / static_cast<double>(std::numeric_limits<float>::max());
     const bool is_after = times.empty() || double{time} - double{times.back()} > kShortest;
     if (!is_after || !std::isfinite(time))
@@ -85,13 +84,13 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   return times;
 }
 
-// Elements of which none lacks room.
+// Wraps elements that are not limited by compressors.
 Result<HarmlessElements> without_limits(Result<std::vector<SequenceElement>> elements) {
   if (!elements) return elements.error();
   return HarmlessElements{std::move(elements).value(), 0};
 }
 
-// Counts the polygons of which some triangles look the other way: those that cross themselves.
+// Counts the polygons with triangles that face the other way: polygons that cross themselves.
 std::size_t count_crossing(const Topology& topology, const std::vector<float>& positions) {
   const auto at = [&](std::uint32_t v) {
     return to_double(VectorView<const float>::packed(positions.data(), topology.vertex_count())[v]);
@@ -112,7 +111,7 @@ std::size_t count_crossing(const Topology& topology, const std::vector<float>& p
   return count;
 }
 
-// The largest bound of the fits of a weighting, in degrees; 0 for areas.
+// Returns the largest bound of the fits of a weighting, in degrees; 0 for areas.
 double largest_bound(const SequenceNormals& normals) {
   double largest = 0;
   for (const std::vector<double>& bounds : normals.bounds()) {
@@ -133,8 +132,8 @@ void report_elements(const std::vector<SequenceElement>& elements, BakeEncoding 
                               "that keyframe 0 has a target too, whose weight is 1 at rest");
 }
 
-// Adds the targets of exact to the file, and notes which segments bend. Returns false where the elements are not final,
-// and a segment says that they should be others.
+// Adds the targets of exact to the file, and notes which segments bend. Returns false if the elements are not final,
+// and a segment shows that they should be others.
 Result<bool> try_exact(const SequenceNormals& normals, const std::vector<SequenceElement>& elements, bool are_final,
                        const Step& step, SequenceTargets& targets, SequenceFile& file) {
   return each_exact_segment(normals, elements, are_final, [&](std::size_t s, const ExactSegment& values) {
@@ -153,8 +152,8 @@ bool any_frees_base(const std::vector<SequenceElement>& elements) {
   return std::any_of(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
 }
 
-// The same in one pass over the keyframes where the first segment says what the elements are, which it does of almost
-// every sequence; else in three.
+// Does the same in one pass over the keyframes if the first segment determines the elements, as it does for almost
+// every sequence, and otherwise in three.
 Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>& elements, const Step& step,
                    SequenceTargets& targets, SequenceFile& file) {
   std::size_t furthest = 0;
@@ -178,7 +177,7 @@ Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>&
   return Success{};
 }
 
-// Adds the targets of endpoint to the file. Returns the largest angle that is left, in degrees.
+// Adds the targets of endpoint to the file. Returns the largest remaining angle, in degrees.
 Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                               const Step& step, SequenceFile& file) {
   EndDeltas end{std::vector<Vec3d>(elements.size()), 0};
@@ -195,7 +194,7 @@ Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<
   return largest;
 }
 
-// The targets that all of these viewers have room for.
+// Returns the number of targets that all of these viewers have room for.
 std::size_t room_for_targets(std::span<const Viewer> viewers) {
   std::size_t room = std::numeric_limits<std::size_t>::max();
   for (const Viewer& viewer : viewers)
@@ -214,7 +213,7 @@ Status each_unit_segment(const SequenceNormals& normals, const std::vector<Seque
   });
 }
 
-// Of all segments those whose bends gain most, as many as there is room for.
+// Chooses the segments whose bends reduce errors most, as many as there is room for.
 Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                                            std::size_t room) {
   const std::size_t segments = normals.keys() - 1;
@@ -231,7 +230,7 @@ Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const
   return is_bent;
 }
 
-// Adds the targets of harmless to the file, and notes which segments bend. Returns the largest angle that is left, in
+// Adds the targets of harmless to the file, and notes which segments bend. Returns the largest remaining angle, in
 // degrees.
 Result<double> write_harmless(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                               std::span<const Viewer> viewers, const Step& step, SequenceTargets& targets,
@@ -263,7 +262,7 @@ Result<double> write_harmless(const SequenceNormals& normals, const std::vector<
   return kDegreesPerRadian * largest;
 }
 
-// Chooses keys, and adds a target for each but the first. Returns the times of all of them.
+// Chooses keys, and adds a target for each but the first. Returns the times of all keys.
 Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormals& normals,
                                       const std::vector<SequenceElement>& elements, const std::vector<float>& keyframes,
                                       double tolerance, const Step& step, SequenceFile& file, SequenceBake& report) {
@@ -321,7 +320,8 @@ void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std
                          " takes: " + std::string(viewer.beyond));
 }
 
-// A sequence has no choice of candidates: it is made for the viewers that are named, or for all.
+// Moves all viewers to the named ones: a sequence has no choice of candidates, and is made for the named viewers, or
+// for all.
 BakeOptions for_all_viewers(const BakeOptions& asked) {
   BakeOptions options = with_viewers(asked);
   options.viewers.insert(options.viewers.end(), options.spared.begin(), options.spared.end());
@@ -329,7 +329,7 @@ BakeOptions for_all_viewers(const BakeOptions& asked) {
   return options;
 }
 
-// Puts the arrays of the file into the spool, and gives all of its bytes to take.
+// Writes the arrays of the file to the spool, and passes all bytes of the file to `take`.
 Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked, Spool spool,
                                  const GlbBuilder::Take& take) {
   const BakeOptions options = for_all_viewers(asked);
@@ -366,7 +366,7 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   if (!times) return times.error();
 
   const bool is_exact = encoding == BakeEncoding::kExact;
-  if (!is_exact && normals.bounds().empty()) {  // exact does it as it goes, and fits did
+  if (!is_exact && normals.bounds().empty()) {  // exact checks deltas while it writes, and fits did before
     if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
   }
   const bool are_units = encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kKeys;

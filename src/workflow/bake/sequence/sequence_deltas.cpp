@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kBlock = 256;
 
-// Of the length of its normal at key 0: an element whose normals are smaller, or larger, frees the base.
+// Relative to the length of its normal at key 0: an element with smaller or larger normals frees the base.
 constexpr double kMuchSmaller = 0x1p-10, kMuchLarger = 0x1p40;
 
 // The lengths of the control normals of an element, over segments.
@@ -37,8 +37,8 @@ void look_at(const ControlNormals& n, bool is_first, SequenceElement& element, S
   sizes.largest = std::max(sizes.largest, size);
 }
 
-// With N = n_0 / |n_0|, float32 keeps the directions at other keys only where the normals there are not much smaller;
-// and where n_0 = 0 there is no such N.
+// Decides N of an element. With N = n_0 / |n_0|, float32 keeps the directions at other keys only if the normals there
+// are not much smaller; and if n_0 = 0 there is no such N.
 void settle(const Sizes& sizes, SequenceElement& element) {
   constexpr double kWidest = 0x1p-60;
   const auto& [at_key_0, smallest, largest] = sizes;
@@ -50,7 +50,7 @@ void settle(const Sizes& sizes, SequenceElement& element) {
   element.scale = element.frees_base ? std::max(smallest, kWidest * largest) : at_key_0;
 }
 
-// Whether a segment leaves an element as settle() made it from segments before.
+// Returns whether a segment leaves an element as settle() made it from the segments before.
 bool is_as_supposed(const SequenceElement& element, const ControlNormals& n) {
   if (element.has_none) return rounded_to_float(unit_normal_at(n, 0).vector) == Vec3d{};
   if (element.frees_base) return false;
@@ -62,14 +62,14 @@ bool is_as_supposed(const SequenceElement& element, const ControlNormals& n) {
 }
 
 Vec3d key_delta(const SequenceElement& element, const Vec3d& at_key) {
-  // What is left of rounding N would only fill the file.
+  // A delta that is only the rounding of N would needlessly fill the file.
   constexpr double kNothing = 0x1p-23;
   const Vec3d delta = (1 / element.scale) * at_key - element.normal;
   return !element.has_none && !(max_abs(delta) < kNothing) ? delta : Vec3d{};
 }
 
 Vec3d bend_delta(const SequenceElement& element, const Vec3d& from, const Vec3d& to, const Vec3d& bend) {
-  // A bend that turns nothing by more than 1e-8 rad is none (degree() has the same limit).
+  // A bend that turns no normal by more than 1e-8 rad is dropped (degree() has the same limit).
   constexpr double kNothing = 0x1p-28;
   const double size = std::max(max_abs(from), max_abs(to));
   return !(max_abs(bend) <= kNothing * size) ? (-1 / element.scale) * bend : Vec3d{};
@@ -79,7 +79,7 @@ VectorView<float> view_of(std::vector<float>& values) {
   return VectorView<float>::packed(values.data(), values.size() / 3);
 }
 
-// The elements that the first `segments` of all segments say.
+// Returns the elements as the first `segments` segments determine them.
 Result<std::vector<SequenceElement>> elements_of(const SequenceNormals& normals, std::size_t segments) {
   std::vector<SequenceElement> elements(normals.elements());
   std::vector<Sizes> sizes(normals.elements());
@@ -149,8 +149,8 @@ Result<bool> each_exact_segment(const SequenceNormals& normals, std::span<const 
   return true;
 }
 
-// The direction in a segment depends on the ratio of the lengths at its two keys alone, so that every segment can have
-// its own best one: they multiply up.
+// Only the ratio of the lengths at its two keys affects the directions in a segment. So every segment can have its own
+// best ratio, and lengths are products of the ratios.
 EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentForm& form, std::span<const double> bounds,
                      const std::vector<Vec3d>& before) {
   constexpr double kShortest = 0x1p-10, kLongest = 0x1p16;  // beyond, float32 sums lose digits

@@ -1,4 +1,4 @@
-// Puts a sequence into a GLB file: targets, tracks of weights, and marks in extras.
+// Writes a sequence to a GLB file: targets, tracks of weights, and marks in extras.
 #include "workflow/bake/sequence/sequence_file.h"
 #include "motion/triangles.h"
 
@@ -58,7 +58,7 @@ SequenceVertices make_vertices(const Topology& topology, const NormalGroups& gro
   return result;
 }
 
-// A vector for each vertex of a file.
+// Writes a vector for each vertex of a file.
 template <class VectorAt>
 std::span<const float> fill_vectors(std::size_t count, std::vector<float>& room, const VectorAt& vector_at) {
   constexpr std::size_t kVectorBlock = 8192;
@@ -68,14 +68,14 @@ std::span<const float> fill_vectors(std::size_t count, std::vector<float>& room,
   return room;
 }
 
-// The bend of a segment, as an index into bent_segments; nothing where it has none.
+// Returns the bend of a segment, as an index into bent_segments; nothing if it has none.
 std::optional<std::size_t> bend_of_segment(const SequenceTargets& targets, std::size_t s) {
   const auto found = std::lower_bound(targets.bent_segments.begin(), targets.bent_segments.end(), s);
   if (found == targets.bent_segments.end() || *found != s) return std::nullopt;
   return static_cast<std::size_t>(found - targets.bent_segments.begin());
 }
 
-// Of exact: hats over the keys of the sequence, and t (1 - t) in bent segments.
+// Returns the track for the encoding exact: hats over the keys of the sequence, and t (1 - t) in bent segments.
 SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<float>& times) {
   enum Row : std::size_t { kIn, kValue, kOut, kRows };
   const auto fill = [&targets, &times](std::size_t row, std::span<float> values) {
@@ -86,7 +86,7 @@ SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<flo
     if (row % kRows == kValue) return set_key(key, 1);
     const bool is_in = row % kRows == kIn;
     if (key == (is_in ? 0 : targets.keys - 1)) return;
-    // Per second, with the length of the segment as a reader computes it from the times in the file.
+    // Slopes are per second, with the length of the segment that a reader computes from the times in the file.
     const std::size_t s = is_in ? key - 1 : key;
     const auto slope = static_cast<float>(1 / (double{times[s + 1]} - double{times[s]}));
     set_key(s, -slope);
@@ -96,7 +96,7 @@ SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<flo
   return {times, kRows * targets.keys, targets.count(), fill};
 }
 
-// Of the others: the hats, and in bent segments 4 t (1 - t) at keys between.
+// Returns the track for the other encodings: hats and, in bent segments, 4 t (1 - t) at keys between.
 SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<float>& times) {
   struct TrackKey {
     std::size_t key;
@@ -133,8 +133,8 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
   return track;
 }
 
-// The weight t (1 - t), or 4 times that, as a product of the weights of two keys. That of key 0, where it has no
-// target, is 1 minus all of the others.
+// Describes the weight t (1 - t), or 4 times that, as a product of the weights of two keys. If key 0 has no target, its
+// weight is 1 minus all others.
 GltfBakeMark mark_of(const SequenceTargets& targets) {
   GltfBakeMark mark{targets.encoding, true, {}};
   const double factor = targets.encoding == BakeEncoding::kHarmless ? 4 : 1;

@@ -24,8 +24,8 @@
 
 namespace chronormal::inline internal {
 
-/// Which target stands for what: first one for each key, key 0 only where some normal needs it, then one for each
-/// segment in which normals bend.
+/// The meaning of the targets: first one for each key (key 0 only if some normal needs it), then one for each segment
+/// in which normals bend.
 struct SequenceTargets {
   BakeEncoding encoding = BakeEncoding::kExact;
   bool has_key_0 = false;
@@ -34,31 +34,33 @@ struct SequenceTargets {
 
   [[nodiscard]] std::size_t of_keys() const noexcept { return keys - (has_key_0 ? 0U : 1U); }
   [[nodiscard]] std::size_t count() const noexcept { return of_keys() + bent_segments.size(); }
-  /// The target of a key, which must have one.
+  /// Returns the target of a key, which must have one.
   [[nodiscard]] std::size_t of_key(std::size_t key) const noexcept { return key - (has_key_0 ? 0U : 1U); }
 };
 
-/// The vertices of a file. Those of the motion come first, and behind them their copies, one for each further normal.
+/// The vertices of a file. The vertices of the motion come first, and then their copies, one for each further normal.
 struct SequenceVertices {
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
-  std::vector<std::uint32_t> vertex;     ///< of each: that of the motion
-  std::vector<std::uint32_t> element;    ///< of each: whose normal it shows; kNone where it has no face
+  std::vector<std::uint32_t> vertex;     ///< of each: its vertex in the motion
+  std::vector<std::uint32_t> element;    ///< of each: the element whose normal it shows; kNone if it has no face
   std::vector<std::uint32_t> of_corner;  ///< of each corner of the motion
 
-  bool are_of_motion = false;  ///< whether there are no copies
-  bool are_elements = false;   ///< whether vertex i shows the normal of element i, and there are no other elements
+  bool are_of_motion = false;  ///< there are no copies
+  bool are_elements = false;   ///< vertex i shows the normal of element i, and there are no other elements
 
   [[nodiscard]] std::size_t size() const noexcept { return vertex.size(); }
-  /// Positions of the motion, (V, 3), for each vertex of the file: those that were given, or new ones in `room`.
+  /// Returns the position of each vertex of the file, from those of the motion, (V, 3): the given array, or a new one
+  /// in `room`.
   [[nodiscard]] std::span<const float> positions(std::span<const float> of_motion, std::vector<float>& room) const;
-  /// Vectors of elements, (E, 3), for each vertex of the file, and `none` for those without a face. As above.
+  /// Returns the vector of each vertex of the file, from those of elements, (E, 3), and `none` for vertices without a
+  /// face: the given array, or a new one in `room`.
   [[nodiscard]] std::span<const float> vectors(std::span<const float> of_elements, const Vec3f& none,
                                                std::vector<float>& room) const;
 };
 
-/// The keys of an animation, and the values of its weights in rows, with one value for each target. Each key has a row;
-/// of a cubic spline it has three: in-tangents, weights and out-tangents. Rows are computed one by one, since their
+/// The keys of an animation, and the values of its weights in rows, with one value for each target. Each key has one
+/// row or, in a cubic spline, three: in-tangents, weights and out-tangents. Rows are computed one by one, since their
 /// number and their width both grow with the number of keys.
 struct SequenceTrack {
   std::vector<float> times;
@@ -66,15 +68,15 @@ struct SequenceTrack {
   std::function<void(std::size_t row, std::span<float> values)> fill;  ///< writes one row over zeros
 };
 
-/// The file while it grows, target by target. Its arrays go to the spool as they come.
+/// The file while it grows, target by target. Its arrays go to the spool as they are made.
 class SequenceFile {
  public:
-  /// Writes key 0, whose positions are `base`, with the normals of the elements, and polygons as fans of triangles.
-  /// (Their normals are those of the polygons all the same.) The topology must outlive this.
+  /// Writes key 0, whose positions are `base`, with the normals of the elements, and polygons as fans of triangles
+  /// (their normals stay those of the polygons). The topology must outlive this.
   SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
                std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool);
 
-  /// Makes the node stand at the origin from which positions count.
+  /// Places the node at the origin from which positions count.
   void set_origin(const std::array<double, 3>& origin) { origin_ = origin; }
 
   /// Begins again with other elements, as if nothing had been added.
@@ -82,25 +84,25 @@ class SequenceFile {
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
 
-  /// Adds a target for a key, with the deltas of its positions against key 0 as SequenceNormals has them; none for
-  /// key 0 itself. Normals are those of elements, (E, 3) in float32.
+  /// Adds a target for a key, with the deltas of its positions from key 0 as SequenceNormals returns them; none for key
+  /// 0 itself. normals are those of elements, (E, 3) in float32.
   void add_key(std::size_t key, std::span<const float> positions, std::span<const float> normals);
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
-  /// Adds a target for the bend of a segment; there may be several. They stand behind all other targets, whenever they
+  /// Adds a target for the bend of a segment; there may be several. Bends come after all other targets, whenever they
   /// are added.
   void add_bend(std::size_t segment, std::span<const float> normals);
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
 
-  /// Errors: kInvalidInput where the file has too many bytes already, or would have with so many more; those of the
-  /// spool.
+  /// Checks the size of the file. Errors: kInvalidInput if the file has too many bytes, or would have with `more`;
+  /// those of the spool.
   [[nodiscard]] Status check(std::uint64_t more = 0) const;
-  /// Adds the animation, puts the file together and gives its bytes to take. Returns how many there are. targets must
-  /// say what was added. Errors: those of GlbBuilder::finish().
+  /// Adds the animation, puts the file together and passes its bytes to `take`. Returns their number. targets must
+  /// describe what was added. Errors: those of GlbBuilder::finish().
   [[nodiscard]] Result<std::size_t> finish(const SequenceTargets& targets, const std::vector<float>& times,
                                            const GlbBuilder::Take& take);
 
  private:
-  // rest are the weights of the mesh that no animation plays.
+  // Takes in `rest` the weights of the mesh that no animation plays.
   [[nodiscard]] Result<std::size_t> finish(const SequenceTrack& track, std::string_view interpolation,
                                            const GltfBakeMark& mark, const std::vector<int>& rest,
                                            const GlbBuilder::Take& take);
@@ -115,7 +117,7 @@ class SequenceFile {
   void begin(std::span<const float> base, std::span<const SequenceElement> elements);
   [[nodiscard]] Target target(std::string name, std::size_t positions, std::span<const float> normals);
   [[nodiscard]] std::size_t add_positions(std::span<const float> of_motion);
-  // The accessor that targets share which move nothing.
+  // Returns the accessor that all targets share that move nothing.
   [[nodiscard]] std::size_t zero_positions();
   [[nodiscard]] std::span<const float> rounded(std::span<const Vec3d> of_elements);
 
@@ -128,7 +130,7 @@ class SequenceFile {
   std::size_t triangles_ = 0, base_positions_ = 0, base_normals_ = 0;  // accessors
   std::optional<std::size_t> zero_positions_;
   std::vector<Target> targets_, bends_;
-  std::vector<float> rounded_, room_;  // memory for what goes into the file
+  std::vector<float> rounded_, room_;  // scratch memory for arrays of the file
 };
 
 }  // namespace chronormal::inline internal

@@ -18,9 +18,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kVertexBlock = 8192;  // that one task takes
+constexpr std::size_t kVertexBlock = 8192;  // in one task
 
-// Writes coordinate_at(i) for the three coordinates of each vertex: i is the place of the coordinate.
+// Writes coordinate_at(i) for the three coordinates of each vertex; i is the index of the coordinate.
 template <class CoordinateAt>
 void write_rows(std::size_t vertices, PointRows& rows, const CoordinateAt& coordinate_at) {
   constexpr std::size_t kRow = 4;
@@ -32,7 +32,7 @@ void write_rows(std::size_t vertices, PointRows& rows, const CoordinateAt& coord
   });
 }
 
-// The float32 delta of a coordinate, as a file has it.
+// Returns the float32 delta of a coordinate, as a file stores it.
 float delta_of(float position, float base) { return position - base; }
 
 bool is_far(float delta) {
@@ -81,7 +81,7 @@ Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> del
 }
 
 Status SequenceNormals::fit(Weighting weighting) {
-  // Fits have the length of the area at both ends, so that neighbours agree but for rounding.
+  // Fits have the length of the area at both ends, so that neighbours agree up to rounding.
   constexpr double kSame = 1e-6;
   for (std::size_t s = 0; s + 1 < keys(); ++s) {
     if (Status status = hold(s, s + 1); !status) return status;
@@ -133,8 +133,8 @@ void SequenceNormals::write_displacements(std::size_t segment, PointRows& rows) 
 
 namespace {
 
-// Makes the sums of the areas that the points a + b give, in integers, of two arrays that are made when they are first
-// needed. (At t = 1/2 of a segment from a to b, points are half of a + b, and areas a fourth.)
+// Returns a function for the exact sums of the areas at the points a + b, in integers; both arrays are made when they
+// are first needed. (At t = 1/2 of a segment from a to b, points are half of a + b, and areas a fourth.)
 template <class MakeA, class MakeB>
 AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups, const MakeA& make_a,
                            const MakeB& make_b) {
@@ -154,7 +154,7 @@ AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups,
   };
 }
 
-// Multiplies the deltas of a keyframe by 1 or -1, on this thread.
+// Returns the deltas of a keyframe times 1 or -1, computed on this thread.
 std::vector<float> signed_deltas(std::span<const float> positions, std::span<const float> base, float sign) {
   std::vector<float> result(base.size());
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = sign * delta_of(positions[i], base[i]);
@@ -193,7 +193,7 @@ std::vector<Vec3d> SequenceNormals::computed_at_key(std::size_t key) const {
   return vector_areas(positions, exact_at_key(key));
 }
 
-// d = sum of de x df is twice the vector area of the polygon that the displacements of the corners make.
+// The bend d, the sum of de x df, is twice the vector area of the polygon that the displacements of the corners make.
 std::vector<Vec3d> SequenceNormals::computed_bends(std::size_t segment) const {
   if (!fitted_bends_.empty()) return fitted_bends_[segment];
   PointRows displacements;

@@ -1,8 +1,8 @@
-/// The normals of a sequence in the form of eq. 40: one for each key, and one bend for each segment. Private to
-/// workflow.
+/// Computes the normals of a sequence in the form of eq. 40: one for each key, and one bend for each segment. Private
+/// to workflow.
 ///
-/// A viewer sees the positions base + delta, where both are float32: normals are those of these positions, in double.
-/// (The positions of the motion differ from them by half an ulp of the delta.)
+/// A viewer sees the positions base + delta, both in float32: normals are computed from these positions, in double.
+/// (They differ from the positions of the motion by half an ulp of the delta.)
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_
 
@@ -24,54 +24,54 @@ namespace chronormal::inline internal {
 
 class SequenceNormals {
  public:
-  /// Reads key 0, and all keyframes to fit all segments where the weighting is not that of areas. Where `stored` has
-  /// the normals of the corners at key 0, (corners, 3), what they add to those of the geometry is added at every
-  /// instant: the rotation there. Stream and groups must outlive this. Errors: kUsage where the fits of two neighbouring
-  /// segments do not agree at their key, which a hat cannot show; those of check_deltas(), where there are fits, and of
-  /// the stream. Memory: that of key 0, and of the fits.
+  /// Reads key 0 and, if the weighting is not area, all keyframes to fit all segments. If `stored` has the normals of
+  /// the corners at key 0, (corners, 3), their rotation from the geometry's normals there is applied at every instant.
+  /// Stream and groups must outlive this. Errors: kUsage if the fits of two neighbouring segments do not agree at their
+  /// key, which a hat cannot represent; those of check_deltas(), if there are fits, and of the stream. Memory: for key
+  /// 0, and for the fits.
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting, VectorView<const float> stored = {});
 
-  /// Holds the positions of keys first to last, until the next hold. The functions below are about keys and segments
-  /// that are held. Errors: those of the stream.
+  /// Holds the positions of keys first to last, until the next hold. The functions below need the keys and segments
+  /// that they are called for to be held. Errors: those of the stream.
   [[nodiscard]] Status hold(std::size_t first, std::size_t last) const { return stream_->hold(first, last); }
 
-  /// Reads the first `keys` keyframes. Errors: kInvalidInput where a delta is too large for float32; those of the
-  /// stream.
+  /// Reads and checks the first `keys` keyframes. Errors: kInvalidInput if a delta is too large for float32; those of
+  /// the stream.
   [[nodiscard]] Status check_deltas(std::size_t keys) const;
-  /// The same error of one key, from its deltas.
+  /// Checks one key in the same way, from its deltas.
   [[nodiscard]] static Status check_deltas(std::size_t key, std::span<const float> deltas);
 
-  /// The positions of key 0: (V, 3).
+  /// Returns the positions of key 0: (V, 3).
   [[nodiscard]] const std::vector<float>& base() const noexcept { return base_; }
-  /// The float32 deltas of a key against key 0, as a file has them: (V, 3).
+  /// Returns the float32 deltas of a key from key 0, as a file stores them: (V, 3).
   [[nodiscard]] std::vector<float> deltas(std::size_t key) const;
-  /// The same into memory that is there.
+  /// Writes them into existing memory.
   void deltas(std::size_t key, std::vector<float>& result) const;
 
-  /// Whether stored normals add anything to those of the geometry.
+  /// Tells whether stored normals differ from those of the geometry.
   [[nodiscard]] bool has_offsets() const noexcept { return !turns_.empty(); }
 
-  /// n of every element at a key, and d of every element in a segment. O(corners), on all cores; or a copy.
+  /// Return n of every element at a key, and d of every element in a segment. O(corners), on all cores; or a copy.
   [[nodiscard]] std::vector<Vec3d> at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> bends(std::size_t segment) const;
 
-  /// Memory that is used again from one segment to the next.
+  /// Memory that is reused from one segment to the next.
   struct Rows {
     PointRows positions, displacements;
   };
-  /// Calls body(elements, n, d) for blocks of elements on all cores: their normals at the second key of a segment, and
-  /// their bends in the segment.
+  /// Calls body(elements, n, d) for blocks of elements on all cores, with their normals at the second key of a segment,
+  /// and their bends in the segment.
   void each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
 
   [[nodiscard]] std::size_t keys() const noexcept { return motion().keyframes.size(); }
   [[nodiscard]] std::size_t elements() const noexcept { return groups_->size(); }
-  /// A bound of what the fits are off, radians: pi where nothing could be proven. One for each segment and element;
-  /// empty for areas.
+  /// Returns bounds of the error of the fits, in radians, for each segment and element; pi if nothing could be proven.
+  /// Empty for areas.
   [[nodiscard]] const std::vector<std::vector<double>>& bounds() const noexcept { return bounds_; }
 
  private:
-  // The normals of the geometry.
+  // Compute the normals of the geometry.
   [[nodiscard]] std::vector<Vec3d> computed_at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> computed_bends(std::size_t segment) const;
   void each_computed_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
@@ -83,10 +83,10 @@ class SequenceNormals {
 
   [[nodiscard]] const Motion& motion() const noexcept { return stream_->motion(); }
   [[nodiscard]] Status fit(Weighting weighting);
-  // The points at a key, and how far they move in a segment.
+  // Write the points at a key, and their displacements in a segment.
   void write_positions(std::size_t key, PointRows& rows) const;
   void write_displacements(std::size_t segment, PointRows& rows) const;
-  // Exact sums of areas at a key, and of the displacements in a segment, for those that cancel.
+  // Return exact sums of areas at a key, and of the displacements in a segment, for elements whose areas cancel.
   [[nodiscard]] AreaSums::Exact exact_at_key(std::size_t key) const;
   [[nodiscard]] AreaSums::Exact exact_bend(std::size_t segment) const;
   [[nodiscard]] std::vector<Vec3d> vector_areas(const PointRows& points, const AreaSums::Exact& exact) const;
@@ -96,11 +96,11 @@ class SequenceNormals {
   AreaSums sums_;
   std::vector<float> base_;
   std::vector<std::vector<Vec3d>> fitted_keys_, fitted_bends_;
-  std::vector<ShownTurn> turns_;  // of elements; empty where none adds anything
+  std::vector<ShownTurn> turns_;  // of elements; empty if no stored normal differs
   std::vector<std::vector<double>> bounds_;
 };
 
-/// The control normals of an element, from its normals at both keys of a segment and its bend there (eq. 5).
+/// Returns the control normals of an element, from its normals at both keys of a segment and its bend there (eq. 5).
 [[nodiscard]] inline ControlNormals control_normals_of(const Vec3d& from, const Vec3d& to, const Vec3d& bend) noexcept {
   return {from, 0.5 * (from + to - bend), to};
 }
@@ -114,8 +114,8 @@ struct SegmentForm {
   }
 };
 
-/// Calls body(segment, form) for the first `segments`, one after the other, until it returns an error. Holds the keys
-/// of one segment at a time. Errors: those of body, and of the stream.
+/// Calls body(segment, form) for the first `segments` segments, one after the other, until it returns an error. Holds
+/// the keys of one segment at a time. Errors: those of body, and of the stream.
 template <class Body>
 [[nodiscard]] Status each_segment(const SequenceNormals& normals, std::size_t segments, const Body& body) {
   SegmentForm form;
@@ -135,7 +135,7 @@ template <class Body>
   return Success{};
 }
 
-/// The same for all segments.
+/// Does the same for all segments.
 template <class Body>
 [[nodiscard]] Status each_segment(const SequenceNormals& normals, const Body& body) {
   return each_segment(normals, normals.keys() - 1, body);

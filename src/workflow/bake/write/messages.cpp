@@ -15,14 +15,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Viewers that keep morphed attributes in vertex attributes have room for so many (WebGL 1, the least that the
+// The room for morphed attributes in viewers that keep them in vertex attributes (WebGL 1, the least that the
 // specification asks for).
 constexpr std::size_t kMorphedAttributes = 8;
-// A file that is so many times as large, or half as many with more than a few correction targets, is told of.
+// A file that grows by this factor, or by a smaller one with more than a few correction targets, gets a warning.
 constexpr double kLargeTimes = 2.5, kLargeTimesOfMany = 2;
 constexpr std::size_t kFewExtras = 8;
 
-// To hundredths of a degree upwards, so that nothing is said to be within what it is beyond.
+// Rounds up to hundredths of a degree, so that an error beyond the tolerance is never printed as within it.
 double rounded_up(double degrees) { return std::ceil(100 * degrees) / 100; }
 
 std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
@@ -125,7 +125,7 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                    tolerance + ": bake the original file with this tolerance"});
     return;
   }
-  // Where nothing was asked for, the report says what is left.
+  // If nothing was asked for, the report states the remaining error.
   if (!options.tolerance && !options.most_targets && !options.most_delta_bytes) return;
   std::vector<std::string> remedies;
   if (options.most_targets || options.most_delta_bytes)
@@ -209,7 +209,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(std::to_string(baked.without_base) +
          " vertices have no area around them in the base: their normals are right but for weights near 0");
   }
-  // No viewer that can be named has so little room, but others have.
+  // All viewers that can be named have more room, but others have only this.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
     warn(std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
          " morphed attributes; viewers that have room for 8 leave out those of the smallest weights");

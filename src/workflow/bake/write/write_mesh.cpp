@@ -12,7 +12,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A weight as JSON. What is beyond float32, which JSON has no word for, becomes the largest float.
+// Returns a weight as JSON. JSON has no infinity, so a weight beyond float32 becomes the largest float.
 std::string weight_text(double weight) {
   constexpr auto kMostWeight = static_cast<double>(std::numeric_limits<float>::max());
   return json_number(static_cast<float>(std::clamp(weight, -kMostWeight, kMostWeight)));
@@ -50,7 +50,7 @@ MeshWriter::MeshWriter(const GltfDocument& document, const GltfShading& shading,
       has.tangents |= target.tangents;
     }
     has.normals |= is_shaded(p);
-    // A target with nothing at all is none.
+    // A target may not be empty.
     has.positions |= !has.normals && mesh_.primitives[p].vertex_count > 0;
   }
 }
@@ -101,7 +101,7 @@ void MeshWriter::write_target(std::size_t target, const std::optional<TargetDelt
     if (target >= mesh_.primitives[p].targets.size()) continue;
     const std::string pointer = pointer_of(p) + "/targets/" + std::to_string(target);
     const GltfPrimitive::Target& has = mesh_.primitives[p].targets[target];
-    if (!edit_.has(pointer)) edit_.append(pointer_of(p) + "/targets", "{}");  // fewer than others of the mesh
+    if (!edit_.has(pointer)) edit_.append(pointer_of(p) + "/targets", "{}");  // others have more targets
     if (attributes_[p].positions && !has.positions) edit_.set(pointer + "/POSITION", std::to_string(zeros_of(p)));
     if (deltas && is_shaded(p))
       edit_.set(pointer + "/NORMAL", std::to_string(deltas_of(p, *deltas)));
@@ -144,7 +144,7 @@ void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras, const P
     const std::string of_primitive = pointer_of(p) + "/extras/targetNames";
     if (edit_.has(of_primitive) && edit_.text(of_primitive).starts_with("[")) names.push_back(of_primitive);
   }
-  // Each name once: PlayCanvas finds targets by it.
+  // Names must be unique: PlayCanvas finds targets by them.
   std::set<std::string> taken(mesh_.target_names.begin(), mesh_.target_names.end());
   for (const GltfExtraTarget& extra : extras) {
     const std::string of_extra = name_of_extra(extra);

@@ -1,5 +1,5 @@
-/// One mesh as edits: arrays of normals and deltas go into the file, and everything that counts targets grows with
-/// them. Private to workflow.
+/// Writes one mesh as edits: arrays of normals and deltas go into the file, and everything that counts targets grows
+/// with them. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
 
@@ -22,7 +22,7 @@ class ZeroVectors {
  public:
   ZeroVectors(GltfEdit& edit, bool dense) : edit_(edit), dense_(dense) {}
   [[nodiscard]] std::size_t of(std::size_t vertices);
-  /// Whether zeros are written as bytes too.
+  /// Tells whether zeros are written as bytes too.
   [[nodiscard]] bool are_dense() const noexcept { return dense_; }
 
  private:
@@ -31,29 +31,29 @@ class ZeroVectors {
   std::map<std::size_t, std::size_t> accessors_;
 };
 
-/// Writes targets one by one, so that the arrays of one target are in memory at a time. All targets of a primitive must
-/// have the same attributes (section 3.7.2.2 of the specification): what one has, the others get as zeros.
+/// Writes targets one by one, so that only the arrays of one target are in memory. All targets of a primitive must have
+/// the same attributes (section 3.7.2.2 of the specification): if one has an attribute, the others get zeros.
 class MeshWriter {
  public:
   /// shading must have been read with this `smooth`. All arguments must outlive this.
   MeshWriter(const GltfDocument& document, const GltfShading& shading, bool smooth, ZeroVectors& zeros, GltfEdit& edit);
 
-  /// Whether the vertices of a primitive show normals of elements.
+  /// Tells whether the vertices of a primitive show normals of elements.
   [[nodiscard]] bool is_shaded(std::size_t primitive) const { return part_[primitive].has_value(); }
 
-  /// Replaces the base normals of some parts; normals are those of all, (V, 3). Errors: kInvalidInput where Draco
+  /// Replaces the base normals of some parts; normals are those of all parts, (V, 3). Errors: kInvalidInput if Draco
   /// compresses them.
   [[nodiscard]] Status write_base(const std::vector<bool>& is_replaced, std::span<const float> normals);
-  /// Has all targets get tangents in primitives that have some.
+  /// Gives all targets tangents, in primitives that have some.
   void add_tangents();
-  /// Writes the deltas of a target of the mesh, of normals and of tangents; without them it only gets the attributes
-  /// that it lacks.
+  /// Writes the deltas of normals and of tangents for a target of the mesh. Without deltas, the target only gets the
+  /// attributes that it lacks.
   void write_target(std::size_t target, const std::optional<TargetDeltas>& of_normals,
                     const std::optional<TargetDeltas>& of_tangents = {});
   /// Adds a target that moves no vertex.
   void append_target(const TargetDeltas& of_normals);
-  /// Gives weights and names to the targets that were appended. rest has their weights in each pose that stands still,
-  /// as MeshWeights has these, where no formula gives them.
+  /// Gives weights and names to the appended targets. If no formula gives their weights, `rest` has them for each pose
+  /// that stands still, in the order of MeshWeights.
   void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
   /// Writes down what was done (docs/formats.md): in the mesh, where the next bake and an audit look for it, and where
   /// there are extra targets, in the nodes that carry the mesh, for viewers that hand on the extras of nodes alone.
@@ -61,7 +61,7 @@ class MeshWriter {
   [[nodiscard]] std::vector<std::size_t> set_mark(const GltfBakeMark& mark);
 
  private:
-  // Which attributes the targets of a primitive have when all is done.
+  // The attributes that the targets of a primitive have in the end.
   struct Attributes {
     bool positions = false, normals = false, tangents = false;
   };

@@ -1,5 +1,5 @@
-// A sampler may be shared by channels that drive other meshes, or something else than weights. It stays as it is where
-// one of them needs that; else the first mesh takes it over, and every further mesh gets a sampler of its own.
+// A sampler may be shared by channels that drive other meshes, or something other than weights. It stays as it is if
+// one of these channels needs it; otherwise the first mesh takes it over. Every further mesh gets its own sampler.
 #include "workflow/bake/write/write_tracks.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ std::size_t index_at(const GltfEdit& edit, const std::string& pointer) {
   return is_number ? static_cast<std::size_t>(value) : 0;
 }
 
-// How many items an array of the source has.
+// Returns the number of items in an array of the source.
 std::size_t size_of(const GltfEdit& edit, const std::string& list) {
   std::size_t beyond = 1;
   while (edit.has(item(list, beyond - 1))) beyond *= 2;
@@ -56,7 +56,7 @@ struct Sampler {
   bool has_new_input = false, is_converted = false;
 };
 
-// The mesh to the weights of which, or to one of them, a JSON pointer leads.
+// Returns the mesh to whose weights, or one of them, a JSON pointer leads.
 std::optional<std::size_t> mesh_of_weights(const GltfDocument& document, std::string_view rest) {
   const bool of_node = rest.starts_with("/nodes/");
   if (!of_node && !rest.starts_with("/meshes/")) return std::nullopt;
@@ -92,8 +92,8 @@ std::optional<std::string> find_lone_weight(const GltfDocument& document, std::s
 
 namespace {
 
-// Where KHR_animation_pointer drives single weights, nothing could drive the extra ones; nor where no node has the
-// mesh.
+// Refuses files in which KHR_animation_pointer drives single weights, or weights of a mesh without a node: nothing
+// could drive the correction targets.
 Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
   for (const GrownMesh& mesh : meshes) {
     const std::optional<std::string> pointer = find_lone_weight(document, mesh.mesh, edit);
@@ -105,7 +105,7 @@ Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> m
   return Success{};
 }
 
-// The samplers of an animation for channels that drive something else than weights of nodes.
+// Returns the samplers of an animation that channels use for something other than weights of nodes.
 std::set<std::size_t> samplers_of_others(const GltfDocument& document, const GltfEdit& edit, std::size_t a) {
   const GltfAnimation& animation = document.animations()[a];
   std::set<std::size_t> of_weights, samplers;
@@ -168,7 +168,7 @@ class TrackWriter {
   [[nodiscard]] WrittenTracks written() && { return std::move(written_); }
 
  private:
-  // Which of the meshes a track drives; nothing where it is none of them.
+  // Returns the mesh that a track drives, as an index into meshes_, or nullptr if it is none of them.
   [[nodiscard]] const std::size_t* mesh_driven_by(const GltfTrack& track) const {
     const GltfNode& node = document_.nodes()[track.node];
     const auto found = node.mesh ? place_of_mesh_.find(*node.mesh) : place_of_mesh_.end();
