@@ -1,5 +1,5 @@
-// chronormal_bench (./run bench): how fast every path is, against the memory of this machine and against what people
-// use today. docs/benchmarks.md is made of its --json.
+// chronormal_bench (./run bench) measures the speed of every path, against the memory of this machine and against what
+// people use today. docs/benchmarks.md is made from its --json.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t kShuffledFrom = 10000000, kSchemesUpTo = 1500000, kBlendUpTo = 100000, kUsesUpTo = 1500000,
                       kCertifiedUpTo = 100000, kMost = 50000000;
 
-// "15k" or "10M".
+// Parses a size such as "15k" or "10M".
 Size parse_size(const std::string& text) {
   std::size_t value = 0;
   const char* const end = text.data() + text.size();
@@ -46,7 +46,7 @@ std::vector<Size> parse_sizes(const std::string& list) {
   return sizes;
 }
 
-// Before ten minutes of work.
+// Fails early, before ten minutes of work are lost.
 void check_writable(const std::string& json) {
   if (json.empty() || json == "-") return;
   if (!std::ofstream(json, std::ios::binary | std::ios::app))
@@ -65,7 +65,7 @@ Report measure(const SuiteOptions& options, const std::vector<Size>& sizes) {
   for (const bool shuffled : {false, true}) {
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       Size size = sizes[i];
-      // In small meshes everything is in some cache, whatever the order.
+      // Small meshes lie in some cache, whatever their order.
       if (shuffled && size.elements < kShuffledFrom && i + 1 < sizes.size()) continue;
       size.shuffled = shuffled;
       run_faces(suite, size);

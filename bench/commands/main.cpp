@@ -52,7 +52,7 @@ struct Times {
   double wall = 0, cpu = 0;  // seconds
 };
 
-// A sheet of about so many vertices with waves running through it, that also bends.
+// A sheet of about this many vertices that bends while waves run through it.
 Motion make_waves(std::size_t vertices, std::size_t keyframes) {
   const auto side = std::max<std::size_t>(2, static_cast<std::size_t>(std::sqrt(static_cast<double>(vertices))));
   std::vector<std::uint32_t> corners;
@@ -104,7 +104,7 @@ Times time_child(const std::string& name, const std::function<int()>& body) {
   int status = 0;
   rusage usage{};
   ::wait4(child, &status, 0, &usage);
-  // An audit that finds faults exits with 4, which is no failure.
+  // An audit that finds errors exits with 4, which is not a failure of the command.
   if (!WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != 4))
     throw std::runtime_error(fmt::format("{} failed", name));
   return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
@@ -134,7 +134,7 @@ int copy_to_disk(const std::string& file) {
   return is_whole ? 0 : 1;
 }
 
-// Prints a row and keeps it.
+// Prints a row and appends it to rows.
 void add_row(Json& rows, const std::string& name, const Times& times, double reading) {
   fmt::print("{:<34}{:>10.2f}{:>10.2f}{:>12.2f}\n", name, times.wall, times.cpu, times.cpu / reading);
   std::fflush(stdout);
@@ -186,7 +186,7 @@ Json measure_input(const std::string& program, const std::string& title, const s
   return {{"title", title}, {"bytes", bytes}, {"rows", rows}};
 }
 
-// Reads the vertices and corners of an OBJ file that has triangles of plain indices only, without any check.
+// Reads the vertices and corners of an OBJ file of triangles with plain indices, without any check.
 std::vector<float> loop_over_numbers(std::string_view text) {
   std::vector<float> positions;
   std::vector<std::uint32_t> corners;

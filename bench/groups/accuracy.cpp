@@ -1,4 +1,4 @@
-// How far every path is off, against double: on the grid, far from the origin, and on the built-in morphs.
+// Measures the error of every path against double: on the grid, far from the origin, and on the built-in morphs.
 
 #include <fmt/core.h>
 
@@ -22,7 +22,7 @@ constexpr float kFar = 1000;  // how far from the origin, in radii of the ring
 // The bounds of normals/normal_curves.h.
 constexpr double kOctahedralBound = 7e-5, kRgb10A2Bound = 1.7e-3;
 
-// Unit normals of all elements, sample after sample.
+// A way to compute the unit normals of all elements, sample after sample.
 struct Path {
   std::string name;
   double bound = 0, bytes = 0;

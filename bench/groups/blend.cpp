@@ -1,4 +1,5 @@
-// Unit normals of vertices under blend shapes: many targets that each move a part of the mesh, a few of them at once.
+// Times unit normals of vertices under blend shapes, where a few of many targets are active at once and each moves a
+// part of the mesh.
 
 #include <fmt/core.h>
 
@@ -21,10 +22,10 @@ constexpr std::size_t kTargets = 100, kDenseTargets = 5;
 constexpr double kMoved = 0.025;       // of the vertices, by each target: as the 102 of a face of 19,158 vertices
 constexpr double kDisplacement = 0.1;  // of the radius of the ring
 constexpr double kExactError = 1e-6, kFloatError = 1e-3;
-// The linear sum is wrong by its nature; this is for gross mistakes only.
+// The linear sum is wrong by its nature, so this limit reveals gross mistakes only.
 constexpr double kLinearError = 3.2;
 
-// Targets around random vertices in the order of the mesh, which fall off smoothly.
+// Makes targets that move a region around a random vertex and fall off smoothly, in the order of the mesh.
 BlendSet make_sparse(const Mesh& mesh) {
   BlendSet set;
   set.topology = mesh.topology();
@@ -33,7 +34,7 @@ BlendSet make_sparse(const Mesh& mesh) {
   std::mt19937_64 random(1);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
   for (std::size_t k = 0; k < kTargets; ++k) {
-    // Half of them around the same few places, so that they overlap as those of a face do.
+    // Half of the targets surround the same few places, so that they overlap like the targets of a face.
     const std::size_t centre = k % 2 == 0 ? random() % vertices : (k % 10) * vertices / 40;
     const Vector push = {uniform() - 0.5, uniform() - 0.5, uniform() - 0.5};
     std::vector<std::pair<double, std::uint32_t>> near;
@@ -86,7 +87,7 @@ std::vector<double> make_weights(std::size_t active, std::size_t targets) {
   return weights;
 }
 
-// n(w) from blended positions in double.
+// Computes n(w) from blended positions in double.
 std::vector<Vector> exact_normals(const BlendSet& set, std::span<const double> weights, const Oracle& oracle) {
   std::vector<double> p(set.base.begin(), set.base.end());
   for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -112,7 +113,7 @@ std::vector<Vector> exact_normals(const BlendSet& set, std::span<const double> w
   return result;
 }
 
-// What engines do with positions: add the deltas of the active targets, in float32.
+// Adds the deltas of the active targets to the positions in float32, as engines do.
 void blend(const BlendSet& set, std::span<const double> weights, std::span<float> positions) {
   std::memcpy(positions.data(), set.base.data(), set.base.size() * sizeof(float));
   for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -126,7 +127,7 @@ void blend(const BlendSet& set, std::span<const double> weights, std::span<float
   }
 }
 
-// And with normals: sparse deltas of unit normals between the base and each target, added up.
+// Adds up sparse deltas between the unit normals of the base and of each target, as engines do.
 class LinearSum {
  public:
   LinearSum(BlendNormals& normals, std::size_t vertices, std::size_t targets) : base_(3 * vertices) {
@@ -164,7 +165,7 @@ class LinearSum {
   std::vector<BlendTarget> deltas_;
 };
 
-// Face normals, gathered by vertices: as anyone would write it, in float32.
+// Computes face normals in float32 and gathers them by vertices, in the plainest way.
 void plain_loop(const BlendSet& set, const NormalGroups& groups, std::span<const float> positions,
                 std::span<float> face_normals, float* result) {
   const std::uint32_t* corner = set.topology.corners().data();
@@ -250,7 +251,7 @@ void run_set(Suite& suite, const Size& size, const std::string& group, BlendSet 
     add("chosen", kExactError, "", [weights](Subject& on) { (void)on.normals.unit_normals(weights, on.result); });
     add("terms", kExactError, "", [weights](Subject& on) { (void)on.terms.unit_normals(weights, on.result); });
     add("touched part", kExactError, "", [weights](Subject& on) { (void)on.touched.unit_normals(weights, on.result); });
-    // Blended positions are off by their last bit in float32, over the length of an edge.
+    // Positions that are blended in float32 have errors of a last bit, which count relative to the length of an edge.
     add("chosen in float32", kFloatError, "",
         [weights](Subject& on) { (void)on.chosen_in_float32.unit_normals(weights, on.result); });
     add("recompute", kFloatError, "the whole mesh, positions in float32", [weights](Subject& on) {

@@ -1,4 +1,4 @@
-// Unit normals of faces: loops, libraries, and ours.
+// Times unit normals of faces: plain loops, libraries, and our own.
 
 #include <cmath>
 #include <memory>
@@ -18,7 +18,8 @@ void run_faces(Suite& suite, const Size& size) {
   const double limit = float_limit(mesh.count(Elements::kFaces));
   add_loops(list, mesh, Elements::kFaces, limit);
   add_libraries(list, mesh, Elements::kFaces);
-  // Positions at both ends once, and corners; in random order whole cache lines of them come again and again.
+  // A recomputation reads the positions at both ends and the corners once. In random order the same cache lines come
+  // again and again, so no number of bytes is given.
   add_ours(list, mesh.segment(), nullptr, size.shuffled ? 0 : 24 * vertices + 12 * faces, limit);
   suite.run(group, size, faces, oracle, list.take());
 }

@@ -1,4 +1,4 @@
-/// The groups of rows, a file each.
+/// Declares the groups of rows. Each group has a file of its own.
 #ifndef BENCH_GROUPS_GROUPS_H_
 #define BENCH_GROUPS_GROUPS_H_
 
@@ -12,29 +12,29 @@ namespace chronormal::bench {
 
 void run_faces(Suite& suite, const Size& size);
 void run_vertices(Suite& suite, const Size& size);
-/// Meshes other than the torus: thin triangles, varied valence, a sphere that collapses, and those of other people that
-/// CHRONORMAL_DATA has (a dance, a face).
+/// Measures meshes other than the torus: thin triangles, varied valence, a sphere that collapses, and meshes by other
+/// people in CHRONORMAL_DATA (a dance, a face).
 void run_meshes(Suite& suite);
-/// Every scheme, at random access and played.
+/// Measures every scheme, at random access and played.
 void run_schemes(Suite& suite, const Size& size);
 
-/// Normals of degree 6 of vertices on cubics, beside degree 2, double, and positions that move first.
+/// Measures normals of degree 6 of vertices on cubics, beside degree 2, double, and moving the positions first.
 
-/// Bounds of the largest errors of schemes, beside dense sampling.
+/// Measures bounds of the largest errors of schemes, beside dense sampling.
 void run_certificates(Suite& suite, const Size& size);
 
-/// Cones, bounds of clusters and means over a segment, beside samples.
+/// Measures cones, bounds of clusters and means over a segment, beside sampling.
 void run_cones(Suite& suite, const Size& size);
 
-/// Blend shapes: many sparse ones, a few active at once, and few that move everything.
+/// Measures blend shapes: many sparse targets with a few active at once, and few targets that move every vertex.
 void run_blend(Suite& suite, const Size& size);
 
-/// What holds over a whole segment: collapse, facing.
+/// Measures questions about a whole segment: when faces collapse, and which way they face.
 void run_uses(Suite& suite, const Size& size);
-/// Points that go through the surface.
+/// Measures points that go through the surface.
 void run_containment(Suite& suite, const Size& size);
 
-/// How good a scheme is, to be held against what it costs.
+/// The quality of a scheme, to be weighed against its cost.
 struct SchemeQuality {
   std::string scheme, mesh;
   double mean_degrees = 0, max_degrees = 0;
@@ -43,7 +43,7 @@ struct SchemeQuality {
 [[nodiscard]] std::vector<SchemeQuality> scheme_qualities();
 [[nodiscard]] std::vector<std::string> benchmark_schemes();
 
-/// How far a path is off, over all elements and many t.
+/// The error of a path over all elements and many t.
 struct Accuracy {
   std::string path, mesh, elements;
   double bound = 0;  ///< what is promised, radians

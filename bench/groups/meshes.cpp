@@ -1,5 +1,5 @@
-// Times unit normals on meshes other than the torus, ours and those of plain loops: thin triangles, varied valence, a
-// collapse, and real meshes.
+// Times our unit normals and plain loops on meshes other than the torus: thin triangles, varied valence, a collapse,
+// and real meshes.
 
 #include <fmt/core.h>
 
@@ -21,7 +21,7 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kFaces = 45000;
-// The limit for needles and for vertices whose faces nearly cancel, which reveals gross mistakes only.
+// The limit for needles and for vertices whose faces nearly cancel. It reveals gross mistakes only.
 constexpr double kFloatLimit = 3.2;
 
 // The torus, stretched along one axis so that half of its triangles have an aspect ratio of 10 and more.
@@ -38,7 +38,7 @@ Mesh varied() {
   std::vector<std::uint32_t> corners(torus.topology().corners().begin(), torus.topology().corners().end());
   std::mt19937_64 random(1);
   for (std::size_t i = 0; i + 6 <= corners.size(); i += 6) {
-    // a b c and a c d become a b d and b c d.
+    // Triangles a b c and a c d become a b d and b c d.
     if (random() % 3 != 0) continue;
     corners[i + 2] = corners[i + 5];
     corners[i + 3] = corners[i + 1];

@@ -1,5 +1,5 @@
-// Every scheme on the faces of the grid: what an evaluation costs, at any t and played step by step; and how good it
-// is.
+// Measures every scheme on the faces of the grid: the cost of an evaluation, at any t and played step by step, and the
+// quality of the normals.
 
 #include "chronormal/schemes/scheme.h"
 
@@ -17,8 +17,8 @@
 namespace chronormal::bench {
 namespace {
 
-// Schemes that follow the exact curve, to rounding; those that are a formula over exact normals, to the rounding of
-// float32; the others are looked at for gross mistakes only.
+// Schemes that follow the exact curve must do so to rounding, and formulas over exact normals to the rounding of
+// float32. The other schemes are checked for gross mistakes only.
 constexpr double kExactError = 1e-6, kFormulaError = 2e-6, kApproximationError = 0.8, kPlayedError = 5e-5;
 constexpr std::size_t kSteps = 1024;
 
@@ -27,7 +27,7 @@ Vector unit_of(const Vector& n) {
   return {n[0] / size, n[1] / size, n[2] / size};
 }
 
-// The polynomial through the unit normals at `nodes` + 1 equal steps of t, by Neville's recursion.
+// Evaluates the polynomial through the unit normals at `nodes` + 1 equal steps of t, by Neville's recursion.
 std::vector<Vector> through_nodes(const Oracle& oracle, std::size_t nodes, double t) {
   std::vector<std::vector<Vector>> at(nodes + 1);
   for (std::size_t i = 0; i <= nodes; ++i) {

@@ -1,5 +1,6 @@
-// What holds over a whole segment, from control normals in memory: when faces collapse, and from which side they are
-// seen; beside evaluating the same control normals at one t, and beside what others do for such an answer.
+// Answers questions about a whole segment from control normals in memory: when faces collapse, and from which side they
+// are seen. Beside them stand the evaluation of the same control normals at one t, and what others do for such an
+// answer.
 
 #include <fmt/core.h>
 
@@ -39,7 +40,7 @@ Vec3d way_at(const Segment& segment, std::size_t face, const View& view, double 
   return viewer - lerp(to_double(segment.from[a]), to_double(segment.to[a]), t);
 }
 
-// The sides seen at so many instants: what a renderer does that does not know better.
+// Finds the visible sides by sampling, as a renderer without exact answers does.
 ShutterSide side_by_samples(const Question& q, std::size_t face, const View& view, int samples) {
   bool is_front = false, is_back = false;
   for (int i = 0; i < samples; ++i) {
@@ -51,8 +52,8 @@ ShutterSide side_by_samples(const Question& q, std::size_t face, const View& vie
   return is_back ? ShutterSide::kBoth : ShutterSide::kFront;
 }
 
-// Munkberg and Akenine-Moller: cull where no Bernstein coefficient of the cubic is positive; here from control normals,
-// and without a thought of rounding, as published.
+// Culls a face where no Bernstein coefficient of the cubic is positive (Munkberg and Akenine-Moller). The coefficients
+// come from control normals and ignore rounding, as published.
 ShutterSide side_by_coefficients(const Question& q, std::size_t face, const View& view) {
   const ControlNormals& c = q.normals[face];
   const Vec3d from = way_at(q.segment, face, view, 0), to = way_at(q.segment, face, view, 1);
@@ -68,7 +69,7 @@ std::string culled(const std::vector<ShutterSide>& sides) {
                      100.0 * static_cast<double>(count) / static_cast<double>(sides.size()));
 }
 
-// Holds the sides against many samples of some faces: what is culled shows no front at any of them.
+// Compares the sides with many samples of some faces: a culled face must show no front in any sample.
 void verify(const Question& q, const View& view) {
   constexpr int kSamples = 257;
   const std::size_t step = std::max<std::size_t>(1, q.sides.size() / 500);

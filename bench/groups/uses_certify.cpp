@@ -1,5 +1,5 @@
-// Certificates of the largest error over a segment, beside what people do instead: evaluate the scheme at 64 moments,
-// hold each against the exact normal, and hope that none is worse between them.
+// Measures certificates of the largest error over a segment, beside common practice: evaluate the scheme at 64 moments,
+// compare each with the exact normal, and hope that no error between them is larger.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ struct Certified {
   std::vector<float> shown;  // at kTime
 };
 
-// The largest angle of each face at the samples, which is what a certificate bounds.
+// Returns the largest angle of each face over the samples, which a certificate bounds.
 std::vector<double> sampled(const Scheme& scheme, const Segment& segment, std::size_t count) {
   std::vector<double> worst(count);
   std::vector<float> shown(3 * count);

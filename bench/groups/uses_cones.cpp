@@ -1,4 +1,4 @@
-// Cones, bounds of clusters and mean normals over a whole segment, beside what people do instead: cones of the two
+// Measures cones, bounds of clusters and mean normals over a whole segment, beside common practice: cones of the two
 // ends, meshoptimizer's bounds at some instants, and means of many samples.
 
 #include <fmt/core.h>
@@ -32,7 +32,7 @@ struct Subject {
 
   explicit Subject(const Segment& of)
       : segment(of), normals(all_face_control_normals(of)), cones(normals.size()), means(normals.size()) {
-    // Faces that follow each other on the grid lie side by side.
+    // Consecutive faces of the grid lie side by side, so that they form a cluster.
     for (std::size_t first = 0; first < normals.size(); first += kClusterFaces) {
       clusters.emplace_back();
       for (std::size_t f = first; f < std::min(first + kClusterFaces, normals.size()); ++f)
@@ -42,13 +42,13 @@ struct Subject {
   }
 };
 
-// The smallest cone around the unit normals at both ends, as one would have it without knowing better.
+// Returns the smallest cone around the unit normals at both ends, which ignores everything between them.
 NormalCone cone_of_ends(const ControlNormals& c) {
   const Vec3d u0 = unit(c.n0), axis = unit(u0 + unit(c.n1));
   return {to_float(axis), static_cast<float>(length(cross(u0, axis)))};
 }
 
-// The share of the faces that are outside of their cone at one of many instants.
+// Returns the share of the faces that leave their cone in at least one of many samples.
 double share_outside(const Subject& s) {
   std::size_t outside = 0;
   for (std::size_t f = 0; f < s.normals.size(); ++f) {
@@ -74,7 +74,7 @@ Vec3d sampled_mean(const ControlNormals& c) {
   return (1.0 / kSamples) * sum;
 }
 
-// What a renderer does for every frame: positions at some instants, and bounds of each.
+// Computes positions at some instants and the bounds of each, as a renderer does for every frame.
 void bounds_at_instants(const Subject& s, std::vector<float>& positions, std::vector<meshopt_Bounds>& result) {
   const auto corners = s.segment.topology->corners();
   for (int i = 0; i < kInstants; ++i) {

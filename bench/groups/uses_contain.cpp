@@ -1,5 +1,5 @@
-// Points that move through a closed mesh that deforms, over a whole segment: all crossings, beside what people do with
-// a test for single instants, which is to ask at many of them. An element is a point.
+// Finds all crossings of moving points through a closed mesh that deforms, over a whole segment. Beside it stands
+// common practice, which asks a test for single instants at many of them. An element is a point.
 
 #include <fmt/core.h>
 
@@ -28,7 +28,7 @@ using Windings = std::vector<std::int32_t>;
 
 VectorView<const float> view(const Floats& xyz) { return VectorView<const float>::packed(xyz); }
 
-// Points on straight lines through the box around the mesh, and the mesh.
+// A mesh, and points on straight lines through the box around it.
 struct Scene {
   Segment segment;
   Containment containment;
@@ -62,7 +62,8 @@ struct Scene {
   }
 };
 
-// The winding number of a point at t by the solid angles of all faces, in double (van Oosterom and Strackee, 1983).
+// Computes the winding number of a point at t by the solid angles of all faces, in double (van Oosterom and Strackee,
+// 1983).
 int winding_by_angles(const Scene& scene, std::size_t p, double t) {
   const auto at = [t](const Vec3f& a, const Vec3f& b) { return lerp(to_double(a), to_double(b), t); };
   const Vec3d origin = at(view(scene.from)[p], view(scene.to)[p]);
@@ -79,7 +80,7 @@ int winding_by_angles(const Scene& scene, std::size_t p, double t) {
   return static_cast<int>(std::lround(sum / (4 * 3.14159265358979323846)));
 }
 
-// Holds what crossings add up to against solid angles, for some points at several times.
+// Compares the sums of crossings with solid angles, for some points at several times.
 void verify(const Scene& scene) {
   const Windings start = scene.windings(0);
   const std::size_t step = 1 + scene.segment.topology->face_count() / 200;
@@ -95,7 +96,7 @@ void verify(const Scene& scene) {
   }
 }
 
-// How many crossings a test for single instants notices, asked at so many of them.
+// Counts the crossings that a test for single instants notices when it is asked at kSamples of them.
 std::size_t noticed(const Scene& scene) {
   std::size_t count = 0;
   Windings before = scene.windings(0);
@@ -108,7 +109,7 @@ std::size_t noticed(const Scene& scene) {
 }
 
 #ifdef CHRONORMAL_HAVE_PEERS
-// The mesh and the points as they are at kTime: what a test for single instants is given.
+// The mesh and the points at kTime, which are the input of a test for single instants.
 struct Still {
   Floats mesh, points;
 

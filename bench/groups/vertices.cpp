@@ -1,4 +1,4 @@
-// Unit normals of vertices, area-weighted where the library has that: loops, libraries, and ours.
+// Times unit normals of vertices, area-weighted where the library supports that: plain loops, libraries, and our own.
 
 #include <memory>
 #include <optional>

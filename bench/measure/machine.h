@@ -1,4 +1,4 @@
-/// What a run was measured on.
+/// Describes the machine that a run is measured on, and gives the process huge pages.
 #ifndef BENCH_MEASURE_MACHINE_H_
 #define BENCH_MEASURE_MACHINE_H_
 
@@ -8,14 +8,14 @@
 
 namespace chronormal::bench {
 
-/// Names and values, in the order in which they are shown: cpu, cores, caches, compiler, ...
+/// Returns names and values in the order in which they are shown: cpu, cores, caches, compiler, ...
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe_machine();
 
-/// The distance at which evaluations prefetch curves (PrefetchRule), as found out in this run.
+/// Returns the distance at which evaluations prefetch curves (PrefetchRule), as found in this run.
 [[nodiscard]] std::string chosen_prefetch();
 
-/// Makes every large allocation of this process come in huge pages, also those of libraries, by starting the program
-/// anew with a tunable of the C library. Does nothing where that has been done.
+/// Makes every large allocation of this process come in huge pages, including allocations of libraries, by restarting
+/// the program with a tunable of the C library. Does nothing after the restart.
 void restart_with_huge_pages(char** argv);
 
 }  // namespace chronormal::bench

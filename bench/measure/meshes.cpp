@@ -27,7 +27,8 @@ std::vector<Angle> around(std::size_t count) {
   return angles;
 }
 
-// The same on every system: the algorithms of the standard library may differ.
+// This shuffle is written out to give the same order on every system: the algorithms of the standard library may
+// differ.
 std::vector<std::uint32_t> shuffled_order(std::size_t count, bool shuffled, std::uint64_t seed) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
@@ -40,7 +41,7 @@ std::vector<std::uint32_t> shuffled_order(std::size_t count, bool shuffled, std:
 }  // namespace
 
 Mesh::Mesh(Elements elements, std::size_t element_count, bool shuffled) {
-  // Quads as long as they are wide.
+  // The quads are as long as they are wide.
   const double vertices = static_cast<double>(element_count) / (elements == Elements::kFaces ? 2 : 1);
   const std::size_t rows = std::max<std::size_t>(3, static_cast<std::size_t>(std::lround(std::sqrt(vertices * kTube))));
   const std::size_t columns =

@@ -2,7 +2,8 @@
 ///
 /// Every vertex has six faces. The first keyframe is a torus with ripples; in the second one it is turned by 60
 /// degrees, stretched, and twisted around its own tube by up to a radian, so that no face merely moves along, and none
-/// collapses. Of n vertices and 2 n faces, the one of which there are to be about as many as wanted.
+/// collapses. A mesh has n vertices and 2 n faces; n is chosen so that the measured elements are about as many as
+/// requested.
 #ifndef BENCH_MEASURE_MESHES_H_
 #define BENCH_MEASURE_MESHES_H_
 
@@ -19,12 +20,13 @@ enum class Elements { kFaces, kVertices };
 
 class Mesh {
  public:
-  /// About element_count of the elements. Shuffled: vertices and faces in a random order, the same one on every run.
+  /// Makes a mesh with about element_count of the elements. If shuffled, vertices and faces are in a random order,
+  /// which is the same in every run.
   Mesh(Elements elements, std::size_t element_count, bool shuffled);
-  /// Any triangles, with packed positions at both ends.
+  /// Takes any triangles, with packed positions at both ends.
   Mesh(Topology topology, std::span<const float> from, std::span<const float> to);
 
-  /// Packed positions; the mesh must outlive it.
+  /// Returns a segment of packed positions, which refers to this mesh: the mesh must outlive it.
   [[nodiscard]] Segment segment() const noexcept;
   [[nodiscard]] const Topology& topology() const noexcept { return topology_; }
   [[nodiscard]] std::span<const float> from() const noexcept { return {from_.data(), from_.size()}; }

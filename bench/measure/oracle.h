@@ -1,4 +1,4 @@
-/// What every benchmark is held against before it is timed: eq. 1 on interpolated vertices, in double.
+/// The oracle that every benchmark is compared with before it is timed: eq. 1 on interpolated vertices, in double.
 ///
 /// Nothing here calls the library: not its vectors, nor its control normals. Edges of float32 positions are exact in
 /// double but for a last bit, so that directions are right to 1e-15 times the length of the edges over the height of
@@ -21,13 +21,13 @@ namespace chronormal::bench {
 
 using Vector = std::array<double, 3>;
 
-/// How faces are added up to a vertex: by area, or each the same.
+/// How the faces of a vertex are added up: weighted by area, or all equally.
 enum class Rule { kArea, kUniform };
 
-/// The angle between two vectors, in radians; pi where one of them is zero or no number.
+/// Returns the angle between two vectors in radians, or pi if one of them is zero or NaN.
 [[nodiscard]] double angle(const Vector& a, const Vector& b);
 
-/// What an approximation is off over many elements, in radians.
+/// The errors of an approximation over many elements, in radians.
 struct Errors {
   std::vector<double> sorted;
 
@@ -38,18 +38,18 @@ struct Errors {
 
 class Oracle {
  public:
-  /// Of a segment of triangles or polygons, which must outlive it. All elements where there are at most 100,000 of
-  /// them, else 4,096 chosen at random, the same on every run.
+  /// Takes a segment of triangles or polygons, which must outlive this object. Chooses all elements if there are at
+  /// most 100,000 of them, otherwise 4,096 at random, the same in every run.
   Oracle(const Segment& segment, Elements elements);
 
-  /// Which elements it knows.
+  /// Returns the chosen elements.
   [[nodiscard]] std::span<const std::uint32_t> elements() const { return elements_; }
-  /// n(t) of each of them, of any length.
+  /// Returns n(t) of each chosen element, of any length.
   [[nodiscard]] std::vector<Vector> normals(double t, Rule rule = Rule::kArea) const;
-  /// The angles between them and what normal_of(element) gives. Those without a direction are left out: n(t) below
-  /// 1e-7 of the areas that it is made of, which is where an element collapses.
+  /// Returns the angles between n(t) and normal_of(element). Leaves out elements without a direction: where one
+  /// collapses, n(t) is below 1e-7 of the areas that it is made of.
   [[nodiscard]] Errors errors(double t, Rule rule, const std::function<Vector(std::size_t)>& normal_of) const;
-  /// The same where the normals are at hand; those without a direction are left out where `exact` are sums by area.
+  /// Does the same for given exact normals. Leaves out elements without a direction if `exact` are sums by area.
   [[nodiscard]] Errors errors(std::span<const Vector> exact, const std::function<Vector(std::size_t)>& normal_of) const;
 
  private:

@@ -1,4 +1,4 @@
-/// What a run says: tables for people, one JSON object for tools/make_benchmarks.
+/// Writes the results of a run: tables for people, and one JSON object for tools/make_benchmarks.
 #ifndef BENCH_MEASURE_REPORT_H_
 #define BENCH_MEASURE_REPORT_H_
 
@@ -22,7 +22,7 @@ struct Report {
 };
 
 [[nodiscard]] std::string tables_of(const Report& report);
-/// Four significant digits: no more of them mean anything.
+/// Writes four significant digits, since further digits are noise.
 [[nodiscard]] std::string json_of(const Report& report);
 
 }  // namespace chronormal::bench

@@ -1,5 +1,5 @@
-/// Runs groups of cases: each is held against the oracle, then all of them are timed against each other and against
-/// the memory, and become rows.
+/// Runs groups of cases. Each case is compared with the oracle; then all of them are timed against each other and
+/// against the memory, and become rows.
 #ifndef BENCH_MEASURE_SUITE_H_
 #define BENCH_MEASURE_SUITE_H_
 
@@ -25,11 +25,11 @@ struct Size {
   [[nodiscard]] std::string order() const { return shuffled ? "shuffled" : "grid"; }
 };
 
-/// A result at one t, to be looked at after a run.
+/// A result at one t, which is verified after a run.
 struct Check {
   double t = 0;
   std::function<Vector(std::size_t element)> normal_of;
-  /// What it should be, for the elements of the oracle; empty: the exact normal.
+  /// Returns the right result for the elements of the oracle; if empty, the exact normal is right.
   std::function<std::vector<Vector>(const Oracle&)> expected = {};
 };
 
@@ -74,11 +74,11 @@ class Suite {
   [[nodiscard]] const SuiteOptions& options() const { return options_; }
   [[nodiscard]] bool wants(const std::string& group, const Size& size, const std::string& name) const;
 
-  /// Throws std::runtime_error where a result is off by more than its limit.
+  /// Throws std::runtime_error where the error of a result exceeds its limit.
   void run(const std::string& group, const Size& size, std::size_t element_count, const Oracle& oracle,
            std::vector<Case> cases);
 
-  /// A line on what is being done, on standard error, behind the seconds since the start.
+  /// Prints what is being done to standard error, after the seconds since the start.
   void say(const std::string& text) const;
 
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
@@ -94,7 +94,7 @@ class Suite {
   BandwidthMeter meter_;
 };
 
-/// The cases of one group and size that are wanted; the others are not even prepared.
+/// The requested cases of one group and size; the others are not even prepared.
 class CaseList {
  public:
   CaseList(const Suite& suite, std::string group, Size size)
@@ -118,7 +118,7 @@ class CaseList {
   std::vector<Case> cases_;
 };
 
-/// Where everything is verified: no number of few bits, so that weights have to be rounded.
+/// The time of every verification. Its binary fraction is long, so that weights have to be rounded.
 inline constexpr float kTime = 0.3f;
 
 }  // namespace chronormal::bench

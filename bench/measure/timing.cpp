@@ -10,9 +10,9 @@
 namespace chronormal::bench {
 namespace {
 
-// Calls beyond the first number of seconds are warmed up by one call, beyond the second by none; of those beyond the
-// third, the one that was seen counts as well, and there is one more. Where the data just does not fit into a cache,
-// it takes several passes until what lies in it is what would lie in it after many.
+// Calls up to kShort seconds are warmed up by kWarmCalls calls, calls up to kSlow by one, and longer ones by none.
+// Beyond kVerySlow the first rough timing counts as well, and there is one more call. Data that barely exceeds a cache
+// takes several passes until the cache holds what it would hold after many.
 constexpr int kWarmCalls = 4;
 constexpr double kShort = 0.012, kSlow = 0.15, kVerySlow = 3;
 
@@ -76,7 +76,7 @@ void time_all(std::vector<Timed>& functions, const Effort& effort) {
     const int warm = seconds < kShort ? kWarmCalls : seconds < kSlow ? 1 : 0;
     benchmark::RegisterBenchmark(std::to_string(i).c_str(),
                                  [&run, warm](benchmark::State& state) {
-                                   // The others have been in the caches.
+                                   // The other functions have evicted this one's data from the caches.
                                    for (int call = 0; call < warm; ++call) run();
                                    for ([[maybe_unused]] auto _ : state) run();
                                  })

@@ -1,7 +1,7 @@
 /// Times many functions against each other, on a machine that has other work to do.
 ///
-/// Google Benchmark runs the loops. Each function is run in short repetitions, and the repetitions of all of them in
-/// random order, so that what disturbs the machine for a while disturbs all alike.
+/// Google Benchmark runs the loops. Each function runs in short repetitions, and the repetitions of all functions are
+/// in random order, so that a disturbance of the machine affects all of them alike.
 #ifndef BENCH_MEASURE_TIMING_H_
 #define BENCH_MEASURE_TIMING_H_
 
@@ -26,14 +26,14 @@ struct Timed {
   std::vector<double> nanoseconds = {};  ///< of a call, one value for each repetition
 };
 
-/// Seconds of a call, roughly, from a few of them.
+/// Estimates the seconds of a call from a few calls.
 [[nodiscard]] double roughly_timed(const std::function<void()>& run);
 
-/// Fills `nanoseconds`.
+/// Sets `nanoseconds` of each function.
 void time_all(std::vector<Timed>& functions, const Effort& effort);
 
 [[nodiscard]] double median(std::vector<double> values);
-/// The distance between the quartiles over the median.
+/// Returns the interquartile range divided by the median.
 [[nodiscard]] double spread(std::vector<double> values);
 
 }  // namespace chronormal::bench

@@ -14,7 +14,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kAhead = 2048;  // bytes
 
-// Adds up 64-bit words; bytes must be a multiple of 512, as for all of these.
+// Adds up 64-bit words. bytes must be a multiple of 512 here and below.
 template <bool kPrefetch>
 std::uint64_t Read(const std::byte* from, std::size_t bytes) {
   const hn::ScalableTag<std::uint64_t> tag;
@@ -33,7 +33,7 @@ std::uint64_t Read(const std::byte* from, std::size_t bytes) {
   return hn::GetLane(hn::SumOfLanes(tag, hn::Add(hn::Add(sum0, sum1), hn::Add(sum2, sum3))));
 }
 
-// to = from, and with kTriad to = from + 3 third.
+// Sets to = from, or with kTriad to = from + 3 third.
 template <bool kTriad, bool kStream, bool kPrefetch>
 void Stream(const std::byte* from, const std::byte* third, std::byte* to, std::size_t bytes) {
   const hn::ScalableTag<float> tag;
@@ -65,7 +65,8 @@ void Stream(const std::byte* from, const std::byte* third, std::byte* to, std::s
 std::uint64_t ReadPlain(const std::byte* from, std::size_t bytes) { return Read<false>(from, bytes); }
 std::uint64_t ReadAhead(const std::byte* from, std::size_t bytes) { return Read<true>(from, bytes); }
 
-// The way is a number: 0 ordinary stores, 1 past the caches, 2 and with prefetch, 3 ordinary with prefetch.
+// Copies in one of four ways: 0 ordinary stores, 1 stores past the caches, 2 stores past the caches with prefetch, 3
+// ordinary stores with prefetch.
 void Copy(int way, const std::byte* from, std::byte* to, std::size_t bytes) {
   if (way == 0) Stream<false, false, false>(from, nullptr, to, bytes);
   if (way == 1) Stream<false, true, false>(from, nullptr, to, bytes);

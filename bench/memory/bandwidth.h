@@ -1,12 +1,12 @@
-/// How fast this machine reads memory and streams through it, at the working set of a benchmark.
+/// Measures how fast this machine reads memory and streams through it, at the working set of a benchmark.
 ///
-/// Both are the best of several ways to do it, on one thread, with the widest vectors that there are:
+/// Both figures are the best of several ways, on one thread, with the widest vectors that the machine has:
 ///
 ///     read     all bytes are added up; with software prefetch and without
-///     stream   copy, one half to the other, and triad a = b + s c, in thirds; with ordinary stores, with those that go
-///              past the caches, and with prefetch; all bytes read and written count
+///     stream   copy, one half to the other, and triad a = b + s c, in thirds; with ordinary stores, with stores past
+///              the caches, and with prefetch; all bytes read and written count
 ///
-/// A working set is rounded to a step of 1.2, and counts as 256 MiB where it is larger: it is in DRAM then.
+/// A working set is rounded to a step of 1.2. Larger ones count as 256 MiB, since they are in DRAM then.
 #ifndef BENCH_MEMORY_BANDWIDTH_H_
 #define BENCH_MEMORY_BANDWIDTH_H_
 
@@ -28,14 +28,14 @@ struct Bandwidth {
 
 class BandwidthMeter {
  public:
-  /// Asks for the bandwidth at the working set, to be measured with whatever else is timed.
+  /// Requests the bandwidth at a working set, which is measured together with the other timed functions.
   void want(std::size_t working_set);
-  /// Appends what is to be timed.
+  /// Appends the functions to be timed.
   void append(std::vector<Timed>& functions);
   /// Takes the times of the functions that were appended last, which begin at `first`.
   void take(const std::vector<Timed>& functions, std::size_t first);
 
-  /// Of a working set that was measured.
+  /// Returns the bandwidth at a working set that was measured.
   [[nodiscard]] Bandwidth at(std::size_t working_set) const;
   [[nodiscard]] std::vector<Bandwidth> all() const;
 

@@ -11,7 +11,7 @@ namespace chronormal::bench::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// By turns `kRead` lines of 64 bytes are read and added up to three, which are written.
+// Reads `kRead` lines of 64 bytes, adds them up to three lines, writes these, and repeats.
 template <std::size_t kRead, bool kStream, std::size_t kAhead>
 void Lines(const float* from, float* to, std::size_t blocks) {
   constexpr std::size_t kLine = 16, kWritten = 3;  // floats, lines

@@ -1,5 +1,5 @@
 /// A loop that reads and writes as many bytes as an evaluation does, in the same order, and computes next to nothing:
-/// what would be left if all arithmetic were free.
+/// the time that would be left if all arithmetic were free.
 #ifndef BENCH_MEMORY_BARE_LOOP_H_
 #define BENCH_MEMORY_BARE_LOOP_H_
 
@@ -12,11 +12,11 @@ namespace chronormal::bench {
 
 class BareLoop {
  public:
-  /// Bytes that are read for each element.
+  /// The bytes that are read for each element.
   enum class Reads { kNothing = 0, kCompact = 20, kExact = 36 };
 
-  /// Over `count` elements, rounded up to 16, with 12 bytes written for each. Tries the ways that there are (stores
-  /// that stay in the caches or go past them, prefetch of several distances), and keeps the fastest one.
+  /// Runs over `count` elements, rounded up to 16, and writes 12 bytes for each. Tries stores that stay in the caches
+  /// and stores that go past them, and several distances of prefetch, and keeps the fastest way.
   BareLoop(Reads reads, std::size_t count, Threads threads);
 
   void run() const;

@@ -1,4 +1,4 @@
-/// Unit normals as anyone would write them: a loop over plain arrays, and the same with Eigen.
+/// Unit normals in the plainest way: a loop over plain arrays, and the same loop with Eigen.
 ///
 /// Both interpolate all positions first, and both add face normals up to vertices by area.
 #ifndef BENCH_PATHS_LOOPS_H_
@@ -10,14 +10,14 @@
 
 namespace chronormal::bench {
 
-/// Arrays (V, 3) of positions at both ends, (F, 3) of corners, and (V, 3) to work in.
+/// Arrays (V, 3) of positions at both ends, (F, 3) of corners, and (V, 3) of scratch memory.
 struct LoopMesh {
   std::span<const float> from, to;
   std::span<const std::uint32_t> corners;
   std::span<float> positions;
 };
 
-/// positions = (1 - t) from + t to: what every rival has to do before it begins.
+/// Sets positions = (1 - t) from + t to, which every baseline has to do before it begins.
 void interpolate(const LoopMesh& mesh, float t);
 
 void plain_faces(const LoopMesh& mesh, float t, std::span<float> normals);     ///< (F, 3)

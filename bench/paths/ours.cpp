@@ -1,4 +1,4 @@
-// Makes the cases of our own functions: what is called, and how its result is verified before it is timed.
+// Makes the cases of our own functions: the timed call, and the check of its result before that.
 #include "paths/ours.h"
 
 #include <memory>
@@ -17,7 +17,7 @@ constexpr std::size_t kManyTimesBytes = std::size_t{3} << 30;      // of results
 
 Vector to_vector(const Vec3f& v) { return {double{v.x}, double{v.y}, double{v.z}}; }
 
-// What the cases of one mesh share. Curves are made when a case asks for them.
+// The data that the cases of one mesh share. Curves are made when a case asks for them.
 struct Shared {
   Segment segment;
   const NormalGroups* groups = nullptr;
@@ -34,7 +34,7 @@ struct Shared {
     if (!kept) kept = prepared(tolerance, Threads::kAll);
     return *kept;
   }
-  // Packed, or as planes that begin at whole cache lines.
+  // Returns memory for a packed result, or for planes that begin at whole cache lines.
   [[nodiscard]] float* result() {
     if (result_.size() == 0) result_ = AlignedArray<float>(3 * plane_size());
     return result_.data();
@@ -69,8 +69,8 @@ Case recompute_case(const SharedPointer& shared, std::size_t bytes, Threads thre
   return one;
 }
 
-// Positions lose bits against the size of the mesh, and edges get shorter the more of them there are. An element
-// without a normal in float32 gets (0, 0, 0), which the oracle leaves out.
+// Positions in float32 lose bits relative to the size of the mesh, and edges get shorter as elements become more. An
+// element without a normal in float32 gets (0, 0, 0), which the oracle leaves out.
 Case float_case(const SharedPointer& shared, std::size_t bytes, double limit, Threads threads) {
   const Topology& topology = *shared->segment.topology;
   auto rival = shared->groups == nullptr ? std::make_shared<FloatRecompute>(topology)
@@ -138,7 +138,7 @@ Case encoded_case(const SharedPointer& shared, double tolerance, double encoding
   return one;
 }
 
-// Many t in a call, each to an array of its own.
+// Evaluates many t in one call, each into an array of its own.
 Case many_times_case(const SharedPointer& shared, double tolerance, std::size_t evaluations, Threads threads) {
   struct Many {
     std::vector<AlignedArray<float>> arrays;

@@ -1,4 +1,4 @@
-/// Everybody else: a loop in plain C++, one with Eigen, and libraries where they are built (bench/peers).
+/// Baselines by others: a loop in plain C++, one with Eigen, and libraries where they are built (bench/peers).
 #ifndef BENCH_PATHS_RIVALS_H_
 #define BENCH_PATHS_RIVALS_H_
 
@@ -10,14 +10,14 @@
 
 namespace chronormal::bench {
 
-/// The mesh must outlive the cases. Loops interpolate the positions and compute normals.
+/// Adds loops that interpolate the positions and compute normals. The mesh must outlive the cases.
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit);
-/// How far off normals from float32 positions may be on the torus, in radians.
+/// Returns the largest allowed error on the torus of normals from float32 positions, in radians.
 [[nodiscard]] double float_limit(std::size_t elements);
-/// Libraries have the interpolated positions in their own structure already, and only compute normals.
+/// Adds libraries, which already have the interpolated positions in their own structure and only compute normals.
 void add_libraries(CaseList& list, const Mesh& mesh, Elements elements);
 
-/// Which of them are built, and their versions.
+/// Returns the versions of the libraries that are built.
 [[nodiscard]] std::map<std::string, std::string> rival_versions();
 
 }  // namespace chronormal::bench

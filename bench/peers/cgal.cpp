@@ -57,7 +57,7 @@ struct KeptMesh : LibraryMesh {
 };
 
 std::string version() {
-  // The third number is that of a patch.
+  // The third number of the version only counts patches.
   const std::string all = CGAL_VERSION_STR;
   return all.substr(0, all.rfind('.'));
 }

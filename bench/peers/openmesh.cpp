@@ -7,7 +7,7 @@
 namespace chronormal::peers {
 namespace {
 
-// What is compared is in double, what is timed in the float of the library's own default.
+// Normals are compared in double and timed in float, the default of the library.
 using Mesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
 using FloatMesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraits>;
 

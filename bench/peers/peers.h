@@ -1,10 +1,10 @@
 /// Normals of triangle meshes by libraries that people use today: one file for each library, all behind one call.
 ///
-/// Positions go in as the float32 that files hold. A library computes in its own way and precision; what comes out is
-/// one normal for each element, in the order of the elements, scaled to length 1.
+/// Positions go in as the float32 that files hold. A library computes in its own way and precision, and returns one
+/// normal for each element, in the order of the elements, scaled to length 1.
 ///
-/// A Method builds the mesh, computes once and forgets it: tools/weightings looks at what it says. A LibraryMesh is
-/// built once and computes again and again, in place: ./run bench looks at how long that takes.
+/// A Method builds the mesh, computes once and forgets it: tools/weightings compares its results. A LibraryMesh is
+/// built once and computes again and again, in place: ./run bench times it.
 #ifndef PEERS_PEERS_H_
 #define PEERS_PEERS_H_
 
@@ -19,7 +19,8 @@
 
 namespace chronormal::peers {
 
-/// Must be a manifold, with its faces wound alike: these libraries take nothing else.
+/// A mesh for all libraries. It must be a manifold with consistently wound faces, since some libraries accept nothing
+/// else.
 struct TriangleMesh {
   std::span<const float> positions;        ///< (V, 3)
   std::span<const std::uint32_t> corners;  ///< (F, 3)
@@ -47,10 +48,10 @@ class LibraryMesh {
   virtual ~LibraryMesh() = default;
 };
 
-/// How a library adds faces up to a vertex.
+/// How a library adds up the faces of a vertex.
 enum class Rule { kArea, kUniform, kOther };
 
-/// One of its functions. compute and normal take meshes of their own library only.
+/// One function of a library. compute and normal take meshes of their own library only.
 struct Call {
   std::string name;
   bool of_vertices = false;  ///< else of faces
@@ -67,7 +68,7 @@ struct Library {
   std::unique_ptr<LibraryMesh> (*make_mesh)(const TriangleMesh&) = nullptr;
 };
 
-/// Which points, (P, 3), are inside a closed mesh, by vtkSelectEnclosedPoints.
+/// Tells which points, (P, 3), are inside a closed mesh, by vtkSelectEnclosedPoints.
 [[nodiscard]] std::vector<bool> vtk_enclosed(const TriangleMesh& mesh, std::span<const float> points);
 
 [[nodiscard]] Library openmesh_library();

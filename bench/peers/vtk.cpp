@@ -49,7 +49,7 @@ std::vector<Vec3d> filtered(const TriangleMesh& from, Filter& filter) {
   return result;
 }
 
-// As vertices are shaded smoothly: no vertex is split, no face turned round.
+// Computes normals as for smooth shading: the filter splits no vertex and reverses no face.
 std::vector<Vec3d> poly_data_normals(const TriangleMesh& from) {
   vtkNew<vtkPolyDataNormals> filter;
   filter->SplittingOff();
@@ -64,7 +64,7 @@ std::vector<Vec3d> triangle_mesh_point_normals(const TriangleMesh& from) {
 
 struct KeptMesh : LibraryMesh {
   explicit KeptMesh(const TriangleMesh& from) : mesh(make_mesh(from)) {
-    // By vtkSMPTools::Initialize(), whose header is no C++20.
+    // This is what vtkSMPTools::Initialize() does, whose header does not compile as C++20.
     vtk::detail::smp::vtkSMPToolsAPI::GetInstance().Initialize(1);
     for (vtkPolyDataNormals* const filter : {of_faces.Get(), of_vertices.Get()}) {
       filter->SetInputData(mesh);
@@ -81,7 +81,7 @@ struct KeptMesh : LibraryMesh {
   vtkNew<vtkTriangleMeshPointNormals> by_area;
 };
 
-// As after every move of the points.
+// Marks the points as moved, so that the filter runs again.
 template <class Filter>
 void run_again(LibraryMesh& kept, Filter& filter) {
   static_cast<KeptMesh&>(kept).mesh->GetPoints()->Modified();
