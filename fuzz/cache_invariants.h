@@ -1,4 +1,4 @@
-/// What must hold for the result of every reader of motions and caches on any bytes at all.
+/// Checks what must hold for the result of every reader of motions and caches, whatever the bytes are.
 #ifndef CHRONORMAL_FUZZ_CACHE_INVARIANTS_H_
 #define CHRONORMAL_FUZZ_CACHE_INVARIANTS_H_
 
@@ -19,8 +19,8 @@ inline void check_error(const Error& error) {
   require(!error.message.empty(), "an error has a message");
 }
 
-/// Aborts where the result of reading byte_count bytes is neither an error with code, place and message, nor a cache of
-/// finite numbers that had room in most_per_byte x byte_count bytes.
+/// Aborts unless the result of reading byte_count bytes is an error with code, place and message, or a cache of finite
+/// numbers with at most one position per byte.
 inline void check_cache_invariants(const Result<PositionCache>& result, std::size_t byte_count) {
   if (!result) return check_error(result.error());
   const PositionCache& cache = result.value();
@@ -33,7 +33,7 @@ inline void check_cache_invariants(const Result<PositionCache>& result, std::siz
   }
 }
 
-/// The same for a motion, which validate() must accept.
+/// Does the same for a motion of at most most_per_byte x byte_count positions, which validate() must accept.
 inline void check_motion_invariants(const Result<Motion>& result, std::size_t byte_count, std::size_t most_per_byte) {
   if (!result) return check_error(result.error());
   const Motion& motion = result.value();

@@ -28,14 +28,14 @@ struct Change {
   std::string pointer, value;
 };
 
-// Takes a line off the text.
+// Takes a line off the front of the text.
 std::string_view take_line(std::string_view& text) {
   const std::string_view line = text.substr(0, text.find('\n'));
   text.remove_prefix(std::min(text.size(), line.size() + 1));
   return line;
 }
 
-// The JSON of a file: of a GLB its first chunk, without the blanks at its end, of which there may be more or fewer.
+// Returns the JSON of a file. For a GLB this is its first chunk without the padding at its end, which may vary.
 std::string_view json_of(std::string_view file) {
   if (!file.starts_with("glTF")) return file;
   std::uint32_t size = 0;
@@ -46,9 +46,9 @@ std::string_view json_of(std::string_view file) {
 
 void check(const std::string& source, const std::vector<Change>& changes, const std::string& prefix) {
   const auto document = chronormal::GltfDocument::read(source, "fuzz.gltf");
-  // The reader takes a zero byte for the end of the JSON; what follows is none.
+  // The reader takes a zero byte as the end of the JSON and ignores the rest.
   if (!document || json_of(source).find('\0') != std::string_view::npos) return;
-  // Changes that are not possible are left out; the others come one after the other.
+  // Impossible changes are left out; the others are made one after the other.
   std::vector<Change> possible;
   std::string result;
   for (const Change& change : changes) {

@@ -1,4 +1,5 @@
-// Fuzz target of the glTF reader: whatever the bytes are, each thing in them is an error with a place, or as promised.
+// Fuzz target of the glTF reader: whatever the bytes are, everything that is read is an error with a place, or keeps
+// its promises.
 #include "chronormal/io/gltf_document.h"
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-/// What must hold for everything that can be read from a glTF file, whatever its bytes are. The tests use it too.
+/// Checks what must hold for everything that can be read from a glTF file, whatever its bytes are. The tests use it
+/// too.
 #ifndef CHRONORMAL_FUZZ_GLTF_INVARIANTS_H_
 #define CHRONORMAL_FUZZ_GLTF_INVARIANTS_H_
 
@@ -17,7 +18,7 @@
 
 namespace chronormal::fuzz {
 
-/// How reading all of a file went.
+/// The results of reading all of a file.
 class GltfReading {
  public:
   std::vector<Error> errors;    ///< in the order in which they came
@@ -130,7 +131,7 @@ inline void add_error(const std::string& name, const Error& error, GltfReading& 
 
 }  // namespace detail
 
-/// Reads all that a file has: every primitive with its shading, every track, the mesh, and every motion.
+/// Reads everything in a file: every primitive with its shading, every track, the mesh, and every motion.
 [[nodiscard]] inline GltfReading read_all_of(const Result<GltfDocument>& opened, const std::string& name,
                                              std::size_t most_bytes) {
   GltfReading reading;

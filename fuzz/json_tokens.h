@@ -1,4 +1,4 @@
-/// JSON text as tokens, to compare two texts by: what an edit of one place must leave as it was. The tests use it too.
+/// Splits JSON text into tokens, to check that an edit of one place leaves the rest as it was. The tests use it too.
 #ifndef CHRONORMAL_FUZZ_JSON_TOKENS_H_
 #define CHRONORMAL_FUZZ_JSON_TOKENS_H_
 
@@ -14,9 +14,9 @@ namespace chronormal::fuzz {
 
 inline constexpr char kHidden = '\x01';
 
-/// A bracket, a comma, a colon, a name or a scalar with the blanks before it, and the JSON pointer of the value that it
-/// belongs to: brackets to theirs; commas, names and colons to the value behind them. The name of a member that a later
-/// one of the same name hides begins with kHidden there.
+/// A bracket, a comma, a colon, a name or a scalar, with the blanks before it and the JSON pointer of the value that it
+/// belongs to. Brackets belong to their own value; commas, names and colons belong to the value after them. If a later
+/// member of the same name hides a member, its name begins with kHidden in the pointer.
 struct JsonToken {
   std::string pointer;
   std::string_view text;
@@ -25,7 +25,7 @@ struct JsonToken {
 
 class JsonTokens {
  public:
-  /// The tokens of a document; ok() is false where it is no JSON.
+  /// Splits a document into tokens; ok() is false if it is not JSON.
   explicit JsonTokens(std::string_view text) : text_(text) {
     if (text.starts_with("\xEF\xBB\xBF")) at_ = 3;
     ok_ = read_value("");
@@ -35,7 +35,7 @@ class JsonTokens {
   [[nodiscard]] bool ok() const noexcept { return ok_; }
   [[nodiscard]] const std::vector<JsonToken>& all() const noexcept { return tokens_; }
 
-  /// The text of the value at a pointer, without the blanks around it; empty where there is none.
+  /// Returns the text of the value at a pointer without the blanks around it, or "" if there is none.
   [[nodiscard]] std::string value(const std::string& pointer) const {
     const auto of_it = [&](const JsonToken& token) { return token.is_value && token.pointer == pointer; };
     const auto first = std::find_if(tokens_.begin(), tokens_.end(), of_it);
@@ -58,7 +58,7 @@ class JsonTokens {
   void add(std::size_t from, const std::string& pointer, bool is_value) {
     tokens_.push_back({pointer, text_.substr(from, at_ - from), is_value});
   }
-  // A bracket, comma or colon.
+  // Reads a bracket, a comma or a colon.
   bool read_mark(char mark, const std::string& pointer, bool is_value) {
     const std::size_t from = at_;
     if (next() != mark) return false;
@@ -86,7 +86,7 @@ class JsonTokens {
     for (const char c : name) result += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
     return result;
   }
-  // The name of the member that begins here, whose tokens come later.
+  // Returns the name of the member that begins here, and leaves its tokens for later.
   std::string peek_name() {
     const std::size_t from = at_, count = tokens_.size();
     if (next() == ',') ++at_;
@@ -137,8 +137,8 @@ class JsonTokens {
   std::vector<JsonToken> tokens_;
 };
 
-/// What differs between two documents beside the values at the pointers and what lies in them; empty if nothing does.
-/// Of a value that is replaced, its name, colon and comma still count; of one that is added they do not.
+/// Returns the first difference between two documents outside the values at the pointers, or "" if there is none. The
+/// name, colon and comma of a replaced value still count, but not those of an added one.
 [[nodiscard]] inline std::string difference_beside(const JsonTokens& before, const JsonTokens& after,
                                                    const std::vector<std::string>& pointers) {
   if (!before.ok() || !after.ok()) return before.ok() ? "the result is no JSON" : "the source is no JSON";

@@ -1,4 +1,4 @@
-/// What must hold for the result of every mesh reader on any bytes at all.
+/// Checks what must hold for the result of every mesh reader, whatever the bytes are.
 #ifndef CHRONORMAL_FUZZ_MESH_INVARIANTS_H_
 #define CHRONORMAL_FUZZ_MESH_INVARIANTS_H_
 
@@ -21,8 +21,8 @@ inline void require(bool condition, const char* what) {
   std::abort();
 }
 
-/// Aborts where the result of reading byte_count bytes is neither an error with code, place and message, nor a mesh
-/// that validate() accepts as both keyframes of a motion.
+/// Aborts unless the result of reading byte_count bytes is an error with code, place and message, or a mesh that
+/// validate() accepts as both keyframes of a motion.
 inline void check_mesh_invariants(Result<MeshFrame> result, std::size_t byte_count) {
   if (!result) {
     require(result.error().code == ErrorCode::kInvalidInput, "the code of an error is kInvalidInput");

@@ -1,5 +1,5 @@
 // Fuzz target of the OBJ reader: whatever the bytes are, the result is an error with a place, or a mesh that is valid
-// and no larger than the bytes can have said. How it is shaded belongs to the same mesh.
+// and no larger than the bytes can describe. Its shading belongs to the same mesh.
 #include "io/mesh/obj.h"
 #include "mesh_invariants.h"
 

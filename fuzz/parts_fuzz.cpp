@@ -9,7 +9,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  // Two parts have a line feed between them.
+  // A line feed separates the two parts.
   const std::size_t line = bytes.find('\n');
   std::vector<chronormal::Part> parts = {{"first.json", bytes.substr(0, line)}};
   if (line != std::string::npos) parts.push_back({"second.json", bytes.substr(line + 1)});

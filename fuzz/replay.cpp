@@ -1,4 +1,4 @@
-// Runs a fuzz target on files, for compilers without libFuzzer: its seeds under any sanitizer.
+// Runs a fuzz target on files, so that compilers without libFuzzer replay its seeds under any sanitizer.
 
 #include <cstddef>
 #include <cstdint>
