@@ -20,7 +20,7 @@ namespace {
 const char* const kFlags = vtkDataSetAttributes::GhostArrayName();
 constexpr const char* kMeanwhile = "chronormal: ghosts";
 
-// Marks the cells beyond so many levels, in the way that vtkPolyData::RemoveGhostCells() expects.
+// Marks the cells beyond the given number of levels, in the way that vtkPolyData::RemoveGhostCells() expects.
 vtkSmartPointer<vtkUnsignedCharArray> cells_beyond(vtkPolyData* piece, vtkUnsignedCharArray* ghosts, int levels) {
   const auto beyond = vtkSmartPointer<vtkUnsignedCharArray>::New();
   beyond->SetName(kFlags);
@@ -28,7 +28,7 @@ vtkSmartPointer<vtkUnsignedCharArray> cells_beyond(vtkPolyData* piece, vtkUnsign
   for (vtkIdType c = 0; c < piece->GetNumberOfCells(); ++c)
     beyond->SetValue(c, ghosts->GetValue(c) & vtkDataSetAttributes::DUPLICATECELL);
 
-  // Each round reaches the cells that share a point with what was reached before.
+  // Each round reaches the cells that share a point with cells reached before.
   std::vector<bool> reached(static_cast<std::size_t>(piece->GetNumberOfPoints()), false);
   const auto is_reached = [&reached](vtkIdType point) { return reached[static_cast<std::size_t>(point)]; };
   vtkNew<vtkIdList> points;
@@ -56,7 +56,7 @@ void keep_ghost_levels(vtkPolyData* piece, int levels) {
   if (ghosts == nullptr) return;
   const vtkSmartPointer<vtkUnsignedCharArray> beyond = cells_beyond(piece, ghosts, levels);
 
-  // RemoveGhostCells() drops the flags of the cells that stay, so these have another name meanwhile.
+  // RemoveGhostCells() drops the flags of the cells that stay, so the flags get another name meanwhile.
   const std::array<vtkDataSetAttributes*, 2> all = {piece->GetPointData(), piece->GetCellData()};
   for (vtkDataSetAttributes* const attributes : all) {
     vtkDataArray* const flags = attributes->GetArray(kFlags);

@@ -1,4 +1,4 @@
-// Makes cubics of the positions of points at up to four time steps.
+// Makes cubics from the positions of points at up to four time steps.
 #include "point_curves.h"
 
 #include <algorithm>

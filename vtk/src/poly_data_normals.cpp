@@ -1,5 +1,5 @@
 // Computes the control normals of faces between two steps, their sums over the faces of points and cells, and the
-// directions of these at t.
+// directions of the sums at t.
 #include "poly_data_normals.h"
 
 #include <vtkCellArray.h>
@@ -41,7 +41,7 @@ void for_elements(std::size_t count, const Body& body) {
   });
 }
 
-// The four lists of cells of a vtkPolyData, in the order in which it numbers them.
+// Returns the four lists of cells of a vtkPolyData, in the order in which it numbers them.
 std::array<vtkCellArray*, 4> cell_lists(vtkPolyData* mesh) {
   return {mesh->GetVerts(), mesh->GetLines(), mesh->GetPolys(), mesh->GetStrips()};
 }
@@ -79,7 +79,7 @@ Status check_positions(vtkPolyData* mesh) {
   return Success{};
 }
 
-// Polygons, and the triangles of strips, each with the cell that it belongs to.
+// The polygons and the triangles of strips, each with the cell that it belongs to.
 struct Faces {
   Topology topology;
   std::vector<std::uint32_t> cells;
@@ -162,8 +162,8 @@ std::vector<ControlNormals> normals_of_faces(vtkPolyData* from, vtkPolyData* to,
   return result;
 }
 
-// The sum of terms in the order of their values, which does not depend on the order in which a mesh or a piece of it
-// has them.
+// Adds the terms in the order of their values, so that the sum does not depend on their order in a mesh or in a piece
+// of it.
 ControlNormals sum_of(std::vector<ControlNormals>& terms) {
   const auto values = [](const ControlNormals& n) {
     return std::tie(n.n0.x, n.n0.y, n.n0.z, n.m.x, n.m.y, n.m.z, n.n1.x, n.n1.y, n.n1.z);
@@ -192,11 +192,12 @@ struct Vectors {
 
 // The faces whose control normals each element adds up.
 struct Groups {
-  // for_pairs(body) calls body(element, face) for each face of each element, in the same order every time.
+  // Calls for_pairs(body) twice; it must call body(element, face) for each face of each element, in the same order both
+  // times.
   template <class ForPairs>
   Groups(std::size_t elements, const ForPairs& for_pairs) : ends(elements + 1, 0) {
-    // This is a counting sort: ends[e + 1] counts the faces of e, then ends[e] is where e begins, and finally where it
-    // ends.
+    // This is a counting sort: ends[e + 1] first counts the faces of e; then ends[e] is where e begins, and finally
+    // where it ends.
     for_pairs([this](std::size_t element, std::size_t) { ++ends[element + 1]; });
     for (std::size_t e = 0; e < elements; ++e) ends[e + 1] += ends[e];
     faces.resize(ends.back());
@@ -229,7 +230,7 @@ bool is_in_double(vtkPolyData* mesh) {
   return mesh->GetPoints() != nullptr && mesh->GetPoints()->GetDataType() == VTK_DOUBLE;
 }
 
-// in_double says in what the result is.
+// Returns the requested normals, in double if in_double, else in float.
 MeshNormals normals_of(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells, bool in_double) {
   const Faces faces = find_faces(from);
   const Topology& topology = faces.topology;

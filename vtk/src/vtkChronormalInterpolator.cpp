@@ -1,4 +1,4 @@
-// The filter as pipelines see it: what it asks of its input, what it makes of the data block by block, and its errors.
+// The filter as pipelines see it: its requests to its input, its results block by block, and its errors.
 #include "vtkChronormalInterpolator.h"
 
 #include <vtkCellData.h>
@@ -51,14 +51,14 @@ bool has_normals(vtkDataSet* data) {
   return data->GetPointData()->GetNormals() != nullptr || data->GetCellData()->GetNormals() != nullptr;
 }
 
-// Whether an array has names and not amounts: ids, ghost flags, and texts. It must not be mixed as if it had amounts.
+// Tells whether an array holds names and not amounts: ids, ghost flags, and texts. Names must not be interpolated.
 bool is_name(vtkDataSetAttributes* of, vtkAbstractArray* array) {
   return array == of->GetGlobalIds() || array == of->GetPedigreeIds() ||
          array == of->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) || !array->IsA("vtkDataArray");
 }
 
-// A copy of the data with what vtkTemporalInterpolator may mix: all arrays except normals, and texts, which it cannot
-// mix.
+// Copies the data with the arrays that vtkTemporalInterpolator may mix: all except normals and except texts, which it
+// cannot mix.
 vtkSmartPointer<vtkDataSet> amounts(vtkDataSet* data) {
   const auto copy = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
   copy->ShallowCopy(data);
@@ -89,7 +89,7 @@ void set_normals(vtkDataSetAttributes* output, vtkDataSetAttributes* before, vtk
   output->SetNormals(normals);
 }
 
-// All steps as one kind of data; nothing where they are not all of the class of the first.
+// Returns all steps as one class of data, or nothing unless every step is of that class.
 template <class Data>
 std::optional<std::vector<Data*>> all_as(const auto& steps) {
   std::vector<Data*> result;
@@ -124,8 +124,7 @@ vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, v
   const int pieces = out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   const int ghosts = out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
 
-  // The steps that vtkMultiTimeStepAlgorithm keeps belong to one piece. It forgets them when it is asked for
-  // information.
+  // vtkMultiTimeStepAlgorithm keeps steps of one piece. It forgets them when it is asked for information.
   const std::array piece = {out->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, ghosts};
   if (piece != this->KeptPiece) {
     vtkNew<vtkInformation> forget;
@@ -144,14 +143,14 @@ int vtkChronormalInterpolator::RequestUpdateExtent(vtkInformation* request, vtkI
                                                    vtkInformationVector* outputs) {
   if (this->Superclass::RequestUpdateExtent(request, inputs, outputs) == 0) return 0;
 
-  // At the ends of the range vtkTemporalInterpolator asks for one step. A mesh that has no area there still has
+  // vtkTemporalInterpolator asks for one step at the ends of the range. A mesh that has no area there still has
   // normals, their limits from within the segment, so both steps are needed.
   vtkInformation* const in = inputs[0]->GetInformationObject(0);
   const int count = in->Length(Pipeline::TIME_STEPS());
   this->NumberOfCacheEntries = this->Path == LINEAR ? 2 : 4;
   if (count >= 2 && this->Path == CATMULL_ROM && in->Length(UPDATE_TIME_STEPS()) > 0) {
-    // The later of the steps that were asked for is the end of the segment; a time at or before the first step is in
-    // the first segment.
+    // The later one of the requested steps is the end of the segment; a time at or before the first step is in the
+    // first segment.
     double* const times = in->Get(Pipeline::TIME_STEPS());
     const double last = in->Get(UPDATE_TIME_STEPS())[in->Length(UPDATE_TIME_STEPS()) - 1];
     const auto end = static_cast<std::size_t>(std::lower_bound(times + 1, times + count - 1, last) - times);

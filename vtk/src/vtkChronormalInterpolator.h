@@ -4,19 +4,19 @@
 /// there, and the normals of every vtkPolyData, alone or in blocks of composite data, are those of the mesh as it is at
 /// the requested time, and not mixtures of stored ones. See docs/simulation.md.
 ///
-/// Normals    Point normals are sums over the faces around a point, weighted by area, and cell normals those of the
-///            cell; both are of length 1, or (0, 0, 0) where there is no face. Normals that the input has are replaced;
-///            ComputePointNormals and ComputeCellNormals say whether they are made where it has none. They are in
-///            double where the points are.
+/// Normals    Point normals are sums over the faces around a point, weighted by area; cell normals are the normals of
+///            the cells. Both are of length 1, or (0, 0, 0) where there is no face. Normals of the input are replaced;
+///            ComputePointNormals and ComputeCellNormals say whether normals are made where it has none. They are in
+///            double if the points are.
 /// Path       Points move on straight lines between two steps, as in vtkTemporalInterpolator, or on curves through four
-///            steps: SetPathToCatmullRom(). On curves the positions of points and the normals are those of the curve;
-///            all other arrays are interpolated as before.
-/// Time       Any time: outside the range of the input it is that of the nearer end.
-/// Arrays     Ids, ghost flags and texts are those of the earlier step, since they are names and not amounts.
-/// Pieces     Where a piece is asked for, the filter asks its input for one more ghost level, so that the normals along
-///            seams have the bits of the whole mesh; ghost cells that were not asked for are removed again.
-/// Errors     Where the cells of a mesh differ between the two steps, where normals belong to data other than
-///            vtkPolyData, and where blocks are missing in one of the steps, there is an error, and an empty output.
+///            steps: SetPathToCatmullRom(). Then positions and normals are those of the curve; all other arrays are
+///            interpolated as before.
+/// Time       Any time is valid: outside the range of the input, the nearer end is used.
+/// Arrays     Ids, ghost flags and texts come from the earlier step, since they are names and not amounts.
+/// Pieces     If a piece is requested, the filter asks its input for one more ghost level, so that the normals along
+///            seams have the bits of the whole mesh; ghost cells that were not requested are removed again.
+/// Errors     The filter reports an error and returns an empty output if the cells of a mesh differ between the two
+///            steps, if normals belong to data other than vtkPolyData, or if blocks are missing in one of the steps.
 #ifndef vtkChronormalInterpolator_h
 #define vtkChronormalInterpolator_h
 
@@ -37,17 +37,17 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
   vtkChronormalInterpolator(const vtkChronormalInterpolator&) = delete;
   void operator=(const vtkChronormalInterpolator&) = delete;
 
-  /// Whether points without stored normals get normals; on by default.
+  /// Tells whether points without stored normals get normals; on by default.
   vtkSetMacro(ComputePointNormals, bool);
   vtkGetMacro(ComputePointNormals, bool);
   vtkBooleanMacro(ComputePointNormals, bool);
 
-  /// Whether cells without stored normals get normals; off by default.
+  /// Tells whether cells without stored normals get normals; off by default.
   vtkSetMacro(ComputeCellNormals, bool);
   vtkGetMacro(ComputeCellNormals, bool);
   vtkBooleanMacro(ComputeCellNormals, bool);
 
-  /// How points move between steps; straight by default.
+  /// Tells how points move between steps; straight by default.
   enum { LINEAR = 0, CATMULL_ROM = 1 };
   vtkSetClampMacro(Path, int, LINEAR, CATMULL_ROM);
   vtkGetMacro(Path, int);
