@@ -1,4 +1,4 @@
-// What a viewer may set in the floating point unit, and what becomes of the promise: the modes of control_normals.h.
+// Tests the modes that a caller may set in the floating point unit, and the promise in each: see control_normals.h.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@
 namespace chronormal::floating_point_modes_test {
 namespace {
 
-// Everything at one t: faces and vertices, by curves and anew.
+// Returns everything at one t: faces and vertices, by curves and recomputed.
 std::vector<float> everything(const Segment& segment, double t) {
   const Topology& topology = *segment.topology;
   const NormalGroups groups = NormalGroups::of_vertices(topology, separate_points(topology.vertex_count()));
@@ -58,7 +58,7 @@ class ScopedControl {
   unsigned before_;
 };
 
-// Of any size at which squares of coordinates underflow, as long as the coordinates themselves are normal.
+// The meshes have any size at which squares of coordinates underflow but the coordinates themselves are normal.
 TEST(FlushToZero, changes_no_bit_where_coordinates_are_normal) {
   fixtures::Random random(61);
   std::vector<Motion> motions = {fixtures::smooth_morph(8), fixtures::tiny_soup(50),

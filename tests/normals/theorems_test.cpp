@@ -1,7 +1,7 @@
-// Theorems about control normals, each on random meshes of a family.
+// Tests theorems about control normals, each on random meshes of a family.
 //
 // Most coordinates are multiples of 2^-8 within +-128: edges, products and sums of a few of them are exact in double,
-// so theorems hold to the last bit. Where they are not, the tolerance is stated.
+// so theorems hold to the last bit. Elsewhere the tolerance is stated.
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -27,13 +27,13 @@ using fixtures::Point;
 
 // ---- generators ----------------------------------------------------------------------------------------------------
 
-// An integer in [-bound, bound]. rapidcheck begins with the low end of a range and widens it from case to case; this
-// way the low end is zero: the first cases are degenerate in every way, the later ones general.
+// Draws an integer in [-bound, bound]. rapidcheck begins with the low end of a range and widens it from case to case;
+// here the low end is zero, so that the first cases are degenerate in every way and the later ones general.
 rc::Gen<int> around_zero(int bound) {
   return rc::gen::map(rc::gen::inRange(0, 2 * bound + 1), [](int k) { return k % 2 == 0 ? k / 2 : -(k / 2) - 1; });
 }
 
-// A coordinate that is a multiple of 2^-8 within +-`bound`.
+// Draws a coordinate that is a multiple of 2^-8 within +-`bound`.
 rc::Gen<double> on_grid(int bound = 128) {
   return rc::gen::map(around_zero(256 * bound - 1), [](int k) { return k * 0x1p-8; });
 }
@@ -44,13 +44,13 @@ std::vector<Point> points(std::size_t count, int bound = 128) {
   return *rc::gen::container<std::vector<Point>>(count, grid_point(bound));
 }
 
-// A motion of `face_count` triangles that share nothing, on the grid.
+// Makes a motion of `face_count` triangles on the grid that share no vertices.
 Motion grid_soup(std::size_t face_count = 3, int bound = 128) {
   return fixtures::make_motion(fixtures::make_soup(face_count), points(3 * face_count, bound),
                                points(3 * face_count, bound));
 }
 
-// A motion of triangles that are anywhere, of any size from 1e-6 to 1e6: nothing is exact.
+// Makes a motion of triangles anywhere, of any size from 1e-6 to 1e6, where nothing is exact.
 Motion any_soup(std::size_t face_count = 3) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   const double size = std::pow(10, *around_zero(6));
@@ -58,7 +58,7 @@ Motion any_soup(std::size_t face_count = 3) {
   return fixtures::soup({.face_count = face_count, .seed = seed, .size = size, .offset = offset});
 }
 
-// ---- what is measured ----------------------------------------------------------------------------------------------
+// ---- measures ------------------------------------------------------------------------------------------------------
 
 std::vector<ControlNormals> control_normals(const Motion& motion) {
   std::vector<ControlNormals> normals(motion.topology.face_count());
@@ -87,7 +87,7 @@ double largest(const ControlNormals& normals) {
   return std::max({max_abs(normals.n0), max_abs(normals.m), max_abs(normals.n1)});
 }
 
-// Largest component of an edge of face f, at both ends.
+// Returns the largest component of an edge of face f, at both ends.
 double largest_edge(const Motion& motion, std::size_t f) {
   const Segment segment = motion.segment(0);
   const auto corners = motion.topology.face(f);
@@ -112,7 +112,7 @@ Motion changed(Motion motion, Change&& change) {
   return motion;
 }
 
-// The same motion with the corners of every triangle in another order.
+// Returns the same motion with the corners of every triangle in another order.
 Motion reordered(const Motion& motion, const std::array<std::size_t, 3>& order) {
   std::vector<std::uint32_t> corners;
   for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {
@@ -214,7 +214,7 @@ RC_GTEST_PROP(Theorems, mesh_scaled_by_a_power_of_two_has_the_same_bits_but_for_
 
 RC_GTEST_PROP(Theorems, translated_mesh_has_the_same_normals_bit_for_bit, ()) {
   const Motion motion = grid_soup();
-  // Each end by an amount of its own, as long as the grid still represents it.
+  // Each end moves by an amount of its own, within what the grid represents.
   const auto step0 = *grid_point(1000), step1 = *grid_point(1000);
   Motion moved = motion;
   for (std::size_t i = 0; i < moved.keyframes[0].positions.size(); ++i) {
@@ -224,7 +224,7 @@ RC_GTEST_PROP(Theorems, translated_mesh_has_the_same_normals_bit_for_bit, ()) {
   RC_ASSERT(control_normals(moved) == control_normals(motion));
 }
 
-// Rotation by a quaternion of small integers, times its squared length: maps integers to integers.
+// A rotation by a quaternion of small integers, times its squared length, which maps integers to integers.
 using IntegerMatrix = std::array<std::array<int, 3>, 3>;
 
 IntegerMatrix integer_rotation(int w, int x, int y, int z) {
@@ -244,7 +244,7 @@ RC_GTEST_PROP(Theorems, rigidly_moved_mesh_has_rotated_normals, ()) {
                                     [](const auto& c) { return c != std::array<int, 4>{}; });
   const int divisor = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   const IntegerMatrix r = integer_rotation(q[0], q[1], q[2], q[3]);
-  // Multiples of the divisor, so that the rotated positions are integers: floats without rounding.
+  // Coordinates are multiples of the divisor, so that the rotated positions are integers: floats without rounding.
   const Motion motion = changed(grid_soup(3, 4), [divisor](Point p) {
     for (double& c : p) c *= 256 * divisor;
     return p;
@@ -293,7 +293,7 @@ RC_GTEST_PROP(Theorems, split_segment_gives_the_same_curve, ()) {
   face_control_normals(split.segment(0), {0, first.size()}, first);
   face_control_normals(split.segment(1), {0, second.size()}, second);
   for (std::size_t f = 0; f < whole.size(); ++f) {
-    // De Casteljau's algorithm at t = 1/2.
+    // This is de Casteljau's algorithm at t = 1/2.
     const Vec3d left = 0.5 * (whole[f].n0 + whole[f].m), right = 0.5 * (whole[f].m + whole[f].n1);
     const Vec3d middle = 0.5 * (left + right);
     RC_ASSERT(first[f] == (ControlNormals{whole[f].n0, left, middle}));
@@ -315,7 +315,8 @@ RC_GTEST_PROP(Theorems, swapped_corners_negate_bit_for_bit, ()) {
     for (std::size_t f = 0; f < left.size(); ++f) RC_ASSERT(right[f] == negated(left[f]));
   };
   expect_negated(motion, reordered(motion, {0, 2, 1}));
-  // Where another corner becomes the first, other edges are multiplied: the same bits only where nothing is rounded.
+  // If another corner becomes the first, other edges are multiplied: the bits are the same only where nothing is
+  // rounded.
   expect_negated(on_grid_motion, reordered(on_grid_motion, {1, 0, 2}));
   expect_negated(on_grid_motion, reordered(on_grid_motion, {2, 1, 0}));
 }
@@ -366,7 +367,8 @@ RC_GTEST_PROP(Theorems, polygon_of_three_corners_is_a_triangle_bit_for_bit, ()) 
 
 // ---- degrees -------------------------------------------------------------------------------------------------------
 
-// One triangle whose corners move by `steps`; nothing where it starts out (almost) without a normal.
+// Returns the normals of one triangle whose corners move by `steps`, or rejects a triangle that begins with (almost) no
+// normal.
 ControlNormals moved_triangle(const std::array<Point, 3>& start, const std::array<Point, 3>& steps) {
   std::vector<Point> from(start.begin(), start.end()), to = from;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -423,7 +425,7 @@ RC_GTEST_PROP(Theorems, general_face_has_degree_2_where_its_edges_do_not_change_
   };
   const Vec3d d = cross(edge_change(1), edge_change(2));  // exact on the grid
   const ControlNormals normals = moved_triangle(start, steps);
-  // degree() counts a coefficient below 2^-28 of the largest control normal as zero.
+  // degree() takes a coefficient below 2^-28 of the largest control normal as zero.
   RC_PRE(max_abs(d) > 0x1p-27 * largest(normals));
   RC_ASSERT(degree(normals) == 2);
   RC_ASSERT(normals.n0 + normals.n1 - 2 * normals.m == d);

@@ -1,6 +1,6 @@
-// A theorem of time: the normals at t are the same bytes whatever other times are asked for, before, after or together
-// with t; on every instruction set and number of threads, and by every way to compute them, the interface for C among
-// them. On hard meshes drawn at random, with whole numbers of any size for the truth.
+// Tests a theorem of time: the normals at t are the same bytes whatever other times are requested before, after or
+// together with t, on every instruction set and number of threads, and by every way to compute them, including the C
+// interface. The meshes are hard and random, and whole numbers of any size give the truth.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ using test::IntegerVector;
 
 using Normals = std::vector<float>;
 
-// A prepared way to compute the normals of some elements: those at each of some times, in this order.
+// A prepared way to compute the normals of some elements at each of some times, in this order.
 using Way = std::function<std::vector<Normals>(const std::vector<double>& times)>;
 
 struct NamedWay {
@@ -59,7 +59,7 @@ struct Elements {
   double crease_angle;         // of corners
 };
 
-// Ways that must agree to the last bit, and to this angle with the truth.
+// Ways that must agree with each other to the last bit, and with the truth to this angle.
 struct Kin {
   double tolerance;  // radians; infinite where whole numbers are no judge
   std::vector<NamedWay> ways;
@@ -87,7 +87,7 @@ Way all_together(NormalCurves made, Threads threads) {
   };
 }
 
-// The base and one target, whose weight is t.
+// Blends a base and one target, whose weight is t.
 Way blended(BlendNormals made, Threads threads, bool together) {
   const auto normals = std::make_shared<BlendNormals>(std::move(made));
   return [=](const std::vector<double>& times) {
@@ -103,13 +103,13 @@ Way blended(BlendNormals made, Threads threads, bool together) {
   };
 }
 
-// ---- the interface for C -------------------------------------------------------------------------------------------
+// ---- the C interface -----------------------------------------------------------------------------------------------
 
 void expect_done(chronormal_status status) {
   if (status != CHRONORMAL_DONE) throw std::runtime_error(chronormal_last_message());
 }
 
-// A mesh and the two ends of its segment as C passes them, and options for elements as these tests have them.
+// A mesh and the two ends of its segment as C passes them, and the options of some elements.
 struct MeshInC {
   std::vector<std::uint32_t> offsets{0};
   chronormal_mesh mesh;
@@ -132,7 +132,7 @@ struct MeshInC {
   }
 };
 
-// Normals of an object of `size` elements: write(t, where) writes those of one time.
+// Makes a way from an object of `size` elements: write(t, where) writes the normals of one time.
 template <class Write>
 Way written_in_c(std::size_t size, Write write) {
   return [=](const std::vector<double>& times) {
@@ -143,7 +143,7 @@ Way written_in_c(std::size_t size, Write write) {
   };
 }
 
-// Curves that are created for the segment, or for its way back and then brought to it.
+// Creates curves for the segment, or for its way back, and then brings them to the segment.
 Way curves_in_c(const MeshInC& in, bool is_next) {
   chronormal_curves* made = nullptr;
   expect_done(chronormal_curves_create(&in.mesh, in.from, is_next ? in.from : in.to, &in.options, &made));
@@ -193,7 +193,7 @@ MeshNormals mesh_normals(const Motion& motion, const Elements& elements, double 
   return normals;
 }
 
-// Adds the ways of the interface for C: to the curves of C++ where they have the same elements, one for one.
+// Adds the ways of the C interface, to the curves of C++ if both have the same elements, one for one.
 void add_ways_of_outputs(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
                          std::vector<Kin>& all) {
   Kin own{std::numeric_limits<double>::infinity(), {}};  // that of corners has a normal for each of them
@@ -212,7 +212,7 @@ void add_ways_of_outputs(const Motion& motion, const Elements& elements, double 
   if (!own.ways.empty()) all.push_back(std::move(own));
 }
 
-// Adds those that blend, or read files.
+// Adds the ways that blend, or read files.
 void add_files_and_blends_of_c(const Motion& motion, const Elements& elements, std::vector<Kin>& all) {
   constexpr double kNotJudged = std::numeric_limits<double>::infinity();
   std::vector<float> deltas = motion.keyframes[1].positions;
@@ -240,7 +240,7 @@ void add_files_and_blends_of_c(const Motion& motion, const Elements& elements, s
   }
 }
 
-// Ways that blend differences of positions in float32.
+// Adds ways that blend differences of positions in float32.
 void add_other_ways(const Motion& motion, const NormalGroups* groups, std::vector<Kin>& all) {
   constexpr double kNotJudged = std::numeric_limits<double>::infinity();
   Motion targets = motion;
@@ -290,20 +290,21 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const El
   return all;
 }
 
-// Says what of a way is wrong, or nothing. `expected` has the normals of the times, one for one; it is set where empty.
+// Describes the fault of a way, or returns "". `expected` has the normals of the times, one for one; it is set if
+// empty.
 std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times, Random& random,
                            std::vector<Normals>& expected) {
   const auto same = [](const Normals& a, const Normals& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
   };
-  // One time, by an object that has seen no other.
+  // Each time is computed by an object that has seen no other.
   std::vector<Normals> alone;
   for (const double t : times) alone.push_back(way.make()({t})[0]);
   if (expected.empty()) expected = alone;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!same(alone[i], expected[i])) return way.name + ": other bytes at t = " + std::to_string(times[i]);
   }
-  // Two, and all of them in some order.
+  // Then two times, and all of them in some order, are computed together.
   std::vector<std::size_t> order(times.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
@@ -320,7 +321,7 @@ std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times
   return "";
 }
 
-// Holds the normals of all elements at all times against whole numbers.
+// Compares the normals of all elements at all times with whole numbers.
 std::string fault_in_directions(double tolerance, const std::vector<double>& times, const std::vector<Normals>& found,
                                 const IntegerNormals& oracle, const NormalGroups* groups) {
   for (std::size_t i = 0; i < times.size(); ++i) {

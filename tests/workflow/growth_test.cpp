@@ -1,5 +1,5 @@
-// Time is linear in the corners of a polygon, by every way from a motion to normals, and by what judges these: each of
-// its corners shows a normal that the whole polygon is a part of.
+// Checks that time is linear in the corners of a polygon, on every way from a motion to normals and in every judgement
+// of them: each corner shows a normal that depends on the whole polygon.
 
 #include <gtest/gtest.h>
 

@@ -27,7 +27,8 @@ namespace {
 
 using test::TemporaryFolder;
 
-// What several threads tell each other: each call has a list of texts, which is whole once all have made that call.
+// Lets several threads exchange texts: each call returns a list of texts, which is complete once all threads have made
+// that call.
 class Meeting {
  public:
   explicit Meeting(std::size_t count) : count_(count), calls_(count) {}
@@ -146,7 +147,7 @@ TEST(SamplesOfPeers, normals_without_a_direction_are_counted_over_all) {
   EXPECT_EQ(found[0].normals, found[0].zeros);
 }
 
-// The second of two peers, which the test speaks to.
+// The test plays the first of two peers and talks to the second.
 TEST(SamplesOfPeers, no_name_is_given_before_all_are_done) {
   for (const SampleFormat format : {SampleFormat::kNpy, SampleFormat::kNpz, SampleFormat::kObj}) {
     const TemporaryFolder folder;
@@ -214,7 +215,8 @@ TEST(SamplesOfPeers, a_file_that_a_peer_cannot_see_and_a_stream_are_refused) {
   EXPECT_EQ(stream.error().code, ErrorCode::kUsage);
 }
 
-// A sheet whose first half moves in the first segment alone and gets large there, and its second half in the last.
+// Makes a sheet whose first half moves in the first segment alone and gets large there, and whose second half moves in
+// the last.
 Motion moving_by_turns() {
   Motion motion = fixtures::smooth_morph(6);
   motion.keyframes.resize(1);
@@ -268,7 +270,7 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
       }
       for (std::thread& thread : threads) thread.join();
       EXPECT_EQ(merge_parts(parts).value().json, whole) << count;
-      // The last shard reads the first keyframe, and else those of its own segments alone.
+      // The last shard reads the first keyframe, and otherwise only keyframes of its own segments.
       EXPECT_EQ(was_read.back()[2], count < 3) << count;
     }
   }

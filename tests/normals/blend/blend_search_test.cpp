@@ -1,5 +1,5 @@
-// BlendNormals against an adversary: a search for sets and weights whose normals use up as much of the promised 1e-6
-// rad as can be found, on every path, judged in rationals.
+// Attacks BlendNormals: searches for sets and weights whose normals use up as much as possible of the promised 1e-6
+// rad, on every path, judged in rationals.
 
 #include <gtest/gtest.h>
 
@@ -28,8 +28,8 @@ struct Candidate {
   bool is_ring = false;
 };
 
-// The share of the promise that the face, or vertex 0 of a ring, uses up; 0 where it is not promised, or without a
-// normal. On the path by terms those are left out, too, that are made from positions.
+// Returns the share of the promise that the face, or vertex 0 of a ring, uses up, or 0 if there is no promise or no
+// normal. On the path by terms, elements that are made from positions count as 0 too.
 double used_up(const Candidate& candidate, BlendPath path) {
   const BlendNormalsOptions options{std::numeric_limits<std::size_t>::max(), path};
   const Topology& topology = candidate.set.topology;
@@ -46,8 +46,8 @@ double used_up(const Candidate& candidate, BlendPath path) {
   return exact::is_zero(expected) ? 4 / kPromised : exact::angle(u[0], u[1], u[2], expected) / kPromised;
 }
 
-// Near a collapse: the first target puts the last corner almost onto the line through two others, and sometimes all
-// corners are carried far away and back.
+// Makes a face near a collapse: the first target puts the last corner almost onto the line through two others, and
+// sometimes all corners are carried far away and back.
 Candidate near_a_collapse(fixtures::Random& random) {
   Candidate result;
   const auto corners = static_cast<std::uint32_t>(3 + random.below(2));
@@ -77,8 +77,8 @@ Candidate near_a_collapse(fixtures::Random& random) {
   return result;
 }
 
-// The 4 to 8 triangles around vertex 0, whose normals add up to nearly nothing: the first target puts the ring almost
-// onto a line, where its polygon has no area, whatever the triangles have.
+// Makes the 4 to 8 triangles around vertex 0, whose normals nearly cancel: the first target puts the ring almost onto a
+// line, where its polygon has no area, whatever areas the triangles have.
 Candidate ring_near_a_collapse(fixtures::Random& random) {
   Candidate result;
   result.is_ring = true;
@@ -133,7 +133,7 @@ Candidate changed(Candidate candidate, fixtures::Random& random) {
   return candidate;
 }
 
-// The largest share of the promise that climbing from several starts finds.
+// Returns the largest share of the promise that climbing from several starts finds.
 template <class Start>
 double worst_found(const Start& start_at, int starts, int steps, BlendPath path) {
   fixtures::Random random(79);
@@ -157,7 +157,8 @@ double worst_found(const Start& start_at, int starts, int steps, BlendPath path)
   return worst;
 }
 
-// The search is one: terms are of float32; of positions only the result is, with half an ulp.
+// The search must find at least this share of the promise. Terms are in float32; with positions only the result is,
+// rounded by half an ulp.
 double least_of_a_search(BlendPath path) { return path == BlendPath::kTerms ? 0.3 : 0.04; }
 
 TEST(BlendNormals, keep_the_promise_in_the_worst_cases_that_a_search_finds) {

@@ -1,4 +1,5 @@
-// The terms of blend shapes are those of exact arithmetic within the noise that they state, in lists and one by one.
+// Checks that the terms of blend shapes agree with exact arithmetic within the noise that they state, in lists and one
+// by one.
 #include "normals/blend/blend_terms.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,7 @@ BlendTerms terms_of(const BlendSet& set, const NormalGroups* groups) {
   return groups ? BlendTerms(set, *groups) : BlendTerms(set);
 }
 
-// B(p, q) + B(q, p), or B(p, p), summed over elements, without rounding.
+// Computes B(p, q) + B(q, p), or B(p, p), summed over elements, without rounding.
 std::vector<exact::Vector> exact_term(const BlendSet& set, const NormalGroups* groups, const test::ExactPositions& p,
                                       const test::ExactPositions& q, bool both) {
   std::vector<exact::Vector> result;
@@ -41,7 +42,7 @@ std::vector<exact::Vector> exact_term(const BlendSet& set, const NormalGroups* g
   return result;
 }
 
-// Elements that are not listed have to be zero, to twice the noise of those that are; returns how many are right.
+// Checks that elements that are not listed are zero, to twice the noise of the listed ones; returns how many are right.
 std::size_t expect_term(const BlendTerm& term, const std::vector<exact::Vector>& expected, const char* name) {
   EXPECT_TRUE(std::is_sorted(term.elements.begin(), term.elements.end())) << name;
   EXPECT_EQ(term.values.size(), term.noise.size()) << name;
@@ -105,7 +106,7 @@ RC_GTEST_PROP(BlendTerms, counts_say_beforehand_where_terms_are_not_zero, ()) {
       for (std::uint32_t e = 0; e < touched.size(); ++e)
         if (touched[e]) listed.push_back(e);
       RC_ASSERT(terms.elements(i) == listed);
-      // By going through all faces of all elements.
+      // The expected counts come from all faces of all elements.
       std::vector<BlendTerms::PairCount> expected;
       for (std::size_t j = 0; j < set.targets.size(); ++j) {
         std::uint32_t count = 0;
@@ -136,7 +137,7 @@ TEST(BlendTerms, targets_apart_have_no_terms_in_common_and_rigid_ones_no_square)
   BlendSet set;
   set.topology = fixtures::make_triangles(6, {0, 1, 2, 3, 4, 5});
   set.base = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1};
-  // The first face moves as a whole, and a corner of the second.
+  // The first target moves the first face as a whole, the second a corner of the second face.
   set.targets = {{"", {0, 1, 2}, {1, 2, 3, 1, 2, 3, 1, 2, 3}}, {"", {5}, {0, 0, 1}}, {"", {}, {}}};
   const BlendTerms terms(set);
   EXPECT_TRUE(terms.linear(0).elements.empty());
@@ -197,8 +198,8 @@ TEST(BlendTerms, sets_without_faces_vertices_or_targets_have_none) {
   EXPECT_TRUE(terms.linear(0).elements.empty() && terms.pair(0, 0).elements.empty());
 }
 
-// Lists keep what every face adds, while terms that are asked for one by one compute it anew where a mesh has more than
-// 100,000 faces.
+// Lists keep the contribution of every face. Terms that are requested one by one compute it anew for meshes of more
+// than 100,000 faces.
 TEST(BlendTerms, have_the_same_bits_in_lists_and_element_by_element_on_large_meshes) {
   const Motion motion = fixtures::smooth_morph(230);  // 105,800 faces
   const std::size_t count = motion.topology.vertex_count();

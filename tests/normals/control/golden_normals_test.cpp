@@ -1,5 +1,5 @@
-// Normals stored by other tools, each matched by a weighting and a grouping of ours; only where the environment
-// variable CHRONORMAL_DATA says where they are.
+// Checks that a weighting and a grouping of ours reproduce normals stored by other tools. Needs the environment
+// variable CHRONORMAL_DATA, which says where the files are.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the reader of the product leaves out: the normal of each corner, and the smoothing group of each face.
+// Holds what the reader of the product ignores: the normal of each corner, and the smoothing group of each face.
 struct Golden {
   Motion motion;  // the mesh, twice
   std::vector<float> normal_of_corner;
@@ -77,7 +77,7 @@ VectorView<const float> stored(const Golden& golden) {
   return VectorView<const float>::packed(golden.normal_of_corner.data(), golden.normal_of_corner.size() / 3);
 }
 
-// The normals of the elements, each shown at its corners, against those stored there: the largest angle in degrees.
+// Returns the largest angle in degrees between the normals of the elements and the normals stored at their corners.
 double largest_difference(const Golden& golden, const NormalGroups& groups, Weighting weighting) {
   const auto normals = all_weighted_normals_at(golden.motion.segment(0), groups, weighting, 0);
   double worst = 0;
@@ -114,8 +114,8 @@ NormalGroups split_normals_of(const Golden& golden) {
   return NormalGroups::by_split_normals(golden.motion.topology, no_welding(golden), stored(golden)).value();
 }
 
-// Holds a file against the weighting of its tool, within 0.01 degrees, by both ways to find its hard edges; any of the
-// others must be off by more than that, or the file says nothing about the rule.
+// Checks that a file follows the weighting of its tool within 0.01 degrees, by both ways to find its hard edges. All
+// other weightings must have larger errors, or the file tells nothing about the rule.
 void expect_weighting(const Golden& golden, Weighting weighting, const std::vector<Weighting>& others) {
   for (const NormalGroups& groups : {smoothing_groups_of(golden), split_normals_of(golden)}) {
     EXPECT_LT(largest_difference(golden, groups, weighting), 0.01);

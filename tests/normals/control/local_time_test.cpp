@@ -1,5 +1,5 @@
-// Which t counts, at every door to the normals of a segment: what lies outside [0, 1] is moved to the nearer end, below
-// 2^-200 is 0, and NaN is no time.
+// Tests the t that counts in every function for normals of a segment: t outside [0, 1] is moved to the nearer end, t
+// below 2^-200 is 0, and NaN is not a time.
 
 #include "normals/control/local_time.h"
 
@@ -40,7 +40,7 @@ TEST(LocalTime, is_moved_into_the_segment) {
   EXPECT_TRUE(std::isnan(local_time(kNan)));
 }
 
-// A time between two keys, all of them doubles: time - start and end - time are multiples of two small integers.
+// A time between two keys, all doubles: time - start and end - time are multiples of two small integers.
 struct Times {
   double start, time, end;
   double before, after;  // what comes before and after the time, in one unit, as few bits
@@ -64,8 +64,8 @@ Times random_times(fixtures::Random& random) {
   return t;
 }
 
-// A fan of triangles around vertex 0. The second edge of each has a component that is zero at the time, and only then,
-// and others that are tiny: that component times the rounding of t is more.
+// Makes a fan of triangles around vertex 0. The second edge of each has a component that is zero at the time, and only
+// then, while the others are tiny: this component times the rounding of t is larger.
 Motion edge_on_at(const Times& times, fixtures::Random& random) {
   Motion motion;
   std::vector<std::uint32_t> corners;
@@ -93,7 +93,7 @@ Motion edge_on_at(const Times& times, fixtures::Random& random) {
   return motion;
 }
 
-// n of some faces at a time in rational numbers, and where that is zero what n was a moment before.
+// Returns n of some faces at a time in rational numbers; where it is zero, the n of a moment before.
 exact::Vector exact_direction(const Segment& segment, std::span<const std::uint32_t> faces, const Times& times) {
   const exact::Rational start(times.start), time(times.time), end(times.end);
   const auto sum_at = [&](const exact::Rational& t) { return exact::sum_of_faces_at(segment, faces, t); };
@@ -199,7 +199,7 @@ TEST(LocalTime, that_is_a_double_keeps_its_bits) {
   EXPECT_TRUE(std::isnan(LocalTime::between(1, kNan, 2).t));
 }
 
-// A way to normals: writes those at t and returns how many are (0, 0, 0).
+// A way to normals: writes the normals at t and returns how many are (0, 0, 0).
 struct Door {
   std::string name;
   std::size_t size;

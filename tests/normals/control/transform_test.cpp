@@ -1,4 +1,4 @@
-// Normals of meshes that move as a whole, against the normals of the transformed mesh.
+// Compares normals of meshes that move as a whole with the normals of the transformed mesh.
 
 #include "chronormal/normals/control_normals.h"
 

@@ -1,4 +1,5 @@
-// Control normals (double) and their curves (float32) against exact rational arithmetic (tests/support/exact_normal.h).
+// Compares control normals (double) and their curves (float32) with exact rational arithmetic
+// (tests/support/exact_normal.h).
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ struct Family {
   Motion (*make)();
 };
 
-// Axis-parallel steps make faces of degree 0 and 1; every third face of each kind.
+// Makes faces of degree 0, 1 and 2, a third of each; axis-parallel steps give the degrees 0 and 1.
 Motion mixed_degrees() {
   Motion motion = fixtures::moderate_soup(kFaces, 41);
   const auto& from = motion.keyframes[0].positions;
@@ -84,7 +85,7 @@ std::vector<ControlNormals> control_normals(const Segment& segment) {
   return normals;
 }
 
-// The time at which |n(t)| is smallest: where float32 has the hardest work.
+// Returns the time at which |n(t)| is smallest, which is the hardest for float32.
 double hardest_time(const ControlNormals& normals) {
   double best = 0, smallest = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= 256; ++i) {
@@ -106,7 +107,7 @@ double hardest_time(const ControlNormals& normals) {
   return (low + high) / 2;
 }
 
-// Times for one face: the ends, the hardest time and its neighbourhood, floats and doubles in between.
+// Returns times for one face: the ends, the hardest time and its neighbourhood, floats and doubles in between.
 std::vector<double> times(const ControlNormals& normals, fixtures::Random& random) {
   const double hard = hardest_time(normals);
   std::vector<double> result{0, 1, 0.5, 1.0 / 3, 0x1p-30, 1 - 0x1p-30, hard};
@@ -119,8 +120,8 @@ std::vector<double> times(const ControlNormals& normals, fixtures::Random& rando
   return result;
 }
 
-// Largest error of one element of `curves` at many times, against exact normals; times at which n(t) is below 1e-6 of
-// the largest control normal count for elements that are not flagged only.
+// The largest error of one element of `curves` at many times, against exact normals. Times at which n(t) is below 1e-6
+// of the largest control normal count only for elements that are not flagged.
 struct Judgement {
   double largest = 0;
   double time = 0;
@@ -175,7 +176,7 @@ TEST(ExactAngle, tells_the_smallest_angles_apart) {
   EXPECT_TRUE(std::isnan(exact::angle(0.0, 0.0, 0.0, x)));
 }
 
-// Each component of a control normal is a sum of a few products of edges: its error is a few roundings of the largest
+// Each component of a control normal is a sum of a few products of edges. Its error is a few roundings of the largest
 // product, which may be much larger than the component itself.
 TEST(FaceControlNormals, are_within_a_few_roundings_of_exact_arithmetic) {
   for (const Family& family : kFamilies) {
@@ -268,7 +269,7 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
   const NormalCurves curves(normals);
   double largest = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    // An element that is flagged here but not alone is judged as if it were not: the stricter way.
+    // An element that is flagged here but not alone is judged as if it were not, which is stricter.
     const Judgement judgement =
         judge(curves, i, flagged_alone[i], normals[i], triangles[i], exact::control_normals(triangles[i]), random);
     EXPECT_LE(judgement.largest, kPromised) << "element " << i << ", t = " << judgement.time;
@@ -280,8 +281,8 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
 
 // ---- where n(t) = 0 ------------------------------------------------------------------------------------------------
 
-// What stands in the result where n(t) = 0, by exact arithmetic: at t = 0 the first nonzero control normal, at t = 1
-// the last one, and the direction from before in between.
+// Returns the exact result where n(t) = 0: at t = 0 the first nonzero control normal, at t = 1 the last one, and in
+// between the direction just before t.
 exact::Vector limit_before(const exact::ControlNormals& normals) {
   if (!exact::is_zero(normals.n1)) return normals.n1;
   return exact::is_zero(normals.m) ? normals.n0 : normals.m;
@@ -328,7 +329,7 @@ TEST(VanishingNormal, has_the_direction_from_before_where_the_two_sides_are_anti
   expect_direction(fixtures::inside_out_soup(200), 0.5, Direction::kDiscontinuous, limit_after);
 }
 
-// The same elements one by one, all together, in planes and packed.
+// The elements are evaluated one by one, all together, in planes and packed.
 TEST(NormalCurvesAccuracy, give_the_same_direction_in_any_layout) {
   const Motion motion = mixed_degrees();
   const auto normals = control_normals(motion.segment(0));

@@ -1,4 +1,4 @@
-// Compact curves: what CurveOptions::tolerance promises holds for every element, and formats are used as documented.
+// Tests compact curves: every element keeps CurveOptions::tolerance, and formats are used as documented.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ using test::largest_of;
 constexpr std::array<double, 13> kTolerances{1e-6, 2e-6, 1e-5, 6e-5, 1e-4, 1.7e-4, 2e-4,
                                              5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 0.1};
 
-// Below this share of its terms double itself has no direction of n(t) to give within the tolerances here.
+// Below this share of its terms, n(t) has no direction in double that is good enough for the tolerances here.
 constexpr double kBelowDouble = 1e-9;
 
 std::vector<Vec3f> unit_normals(const NormalCurves& curves, double t) {
@@ -69,7 +69,7 @@ void describe(const ControlNormals& c, double t) {
   std::cout.precision(precision);
 }
 
-// Alone, so that a block has nothing more precise in it that would lift the element.
+// Each element is alone, so that nothing more precise in its block can lift it.
 TEST(CompactCurves, keep_the_tolerance_of_every_element_alone) {
   for (const test::HardFamily& family : test::hard_families()) {
     SCOPED_TRACE(family.name);
@@ -111,7 +111,7 @@ TEST(CompactCurves, keep_the_tolerance_among_neighbours_of_any_size_kind_and_deg
   for (const std::uint64_t seed : {72u, 73u, 74u}) {
     fixtures::Random random(seed);
     std::vector<ControlNormals> normals;
-    // Runs of one family, of one element to a few blocks, and some elements that are nothing.
+    // There are runs of one family, from one element to a few blocks, and some elements that are zero.
     while (normals.size() < 3000) {
       const auto& family = test::hard_families()[random.below(test::hard_families().size())];
       const double scale =
@@ -157,7 +157,7 @@ TEST(CompactCurves, keep_the_tolerance_at_every_scale_that_double_has) {
   }
 }
 
-// The normals of all vertices of a mesh of triangles at one t, face after face in long double; and the sums of the
+// The normals of all vertices of a mesh of triangles at one t, face after face in long double, and the sums of the
 // lengths that went into them.
 struct VerticesAt {
   std::vector<std::array<long double, 3>> normals;
@@ -185,7 +185,7 @@ struct VerticesAt {
     }
   }
 
-  // How far from it a direction is, in radians; 0 where there is none.
+  // Returns the angle in radians between the normal of v and a direction, or 0 if there is no normal.
   [[nodiscard]] double angle_to(const Vec3f& u, std::size_t v) const {
     const auto& n = normals[v];
     const long double length = std::hypot(n[0], n[1], n[2]);
@@ -197,15 +197,15 @@ struct VerticesAt {
   }
 };
 
-// Vertices are added up in float32 where that will do. Their faces are flattened more and more here, into needles and
-// slivers, in one of two ways in the middle of the mesh less than at its ends, so that it does for some of sixteen
-// neighbours and not for others.
+// Vertices are added up in float32 where that is enough. The faces here get flatter and flatter, into needles and
+// slivers; in one of two ways they are less flat in the middle of the mesh than at its ends, so that float32 is enough
+// for some of sixteen neighbours and not for others.
 TEST(CompactCurves, keep_the_tolerance_of_vertices_whatever_they_are_added_up_in) {
   for (int flat = 0; flat <= 24; flat += 2) {
     for (const bool along : {false, true}) {
       const Motion motion = test::with_positions(fixtures::smooth_morph(24), [&](const fixtures::Point& p) {
         const double share = std::pow(0.5, flat * (along ? std::fabs(p[0]) : 1));
-        // Slanted, so that what cancels in the products is large.
+        // The mesh is slanted, so that the terms that cancel in the products are large.
         return fixtures::Point{p[0] + 3, share * p[1] + p[0] - 5, share * p[2] - p[0]};
       });
       const Segment segment = motion.segment(0);
@@ -258,7 +258,7 @@ TEST(CompactCurves, keep_the_tolerance_of_vertices_that_hardly_move) {
   EXPECT_GT(bending, 5000U);
 }
 
-// A tolerance as wide as a shape's turn is still one.
+// A tolerance as wide as the turn of a shape must still be kept.
 TEST(CompactCurves, keep_tolerances_without_measure) {
   fixtures::Random random(76);
   for (const double tolerance : {0.2, 0.3, 0.5, 1.0, 1.5, 2.5, 100.0, std::numeric_limits<double>::infinity()}) {
@@ -287,9 +287,10 @@ TEST(CompactCurves, no_tolerance_at_all_is_the_exact_one) {
   }
 }
 
-// ---- the worst that a search finds ---------------------------------------------------------------------------------
+// ---- the worst elements that a search finds ------------------------------------------------------------------------
 
-// One element by the kernels alone, in a kind of block. Precondition: its components are floats of moderate size.
+// Evaluates one element by the kernels alone, in a kind of block. Precondition: its components are floats of moderate
+// size.
 Vec3f kept_as(BlockKind kind, const ControlNormals& c, double t) {
   ControlTile tile{};
   std::size_t plane = 0;
@@ -317,14 +318,14 @@ struct Format {
   double tolerance;
 };
 
-// How much of the tolerance the element uses up; 0 where the curves do not keep it in this format.
+// Returns the share of the tolerance that the element uses up, or 0 if the curves do not keep it in this format.
 double used_up(const Format& format, const Candidate& candidate) {
   const NormalCurves curves(std::span(&candidate.c, 1), {format.tolerance});
   if (curves.flagged_count() != 0 || curves.byte_counts().front().bytes != bytes_of(format.kind)) return 0;
   if (curves.degree_counts()[format.kind == BlockKind::kLinear16 || format.kind == BlockKind::kLinear32 ? 1 : 2] == 0)
     return 0;
   const Vec3f u = unit_normals(curves, candidate.t).front();
-  // 20 bytes are of two kinds.
+  // Two kinds of blocks have 20 bytes.
   if (bytes_of(format.kind) == 20 && !(u == kept_as(format.kind, candidate.c, candidate.t))) return 0;
   return angle_to(u, candidate.c, candidate.t) / format.tolerance;
 }
@@ -353,7 +354,7 @@ Candidate changed(Candidate candidate, bool linear, fixtures::Random& random) {
       Vec3d& v = *vectors[random.below(3)];
       double* const components[] = {&v.x, &v.y, &v.z};
       double& x = *components[random.below(3)];
-      // As a float, so that nothing but the format rounds it.
+      // The component is a float, so that only the format rounds it.
       x = static_cast<float>(x + step * random.uniform(-1, 1));
     }
   }
@@ -398,7 +399,7 @@ TEST(CompactCurves, keep_the_tolerance_in_the_worst_cases_that_a_search_finds) {
   }
 }
 
-// ---- which format --------------------------------------------------------------------------------------------------
+// ---- the choice of a format ----------------------------------------------------------------------------------------
 
 std::vector<ControlNormals> faces_of(const Motion& motion) {
   std::vector<ControlNormals> normals(motion.topology.face_count());
@@ -437,7 +438,7 @@ TEST(CompactCurves, low_degrees_take_12_bytes) {
 }
 
 TEST(CompactCurves, slivers_take_20_bytes_with_scales_of_their_own) {
-  // From a 2^-20th of the length: plain int16 would leave nothing of n0.
+  // The lengths begin at 2^-20, of which plain int16 would leave nothing for n0.
   const ControlNormals sliver{{0x1p-20, 0, 0x1p-22}, {0x1p-11, 0x1p-13, 0x1p-12}, {1, 0.25, 0.5}};
   const NormalCurves curves(repeated(sliver, 100), {1e-3});
   EXPECT_EQ(share_in(20, curves), 1);
@@ -447,7 +448,7 @@ TEST(CompactCurves, slivers_take_20_bytes_with_scales_of_their_own) {
 }
 
 TEST(CompactCurves, short_runs_join_a_neighbour_that_can_hold_them) {
-  // Two blocks that need less between blocks that need 20 bytes: not worth a run of their own. Eight are.
+  // Two blocks that need less, between blocks that need 20 bytes, are not worth a run of their own. Eight are.
   const auto among = [](const ControlNormals& other, std::size_t blocks) {
     auto normals = repeated(kQuadratic, 16 * 10);
     const auto middle = repeated(other, 16 * blocks), rest = repeated(kQuadratic, 16 * 10);
@@ -459,7 +460,7 @@ TEST(CompactCurves, short_runs_join_a_neighbour_that_can_hold_them) {
     EXPECT_EQ(share_in(20, among(other, 2)), 1);
     EXPECT_LT(share_in(20, among(other, 8)), 0.8);
   }
-  // What needs more is never put into less, however short.
+  // A run that needs more bytes is never put into fewer, however short it is.
   const ControlNormals hard{{1, 0, 0}, {0, 1e-3, 0}, {-1, 0, 0}};
   const NormalCurves curves = among(hard, 1);
   EXPECT_GT(share_in(36, curves) + static_cast<double>(curves.flagged_count()), 0);
@@ -504,10 +505,10 @@ TEST(CurveWeights, as_integers_stay_within_the_error_that_the_bounds_assume) {
         ASSERT_LE(v, 32767) << t;
         sum += v;
       }
-      // Integers of 32767 in every control normal.
+      // Every component of a control normal is up to 32767.
       ASSERT_LE(sum * 32767, std::numeric_limits<std::int32_t>::max()) << t;
-      // Only ratios count, so the scale that makes the error smallest is the one to judge by: that at which one of
-      // the weights has none.
+      // Only ratios count, so the weights are judged by the scale with the smallest error, at which one of them is
+      // exact.
       double smallest = 2;
       for (std::size_t j = 0; j < exact.size(); ++j) {
         if (integers[j] == 0) continue;

@@ -1,4 +1,4 @@
-// Curves that are prepared in slices are those that are prepared in one go, to the last bit.
+// Checks that curves prepared in slices equal curves prepared in one go, to the last bit.
 
 #include <gtest/gtest.h>
 
@@ -36,8 +36,8 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// Motions in order, in no order with more than a megabyte of positions, with flagged elements, and with no elements at
-// all.
+// Makes four motions: one in grid order; one shuffled, with more than a megabyte of positions; one with flagged
+// elements; and one without elements.
 std::vector<Motion> motions() {
   const Motion smooth = fixtures::smooth_morph(160), large = fixtures::smooth_morph(220);
   return {smooth, test::with_faces_in_order(large, test::shuffled_order(large.topology.face_count(), 7)),
@@ -61,7 +61,7 @@ TEST(CurveSlices, slices_of_any_size_have_the_bits_of_one_go) {
         expect_same(of_faces.finish(), faces);
         expect_same(of_vertices.finish(), vertices);
       }
-      // finish() does the work that was not asked for before.
+      // finish() does the remaining work.
       CurveSlices begun(segment, &groups, options, nullptr);
       (void)begun.advance(0.3);
       expect_same(begun.finish(), vertices);

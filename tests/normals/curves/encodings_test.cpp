@@ -1,4 +1,4 @@
-// Unit normals in four bytes: what the bits mean, how far they are off, and that kernels and functions agree.
+// Tests unit normals in four bytes: the meaning of the bits, the errors, and the agreement of kernels and functions.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -28,7 +28,7 @@ Vec3f random_unit(fixtures::Random& random) {
   }
 }
 
-// On and beside the axes, the planes and the diagonals, where the folds of the octahedron are.
+// Returns directions on and beside the axes, the planes and the diagonals, where the folds of the octahedron are.
 std::vector<Vec3f> special_directions() {
   std::vector<Vec3f> all;
   for (const double x : {-1.0, -0.0, 0.0, 1.0}) {
@@ -56,7 +56,7 @@ TEST(Octahedral, has_its_components_where_the_header_says) {
   EXPECT_EQ(encode_octahedral({0, -1, 0}).bits, 0x80010000u);
   EXPECT_EQ(encode_octahedral({0, 0, -1}).bits, 0x7FFF7FFFu);
   EXPECT_EQ(encode_octahedral({0.6f, 0, 0.8f}).bits, 14043u);  // 0.6 / 1.4
-  // Below the equator: x = -(1 - 0), y = 1 - 0.6 / 1.4.
+  // Below the equator, x = -(1 - 0) and y = 1 - 0.6 / 1.4.
   EXPECT_EQ(encode_octahedral({-0.6f, 0, -0.8f}).bits, (32767u - 14043u) << 16 | 0x8001u);
   EXPECT_EQ(encode_octahedral({}).bits, 0u);
   EXPECT_EQ(decode(Octahedral{0}), (Vec3f{0, 0, 1}));
@@ -108,7 +108,7 @@ TEST(Rgb10A2, has_no_bits_in_alpha) {
   for (int i = 0; i < 10000; ++i) EXPECT_EQ(encode_rgb10a2(random_unit(random)).bits >> 30, 0u);
 }
 
-// The nearest integers, by way of long double.
+// Compares with the nearest integers, computed in long double.
 TEST(Octahedral, is_the_nearest_point_of_the_grid) {
   fixtures::Random random(83);
   for (int i = 0; i < 100000; ++i) {
@@ -121,7 +121,7 @@ TEST(Octahedral, is_the_nearest_point_of_the_grid) {
       x = folded;
     }
     const std::uint32_t bits = encode_octahedral(v).bits;
-    // Half an integer, and the rounding of float32 before it.
+    // The error is half an integer, plus the rounding of float32 before it.
     EXPECT_LE(std::fabs(static_cast<std::int16_t>(bits & 0xFFFF) - x * 32767), 0.51L) << i;
     EXPECT_LE(std::fabs(static_cast<std::int16_t>(bits >> 16) - y * 32767), 0.51L) << i;
   }
@@ -163,7 +163,7 @@ TEST(EncodedResults, are_within_both_tolerances) {
   }
 }
 
-// Kernels reach the integers in another way: by at most one.
+// Kernels compute the integers in another way, which may differ by at most one.
 TEST(EncodedResults, are_those_of_the_functions) {
   fixtures::Random random(86);
   std::vector<ControlNormals> normals;
@@ -189,7 +189,7 @@ TEST(EncodedResults, are_those_of_the_functions) {
       const auto low = [](std::uint32_t bits) { return static_cast<std::int16_t>(bits & 0xFFFF); };
       const auto high = [](std::uint32_t bits) { return static_cast<std::int16_t>(bits >> 16); };
       const bool close = std::abs(low(a) - low(b)) <= 1 && std::abs(high(a) - high(b)) <= 1;
-      // Across a fold the codes of one direction are far apart.
+      // Across a fold, the codes of one direction are far apart.
       ASSERT_TRUE(close || angle(decode(octahedral[i]), view[i]) <= kOctahedral) << i;
     }
   }

@@ -1,4 +1,4 @@
-// The elements that float32 cannot carry, among others in every pattern, against each of them made alone.
+// Compares the elements that float32 cannot carry, among others in every pattern, with each of them made alone.
 
 #include "normals/curves/flagged_elements.h"
 
@@ -26,7 +26,7 @@ namespace {
 enum class Kind { kSmooth, kInsideOut, kInsideOutNeedle };
 using Pattern = std::function<Kind(std::size_t face, fixtures::Random& random)>;
 
-// Faces without common vertices, of which some turn inside out and the others hardly move.
+// Makes faces without common vertices, some of which turn inside out while the others hardly move.
 Motion patterned(std::size_t faces, const Pattern& kind_of) {
   Motion motion = fixtures::soup({.face_count = faces, .seed = 5, .motion = 0.02});
   fixtures::Random random(20261126);
@@ -35,7 +35,7 @@ Motion patterned(std::size_t faces, const Pattern& kind_of) {
   for (std::size_t f = 0; f < faces; ++f) {
     const Kind kind = kind_of(f, random);
     if (kind == Kind::kSmooth) continue;
-    // A corner that is between both others but for its rounding leaves little else than rounding of the normal.
+    // Only rounding keeps this corner from lying between both others, so that the normal is hardly more than rounding.
     for (std::size_t i = 9 * f; kind == Kind::kInsideOutNeedle && i < 9 * f + 3; ++i)
       from[i + 6] = 0.7F * from[i] + 0.3F * from[i + 3];
     for (std::size_t i = 9 * f; i < 9 * f + 9; ++i) to[i] = -1.02F * from[i] + 0.03F * (to[i] - from[i]);
@@ -48,7 +48,7 @@ struct Elements {
   std::function<BoundedNormals(std::size_t)> alone, of_tile;  // as two ways have them, which bound errors differently
 };
 
-// Control normals in double, or where these are hardly more than noise, those without any rounding.
+// Returns control normals in double, or without any rounding if double is hardly more than noise.
 BoundedNormals settled(const BoundedNormals& rounded, const std::function<ExactCurve()>& exact) {
   return rounded.largest_share() <= kLargestShare ? rounded : BoundedNormals{exact().rounded(), {}};
 }
@@ -93,7 +93,7 @@ bool is_like(const FlaggedElements& flagged, std::size_t index, const BoundedNor
   return flagged.scaled_normals(index) == expected.normals && flagged.exponents[index] == expected.exponent;
 }
 
-// Returns what is wrong with the flagged elements of curves, or nothing.
+// Describes the fault of the flagged elements of curves, or returns "".
 std::string fault_of(const CurveData& curves, const Elements& elements, double tolerance) {
   const PrecisionLimits limits = PrecisionLimits::for_tolerance(tolerance);
   std::size_t next = 0;
@@ -132,7 +132,7 @@ TEST(FlaggedElements, are_what_each_is_alone_in_every_pattern) {
     for (const std::size_t faces : {16U, 37U, 1003U, 4000U}) {
       const Motion motion = patterned(faces, pattern);
       const Segment segment = motion.segment(0);
-      // Every vertex has one face, and stands beside the others of it.
+      // Every vertex has one face, and stands beside the other vertices of that face.
       const NormalGroups groups =
           NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
       for (const double tolerance : {kExactTolerance, kCompactTolerance}) {

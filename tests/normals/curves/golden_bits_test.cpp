@@ -1,4 +1,4 @@
-// The same bits from every instruction set, number of threads and compiler: one constant for all of them.
+// Checks for the same bits from every instruction set, number of threads and compiler, by one constant for all of them.
 
 #include <gtest/gtest.h>
 
@@ -72,7 +72,7 @@ void add_curves(Hash& hash, const NormalCurves& curves, Results& results) {
     curves.normals(0.34375, packed);
     for (const float v : results.xyz) hash.add(v);
   }
-  // Three times at once.
+  // Three times are evaluated at once.
   results.three.resize(9 * n);
   const double times[] = {0.125, 0.5, 0.9375};
   VectorView<float> three[3];
@@ -90,11 +90,12 @@ void add_recompute(Hash& hash, NormalRecompute recompute, Results& results) {
   }
 }
 
-// Changes with any bit of any result, and with which format a block gets: to be replaced where that is meant.
+// This constant changes with any bit of any result, and with the format that a block gets. Replace it where that is
+// intended.
 constexpr std::uint64_t kGolden = 0x3b625b5cb14a70ca;
 
 TEST(GoldenBits, are_the_same_on_every_instruction_set_number_of_threads_and_compiler) {
-  // 67,712 faces are fifteen parts when they are prepared, and 34,225 vertices three pieces when they are evaluated.
+  // 67,712 faces make fifteen parts in preparation, and 34,225 vertices make three pieces in evaluation.
   const Motion motion = test::integer_grid(184);
   const Segment segment = motion.segment(0);
   const NormalGroups groups =

@@ -1,4 +1,4 @@
-// Results of curves in every form: all forms, many t at once, and any number of threads give the same bits.
+// Checks that curves give the same bits in every form of results, for many t at once, and on any number of threads.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::array<double, 4> kTolerances{1e-6, 1e-3, 5e-3, 2e-2};
 
-// Elements of all kinds and degrees, flagged ones and nothing, in runs that are longer than one block now and then.
+// Makes elements of all kinds and degrees, flagged and zero ones among them, in runs that sometimes exceed one block.
 std::vector<ControlNormals> mixed_elements(std::size_t count, std::uint64_t seed) {
   fixtures::Random random(seed);
   std::vector<ControlNormals> normals;
@@ -54,7 +54,7 @@ class Guarded {
   }
   [[nodiscard]] T* data() { return words_.data() + begin_; }
   [[nodiscard]] std::span<T> span() { return {data(), count_}; }
-  // Whether nothing but the results, and of them nothing that `may_be_written` excludes, has changed.
+  // Tells whether only results have changed, except for results that `may_be_written` excludes.
   [[nodiscard]] bool is_intact(const std::function<bool(std::size_t)>& may_be_written = nullptr) const {
     for (std::size_t i = 0; i < words_.size(); ++i) {
       const bool inside = i >= begin_ && i < begin_ + count_ && (!may_be_written || may_be_written(i - begin_));
@@ -73,7 +73,7 @@ class Guarded {
 
 bool same_bits(const Vec3f& a, const Vec3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-// One element after the other in (n, 3), from an aligned address.
+// The results one element after the other in (n, 3), from an aligned address.
 struct Reference {
   std::vector<Vec3f> normals;
   std::size_t without_direction = 0;
@@ -154,7 +154,7 @@ TEST(Outputs, of_every_form_and_size_are_the_same_bits_and_touch_nothing_else) {
       for (const double tolerance : kTolerances)
         expect_all_forms_agree(NormalCurves(some, {tolerance}), size % 3 == 0 ? 0 : 0.37);
     }
-    // More than what is done at a time on the stack.
+    // These are more elements than are handled at a time on the stack.
     for (const double tolerance : kTolerances) expect_all_forms_agree(NormalCurves(elements, {tolerance}), 0.71);
   }
 }
@@ -261,8 +261,8 @@ TEST(ThreadsOfCurves, give_the_bits_of_one) {
   }
 }
 
-// What curves can say at some t. Of elements that collapse, those that are made from positions know lengths better than
-// those of control normals, which then differ in the last bit.
+// The results that are compared. Curves made from positions know the lengths of collapsing elements better than curves
+// made from control normals, so that lengths then differ in the last bit.
 enum class Say { kEverything, kNoLengths };
 
 std::vector<std::uint32_t> everything(const NormalCurves& curves, Say say = Say::kEverything) {
@@ -298,7 +298,7 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
     const CurveOptions options{tolerance};
     const auto faces = everything(NormalCurves::of_faces(segment, options));
     const auto vertices = everything(NormalCurves::of_groups(segment, groups, options));
-    // Compact curves are prepared in float32 where that will do, and control normals are in double.
+    // Compact curves are prepared in float32 where that is enough, while control normals are in double.
     if (tolerance <= kExactTolerance) {
       EXPECT_EQ(everything(NormalCurves::of_faces(segment, options), Say::kNoLengths),
                 everything(NormalCurves(normals, options), Say::kNoLengths))
@@ -312,7 +312,7 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
   }
 }
 
-// Where neighbours are not neighbours in memory both ends of a vertex are put side by side first.
+// If neighbours are scattered in memory, both ends of a vertex are first put side by side.
 TEST(ScatteredMesh, has_the_curves_of_its_control_normals) {
   const Motion motion = test::shuffled_grid(220);
   const Segment segment = motion.segment(0);
@@ -370,7 +370,7 @@ TEST(ReusedCurves, take_scratch_of_any_size_from_the_ones_before) {
 
 // ---- results that go past the caches -------------------------------------------------------------------------------
 
-// A grid again and again, until there are so many faces.
+// Repeats a grid until there are `faces` faces.
 Topology repeated_grid(const Topology& grid, std::size_t faces) {
   const auto corners = grid.corners();
   std::vector<std::uint32_t> repeated;
@@ -452,7 +452,7 @@ TEST(StreamedResults, at_many_t_have_the_bits_of_stored_ones) {
     SCOPED_TRACE(target_name(target));
     for (const double tolerance : {1e-6, 5e-3}) {
       const NormalCurves curves(elements, {tolerance});
-      // All to the same memory: the last t stays.
+      // All times write to the same memory, so that the last t stays.
       Guarded<float> packed(3 * elements.size(), 0), planes(3 * plane, 0);
       Guarded<Octahedral> words(elements.size(), 0);
       const auto times = [](std::size_t count) {

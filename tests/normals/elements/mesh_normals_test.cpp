@@ -1,5 +1,5 @@
-// Whole meshes from arrays: who shares a normal, what is written for each that shows it, in ranges and on threads, and
-// what is refused. The truth is a sum of cross products, made here, or that of whole numbers.
+// Tests whole meshes from arrays: which vertices share a normal, the outputs of each vertex that shows it, ranges and
+// threads, and refused input. The truth is a sum of cross products made here, or of whole numbers.
 #include "chronormal/normals/mesh_normals.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ namespace {
 
 using fixtures::Random;
 
-// Two triangles that share an edge, once by the same vertices (0 1 2 and 2 1 3) and once with a seam between them: 4
-// and 5 lie where 1 and 2 do.
+// Two triangles share an edge, once by the same vertices (0 1 2 and 2 1 3) and once with a seam between them: 4 and 5
+// lie where 1 and 2 do.
 const std::vector<std::uint32_t> kCorners = {0, 1, 2, 5, 4, 3};
 const std::vector<float> kFrom = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5F, 1, 0, 0, 0, 1, 0};
 const std::vector<float> kTo = {0, 0, 1, 1, 0.5F, 0, 0, 1, 1, 2, 1, -1, 1, 0.5F, 0, 0, 1, 1};
@@ -88,7 +88,7 @@ TEST(MeshNormals, vertices_across_a_seam_share_a_normal_unless_they_are_separate
 }
 
 TEST(MeshNormals, a_motion_says_in_all_its_keyframes_which_vertices_are_one) {
-  // In a third keyframe the seam opens, so that it is one in the first segment as well.
+  // In a third keyframe the seam opens, so that it counts as a seam in the first segment as well.
   Motion motion;
   motion.topology = pair_of_triangles();
   std::vector<float> open = kTo;
@@ -181,7 +181,7 @@ TEST(MeshNormals, what_does_not_fit_is_refused_with_its_place) {
 
 // ---- ranges, threads, forms ----------------------------------------------------------------------------------------
 
-// A mesh with seams, thin and collapsing faces among them, in no order.
+// Makes a mesh with seams, and with thin and collapsing faces among others, in random order.
 Motion hard_mesh(Random& random, std::uint32_t cells) {
   Motion motion = fixtures::smooth_morph(cells);
   auto& from = motion.keyframes[0].positions;
@@ -193,7 +193,7 @@ Motion hard_mesh(Random& random, std::uint32_t cells) {
   return test::with_faces_in_order(motion, test::shuffled_order(motion.topology.face_count(), random.below(1000)));
 }
 
-// Every corner a vertex of its own: what a file with seams everywhere has.
+// Gives every corner a vertex of its own, as in a file with seams everywhere.
 Motion torn(const Motion& motion) {
   Motion result;
   std::vector<std::uint32_t> corners(motion.topology.corner_count());
@@ -288,7 +288,7 @@ TEST(MeshNormals, ranges_of_any_size_on_any_threads_have_the_bits_of_one_call) {
         for (std::size_t i = 0; i < n; ++i) counted += view(all)[i] == Vec3f{} ? 1U : 0U;
         EXPECT_EQ(counted, zeros);
 
-        // Many times, the pool of threads, and blends in one call.
+        // One call takes many times, one uses the pool of threads, and one blends.
         std::vector<float> two(3 * n), other(3 * n);
         const double times[] = {0.5, t};
         const VectorView<float> views[] = {VectorView<float>::packed(other), VectorView<float>::packed(two)};
@@ -368,7 +368,7 @@ std::int32_t signed_bits(std::uint32_t word, unsigned first, unsigned count) {
   return static_cast<std::int32_t>(word << (32 - first - count)) >> (32 - count);
 }
 
-// As a shader reads it.
+// Decodes a record as a shader reads it.
 ControlNormals decoded(ControlFormat format, const std::byte* record) {
   std::array<double, 9> v{};
   if (format == ControlFormat::kFloat32) {

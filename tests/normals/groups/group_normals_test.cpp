@@ -1,4 +1,4 @@
-// Theorems about the normals of vertices and corners, and what degenerate ones are.
+// Tests theorems about the normals of vertices and corners, and degenerate ones.
 
 #include "chronormal/normals/normal_groups.h"
 
@@ -47,8 +47,8 @@ ControlNormals difference(const ControlNormals& a, const ControlNormals& b) {
   return {a.n0 - b.n0, a.m - b.m, a.n1 - b.n1};
 }
 
-// Every element of the motion against the oracle at several times; returns the largest angle in radians. Elements whose
-// normal is a cancellation of more than 1e6 are left out.
+// Compares every element of the motion with the oracle at several times, and returns the largest angle in radians.
+// Leaves out elements whose normal is a cancellation of more than 1e6.
 double largest_error(const Motion& motion, const NormalGroups& groups, const std::string& weighting = "area") {
   const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
   const auto corners = test::reference_corners(mesh, groups);
@@ -134,7 +134,7 @@ RC_GTEST_PROP(GroupNormals, any_scale_gives_its_square, ()) {
 }
 
 RC_GTEST_PROP(GroupNormals, a_rotation_by_quarter_turns_rotates_them_bit_for_bit, ()) {
-  // x -> y -> z -> x, and a half turn about x: rotations that float32 does not round.
+  // x -> y -> z -> x, and a half turn about x, are rotations that float32 does not round.
   const Motion motion = any_mesh(1, *rc::gen::arbitrary<std::uint64_t>(), *rc::gen::arbitrary<bool>());
   const auto turned = [](const Vec3d& v) { return Vec3d{v.z, -v.x, -v.y}; };
   const auto before = vertex_controls(motion);
@@ -160,7 +160,7 @@ RC_GTEST_PROP(GroupNormals, time_reversal_swaps_the_ends_bit_for_bit, ()) {
 RC_GTEST_PROP(GroupNormals, shuffled_faces_give_the_same_bits, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   Motion motion = any_mesh(1, seed, *rc::gen::arbitrary<bool>());
-  // Twice the mesh, so that there are duplicates, half of them with their corners rotated.
+  // The mesh occurs twice, so that there are duplicates, half of them with rotated corners.
   auto order = test::shuffled_order(motion.topology.face_count(), seed);
   const std::size_t face_count = order.size();
   for (std::size_t i = 0; i < face_count; ++i) order.push_back(i);
@@ -178,7 +178,7 @@ RC_GTEST_PROP(GroupNormals, shuffled_faces_give_the_same_bits, ()) {
   const Motion shuffled = test::with_faces_in_order(motion, shuffle);
   RC_ASSERT(vertex_controls(shuffled) == vertex_controls(motion));
 
-  // Corners: those of face i of the shuffled mesh are those of face shuffle[i].
+  // The corners of face i of the shuffled mesh are the corners of face shuffle[i].
   const Points points = separate_points(motion.topology.vertex_count());
   const double degrees = *rc::gen::inRange(0, 90);
   const auto a = NormalGroups::by_crease_angle(motion, points, degrees).value();
@@ -256,7 +256,7 @@ TEST(GroupNormals, duplicate_faces_count_as_often_as_they_are_there_and_opposite
   const auto one = vertex_controls(test::still(fixtures::make_triangles(3, {0, 1, 2}), points));
   const auto two = vertex_controls(test::still(fixtures::make_triangles(3, {0, 1, 2, 0, 1, 2}), points));
   EXPECT_EQ(two[1].n0, 2.0 * one[1].n0);
-  // Both sides of a sheet, from different first corners: exactly zero, not a direction made of rounding.
+  // Both sides of a sheet, from different first corners, must give exactly zero and not a direction made of rounding.
   for (const std::vector<std::uint32_t>& other : {std::vector<std::uint32_t>{0, 2, 1}, {2, 1, 0}, {1, 0, 2}}) {
     std::vector<std::uint32_t> corners = {0, 1, 2};
     corners.insert(corners.end(), other.begin(), other.end());
@@ -279,7 +279,7 @@ TEST(GroupNormals, a_vertex_of_two_fans_is_the_sum_of_both_and_its_corners_are_n
 }
 
 TEST(GroupNormals, a_polygon_with_two_corners_at_a_point_counts_with_both) {
-  // A square with a slit cut to its middle: vertex 4 once, vertex 0 twice.
+  // A square has a slit cut to its middle: vertex 4 occurs once, vertex 0 twice.
   const Motion slit = test::still(fixtures::make_polygons(5, {0, 6}, {0, 1, 2, 3, 0, 4}),
                                   {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0}});
   const auto controls = vertex_controls(slit);

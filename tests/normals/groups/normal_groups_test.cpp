@@ -1,4 +1,4 @@
-// Which corners share a normal: fixtures made by hand, and the rules on random meshes against an oracle.
+// Tests which corners share a normal: fixtures made by hand, and the rules on random meshes against an oracle.
 
 #include "chronormal/normals/normal_groups.h"
 
@@ -35,8 +35,8 @@ NormalGroups creased(const Motion& motion, double degrees) {
   return NormalGroups::by_crease_angle(motion, no_welding(motion), degrees).value();
 }
 
-// Triangles around the z axis from the hinge (0 0 0)-(0 0 1), at the given angles in degrees. Vertices 0 and 1 are the
-// hinge, and corner 3 f + 2 of each face is at its tip. Neighbours are wound in opposite ways, as on a surface.
+// Makes triangles around the z axis from the hinge (0 0 0)-(0 0 1), at the given angles in degrees. Vertices 0 and 1
+// are the hinge, and corner 3 f + 2 of each face is at its tip. Neighbours are wound in opposite ways, as on a surface.
 Motion pages(const std::vector<double>& angles) {
   std::vector<Point> points = {{0, 0, 0}, {0, 0, 1}};
   std::vector<std::uint32_t> corners;
@@ -123,7 +123,7 @@ TEST(CreaseAngle, is_measured_in_keyframe_0_alone) {
 }
 
 TEST(CreaseAngle, smoothness_spreads_from_edge_to_edge) {
-  // A cone of 12 faces, whose neighbours are 24 degrees apart and whose opposites are 100: all round at the tip.
+  // A cone has 12 faces; neighbours are 24 degrees apart and opposite ones 100, so the tip is smooth all round.
   std::vector<Point> points = {{0, 0, 1}};
   std::vector<std::uint32_t> corners;
   for (std::uint32_t i = 0; i < 12; ++i) {
@@ -143,7 +143,7 @@ TEST(CreaseAngle, fans_that_touch_in_a_point_stay_apart) {
 }
 
 TEST(CreaseAngle, an_edge_of_three_faces_is_smooth_between_those_that_are_close) {
-  // Faces 0 and 1 continue each other, face 2 stands on their edge.
+  // Faces 0 and 1 continue each other, and face 2 stands on their edge.
   const Motion motion = pages({0, 180, 90});
   const NormalGroups groups = creased(motion, 30);
   EXPECT_EQ(groups.element_of_corner()[0], groups.element_of_corner()[4]);
@@ -151,7 +151,7 @@ TEST(CreaseAngle, an_edge_of_three_faces_is_smooth_between_those_that_are_close)
 }
 
 TEST(CreaseAngle, every_pair_of_the_faces_at_an_edge_counts_and_not_only_neighbours_in_the_file) {
-  // As above, but the face that stands on the edge comes between the two others.
+  // The face that stands on the edge now comes between the two others in the file.
   const Motion motion = test::with_faces_in_order(pages({0, 180, 90}), {0, 2, 1});
   const NormalGroups groups = creased(motion, 30);
   EXPECT_EQ(groups.element_of_corner()[0], groups.element_of_corner()[7]);
@@ -198,7 +198,8 @@ TEST(CreaseAngle, outside_0_to_180_degrees_is_an_error) {
   }
 }
 
-// Whether corners share normals where a flood over all pairs of corners says so, on a mesh that is shaken by a seed.
+// Tells whether corners share normals exactly where a flood over all pairs of corners says so, on a mesh that is shaken
+// by a seed.
 bool equals_a_flood(std::uint64_t seed, bool of_polygons, bool tear, double degrees) {
   Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(2) : fixtures::icosphere(0), 0.8, seed);
   std::swap(motion.keyframes[0].positions, motion.keyframes[1].positions);  // the irregular end first
@@ -219,9 +220,9 @@ RC_GTEST_PROP(CreaseAngle, equals_a_flood_over_all_pairs_of_corners, ()) {
 }
 
 TEST(CreaseAngle, allows_a_millionth_more_for_the_rounding_of_positions) {
-  // Two faces of this mesh are at 65.3217 degrees and less than 1e-6 rad.
+  // Two faces of this mesh meet at 65.3217 degrees plus less than 1e-6 rad.
   for (const bool tear : {false, true}) EXPECT_TRUE(equals_a_flood(154186546385, false, tear, 65.3217));
-  // By hand: a step of 1e-7 rad is allowed, and one of 1e-5 is none.
+  // In a mesh made by hand, an excess of 1e-7 rad is allowed, and one of 1e-5 is not.
   constexpr double kDegreesPerRadian = 57.29577951308232;
   const Motion motion = pages({0, 150});  // its faces are at 30 degrees
   EXPECT_EQ(creased(motion, 30 - 1e-7 * kDegreesPerRadian).size(), creased(motion, 31).size());
@@ -266,7 +267,7 @@ Result<NormalGroups> split(const Topology& topology, const std::vector<float>& n
 
 TEST(SplitNormals, corners_with_one_stored_normal_share_it) {
   const Topology topology = make_triangles(4, {0, 1, 2, 2, 1, 3});
-  // Vertex 1 (corners 1 and 4) has one normal, of two lengths; vertex 2 (corners 2 and 3) has two.
+  // Vertex 1 (corners 1 and 4) has one normal, in two lengths; vertex 2 (corners 2 and 3) has two.
   const auto groups = split(topology, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 2, 0, 0, 1});
   EXPECT_EQ(elements(groups.value()), (Elements{0, 1, 2, 3, 1, 4}));
 }

@@ -1,4 +1,5 @@
-// Paths around elements have the area of the faces there, whatever these are: closed, open, in pieces, or polygons.
+// Checks that paths around elements have the area of the faces there, whether these are closed, open, in pieces, or
+// polygons.
 #include "normals/groups/rings.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@
 namespace chronormal::rings_test {
 namespace {
 
-// Whole numbers, so that every sum is exact.
+// Returns whole numbers, so that every sum is exact.
 Vec3d point(std::size_t v) {
   const auto of = [v](std::size_t factor, std::size_t modulus) { return static_cast<double>(v * factor % modulus); };
   return {of(7, 19), of(11, 23), of(5, 17)};
@@ -86,7 +87,7 @@ TEST(Rings, with_too_many_points_are_left_out) {
 }
 
 TEST(Rings, of_few_triangles_are_those_of_any_polygons) {
-  // The same faces, beside a square far away, which keeps the mesh from being one of triangles.
+  // The same faces stand beside a square far away, which makes it a mesh of polygons.
   fixtures::Random random(17);
   for (int i = 0; i < 200; ++i) {
     std::vector<std::uint32_t> corners;

@@ -1,4 +1,4 @@
-// Sheets that lie back to back have two sides, and their normals are those of each side alone.
+// Checks that sheets that lie back to back have two sides, with the normals of each side alone.
 #include "normals/groups/sides.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ struct Sheet {
   }
 };
 
-// The cross products of the faces at a vertex, added up.
+// Adds up the cross products of the faces at a vertex.
 std::array<double, 3> sum_at(const std::vector<Point>& points, const std::vector<std::uint32_t>& corners,
                              std::uint32_t vertex) {
   std::array<double, 3> sum{};
@@ -138,19 +138,20 @@ TEST(Sides, polygons_lie_back_to_back_where_one_has_the_points_of_the_other_in_r
 }
 
 TEST(Sides, faces_go_together_along_edges_that_one_leaves_by_and_the_other_comes_by) {
-  // 0 and 1 both leave by the edge to 5: they are wound against each other. 2 comes from 6, to which 1 goes.
+  // Faces 0 and 1 both leave by the edge to 5, so they are wound against each other. Face 2 comes from 6, to which 1
+  // goes.
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> apart = {{0, 2}};
   EXPECT_EQ(split_sides(3, {{0, 5, true}, {1, 5, true}, {1, 6, true}, {2, 6, false}}, apart),
             (std::vector<std::uint32_t>{0, 1, 1}));
   EXPECT_EQ(split_sides(3, {{0, 5, true}, {1, 5, false}, {1, 6, true}, {2, 6, false}}, apart),
             (std::vector<std::uint32_t>{0, 0, 1}));
-  // Without an edge in common, a face goes with the first that it is not apart from.
+  // A face without an edge in common goes with the first face that it is not apart from.
   EXPECT_EQ(split_sides(4, {}, std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {0, 2}}),
             (std::vector<std::uint32_t>{0, 1, 1, 0}));
 }
 
 TEST(Sides, walls_of_two_boxes_that_touch_stay_one_surface_around_their_rim) {
-  // Two cubes with a wall in common, twelve vertices each with its own copy of every corner.
+  // Two cubes have a wall in common. Each is twelve triangles with its own copy of every corner.
   std::vector<Point> places;
   std::vector<std::uint32_t> corners;
   for (const float x : {0.0F, 1.0F}) {
@@ -169,7 +170,8 @@ TEST(Sides, walls_of_two_boxes_that_touch_stay_one_surface_around_their_rim) {
   EXPECT_EQ(weld_coincident(motion).count, 12U);
 }
 
-// Both sides with the same vertices; the back is cut otherwise, where it says so, and pairs of triangles are quads then.
+// Makes both sides with the same vertices. If is_cut_otherwise, pairs of triangles are quads that the back cuts along
+// the other diagonal.
 ShadedMesh two_sided(const Sheet& sheet, bool is_cut_otherwise, bool looks_back) {
   ShadedMesh mesh;
   std::vector<std::uint32_t> back;
@@ -234,7 +236,7 @@ TEST(Sides, corners_of_both_sides_that_store_one_normal_are_elements_of_their_ow
   const auto element = groups.value().element_of_corner();
   for (std::size_t c = 0; c < sheet.corners.size(); ++c)
     for (std::size_t d = sheet.corners.size(); d < mesh.corners.size(); ++d) EXPECT_NE(element[c], element[d]);
-  // Where one face has no back, its three points are not of two sides.
+  // If one face has no back, its three points do not have two sides.
   mesh.corners.resize(mesh.corners.size() - 3);
   EXPECT_EQ(groups_of(mesh.corners).value().size(), 2 * sheet.points.size() - 3);
 }

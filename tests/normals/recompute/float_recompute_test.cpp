@@ -1,4 +1,4 @@
-// FloatRecompute against double arithmetic, and all ways to the same result against each other.
+// Compares FloatRecompute with double arithmetic, and all ways to the same result with each other.
 
 #include "chronormal/normals/recompute.h"
 
@@ -44,7 +44,7 @@ NormalGroups vertices_of(const Motion& motion) {
 }
 
 // A sum of normals in double, by the shoelace formula about a point of the face, and the angle by which float32 may
-// turn it: every position is off by a few roundings of its size, relative to the edges around the face.
+// turn it: every position has an error of a few roundings of its size, relative to the edges around the face.
 struct Expected {
   Vec3d n;
   double error = 0;
@@ -101,7 +101,7 @@ void check_groups(const Motion& motion, const NormalGroups& groups, const std::s
   }
 }
 
-// A mesh of polygons with 3, 4 and 5 corners.
+// Makes a mesh of polygons with 3, 4 and 5 corners.
 Motion polygons() {
   Motion mixed = fixtures::smooth_morph(7);
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -114,7 +114,7 @@ Motion polygons() {
   return mixed;
 }
 
-// A fan of so many triangles around vertex 0, with faces in no order; an open fan lacks one of them.
+// Makes a fan of triangles around vertex 0, with faces in random order; an open fan lacks one of them.
 Motion fan(std::size_t faces, bool is_open) {
   std::vector<fixtures::Point> from = {{0, 0, 0.3}}, to = {{0, 0, -0.1}};
   std::vector<std::uint32_t> corners;
@@ -131,7 +131,7 @@ Motion fan(std::size_t faces, bool is_open) {
   return fixtures::make_motion(fixtures::make_triangles(from.size(), std::move(corners)), from, to);
 }
 
-// Random faces over few vertices, which give paths that do not join, and paths with more than one continuation.
+// Makes random faces over few vertices, which give paths that do not join, and paths with more than one continuation.
 Motion tangle(std::size_t vertex_count, std::size_t face_count) {
   fixtures::Random random(3);
   std::vector<fixtures::Point> from, to;
@@ -262,7 +262,7 @@ TEST(FloatRecompute, every_layout_and_number_of_elements_has_the_same_bits_and_n
   for (std::size_t count = 1; count <= 40; ++count) {
     Motion motion = fixtures::smooth_morph(8);
     const auto corners = motion.topology.corners().subspan(0, 3 * count);
-    // These arrays end with the last vertex.
+    // The arrays end with the last vertex.
     const std::size_t vertices = 1 + *std::max_element(corners.begin(), corners.end());
     motion.topology = fixtures::make_triangles(vertices, {corners.begin(), corners.end()});
     std::array<std::unique_ptr<float[]>, 2> positions;

@@ -1,4 +1,5 @@
-// Normals made anew at every t: against exact rational arithmetic, and all ways to the same result against each other.
+// Compares normals recomputed at every t with exact rational arithmetic, and all ways to the same result with each
+// other.
 
 #include "chronormal/normals/recompute.h"
 
@@ -70,7 +71,7 @@ exact::Vector exact_point(const Segment& segment, std::uint32_t vertex, double t
   return result;
 }
 
-// By the shoelace formula about the origin.
+// Computes the normal by the shoelace formula about the origin.
 exact::Vector exact_normal(const Segment& segment, std::size_t f, double t) {
   const auto face = segment.topology->face(f);
   exact::Vector sum;
@@ -91,7 +92,7 @@ struct Family {
 
 constexpr std::size_t kFaces = 203;
 
-// Two sides are nearly the same, and so long that the product of their squares overflows float32.
+// Makes faces two sides of which are nearly the same, and so long that the product of their squares overflows float32.
 Motion soup_with_far_first_corners() {
   Motion motion = fixtures::large_soup(kFaces);
   for (Motion::Keyframe& keyframe : motion.keyframes) {
@@ -165,7 +166,7 @@ TEST(Recompute, hard_motions_are_within_the_promise_of_whole_numbers) {
   }
 }
 
-// The largest error of elements, against sums of exact normals.
+// Returns the largest error of elements, against sums of exact normals.
 double worst_of_groups(const Segment& segment, const NormalGroups& groups, double t) {
   const Normals normals = of_groups(segment, groups, t);
   double worst = 0;
@@ -180,7 +181,7 @@ double worst_of_groups(const Segment& segment, const NormalGroups& groups, doubl
   return worst;
 }
 
-// Any faces over few vertices: they cancel in all degrees.
+// Makes random faces over few vertices, which cancel to all degrees.
 Motion tangle(std::size_t vertex_count, std::size_t face_count, double offset, std::uint64_t seed) {
   fixtures::Random random(seed);
   std::vector<fixtures::Point> from, to;
@@ -304,7 +305,7 @@ TEST(Recompute, every_layout_of_the_result_has_the_same_bits_and_nothing_else_is
 }
 
 TEST(Recompute, results_past_the_caches_have_the_same_bits) {
-  // Only large ones go there (kStreamFrom): ask the kernel.
+  // Only large results go past the caches (kStreamFrom), so the test calls the kernel itself.
   const Motion motion = fixtures::soup({.face_count = 203, .seed = 47, .size = 1e-20});
   const Segment segment = motion.segment(0);
   const MovingTriangles triangles{.corners = motion.topology.corners().data(),
@@ -500,7 +501,8 @@ TEST(Recompute, needles_and_collapses_have_the_same_bits_on_every_instruction_se
 }
 
 TEST(Recompute, a_collapse_takes_the_limit_and_nothing_at_all_is_zero_and_counted) {
-  // Through a line at 1/2, a point that grows, a point for ever, and one as it should be.
+  // The first face goes through a line at 1/2, the second grows from a point, the third stays a point, and the fourth
+  // is ordinary.
   const std::vector<fixtures::Point> from = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 2, 2}, {2, 2, 2}, {2, 2, 2},
                                              {3, 3, 3}, {3, 3, 3}, {3, 3, 3}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<fixtures::Point> to = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {2, 2, 2}, {3, 2, 2}, {2, 3, 2},
@@ -518,7 +520,7 @@ TEST(Recompute, a_collapse_takes_the_limit_and_nothing_at_all_is_zero_and_counte
 }
 
 TEST(Recompute, a_line_for_ever_is_no_direction_made_of_rounding) {
-  // c lies on the line through a and b at both ends, so at every t; in double at 0.3 it does not quite.
+  // c lies on the line through a and b at both ends, and so at every t; in double at 0.3 it is slightly off.
   const std::vector<fixtures::Point> from = {{0, 0, 0}, {1, 2, 3}, {3, 6, 9}};
   const std::vector<fixtures::Point> to = {{0, 0, 0}, {5, 7, 11}, {15, 21, 33}};
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), from, to);

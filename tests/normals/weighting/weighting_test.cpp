@@ -1,4 +1,4 @@
-// Weighted normals at one time: each weighting against its definition, and what degenerate faces add.
+// Tests weighted normals at one time: each weighting against its definition, and the contributions of degenerate faces.
 
 #include "chronormal/normals/weighting.h"
 
@@ -62,7 +62,7 @@ TEST(Weighting, names_lead_there_and_back) {
 // ---- definitions ---------------------------------------------------------------------------------------------------
 
 TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
-  // Quads of 2 x 1, 1 x 3 and 3 x 2, with the corner at the origin: x, y and z edges of 2, 1, 3, normals outwards.
+  // Quads of 2 x 1, 1 x 3 and 3 x 2 have their corner at the origin: x, y and z edges of 2, 1, 3, normals outwards.
   const Motion corner = test::still(fixtures::make_polygons(7, {0, 4, 8, 12}, {0, 2, 4, 1, 0, 3, 5, 2, 0, 1, 6, 3}),
                                     {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 3}, {2, 1, 0}, {0, 1, 3}, {2, 0, 3}});
   const double xy = 2, yz = 3, zx = 6;  // areas; the face across z has the area xy
@@ -76,7 +76,7 @@ TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
 }
 
 TEST(Weighting, max_is_exact_on_a_sphere) {
-  // Any fan of triangles around a point of a sphere, however irregular: Max's theorem.
+  // By Max's theorem, this holds for any fan of triangles around a point of a sphere, however irregular.
   fixtures::Random random(5);
   for (int round = 0; round < 100; ++round) {
     std::vector<Point> points = {{0, 0, 1}};
@@ -129,7 +129,7 @@ RC_GTEST_PROP(Weighting, shuffled_faces_give_the_same_bits, ()) {
     RC_ASSERT(weighted(shuffled, info.weighting, 0.3) == weighted(motion, info.weighting, 0.3));
 }
 
-// What decides whether double is enough has no unit, so that the same face is decided in the same way at any size.
+// The test whether double is enough has no unit, so that it decides the same face in the same way at any size.
 TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   constexpr std::uint64_t kSeed = 20261126;
   fixtures::Random random(kSeed);
@@ -137,7 +137,7 @@ TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   for (int i = 0; i < 1000; ++i) {
     Motion motion{Topology::triangles(3, {0, 1, 2}).value(), std::vector<Motion::Keyframe>(2), {}};
     for (std::size_t k = 0; k < 2; ++k) {
-      // The three corners are on a line but for the last digits of the third.
+      // The three corners lie on a line but for the last digits of the third.
       std::array<float, 3> a{}, b{};
       for (auto* const point : {&a, &b})
         for (float& x : *point) x = static_cast<float>(random.uniform(-1, 1));
@@ -161,14 +161,14 @@ TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   }
 }
 
-// The angle between two vectors of any length.
+// Returns the angle between two vectors of any length.
 double angle_to(const Vec3d& u, const std::array<double, 3>& n) {
   const Vec3d v{n[0], n[1], n[2]};
   const Vec3d a = (1 / max_abs(u)) * u, b = (1 / max_abs(v)) * v;
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// Where double has lost a face, integers know it.
+// Integers resolve faces that double has lost.
 TEST(Weighting, normals_of_hard_faces_are_those_of_whole_numbers) {
   constexpr std::uint64_t kSeed = 49100;
   constexpr double kMost = 0x1p-29;
@@ -212,7 +212,7 @@ TEST(Weighting, ordinary_faces_cost_a_fifth_of_what_faces_on_lines_cost) {
 }
 
 TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
-  // A cube of quads: all weightings are symmetric at its corners, which they are not on its triangles.
+  // On a cube of quads all weightings are symmetric at its corners; on its triangles they are not.
   const fixtures::ClosedMesh cube = fixtures::box_grid(1);
   const Motion motion = test::still(cube.topology, cube.points);
   for (const WeightingInfo& info : kAllWeightings) {
@@ -229,7 +229,8 @@ TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
 TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
   const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 0}, {0.7, 0, 0}, {0.1, 0.3, 0.9}};
   const Motion plain = test::still(fixtures::make_triangles(6, {0, 1, 2}), points);
-  // On a line, twice the same vertex, a point, and a line that is only nearly one at these coordinates.
+  // The further faces are on a line, have the same vertex twice, are a point, or are nearly on a line at these
+  // coordinates.
   const Motion more = test::still(fixtures::make_triangles(6, {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 0, 0, 1, 3, 2}), points);
   for (const WeightingInfo& info : kAllWeightings) {
     const auto expected = weighted(plain, info.weighting), found = weighted(more, info.weighting);
@@ -239,7 +240,7 @@ TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
 }
 
 TEST(Weighting, a_corner_at_an_edge_without_length_adds_nothing_by_angle) {
-  // A quad with two vertices at one place.
+  // A quad has two vertices at one place.
   const Motion motion =
       test::still(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}), {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   for (const Weighting weighting : {Weighting::kAngle, Weighting::kAreaAngle, Weighting::kMax, Weighting::kInverseEdges,
@@ -289,7 +290,7 @@ TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
   }
 }
 
-// docs/theory.md, eq. 19: two triangles with an edge in common, one of which stands still.
+// In eq. 19 of docs/theory.md, two triangles have an edge in common, and one of them stands still.
 TEST(Weighting, is_along_what_the_theory_says_of_two_triangles) {
   Motion motion{Topology::triangles(4, {0, 1, 2, 1, 0, 3}).value(), std::vector<Motion::Keyframe>(2), {}};
   motion.keyframes[0] = {{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0}, 0, {}};

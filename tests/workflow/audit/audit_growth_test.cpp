@@ -1,4 +1,4 @@
-// What an audit takes of memory and time grows with the file: small files can say a thing thousands of times.
+// Checks that the memory and time of an audit grow with the file: small files can repeat a thing thousands of times.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace {
 
 using test::GltfBuilder;
 
-// A triangle with stored normals that do not follow its target, which stands there `targets` times.
+// Makes a triangle whose stored normals do not follow its target, which is listed `targets` times.
 GltfBuilder triangle(std::size_t targets) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0}),
@@ -32,7 +32,7 @@ GltfBuilder triangle(std::size_t targets) {
   return builder;
 }
 
-// Clips of two keys, which share their arrays or have one each.
+// Makes clips of two keys, which share their arrays or have arrays of their own.
 GltfBuilder clips(std::size_t count, bool are_shared) {
   GltfBuilder builder = triangle(1);
   for (std::size_t i = 0; i < count; ++i) {
@@ -59,7 +59,7 @@ TEST(AuditGrowth, a_subject_takes_little_more_than_the_bins_that_it_fills) {
   }
 }
 
-// Eight times as many targets take eight times as long, and not 64 times.
+// Eight times as many targets must take eight times as long, and not 64 times.
 TEST(AuditGrowth, time_is_linear_in_targets) {
   constexpr std::size_t kFew = 500, kMany = 4000;
   const test::GltfFixture few(triangle(kFew)), many(triangle(kMany));

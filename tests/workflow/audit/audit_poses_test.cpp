@@ -1,4 +1,4 @@
-// Poses in an audit: the ones in which a file opens, those that are asked for, and weights of targets beyond 0 to 1.
+// Tests poses in an audit: the poses in which a file opens, requested poses, and weights of targets beyond 0 to 1.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::vector<AuditSubject> subjects_of(const Audit& audit, Kind kind) {
   return result;
 }
 
-// The hinge with a second target, which opens it further.
+// Returns the hinge with a second target, which opens it further.
 ShadedMesh two_targets() {
   ShadedMesh mesh = hinge();
   mesh.targets.push_back(mesh.targets[0]);
@@ -57,7 +57,7 @@ TEST(AuditPoses, the_weights_of_every_node_are_a_subject_each_and_shut_the_gate)
   ASSERT_EQ(opening.size(), 2U);
   EXPECT_EQ(opening[0].node, std::size_t{0});
   EXPECT_EQ(opening[1].node, std::size_t{1});
-  // Of a pose that is asked for, the same is found.
+  // A requested pose has the same errors.
   for (std::size_t n = 0; n < 2; ++n) {
     AuditOptions options;
     options.is_posed = true;

@@ -1,4 +1,4 @@
-// Audits find the errors that a file was made with, and say of what they cannot judge that it was not judged.
+// Checks that audits find the errors that a file was made with, and report whatever they cannot judge.
 #include "chronormal/workflow/audit.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ std::vector<Kind> kinds_of(const Audit& audit) {
   return kinds;
 }
 
-// Moves every vertex by what a function says of its place.
+// Makes a target that moves every vertex by a function of its place.
 ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(const Vector&)>& delta) {
   ShadedMesh::Target target;
   for (std::size_t v = 0; v < mesh.vertices(); ++v)
@@ -50,7 +50,7 @@ ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(
 // ---- by hand
 
 TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
-  // Vertex 0 has the face that stays; 1 and 2 the sum of a face up and one sideways; 3 has the one that folds.
+  // Vertex 0 has the face that stays; 1 and 2 have the sum of a face up and one sideways; 3 has the face that folds.
   const Audit result = audit_of(hinge().file(), {.samples = 2});
   ASSERT_EQ(result.subjects.size(), 1U);
   const AuditSubject& subject = result.subjects[0];
@@ -88,12 +88,12 @@ TEST(Audit, percentiles_are_known_to_a_thousandth_of_a_degree_or_a_percent) {
 }
 
 TEST(Audit, halfway_is_where_the_drawing_has_it) {
-  // At weight 1/2 the folding face has the corner (1, 0, 1): its normal is (-1, 0, 1), as long as the drawing says.
+  // At weight 1/2 the folding face has the corner (1, 0, 1), so its normal is (-1, 0, 1), as long as in the drawing.
   const Audit result = audit_of(hinge().file(), {.samples = 3});
   EXPECT_NEAR(result.error.mean(), (45 + 45 + 90 + 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi) / 9, 1e-12);
 }
 
-// The weights that an expression of an avatar gives to the only target of a file.
+// Adds an expression of an avatar that sets the only target of a file to a weight.
 GltfBuilder with_expression(GltfBuilder builder, double weight, bool is_first_version) {
   if (is_first_version) {
     const Json binds = {{{"mesh", 0}, {"index", 0}, {"weight", 100 * weight}}};
@@ -116,7 +116,8 @@ TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_stre
     EXPECT_EQ(subject.mesh, 0U);
     EXPECT_EQ(subject.samples, 1U);
     EXPECT_EQ(subject.vertices, 3U);
-    // Half-way, as the drawing has it: the vertex of the face that folds is off by 45 degrees, the edge by less.
+    // Half-way, as in the drawing, the error of the vertex of the folding face is 45 degrees; the errors at the edge
+    // are smaller.
     EXPECT_EQ(subject.error.judged, 3U);
     EXPECT_NEAR(subject.error.worst, 45, 1e-12);
     EXPECT_NEAR(subject.error.sum, 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi, 1e-12);
@@ -127,12 +128,12 @@ TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_stre
 }
 
 TEST(Audit, an_expression_is_a_fault_where_it_is_farther_off_than_its_targets_alone) {
-  // The target goes to weight 1, and the expression beyond.
+  // The target goes to weight 1, and the expression goes beyond.
   const Audit result = audit_of(with_expression(hinge().file(), 3, false), {.samples = 2});
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals, Kind::kWrongTogether}));
   EXPECT_EQ(result.findings[1].expression, 0U);
   EXPECT_FALSE(result.findings[1].target || result.findings[1].animation);
-  // The corner is (1 - 3, 0, 3) then: the face has turned by pi - atan(3 / 2).
+  // The corner is then (1 - 3, 0, 3), so the face has turned by pi - atan(3 / 2).
   EXPECT_NEAR(result.findings[1].degrees, 180 - std::atan(1.5) * 180 / std::numbers::pi, 1e-12);
   EXPECT_EQ(result.worst, 1U);
 }
@@ -190,7 +191,7 @@ TEST(Audit, error_does_not_depend_on_the_tilt_of_the_author_under_translation_bu
 }
 
 TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats) {
-  // N = c0, D = c1 and C = c2 over |c0|, of each vertex: what a bake writes, here from three normals of the oracle.
+  // N = c0, D = c1 and C = c2 over |c0| for each vertex, as a bake writes them, here from three normals of the oracle.
   ShadedMesh mesh = random_sheet(4, 5, 1, 0);
   ShadedMesh::Target extra;
   extra.positions.assign(mesh.positions.size(), 0);
@@ -271,7 +272,7 @@ TEST(Audit, targets_alone_have_the_errors_of_an_oracle) {
   }
 }
 
-// Weights of a cubic spline between two keys, as appendix C of the specification has it.
+// Evaluates a cubic spline between two keys by appendix C of the specification.
 double hermite(double t, double v0, double out0, double in1, double v1, double td) {
   const double t2 = t * t, t3 = t2 * t;
   return (2 * t3 - 3 * t2 + 1) * v0 + td * (t3 - 2 * t2 + t) * out0 + (-2 * t3 + 3 * t2) * v1 + td * (t3 - t2) * in1;
@@ -316,13 +317,13 @@ TEST(Audit, animations_of_every_interpolation_have_the_errors_of_an_oracle) {
   }
 }
 
-// Where many targets are active, positions between two keys are found from those at both.
+// If many targets are active, an audit finds positions between two keys from the positions at both.
 TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
   constexpr std::size_t kTargets = 12;
   const ShadedMesh mesh = random_sheet(21, 4, kTargets, 0.1);
   fixtures::Random random(21);
   const std::vector<float> times = {0, 1, 1.5F, 4};
-  // At each key a tangent in, the weights, and a tangent out. At one key fewer targets are active than are many.
+  // Each key has a tangent in, the weights, and a tangent out. At one key fewer targets are active than count as many.
   std::vector<float> cubic, weights;
   for (std::size_t key = 0; key < times.size(); ++key) {
     for (std::size_t row = 0; row < 3; ++row) {
@@ -362,7 +363,7 @@ TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
 }
 
 TEST(Audit, angle_weighting_judges_by_angles) {
-  // Around vertex 0 a wide face and a narrow one, of which the target lifts the far corner.
+  // A wide face and a narrow one meet in vertex 0; the target lifts the far corner of the narrow one.
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2, 0, 2, 3};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 4, 0};
@@ -386,7 +387,7 @@ TEST(Audit, angle_weighting_judges_by_angles) {
 
 TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
   ShadedMesh mesh = random_sheet(5, 6, 1, 0);
-  // Every face counts alike around a vertex.
+  // Every face around a vertex counts alike.
   for (std::size_t v = 0; v < mesh.vertices(); ++v) {
     Vector sum = {0, 0, 0};
     for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
@@ -410,7 +411,7 @@ TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
 }
 
 TEST(Audit, authored_offset_names_area_where_all_weightings_come_equally_close) {
-  // Two triangles in a plane have one normal, whatever the weighting, and the authored ones are turned from it.
+  // Two triangles in a plane have one normal by every weighting, and the authored normals are turned away from it.
   ShadedMesh mesh = hinge();
   for (std::size_t v = 0; v < 4; ++v) mesh.normals[3 * v] = 0.6F, mesh.normals[3 * v + 2] = 0.8F;
   const Audit result = audit_of(mesh.file());
@@ -421,7 +422,7 @@ TEST(Audit, authored_offset_names_area_where_all_weightings_come_equally_close) 
 }
 
 TEST(Audit, takes_from_2_to_1000001_samples) {
-  // At more the file is not even read.
+  // For larger numbers the file is not even read.
   for (const std::size_t samples : {std::size_t{0}, std::size_t{1}, std::size_t{1000002}, ~std::size_t{0}}) {
     const test::GltfFixture file(hinge().file());
     const Result<Audit> result = audit(*file, {.samples = samples});
@@ -435,18 +436,18 @@ TEST(Audit, takes_from_2_to_1000001_samples) {
   EXPECT_EQ(most.value().error.judged, 3U * 1000001);
 }
 
-// ---- what is not judged
+// ---- samples that are not judged
 
 TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   // The face of vertex 3 has no area at weight 1/2, where vertex 3 crosses the edge, and points down after it.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
   const Audit result = audit_of(mesh.file(), {.samples = 3});
-  // At weight 1 the two faces around the edge cancel: 1 and 2 have no normal there either.
+  // At weight 1 the two faces around the edge cancel, so that vertices 1 and 2 have no normal there either.
   EXPECT_EQ(result.error.no_normal, 3U);
   EXPECT_EQ(result.error.judged, 6U);
   EXPECT_NEAR(result.error.sum, 180, 1e-9);
-  // These have faces with an area, and no gate passes; the face of vertex 3 is not drawn.
+  // Vertices 1 and 2 have faces with an area, and no gate passes; the face of vertex 3 is not drawn.
   EXPECT_EQ(result.error.cancelled, 2U);
   EXPECT_EQ(result.error.cancelled_at.vertex, 1U);
   EXPECT_EQ(result.error.cancelled_at.at, 1);
@@ -476,14 +477,14 @@ struct Hinges {
     }
   }
 
-  // The positions at half t, which are whole.
+  // Returns the positions at t = half / 2, which are whole numbers.
   [[nodiscard]] std::vector<std::array<int, 3>> at(int half) const {
     std::vector<std::array<int, 3>> result = from;
     for (std::size_t v = 0; v < result.size(); ++v)
       for (std::size_t c = 0; c < 3; ++c) result[v][c] += half * (to[v][c] - from[v][c]) / 2;
     return result;
   }
-  // How many normals of vertices come to nothing there although faces around them have an area.
+  // Counts the vertex normals that vanish there although faces around the vertex have an area.
   [[nodiscard]] std::size_t count_cancelled(int half) const {
     const std::vector<std::array<int, 3>> places = at(half);
     std::vector<std::array<int, 3>> sums(places.size());
@@ -523,14 +524,14 @@ TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_
     for (std::size_t v = 0; v < mesh.vertices(); ++v) mesh.normals.insert(mesh.normals.end(), {0.6F, 0, 0.8F});
     mesh.targets.push_back({hinges.floats(true), {}, {}});
     const Audit of_file = audit_of(mesh.file(), {.samples = 3, .viewers = {kViewers[0]}});
-    // The same as a sequence: without normals blocks are measured, and with a slerp outputs one by one.
+    // The same mesh as a sequence is measured in blocks if it has no normals, and output by output with a slerp.
     std::vector<float> moved = mesh.positions;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += mesh.targets[0].positions[i];
     Motion motion;
     motion.topology = Topology::triangles(mesh.vertices(), mesh.corners).value();
     motion.keyframes = {{mesh.positions, 0, ""}, {moved, 1, ""}};
     motion.connect_as_sequence();
-    // A viewer shows nothing where those at both ends are opposite.
+    // A viewer shows nothing where the normals at both ends are opposite.
     for (const Audit& found : {of_file, audit(motion, {}, {.samples = 3}).value(),
                                audit(motion, {}, {.rule = AuditRule::kSlerp, .samples = 3}).value()}) {
       EXPECT_EQ(found.error.cancelled + found.error.unlit, right) << draw;
@@ -546,7 +547,7 @@ TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_
   EXPECT_LT(with, 40U);
 }
 
-// ---- what cannot be lit
+// ---- samples that cannot be lit
 
 TEST(Audit, stored_normals_that_add_up_to_zero_cannot_be_lit_and_are_off_by_180_degrees) {
   ShadedMesh mesh = hinge();
@@ -569,7 +570,7 @@ TEST(Audit, stored_normals_that_add_up_to_zero_cannot_be_lit_and_are_off_by_180_
 }
 
 TEST(Audit, infinite_normals_and_those_that_are_no_number_cannot_be_lit) {
-  // Weights of 3e38 make infinities of deltas of 2; of two infinities with opposite signs, NaN.
+  // Weights of 3e38 turn deltas of 2 into infinities, and two infinities of opposite signs into NaN.
   for (const bool has_opposite : {false, true}) {
     ShadedMesh mesh = hinge();
     mesh.targets[0].normals.assign(12, 2);
@@ -606,7 +607,7 @@ TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_onl
   EXPECT_EQ(error.no_normal, 2U);
   EXPECT_EQ(error.unlit, 1U);
   EXPECT_EQ(error.unlit_at.vertex, 1U);
-  // Infinity is none even there.
+  // Infinity cannot be lit even there.
   mesh.normals[11] = 3e38F;
   mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3e38F};
   error = audit_of(mesh.file(), {.samples = 3}).error;
@@ -653,7 +654,7 @@ TEST(Audit, nothing_that_moves_is_nothing_to_judge) {
 // ---- faults
 
 TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
-  // At weight 1 the sum of both faces is (-4, 0, 4), so N + D = unit of that; the free vertex goes from z to -x.
+  // At weight 1 the sum of both faces is (-4, 0, 4), so N + D is its unit vector; the free vertex goes from z to -x.
   ShadedMesh mesh = hinge();
   const float h = std::sqrt(0.5F);
   mesh.targets[0].normals = {0, 0, 0, -h, 0, h - 1, -h, 0, h - 1, -1, 0, -1};
@@ -669,12 +670,12 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
 }
 
 TEST(Audit, targets_that_are_right_alone_can_be_wrong_together) {
-  // Two stretches along x and y: alone neither turns the plane x + z = 0 ... but shears of one each do together.
+  // The targets stretch along x and y: alone, neither turns the plane x + z = 0, but shears of both together do.
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1};
-  // n(w) = (1, 0, w0) x (0, 1, w1) = (-w0, -w1, 1): linear. With deltas of e and f along x, z: a term w0 w1.
+  // n(w) = (1, 0, w0) x (0, 1, w1) = (-w0, -w1, 1) is linear. Deltas of e and f along x and z give a term w0 w1.
   mesh.targets = {{{0, 0, 0, 0, 0, 1, 0, 0, 0}, {-1, 0, 0, -1, 0, 0, -1, 0, 0}, {}},
                   {{0, 0, 0, 0, 0, 0, 1, 0, 0}, {}, {}}};
   // n = (1, 0, w0) x (w1, 1, 0) = (-w0, w0 w1, 1).
@@ -697,10 +698,10 @@ TEST(Audit, stale_tangents_are_those_that_lean_on_the_right_normal) {
   EXPECT_EQ(result.findings[1].count, 3U);
   EXPECT_NEAR(result.findings[1].degrees, 90, 1e-9);
   EXPECT_EQ(result.findings[1].worst_at->vertex, 3U);
-  // Right tangents: along the folded face, and half-way up at the edge.
+  // Right tangents run along the folded face, and half-way up at the edge.
   mesh.targets[0].tangents = {0, 0, 0, 0, 0, 1, 0, 0, 1, -1, 0, 1};
   EXPECT_EQ(kinds_of(audit_of(mesh.file())), (std::vector<Kind>{Kind::kMissingNormals}));
-  // Along the hinge nothing leans.
+  // Tangents along the hinge do not lean.
   mesh.targets[0].tangents.clear();
   mesh.tangents.clear();
   for (int v = 0; v < 4; ++v) mesh.tangents.insert(mesh.tangents.end(), {0, 1, 0, 1});
@@ -786,8 +787,8 @@ TEST(Audit, one_animation_can_be_asked_for) {
 }
 
 TEST(Audit, other_rules_join_the_normals_of_the_keys) {
-  // One triangle; vertex 2 goes from y to z, so that n(t) = (0, -t, 1 - t). Stored at the keys: (0, 0, 1) and
-  // (0, -3, 0).
+  // In one triangle, vertex 2 goes from y to z, so that n(t) = (0, -t, 1 - t). The stored normals at the keys are (0,
+  // 0, 1) and (0, -3, 0).
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -839,7 +840,7 @@ TEST(Audit, bad_options_are_refused) {
 
 // ---- sequences
 
-// One triangle whose vertex 2 goes from y over z to -y: n = (0, 0, 1), (0, -1, 0), (0, 0, -1) at the keyframes.
+// Makes a triangle whose vertex 2 goes from y over z to -y: n = (0, 0, 1), (0, -1, 0), (0, 0, -1) at the keyframes.
 Motion turning() {
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
@@ -870,7 +871,7 @@ TEST(Audit, player_that_computes_normals_at_keyframes_errs_between_them) {
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-5);
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
   EXPECT_TRUE(result.offsets.empty());
-  // Straight lines between unit normals are right here.
+  // Linear interpolation of unit normals is right here.
   EXPECT_LT(audit_of(turning(), {}).error.worst, 1e-4);
 }
 
@@ -885,14 +886,14 @@ TEST(Audit, stored_normals_of_a_sequence_that_stay_behind_are_errors) {
 }
 
 TEST(Audit, offset_that_an_author_carries_along_is_none) {
-  // 45 degrees towards x at every keyframe.
+  // The normals are tilted by 45 degrees towards x at every keyframe.
   const StoredNormals tilted{{thrice(1, 0, 1), thrice(2, -2, 0), thrice(3, 0, -3)}};
   const Audit result = audit_of(turning(), tilted, {.samples = 2});
   EXPECT_LT(result.error.worst, 1e-4);
   ASSERT_EQ(result.offsets.size(), 1U);
   EXPECT_NEAR(result.offsets[0].worst, 45, 1e-9);
   EXPECT_EQ(result.offsets[0].vertices, 3U);
-  // What it grows by is an error: 60 degrees instead of 45.
+  // Any growth of the offset is an error: here it is 60 degrees instead of 45.
   StoredNormals growing = tilted;
   const float t = std::tan(60 * std::numbers::pi_v<float> / 180);
   growing.of_keyframes[1] = thrice(t, -1, 0);
@@ -900,7 +901,7 @@ TEST(Audit, offset_that_an_author_carries_along_is_none) {
 }
 
 TEST(Audit, normals_of_keyframe_0_alone_say_which_edges_are_hard) {
-  // The hinge, as a sequence. With a hard edge each face has its own normal, which a straight line gets right.
+  // The hinge becomes a sequence. With a hard edge each face has its own normal, which a straight line gets right.
   const ShadedMesh mesh = hinge();
   Motion motion;
   motion.topology = Topology::triangles(4, mesh.corners).value();

@@ -1,5 +1,5 @@
-// What an audit finds in each viewer, against plain loops: weights as the viewer plays them, positions and right normals at
-// these, and what the viewer shows.
+// Compares the errors that an audit finds in each viewer with plain loops: weights as the viewer plays them, positions
+// and right normals at these weights, and the normals that the viewer shows.
 
 #include <gtest/gtest.h>
 
@@ -34,12 +34,12 @@ Triple triple(const Vector& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-// What an oracle finds.
+// Holds the errors that an oracle finds.
 struct Expected {
   std::vector<Real> errors;
   Real displaced = 0;
 
-  // All vertices at the weights of a viewer, where the specification has others.
+  // Adds all vertices at the weights that a viewer plays and the different weights that the specification asks for.
   void add(const ShadedMesh& mesh, std::string_view viewer, const std::vector<double>& played,
            const std::vector<double>& specified) {
     const std::vector<double> none(played.size());
@@ -65,7 +65,7 @@ void expect_same(const ViewerAudit& viewer, Expected expected, const std::string
   Real sum = 0;
   for (const Real e : expected.errors) sum += e;
   std::sort(expected.errors.begin(), expected.errors.end());
-  // A number between two that can be kept may go either way.
+  // A number half-way between two representable ones may be rounded either way.
   constexpr double kMean = 0.002, kWorst = 0.1;
   EXPECT_NEAR(viewer.error.mean(), static_cast<double>(sum) / static_cast<double>(expected.errors.size()), kMean);
   EXPECT_NEAR(viewer.error.worst, static_cast<double>(expected.errors.back()), kWorst);
@@ -185,7 +185,7 @@ TEST(AuditViewers, targets_beyond_the_limit_are_ignored_and_noted) {
 }
 
 TEST(AuditViewers, a_normal_that_a_viewer_cannot_light_is_counted_for_that_viewer) {
-  // N + D is (0, 0, 0.003) by the specification, and nothing is left of it in eight bits; of its direction all is.
+  // N + D is (0, 0, 0.003) by the specification. Eight bits keep nothing of it, but all of its direction.
   ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals.assign(12, 0);
   mesh.targets[0].normals[11] = -1 + 0.003F;

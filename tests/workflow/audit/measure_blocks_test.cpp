@@ -1,4 +1,5 @@
-// Audits block by block have the same numbers as audits vertex by vertex, which are those that keep every single error.
+// Checks that audits block by block have the same figures as audits vertex by vertex, which are used when every single
+// error is kept.
 #include "workflow/audit/measure_blocks.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +33,7 @@ void expect_same(const MotionError& a, const MotionError& b) {
   if (a.unlit > 0) expect_same(a.unlit_at, b.unlit_at);
 }
 
-// Returns how many pairs were judged.
+// Compares both kinds of audit, and returns how many samples were judged.
 std::size_t expect_same_audits(const Motion& motion, AuditOptions options) {
   const Result<Audit> blocks = audit(motion, {}, options);
   options.keep_errors = true;

@@ -40,7 +40,7 @@ const AuditFinding* find(const Audit& audit, Kind kind) {
   return found == audit.findings.end() ? nullptr : &*found;
 }
 
-// Shares of three joints in two sets, which do not add up to 1.
+// Makes a skin whose weights for three joints, in two sets, do not add up to 1.
 Skin random_skin(fixtures::Random& random, std::size_t vertices) {
   Skin skin;
   for (std::size_t j = 0; j < 3; ++j) {
@@ -73,8 +73,8 @@ Trs random_place(fixtures::Random& random, double scale) {
   return place;
 }
 
-// Node 0 has the mesh, nodes 1 and 2 are joints, 2 below 1, node 3 is a joint below 4, which has a matrix. Where the node
-// of the mesh is does not matter.
+// Node 0 has the mesh. Nodes 1 and 2 are joints, 2 below 1; node 3 is a joint below 4, which has a matrix. The place of
+// the node of the mesh does not matter.
 struct Rig {
   Trs one, two, three;
   Rows four = {{{{1, 0.25, 0, 2}, {0, 1, 0.5, 0}, {0.125, 0, 1, -1}}}};
@@ -153,7 +153,7 @@ TEST(SkinnedAudit, targets_are_seen_through_the_skin_as_the_file_poses_it) {
     EXPECT_FALSE(note->is_fault());
     EXPECT_EQ(note->count, 1U);
     EXPECT_NEAR(note->degrees, most, 1e-6);
-    // Without the skin the figures are others.
+    // The errors differ without the skin.
     EXPECT_GT(std::fabs(audit_of(builder, {.skins = false}).error.mean() - result.error.mean()), 0.05) << seed;
   }
 }
@@ -187,7 +187,7 @@ TEST(SkinnedAudit, viewers_see_the_same_normals_through_a_skin_in_ways_of_their_
   EXPECT_GT(std::fabs(result.viewers[2].error.mean() - result.viewers[1].error.mean()), 0.1);
 }
 
-// The value of a track by the formulas of the specification, with its own search.
+// Evaluates a track by the formulas of the specification, with a search of its own.
 template <std::size_t N>
 std::array<Real, N> value_at(const std::string& interpolation, const std::vector<float>& times,
                              const std::vector<float>& values, double time, bool just_before) {
@@ -280,7 +280,7 @@ TEST(SkinnedAudit, tracks_are_seen_in_the_pose_of_their_animation_at_that_time) 
     grow.add_to(builder, animation, 2, seed % 2 == 0);
     move.add_to(builder, animation, 2, false);
     other.add_to(builder, animation, 0, false);  // that of the mesh turns nothing
-    // Another animation does not matter.
+    // Another animation must not matter.
     other.add_to(builder, builder.add_animation("walk"), 2, false);
     const Audit result = audit_of(builder, {.animation = "talk"});
     ASSERT_EQ(result.subjects.size(), 1U);
@@ -307,9 +307,9 @@ TEST(SkinnedAudit, tracks_are_seen_in_the_pose_of_their_animation_at_that_time) 
   }
 }
 
-// ---- what must be so
+// ---- invariants
 
-// The errors of an audit, to compare with ==.
+// Returns the errors of an audit, to compare with ==.
 std::vector<double> figures(const Audit& audit) {
   std::vector<double> result;
   for (const AuditSubject& subject : audit.subjects)
@@ -319,7 +319,7 @@ std::vector<double> figures(const Audit& audit) {
   return result;
 }
 
-// One joint, with no inverse bind matrix, at a place.
+// Puts a mesh under one joint at a place, without inverse bind matrices.
 GltfBuilder with_one_joint(const ShadedMesh& mesh, const Json& place) {
   GltfBuilder builder = mesh.file();
   builder.add("nodes", place);
@@ -352,17 +352,17 @@ TEST(SkinnedAudit, bind_pose_gives_the_figures_without_a_skin_and_so_do_turns_an
 }
 
 TEST(SkinnedAudit, hinge_under_a_joint_that_flattens_has_the_angles_of_a_drawing) {
-  // The face folds up from (0, 0, 1) to (-1, 0, 0) and its vertex 3 shows (0, 0, 1). Halves of z turn what is right
-  // there at w, (-sin, 0, cos) of the fold, towards x.
+  // The face folds up from (0, 0, 1) to (-1, 0, 0), and its vertex 3 shows (0, 0, 1). Halving z turns the right normal
+  // at w, (-sin, 0, cos) of the fold, towards x.
   const Audit result = audit_of(with_one_joint(test::hinge(), {{"scale", {1, 1, 0.5}}}), {.samples = 2});
   ASSERT_EQ(result.subjects.size(), 1U);
   const MotionError& error = result.subjects[0].error;
   EXPECT_EQ(error.judged, 6U);
   EXPECT_NEAR(error.worst, 90, 1e-12);
-  // At the edge, n = (-1, 0, 1): seen, its z is half as long.
+  // At the edge n is (-1, 0, 1), and its z is halved on the screen.
   const double edge = std::atan2(1, 0.5) * 180 / std::numbers::pi;
   EXPECT_NEAR(error.mean(), (edge + edge + 90) / 6, 1e-12);
-  // The surface itself goes the other way: a normal of (-0.5, 0, 1) there.
+  // The surface itself goes the other way: its normal there is (-0.5, 0, 1).
   const double skinned = std::atan2(0.5, 1) * 180 / std::numbers::pi;
   EXPECT_NEAR(result.subjects[0].skinning->worst, edge - skinned, 1e-12);
   EXPECT_EQ(result.subjects[0].skinning->judged, 6U);
@@ -377,7 +377,7 @@ TEST(SkinnedAudit, what_a_joint_makes_vanish_is_not_judged) {
   EXPECT_EQ(error.faint, 0U);
   EXPECT_EQ(error.no_normal, 3U * 21);
   EXPECT_EQ(result.subjects[0].skinning->judged, 0U);
-  // Flat in z: what is right at the edge keeps its x, and what is shown there, (0, 0, 1), nothing.
+  // A joint that is flat in z leaves the x of the right normal at the edge, and nothing of the shown one, (0, 0, 1).
   const Audit flat = audit_of(with_one_joint(test::hinge(), {{"scale", {1, 1, 0}}}), {.samples = 2});
   EXPECT_EQ(flat.subjects[0].error.unlit, 3U);
   EXPECT_EQ(flat.subjects[0].error.no_normal, 3U);

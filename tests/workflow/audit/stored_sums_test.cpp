@@ -1,4 +1,5 @@
-// Sums of stored normals at several sets of weights are, bit for bit, those that a viewer makes vertex by vertex.
+// Checks that sums of stored normals at several sets of weights equal, bit for bit, the sums that a viewer makes vertex
+// by vertex.
 #include "workflow/audit/stored_sums.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +19,8 @@ struct Fixture {
   std::vector<JudgedOutput> outputs;
 };
 
-// Every third vertex shows nothing. Target 0 turns all vertices, 1 none of them, 2 the last one, 3 some in the middle,
-// 4 stores no normals, and 5 turns every second one.
+// Every third vertex shows nothing. Target 0 turns all vertices, 1 none, 2 the last one, 3 some in the middle, 4 stores
+// no normals, and 5 turns every second vertex.
 Fixture make_fixture(std::size_t vertices, std::mt19937& random) {
   std::uniform_real_distribution<float> number(-1, 1);
   Fixture result;
@@ -49,7 +50,7 @@ Fixture make_fixture(std::size_t vertices, std::mt19937& random) {
   return result;
 }
 
-// N + sum w D of one component, target after target.
+// Computes N + sum w D of one component, target after target.
 float plain_sum(const GltfShading& shading, std::size_t i, const std::vector<double>& weights) {
   float sum = shading.normals[i];
   for (std::size_t k = 0; k < weights.size(); ++k) {

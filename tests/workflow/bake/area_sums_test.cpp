@@ -1,4 +1,4 @@
-// Sums of areas against plain loops over faces and elements, on every instruction set and number of threads.
+// Compares sums of areas with plain loops over faces and elements, on every instruction set and number of threads.
 
 #include "workflow/bake/sequence/area_sums.h"
 
@@ -31,7 +31,8 @@ PointRows rows_of(const Motion::Keyframe& keyframe) {
   return rows;
 }
 
-// A sum of some terms with the sum of their absolute values: 0 where it is below so many roundings of that.
+// A sum of some terms with the sum of their absolute values. It counts as 0 if it is below the rounding error of that
+// many terms.
 struct Sum {
   Vector value{}, magnitude{};
   double terms = 0;
@@ -75,7 +76,7 @@ std::vector<Vector> sums_of(const Topology& topology, const NormalGroups& groups
   return result;
 }
 
-// The first element whose sums differ by a bit, or nothing.
+// Describes the first element whose sums differ by a bit, or returns "".
 std::string difference(const Motion& motion, const NormalGroups& groups) {
   const PointRows a = rows_of(motion.keyframes[0]), b = rows_of(motion.keyframes[1]);
   const std::vector<Vector> of_a = sums_of(motion.topology, groups, a), of_b = sums_of(motion.topology, groups, b);

@@ -1,6 +1,6 @@
-// The captured face: what the smallest form leaves between the keys, at instants that nothing was fitted to or judged
-// by. The environment variable CHRONORMAL_DATA says where it is; CHRONORMAL_FULL asks for all of its keys instead of
-// the first few.
+// Checks the errors that the smallest candidate leaves on the captured face between the keys, at instants that nothing
+// was fitted to or judged by. The environment variable CHRONORMAL_DATA says where the face is; CHRONORMAL_FULL asks for
+// all of its keys instead of the first few.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ constexpr std::size_t kTargets = 57, kMostTargets = 112, kMostTargetsAlone = 80,
 constexpr unsigned kSeed = 20;
 constexpr Real kLeastLength = 1e-3L;
 
-// Replaces the output of the only sampler, and leaves of all keys as many as are asked for.
+// Replaces the output of the only sampler, and keeps the requested number of keys.
 std::string with_track(const GltfPlayer& player, const std::string& glb, const std::vector<std::size_t>& from,
                        std::size_t keys) {
   auto json = player.json;
@@ -74,7 +74,7 @@ struct Errors {
     for (const float error : degrees) sum += static_cast<double>(error);
     return sum / static_cast<double>(degrees.size());
   }
-  // The error that a part of all are not beyond.
+  // Returns the error at a quantile.
   [[nodiscard]] float at(double part) {
     const auto place = degrees.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(degrees.size() - 1));
     std::nth_element(degrees.begin(), place, degrees.end());
@@ -82,8 +82,8 @@ struct Errors {
   }
 };
 
-// The errors of all vertices in some poses, which are given for the file before and after; normals that are shorter
-// than a thousandth of those of the base are excused.
+// Returns the errors of all vertices in some poses, which are given for the file before and after. Normals that are
+// shorter than a thousandth of the normals of the base are excused.
 Errors errors_in(const Baked& baked, const std::vector<std::pair<std::vector<double>, std::vector<float>>>& poses) {
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<Vector> base = truth.normals_at(std::vector<double>(kTargets, 0.0));
@@ -104,7 +104,7 @@ Errors errors_in(const Baked& baked, const std::vector<std::pair<std::vector<dou
   return errors;
 }
 
-// Random instants between any two keys.
+// Returns the errors at random instants between two keys.
 Errors errors_between_keys(const Baked& baked, std::size_t gaps_apart) {
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> part(0, 1);
@@ -136,7 +136,7 @@ class BakeCapture : public testing::Test {
     is_full_ = std::getenv("CHRONORMAL_FULL") != nullptr;
   }
 
-  // The face with the track of target from[i] on target i.
+  // Bakes the face with the track of target from[i] on target i.
   [[nodiscard]] Baked baked(const std::vector<std::size_t>& from, const BakeOptions& options) const {
     const GltfPlayer player(glb_);
     const std::size_t keys = player.accessor(player.json["animations"][0]["samplers"][0]["input"]).size();

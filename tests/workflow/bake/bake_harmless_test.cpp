@@ -1,4 +1,4 @@
-// Deltas that viewers of every kind show alike, and what a bake must not make worse.
+// Tests deltas that viewers of every kind show alike, and the promise that a bake makes nothing worse.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,8 @@ Vector unit_of(const Vector& v) {
   return size == 0 ? v : Vector{v[0] / size, v[1] / size, v[2] / size};
 }
 
-// What a viewer shows of a vertex: the sum of what it keeps of the base normal and of each delta.
+// Computes the normal that a viewer shows at a vertex: the sum of the values that it keeps of the base normal and of
+// each delta.
 Vector shown(const test::GltfPlayer& player, const Json& primitive, std::size_t v, const std::vector<double>& weights,
              Rule rule) {
   const auto vector_of = [&](const Json& accessor) {
@@ -56,7 +57,7 @@ struct Weights {
 
 std::vector<double> doubles(const std::vector<float>& values) { return {values.begin(), values.end()}; }
 
-// The track of a file at instants that no key or fraction of a gap meets.
+// Samples the track of a file at instants that no key or fraction of a gap meets.
 std::vector<Weights> on_track(const Baked& baked, std::size_t instants = 137) {
   const Json& sampler = baked.before->json["animations"][0]["samplers"][0];
   const std::vector<float> times = baked.before->accessor(sampler["input"].get<std::size_t>());
@@ -125,7 +126,7 @@ Change change(const Baked& baked, const std::vector<Weights>& poses, Rule rule) 
   return result;
 }
 
-// Hills with two or three targets that go up one after the other and meet.
+// Makes hills with two or three targets that go up one after the other and meet.
 GltfBuilder moving(std::size_t targets, unsigned seed, double size = 0.4, const char* interpolation = "LINEAR") {
   GltfBuilder builder;
   test::Hills hills(seed);
@@ -248,7 +249,7 @@ TEST(BakeHarmless, steps_and_splines_keep_their_keys) {
   }
 }
 
-// Gives the targets of the hills deltas of their normals: those of a bake, and something on top.
+// Gives the targets of the hills the normal deltas of a bake with noise on top.
 GltfBuilder with_deltas(GltfBuilder builder, BakeEncoding encoding, unsigned seed, double noise) {
   BakeOptions options;
   options.encoding = encoding;
@@ -262,7 +263,8 @@ GltfBuilder with_deltas(GltfBuilder builder, BakeEncoding encoding, unsigned see
   return builder;
 }
 
-// As a whole: neither the mean nor the worst grows beyond the tolerance, whatever single normals do.
+// Over a whole surface neither the average nor the worst error may grow beyond the tolerance, whatever single normals
+// do.
 TEST(BakeHarmless, no_surface_is_worse_than_before_whatever_normals_the_author_gave) {
   std::size_t changed = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -301,7 +303,7 @@ TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_viewers) {
   EXPECT_EQ(three.report.meshes[0].left_out, 0U);
 }
 
-// Where viewers that keep unit normals are no worse off, extra targets are short and weights are long.
+// Where viewers that keep unit normals are no worse off, correction targets are short and weights are long.
 TEST(BakeHarmless, a_plain_bake_is_nearly_right_where_deltas_add_up_and_no_worse_where_they_do_not) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     BakeOptions plain;
@@ -334,7 +336,7 @@ TEST(BakeHarmless, the_report_says_what_each_viewer_shows) {
 }
 
 TEST(BakeHarmless, the_mean_of_the_report_is_over_all_vertices) {
-  // All of them are about as wrong, so that the mean is no small part of the worst.
+  // All vertices are about equally wrong, so that the average is no small part of the worst error.
   const Baked result = test::bake_document(test::with_misleading_normals(test::still_hills_document(2)));
   ASSERT_EQ(result.error, "");
   const ViewerChange& viewer = result.report.meshes[0].viewers.at(0);
@@ -358,7 +360,7 @@ TEST(BakeHarmless, exact_is_right_at_weight_1_without_its_extra_targets) {
   }
 }
 
-// Corrections of a target alone are made where they belong: half-way, where they weigh most.
+// A correction of a single target belongs half-way, where it weighs most.
 TEST(BakeHarmless, what_a_target_corrects_of_itself_makes_it_right_half_way) {
   for (const Lengths lengths : {Lengths::kUnit, Lengths::kShort, Lengths::kFree}) {
     GltfBuilder builder = test::hills_document(1, 5);

@@ -1,4 +1,4 @@
-// A large file is baked and audited in memory that its size bounds.
+// Checks that a large file is baked and audited in memory that its size bounds.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -23,7 +23,7 @@ void append_word(std::string& text, std::uint32_t value) {
 }
 void append_float(std::string& text, float value) { append_word(text, std::bit_cast<std::uint32_t>(value)); }
 
-// A GLB of a bumpy grid with normals, of which every vertex morphs: four targets lift a quarter each, and an animation
+// A GLB of a bumpy grid with normals, every vertex of which morphs: four targets lift a quarter each, and an animation
 // gives all of them a weight.
 class MorphingGrid {
  public:
@@ -81,7 +81,7 @@ class MorphingGrid {
     ++next_;
   }
 
-  // Positions and normals; returns the accessor of the latter.
+  // Writes positions and normals; returns the accessor of the latter.
   std::size_t write_base() {
     const std::string vec3 = R"("componentType":5126,"type":"VEC3")", last = std::to_string(side_ - 1);
     for (std::uint32_t v = 0; v < count_; ++v) {
@@ -145,7 +145,7 @@ TEST(BakeLarge, memory_of_exact_is_below_twice_the_file_where_all_of_it_morphs) 
     if (const Status written = edit.write(output, true); !written) return written.error().text();
     return std::to_string(baked.value().added_targets) + " targets";
   };
-  // A small file first: what the program itself takes is not what a bake of the large one does.
+  // A small file is baked first, so that the memory of the program itself does not count for the large one.
   const test::ChildRun run = test::run_in_child(
       60, [&] { return bake_file(path); }, [&] { (void)bake_file(small); });
   ASSERT_TRUE(run.finished) << run.text;

@@ -1,4 +1,4 @@
-// Animated GLB files of sequences, as a reader shows them that knows nothing of how they were made.
+// Tests animated GLB files of sequences, as shown by a reader that knows nothing of how they were made.
 
 #include <gtest/gtest.h>
 
@@ -41,13 +41,14 @@ using test::ShownGlb;
 constexpr double kDegree = std::numbers::pi / 180;
 const std::vector<Viewer> kAddingUp = {kViewers[0]};  // of others a bake warns
 
-// Which vertices of the file make which face, and which of them show the same normal.
+// The vertices of each face of a file, and for each vertex the group that shows the same normal.
 struct Surface {
   std::vector<std::vector<std::uint32_t>> faces;
   std::vector<std::size_t> group;
 };
 
-// All edges smooth: the faces of the motion, and one normal wherever vertices lie together in all keyframes.
+// Treats all edges as smooth: takes the faces of the motion, and one normal wherever vertices lie together in all
+// keyframes.
 Surface smooth_surface(const Motion& motion) {
   Surface surface;
   for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {
@@ -65,7 +66,7 @@ Surface smooth_surface(const Motion& motion) {
   return surface;
 }
 
-// Every vertex of the file for itself, over its triangles.
+// Treats every vertex of the file separately, over its triangles.
 Surface split_surface(const ShownGlb& glb) {
   Surface surface;
   for (std::size_t i = 0; i < glb.corners.size(); i += 3)
@@ -74,7 +75,7 @@ Surface split_surface(const ShownGlb& glb) {
   return surface;
 }
 
-// n of every group by cross products of the positions that the file gives.
+// Computes n of every group by cross products of the positions in the file.
 std::vector<VectorD> exact_normals(const ShownGlb& glb, const Surface& surface, double time) {
   const std::vector<double> weights = glb.weights(time);
   std::vector<VectorD> positions, groups(surface.group.size(), VectorD{});
@@ -141,7 +142,7 @@ std::string bake(const Motion& motion, const BakeOptions& options, SequenceBake*
   return glb;
 }
 
-// A closed mesh of which every vertex goes its own way, at uneven times.
+// Makes a closed mesh each vertex of which goes its own way, at uneven times.
 Motion wandering(const fixtures::ClosedMesh& mesh, std::size_t keys, double distance, std::uint64_t seed) {
   Motion motion;
   motion.topology = mesh.topology;
@@ -202,7 +203,7 @@ TEST(BakeSequence, weights_are_hats_and_bubbles_between_the_times_in_the_file) {
   }
 }
 
-// The sum as viewers have it that keep only the direction of N + D: N + sum w (unit(N + D) - N).
+// Returns the sum of a viewer that keeps only the direction of N + D: N + sum w (unit(N + D) - N).
 VectorD unit_rule(const ShownGlb& glb, std::size_t v, const std::vector<double>& weights) {
   VectorD base{}, sum{};
   for (std::size_t c = 0; c < 3; ++c) base[c] = sum[c] = glb.normals[3 * v + c];
@@ -339,7 +340,7 @@ TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
 }
 
 TEST(BakeSequence, coinciding_vertices_show_one_normal) {
-  // Two halves of a roof with the ridge twice: 0 1 2 3 and 2' 3' 4 5.
+  // The two halves of a roof have the ridge twice: 0 1 2 3 and 2' 3' 4 5.
   Motion motion;
   motion.topology = fixtures::make_polygons(8, {0, 4, 8}, {0, 1, 2, 3, 4, 5, 6, 7});
   Random random(6);
@@ -356,7 +357,7 @@ TEST(BakeSequence, coinciding_vertices_show_one_normal) {
   const Surface surface = smooth_surface(motion);
   EXPECT_EQ(surface.group[3], surface.group[4]);
   expect_exact(glb, surface);
-  // At the crease they part again, without another vertex, since there are two already.
+  // They part again at the crease without further vertices, since there are two already.
   const std::string hard_file = bake(motion, {.crease_angle = 20});
   const ShownGlb hard(hard_file);
   EXPECT_EQ(hard.vertices(), 8U);
@@ -368,10 +369,10 @@ TEST(BakeSequence, hard_edges_double_vertices_but_no_more_than_needed) {
   SequenceBake baked;
   const std::string file = bake(motion, {.crease_angle = 45}, &baked);
   const ShownGlb glb(file);
-  // A cube of 4 x 4 quads a side: 6 x 25 vertices when every side has its own.
+  // A cube of 4 x 4 quads a side has 6 x 25 vertices if every side has its own.
   EXPECT_EQ(glb.vertices(), 150U);
   EXPECT_EQ(baked.vertices, 150U);
-  // Positions of the motion come first.
+  // The positions of the motion come first.
   for (std::size_t i = 0; i < motion.keyframes[0].positions.size(); ++i)
     EXPECT_EQ(glb.positions[i], motion.keyframes[0].positions[i]);
   Surface surface = split_surface(glb);
@@ -381,7 +382,7 @@ TEST(BakeSequence, hard_edges_double_vertices_but_no_more_than_needed) {
   expect_exact(glb, surface);
 }
 
-// A sheet that is a point, or a line, in its first keyframe.
+// Makes a sheet that is a point, or a line, in its first keyframe.
 Motion unfolding(bool keep_half) {
   Motion motion = fixtures::smooth_morph(6);
   motion.keyframes.push_back(motion.keyframes[1]);
@@ -428,7 +429,7 @@ TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
   expect_exact(glb, smooth_surface(motion));
 }
 
-// The first segment says nothing of what the last keyframe does to elements.
+// The first segment tells nothing about the elements in the last keyframe.
 TEST(BakeSequence, elements_that_shrink_or_appear_at_the_end_are_right_from_the_start) {
   const test::TemporaryFolder folder;
   for (const bool appears : {false, true}) {
@@ -507,7 +508,7 @@ TEST(BakeSequence, endpoint_states_its_true_error_and_is_right_at_the_keys) {
     for (std::size_t v = 0; v < glb.vertices(); ++v)
       EXPECT_LT(reference::angle(glb.normal(v, glb.weights(time)), exact[surface.group[v]]) / kDegree, 0.01);
   }
-  // Better than unit normals at the keys.
+  // The error is smaller than with unit normals at the keys.
   ShownGlb plain = glb;
   for (std::size_t k = 1; k < glb.times.size(); ++k) {
     const auto exact = exact_normals(glb, surface, glb.times[k]);
@@ -530,7 +531,7 @@ TEST(BakeSequence, other_weightings_are_fitted_and_their_error_is_stated) {
     const ShownGlb glb(file);
     EXPECT_GT(baked.largest_error, 0);
     EXPECT_LT(baked.largest_error, 5);
-    // At the keys the normals are those of the weighting: sums of angles times unit normals.
+    // At the keys the normals follow the weighting: sums of angles times unit normals.
     for (std::size_t k = 0; k < 3; ++k) {
       std::vector<VectorD> expected(glb.vertices(), VectorD{});
       const auto position = [&](std::uint32_t v) { return glb.position(v, glb.weights(glb.times[k])); };
@@ -691,7 +692,7 @@ TEST(BakeSequence, progress_ends_with_everything_done) {
   EXPECT_GT(whole, 0U);
 }
 
-// A figure as the documents have it, which call what rounds to nothing "below" the last digit.
+// Formats a figure as the documents do, which call a number that rounds to zero "below" the last digit.
 std::string at_least(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
@@ -708,7 +709,8 @@ TEST(BakeSequence, real_sequences_are_exact) {
       {(folder / "sequences/md2_faerie/faerie.md2").string()},
       {(folder / "caches/max_cache_box/max_cache_box_44.obj").string(),
        (folder / "caches/max_cache_box/max_cache_box.pc2").string()}};
-  // Every segment at so many times, and at both ends. Section 15 of docs/theory.md has what 16 of them find.
+  // Every segment is sampled at several times, including both ends. Section 15 of docs/theory.md has the results of 16
+  // times.
   const bool is_full = std::getenv("CHRONORMAL_FULL") != nullptr;
   const int times = is_full ? 16 : 5;
   const std::string theory = test::read_whole(std::string(kSourceFolder) + "/docs/theory.md");

@@ -1,5 +1,5 @@
-// What smallest chooses is what a skin shows: the tolerance holds behind joints that squash, in viewers that carry
-// normals in ways of their own, and joints that turn and scale evenly change nothing.
+// Checks that smallest judges the normals behind the skin: the tolerance holds behind joints that squash, and in
+// viewers that carry normals in ways of their own; joints that turn and scale evenly change nothing.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ using Json = GltfBuilder::Json;
 
 constexpr std::size_t kSide = 5, kVertices = kSide * kSide, kTargets = 2;
 constexpr double kTolerance = 1;
-// Three.js takes normals through the blended matrix, Bevy through its inverse transpose.
+// Three.js carries normals through the blended matrix, Bevy through its inverse transpose.
 const Viewer kThree = find_viewers("three").value()[0], kBevy = find_viewers("bevy").value()[0];
 
 BakeOptions smallest(double tolerance = kTolerance, std::vector<Viewer> viewers = {kThree}) {
@@ -46,7 +46,7 @@ const BakedCandidate& chosen(const Baked& baked) {
   return baked.report.meshes.at(0).candidates.at(0);
 }
 
-// Hills whose targets are played at once, from one of these weights to the next in a second.
+// Makes hills whose targets all play the same weights, a second from each to the next.
 GltfBuilder played_hills(unsigned seed, const std::vector<float>& weights, const char* interpolation = "LINEAR") {
   GltfBuilder builder = test::hills_document(kTargets, seed);
   std::vector<float> times, values;
@@ -58,7 +58,7 @@ GltfBuilder played_hills(unsigned seed, const std::vector<float>& weights, const
   return builder;
 }
 
-// All vertices follow joint 0, or with `bent` the more of joint 1 the larger their x is.
+// Makes a skin in which all vertices follow joint 0, or with `bent` follow joint 1 the more the larger their x is.
 Skin skin_of(bool bent) {
   Skin skin;
   skin.joints.emplace_back();
@@ -71,14 +71,14 @@ Skin skin_of(bool bent) {
   return skin;
 }
 
-// Two joints, nodes 1 and 2.
+// Adds two joints as nodes 1 and 2.
 void add_skin(GltfBuilder& builder, const Skin& skin, const Trs& one, const Trs& two = {}) {
   builder.add("nodes", one.json());
   builder.add("nodes", two.json());
   skin.add_to(builder, {1, 2});
 }
 
-// A channel that turns joint 1.
+// Adds a channel that turns joint 1.
 void add_turns(GltfBuilder& builder, const std::vector<float>& times, const std::vector<float>& turns,
                const char* interpolation = "LINEAR") {
   const std::size_t input = builder.add_accessor("SCALAR", times), output = builder.add_accessor("VEC4", turns);
@@ -94,13 +94,13 @@ Trs scaled(Real x, Real y, Real z) {
   return place;
 }
 
-// Where the joints are at a time.
+// Returns the matrices of the joints at a time.
 using World = std::function<std::vector<Rows>(double time)>;
 World standing(const Trs& one, const Trs& two = {}) {
   return [one, two](double) { return std::vector<Rows>{one.rows(), two.rows()}; };
 }
 
-// Returns the error that is seen while the track of node 0 is played, at 101 times.
+// Returns the error behind the skin while the track of node 0 is played, at 101 times.
 test::ShownError seen_error(const Baked& baked, const Skin& skin, const World& world, Carry rule = Carry::kBlended) {
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<test::Pose> poses = test::poses_of(*baked.before, *baked.after, 0, 0);
@@ -128,7 +128,7 @@ TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
     double tolerance, height;
   };
   std::size_t would_not_do = 0;  // what is chosen without a skin
-  // In the last four, nothing that is made for the tolerance before skinning is within it behind the joint.
+  // In the last four cases, no candidate that meets the tolerance before skinning meets it behind the joint.
   for (const Case& c : {Case{2, 0.2F, 1, 0.25},
                         {3, 0.2F, 1, 0.25},
                         {5, 0.2F, 1, 0.25},
@@ -278,7 +278,7 @@ TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
 }
 
 TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
-  // The inverse transpose of what lowers is what raises.
+  // The inverse transpose of a matrix that lowers is one that raises.
   const auto viewers_of = [](Real height, const std::vector<Viewer>& viewers) {
     GltfBuilder builder = played_hills(3, {0, 0.4F});
     add_skin(builder, skin_of(false), scaled(1, 1, height));
@@ -299,7 +299,7 @@ TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
   }
 }
 
-// Describes the candidates that were looked at, and what became of the deltas.
+// Describes the candidates that were considered, and the deltas of the result.
 std::string choices_of(const Baked& baked) {
   std::string text;
   for (const BakedCandidate& c : baked.report.meshes.at(0).candidates)
@@ -324,7 +324,7 @@ TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
   add_skin(builder, two, even);
   add_turns(builder, {0, 0.3F, 1}, {0, 0, 0, 1, 1, 0, 0, 0, 0.6F, 0, 0.8F, 0});
   EXPECT_EQ(choices_of(test::bake_document(builder, smallest())), choices_of(without));
-  // Nor does a skin that cannot be read.
+  // A skin that cannot be read changes nothing either.
   builder.json["nodes"][1]["scale"] = {1, 1, 0.1};
   EXPECT_NE(choices_of(test::bake_document(builder, smallest())), choices_of(without));
   builder.json["skins"][0]["joints"] = {1, 17};
@@ -346,7 +346,7 @@ TEST(BakeSkin, each_node_that_a_track_drives_is_seen_through_its_own_skin) {
   EXPECT_LT(seen_error(baked, skin_of(false), standing(flat)).worst, 1.02 * kTolerance);
   EXPECT_LT(seen_error(baked, skin_of(false), standing({})).worst, 1.02 * kTolerance);
   EXPECT_TRUE(chosen(baked).within);
-  // Where the joint raises, more is seen of the node without a skin.
+  // If the joint raises, errors on the node without a skin are larger than behind it.
   builder.json["nodes"][1]["scale"] = {1, 1, 8};
   const Baked raised = test::bake_document(builder, smallest());
   EXPECT_LT(seen_error(raised, skin_of(false), standing({})).worst, 1.02 * kTolerance);
@@ -378,8 +378,8 @@ TEST(BakeSkin, targets_without_an_animation_are_seen_in_the_pose_of_the_file) {
 }
 
 TEST(BakeSkin, no_surface_gets_worse_behind_the_skin) {
-  // Deltas of the file are right but for noise, so that for some vertices a better one before skinning is worse after
-  // it.
+  // The deltas of the file are right but for noise, so that some vertices have a better delta before skinning that is
+  // worse after it.
   const Trs flat = scaled(1, 1, 0.1);
   for (const BakeEncoding encoding : {BakeEncoding::kEndpoint, BakeEncoding::kHarmless, BakeEncoding::kSmallest}) {
     for (unsigned seed = 1; seed <= 4; ++seed) {

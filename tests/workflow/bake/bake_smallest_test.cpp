@@ -1,5 +1,6 @@
-// The smallest form of a bake: extra targets that only the animations of the file drive, within a tolerance and a
-// limit; and what it promises of files that are long, that were baked before, or whose primitives share their arrays.
+// Tests the smallest candidate of a bake: correction targets that only the animations of the file drive, within a
+// tolerance and a limit; and its promises for files that are long, that were baked before, or whose primitives share
+// their arrays.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ BakeOptions smallest(double tolerance) {
   return options;
 }
 
-// Weights of all targets at so many keys; of cubic splines tangents too.
+// Draws weights of all targets at the given number of keys; cubic splines have tangents too.
 std::vector<float> random_weights(std::size_t numbers, unsigned seed) {
   test::Hills random(seed);
   std::vector<float> weights;
@@ -123,7 +124,7 @@ TEST(BakeSmallest, leaves_a_file_alone_that_is_within_the_tolerance) {
   EXPECT_EQ(chosen(baked).name, "as it is");
 }
 
-// Two targets that move only between two of very many keys.
+// Moves two targets only between two of very many keys.
 std::vector<float> wink(std::size_t keys, std::size_t at) {
   std::vector<float> weights(2 * keys, 0.0F);
   weights[2 * at] = weights[2 * at + 1] = 1;
@@ -190,8 +191,8 @@ TEST(BakeSmallest, the_tracks_that_tell_most_are_those_where_weights_and_product
   }
   tracks[77].keys.values[2] = 0.3;   // one weight, the largest
   tracks[78].keys.values[5] = -0.2;  // the other one
-  // Both at once in the middle of one, where neither is the largest; and one after the other in another, where the
-  // product of both is nowhere as large as that of their peaks.
+  // In the middle of one track both targets move at once, though neither is at its largest. In another they move one
+  // after the other, so that their product is never as large as the product of their peaks.
   tracks[311].keys.values[2] = tracks[311].keys.values[3] = 0.1;
   tracks[402].keys.values = {0.15, 0, 0, 0, 0, 0.15};
   EXPECT_EQ(telling_tracks(tracks, 500).size(), 500U);

@@ -1,5 +1,5 @@
-// A sequence whose keyframes stay in files is baked into the bytes of one in memory, in memory that does not grow with
-// the number of keyframes, and nothing is left behind where that fails.
+// Checks that a sequence whose keyframes stay in files is baked into the same bytes as one in memory, that memory does
+// not grow with the number of keyframes, and that a failure leaves nothing behind.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ bool is_flat(Flat flat, std::size_t k) {
   return (flat == Flat::kFirst && k == 0) || (flat == Flat::kForAWhile && 2 <= k && k <= 7);
 }
 
-// A keyframe of a sheet of side x side vertices that waves. The first column lies still.
+// Makes a keyframe of a waving sheet of side x side vertices. The first column lies still.
 std::vector<float> wave(std::uint32_t side, std::size_t k, Flat flat = Flat::kNever) {
   std::vector<float> positions;
   for (std::uint32_t v = 0; v < side * side; ++v) {
@@ -188,7 +188,7 @@ TEST(BakeStream, memory_does_not_grow_with_the_number_of_keyframes) {
       RecordProperty(std::string(name_of(encoding)) + std::to_string(keyframes), std::to_string(run.peak_growth));
     }
     EXPECT_GT(bytes[1], 5 * bytes[0]);
-    // Linux counts the pages of a thread in batches of 64, so that either peak may be off by one batch.
+    // Linux counts the pages of a thread in batches of 64, so that the error of either peak is up to one batch.
     constexpr std::size_t kBatches = 2 * 64 * 4096;
     EXPECT_LT(growth[1], growth[0] + kBatches + (bytes[1] - bytes[0]) / 6) << name_of(encoding);
     EXPECT_LT(kBatches, (bytes[1] - bytes[0]) / 3);  // all that is written would be seen
@@ -207,7 +207,7 @@ TEST(BakeStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_noth
   options.kept_bytes = 0;
   const std::size_t before = folder.entry_count();
   for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint, BakeEncoding::kHarmless}) {
-    // The steps of the bake tell when arrays are there already: then the file is cut, or before all of it.
+    // Progress tells when arrays are already written: the file is cut then, or before any of them.
     for (const std::size_t step : {0U, 2U, 4U, 12U}) {
       if (encoding != BakeEncoding::kHarmless && step == 12) continue;  // they have read all by then
       folder.write("walk.pc2", whole);

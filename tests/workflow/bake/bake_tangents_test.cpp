@@ -1,5 +1,5 @@
-// Tangents of normal-mapped morphs: perpendicular to the right normal where a target has the weight 1, of length 1, and
-// along the texture, for viewers that add them up. The oracle moves texture coordinates along in long double.
+// Tests tangents of normal-mapped morphs: perpendicular to the right normal where a target has the weight 1, of length
+// 1, and along the texture, for viewers that add them up. The oracle moves texture coordinates along in long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using test::Baked;
 using test::ShadedMesh;
 using test::Vector;
 
-// A bumpy sheet whose texture has u along x: tangents are unit, and perpendicular to the stored normals.
+// Makes a bumpy sheet whose texture has u along x. Its tangents are unit vectors perpendicular to the stored normals.
 ShadedMesh sheet(std::uint64_t seed, double tilt) {
   ShadedMesh mesh = test::random_sheet(seed, 6, 2, tilt);
   for (std::size_t v = 0; v < mesh.vertices(); ++v) {
@@ -35,7 +35,8 @@ Vector tangent_of(const ShadedMesh& mesh, std::size_t v) {
   return {mesh.tangents[4 * v], mesh.tangents[4 * v + 1], mesh.tangents[4 * v + 2]};
 }
 
-// What a vertex should show at weight 1: the normal of the geometry, turned as the stored one is in the base.
+// Returns the right normal of a vertex at weight 1: the normal of the geometry, turned in the same way as the stored
+// normal is in the base.
 Vector right_normal(const ShadedMesh& mesh, std::size_t v, std::size_t target) {
   std::vector<double> none(mesh.targets.size()), one = none;
   one[target] = 1;
@@ -69,7 +70,7 @@ TEST(BakeTangents, are_unit_and_perpendicular_to_the_right_normal_at_weight_1) {
             << "seed " << seed << ", vertex " << v;
       }
     }
-    // An audit, which computes normals of its own, finds nothing.
+    // An audit computes its own normals, and finds no errors.
     const test::GltfFixture after(baked.bytes);
     const Result<Audit> audit = chronormal::audit(*after, {});
     ASSERT_TRUE(audit.ok());
@@ -78,7 +79,7 @@ TEST(BakeTangents, are_unit_and_perpendicular_to_the_right_normal_at_weight_1) {
   }
 }
 
-// An affine map of a flat sheet takes the texture with it, so that its tangent is that of the map.
+// An affine map of a flat sheet takes the texture with it, so that the map also gives the tangent.
 TEST(BakeTangents, follow_the_texture_through_shears_and_turns) {
   ShadedMesh mesh = sheet(3, 0);
   const auto map = [](const Vector& p) {
@@ -136,12 +137,12 @@ TEST(BakeTangents, count_against_a_limit_of_bytes_and_stay_where_it_has_no_room)
   }
 }
 
-// Normals may need nothing where tangents do: then these are all that is written.
+// If the normals are right already, only tangents may have to be written.
 TEST(BakeTangents, are_written_alone_where_the_normals_are_right) {
   ShadedMesh mesh = test::hinge();
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
   mesh.tangents = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
-  // The square is turned about y by 90 degrees, which its deltas of normals say, at the ends and half way.
+  // The target turns the square about y by 90 degrees, and its normal deltas follow at the ends and half way.
   mesh.targets = {{{0, 0, 0, -1, 0, -1, 0, 0, 0, -1, 0, -1}, {1, 0, -1, 1, 0, -1, 1, 0, -1, 1, 0, -1}, {}}};
   BakeOptions options = by_area();
   options.tolerance = 180;

@@ -27,7 +27,7 @@ BakeOptions with(BakeEncoding encoding) {
   return options;
 }
 
-// One target alone at weights from 0 to 1, extra targets as their formulas say.
+// Plays one target alone at weights from 0 to 1, and sets correction targets by their formulas.
 std::vector<Pose> poses_of_target(const Baked& baked, std::size_t mesh, std::size_t target) {
   const Json& targets = baked.before->json["meshes"][mesh]["primitives"][0]["targets"];
   const Json& after = baked.json()["meshes"][mesh];
@@ -59,7 +59,8 @@ ShownError target_error(const Baked& baked, std::size_t target, std::size_t mesh
                            poses_of_target(baked, mesh, target));
 }
 
-// A random document: one to four targets of random extent, a track of some interpolation with weights in [-1, 2].
+// Makes a random document: one to four targets of random extent, and a track of some interpolation with weights in [-1,
+// 2].
 GltfBuilder random_document(unsigned seed) {
   GltfBuilder builder;
   test::Hills hills(seed);
@@ -93,7 +94,7 @@ TEST(Bake, exact_is_exact_for_random_targets_and_tracks) {
 }
 
 TEST(Bake, what_is_not_baked_is_wrong) {
-  // The measure itself: without extra targets the same file is off.
+  // This tests the measure itself: the same file has errors without correction targets.
   GltfBuilder builder = test::hills_document(1);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   Baked baked = test::bake_document(builder);
@@ -196,7 +197,7 @@ TEST(Bake, normals_of_extreme_length_are_brought_to_length_1_and_then_right) {
       if (encoding == BakeEncoding::kExact) test::expect_exact(test::track_error(baked));
     }
   }
-  // Others stay to the bit.
+  // Other files keep their bits.
   const Baked usual = test::bake_document(test::still_hills_document(1));
   EXPECT_EQ(usual.report.meshes[0].rescaled, 0U);
   EXPECT_EQ(usual.mesh()["primitives"][0]["attributes"],
@@ -262,7 +263,7 @@ TEST(Bake, a_baked_file_is_left_as_it_is) {
   }
 }
 
-// Blender 3.4 exports so what it imported: normals of its own for each target, and numbers for true and false.
+// Blender 3.4 exports an imported file like this: with its own normals for each target, and numbers for true and false.
 TEST(Bake, extra_targets_that_another_program_emptied_are_left_and_new_ones_written_beside_them) {
   GltfBuilder builder = test::still_hills_document(1);
   Json& mesh = builder.json["meshes"][0];
@@ -316,7 +317,7 @@ TEST(Bake, base_without_area_is_right_but_near_weight_0) {
   builder.add_node(builder.add_mesh(hills.primitive(builder, {spread})));
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0.01F, 1});
-  // Split normals: each vertex is an element, the base of which has no area.
+  // With split normals each vertex is an element, and none has an area in the base.
   const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   ASSERT_EQ(baked.error, "");
   EXPECT_EQ(baked.report.meshes[0].without_base, 25U);
@@ -337,7 +338,7 @@ TEST(Bake, smooth_gives_normals_to_flat_primitives) {
   EXPECT_EQ(flat.bytes, builder.glb());
   Baked smooth = test::bake_document(builder, {.encoding = BakeEncoding::kExact, .smooth = true});
   ASSERT_EQ(smooth.error, "");
-  // The truth reads base normals from the file: those that are there now.
+  // The truth reads base normals from the file, so it needs the new ones.
   smooth.before = std::make_unique<test::GltfPlayer>(smooth.bytes);
   const test::GltfTruth truth(*smooth.before, 0);
   std::vector<Pose> poses;
@@ -387,7 +388,7 @@ TEST(Bake, pairs_below_the_tolerance_are_left_out_and_stated) {
 }
 
 TEST(Bake, pairs_of_a_long_animation_are_left_out_until_their_sum_is_the_tolerance) {
-  // More keys than poses are measured at, so that what is left out is bounded by a sum.
+  // There are more keys than measured poses, so that the loss of omitted terms is bounded by a sum.
   GltfBuilder builder;
   test::Hills hills(9);
   std::vector<std::vector<float>> deltas;
@@ -425,7 +426,8 @@ TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
 }
 
 TEST(Bake, terms_along_the_normal_are_not_left_out_where_together_they_turn_it_over) {
-  // n = (1 + w0 + w1 + w2)^2 n(0) is 0.16 n(0) at weights of -0.2; no square or pair alone is as long, all are.
+  // n = (1 + w0 + w1 + w2)^2 n(0) is 0.16 n(0) at weights of -0.2. No single square or pair is as long, but all
+  // together are.
   GltfBuilder builder;
   test::Hills hills(8);
   const std::vector<float>& grow = hills.positions;
@@ -487,7 +489,8 @@ TEST(Bake, fitted_weightings_are_right_where_one_or_two_targets_have_weight_1) {
   for (const std::vector<double>& weights :
        {std::vector<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}})
     EXPECT_LT(error_at(uniform, weights), 0.01);
-  // In between and where three are at once it is a fit, and closer than the normals by area.
+  // In between, and where three targets are active at once, it is a fit, which is closer than the area-weighted
+  // normals.
   double of_uniform = 0, of_area = 0;
   for (const double w : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     for (const std::vector<double>& weights : {std::vector<double>{w, w, w}, {w, w, 0}, {w, 1 - w, 0}, {w, 0, 1 - w}}) {
@@ -550,7 +553,7 @@ TEST(Bake, tiny_and_huge_meshes_are_as_exact) {
   }
 }
 
-// Every moving glTF of the data: along its animations, and each target alone.
+// Bakes every moving glTF of the data: along its animations, and each target alone.
 TEST(BakeRealData, exact_is_exact_in_every_file) {
   const char* data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
@@ -591,7 +594,7 @@ TEST(BakeRealData, exact_is_exact_in_every_file) {
   EXPECT_GE(files, 9U);
 }
 
-// A long part of a bake is the choice of a form, in which progress goes on.
+// The choice of a candidate takes a long part of a bake, during which progress must go on.
 TEST(Bake, progress_goes_forward_while_a_form_is_chosen_and_ends_with_everything_done) {
   GltfBuilder builder = test::hills_document(3);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1, 0.5F, 1, 0, 1});

@@ -1,4 +1,4 @@
-// What viewers and the specification ask of extra targets beside right normals, one test for each.
+// Tests each demand of viewers and of the specification on correction targets, besides right normals.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using test::GltfBuilder;
 
 const std::vector<float> kTimes = {0, 0.1F, 1};  // 0.1F is not 0.1
 
-// Two targets, and a track in which both move at once.
+// Makes hills with two targets, and a track in which both move at once.
 GltfBuilder moving_hills(const char* interpolation = "LINEAR") {
   GltfBuilder builder = test::hills_document(2);
   if (interpolation == std::string("CUBICSPLINE"))
@@ -34,7 +34,7 @@ GltfBuilder moving_hills(const char* interpolation = "LINEAR") {
   return builder;
 }
 
-// Exact, where nothing else is asked for.
+// Bakes with the encoding exact unless another one is set.
 Baked baked(const GltfBuilder& builder, BakeOptions options = {}) {
   if (!options.encoding) options.encoding = BakeEncoding::kExact;
   Baked result = test::bake_document(builder, options);
@@ -160,7 +160,8 @@ TEST(BakeTraps, linear_tracks_become_splines_with_the_slopes_of_products) {
   EXPECT_EQ(sampler["interpolation"], "CUBICSPLINE");
   EXPECT_EQ(sampler["input"], sampler_of(baked(moving_hills("STEP")))["input"]) << "no keys were added";
   EXPECT_EQ(result.report.converted_tracks, 1U);
-  // Keys 0, 0.1F, 1: weights (0, 0), (1, 0.25), (0, 1); slopes per second from the float32 times.
+  // The keys are 0, 0.1F and 1 with the weights (0, 0), (1, 0.25), (0, 1); slopes per second follow from the float32
+  // times.
   const double first = 0.1F, second = 1 - first, a = 1 / first, b = 0.25 / first, c = -1 / second, d = 0.75 / second;
   const std::vector<double> expected = {0,       0,    0,  0,
                                         0,  //
@@ -230,7 +231,7 @@ TEST(BakeTraps, cubic_splines_get_keys_and_a_stated_error) {
   const test::ShownError error = test::track_error(result);
   test::expect_exact(error);
   EXPECT_LE(error.worst, result.report.meshes[0].resampling_error + 1e-3) << "but for float32";
-  // The weights that were there are as they were.
+  // The existing weights stay as they were.
   for (int i = 0; i <= 100; ++i) {
     const auto before = result.before->weights_at(0, 0, i / 100.0), after = result.after->weights_at(0, 0, i / 100.0);
     for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(before[k], after[k], 1e-6F);
@@ -348,7 +349,7 @@ TEST(BakeTraps, weights_of_normalised_integers_become_floats) {
   test::expect_exact(test::track_error(result));
 }
 
-// A triangle that falls over to one side, with a base normal of the other side: what viewers that show both sides do.
+// A triangle falls over to one side and has a base normal of the other side: viewers that show both sides do this.
 TEST(BakeTraps, normals_of_the_inner_side_stay_on_that_side) {
   for (const float tilt : {0.0F, 1e-3F}) {
     GltfBuilder builder;
@@ -361,7 +362,7 @@ TEST(BakeTraps, normals_of_the_inner_side_stay_on_that_side) {
     builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
     const Baked result = baked(builder);
     const std::vector<float> delta = result.numbers(result.mesh()["primitives"][0]["targets"][0]["NORMAL"]);
-    // n(1) = (0, -1, 1), so that of the other side is (0, 1, -1).
+    // n(1) = (0, -1, 1), so the normal of the other side is (0, 1, -1).
     EXPECT_NEAR(delta[0], 0, 2e-3) << tilt;
     EXPECT_NEAR(delta[1], 1, 2e-3) << tilt;
     EXPECT_NEAR(delta[2], 0, 2e-3) << tilt;
@@ -453,7 +454,7 @@ TEST(BakeTraps, nothing_but_the_listed_pointers_changes) {
     EXPECT_EQ(result.mesh()["primitives"][0]["attributes"][key], value);
   for (const Json& accessor : result.before->json["meshes"][0]["primitives"][0]["attributes"])
     EXPECT_EQ(result.numbers(accessor), result.before->accessor(accessor.get<std::size_t>()));
-  // What is new lies behind what there was.
+  // New items lie behind the existing ones.
   for (const Json::json_pointer& list : {Json::json_pointer("/accessors"), Json::json_pointer("/bufferViews"),
                                          Json::json_pointer("/meshes/0/primitives/0/targets")}) {
     Json& items = patched[list];
@@ -538,7 +539,7 @@ TEST(BakeTraps, a_pointer_to_one_weight_keeps_only_its_own_mesh_from_extra_targe
 }
 
 TEST(BakeTraps, expressions_of_avatars_are_poses_that_a_bake_judges) {
-  // The animation has one target at a time, fully or not at all: only the expression asks for extra ones.
+  // The animation has one target at a time, fully or not at all, so only the expression needs correction targets.
   for (const bool is_first_version : {true, false}) {
     GltfBuilder builder = test::hills_document(2);
     builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{1, 0, 0, 0, 0, 1}, "STEP");
@@ -562,7 +563,7 @@ TEST(BakeTraps, expressions_of_avatars_are_poses_that_a_bake_judges) {
   }
 }
 
-// Hills with a track that gives every target a weight, and an expression of three of them.
+// Makes hills with a track that gives every target a weight, and an expression of three targets.
 GltfBuilder avatar_of_hills(unsigned seed, double strength) {
   constexpr std::size_t kTargets = 7;
   GltfBuilder builder = test::with_misleading_normals(test::hills_document(kTargets, seed));
@@ -577,7 +578,7 @@ GltfBuilder avatar_of_hills(unsigned seed, double strength) {
   return builder;
 }
 
-// The worst error of the expressions, or of the tracks, of a file.
+// Returns the worst error of the expressions, or of the tracks, of a file.
 double worst_of(const GltfDocument& document, AuditSubject::Kind kind) {
   const Result<Audit> audited = audit(document, {.viewers = {}});
   EXPECT_TRUE(audited.ok());
@@ -603,7 +604,7 @@ TEST(BakeTraps, what_a_bake_says_of_expressions_is_what_an_audit_finds_in_the_fi
         forms.insert(choice.name);
         const double expression = worst_of(*after, AuditSubject::Kind::kExpression),
                      track = worst_of(*after, AuditSubject::Kind::kTrack);
-        // Both look at other instants of the track, and at the same pose of the expression.
+        // Audit and bake look at different instants of the track, but at the same pose of the expression.
         EXPECT_GE(choice.played.worst, expression - 1e-3) << choice.name;
         if (expression > 1.2 * track) {
           EXPECT_NEAR(choice.played.worst, expression, 1e-3) << choice.name;

@@ -1,5 +1,5 @@
-// Rigs that nothing drives: extra targets whose weights are quadratics of the weights. What the file shows is held
-// against cross products, in poses that are drawn here, and its formulas are computed here too.
+// Tests rigs that nothing drives, whose correction targets have weights that are quadratics of the weights. Compares
+// the file with cross products in poses that are drawn here, and evaluates its formulas here too.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ GltfBuilder rig(unsigned seed, std::size_t targets = kTargets) {
   return test::with_misleading_normals(test::still_hills_document(targets, seed));
 }
 
-// The weights of all targets, those of extra ones by what the file says.
+// Returns the weights of all targets, and takes the formulas of correction targets from the file.
 std::vector<float> driven(const Baked& baked, const std::vector<double>& own) {
   std::vector<float> all(own.begin(), own.end());
   const auto& extras = baked.mesh()["extras"]["chronormal"]["extras"];
@@ -132,7 +132,7 @@ TEST(BakeUndriven, a_plan_says_what_more_and_more_extra_targets_gain) {
 }
 
 TEST(BakeUndriven, poses_that_are_given_decide_what_is_corrected) {
-  // Targets 0 and 1 alone are ever up together.
+  // Only targets 0 and 1 are ever up together.
   const auto poses = parse_poses("[[1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [1, 1, 0, 0, 0, 0]]", "poses.json");
   ASSERT_TRUE(poses.ok());
   BakeOptions options = smallest();
@@ -171,7 +171,7 @@ TEST(BakeUndriven, an_animation_that_moves_nothing_keeps_extra_targets_at_rest) 
   }
 }
 
-// What is said of a mesh that nothing drives is about this bake: extra targets that were written, or that gained
+// The warning about a mesh that nothing drives is about this bake: correction targets that were written, or that gained
 // nothing.
 TEST(BakeUndriven, says_that_nothing_drives_extra_targets_only_where_there_are_none) {
   const auto said = [](const Baked& baked) {

@@ -1,5 +1,5 @@
-// Holds what the judge of a bake finds, the mean, the worst, what 99.9 % of the errors are below and the torn edges, against
-// a list of all errors; and looks whether a target alone is judged where it ends.
+// Compares the findings of the judge of a bake with a list of all errors: the average, the worst, the 99.9 % quantile
+// and the torn edges. Also checks that a target alone is judged at its end.
 #include "workflow/bake/judge/judge.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-// The edges of triangles, and chains of vertices that share a normal.
+// Returns the edges of triangles, and chains of vertices that share a normal.
 std::set<Edge> edges_of(const GltfShading& shading) {
   std::set<Edge> edges;
   const Topology& topology = shading.set.topology;
@@ -58,7 +58,7 @@ TEST(Judge, finds_the_errors_and_tears_of_a_list_of_all_pairs) {
   for (std::vector<double>& pose : weights.poses)
     for (double& weight : pose) weight = part(random);
 
-  // Deltas of any kind.
+  // The deltas are arbitrary.
   const std::array<Viewer, 1> viewer = {kViewers[0]};
   const Judge judge(source, rights, weights, viewer, true);
   Candidate candidate;

@@ -1,4 +1,4 @@
-// The search for the largest angle looks at few elements and poses; here it is held against a look at all of them.
+// Compares the search for the largest angle, which looks at few elements and poses, with a look at all of them.
 #include "workflow/bake/deltas/pair_turns.h"
 
 #include <gtest/gtest.h>
@@ -41,8 +41,8 @@ class Field {
   [[nodiscard]] std::vector<Vec3d> normals(const std::vector<double>& pose) const {
     return normals_from_positions(shading_, pose);
   }
-  // What both targets add beyond what each adds by itself, from normals at weights 0 and 1; of one target with itself
-  // what is quadratic in its weight.
+  // Returns what both targets together add to their separate effects, from normals at weights 0 and 1. For one target
+  // with itself, this is the quadratic part of its weight.
   [[nodiscard]] std::vector<Vec3d> term(std::size_t i, std::size_t j) const {
     std::vector<double> none(kTargets, 0.0), a = none, b = none, both = none;
     a[i] += 1;
@@ -67,7 +67,7 @@ class Field {
   std::vector<PairMeter::Pair> pairs_;
 };
 
-// An extra target of a target with itself takes w (1 - w) of the term away, which the target alone has too much of.
+// The correction target of one target with itself takes away w (1 - w) of the term, the excess of the target alone.
 double weight_of(const PairMeter::Pair& pair, const std::vector<double>& pose) {
   const auto [i, j] = pair;
   return i == j ? pose[i] * (pose[i] - 1) : pose[i] * pose[j];
@@ -95,7 +95,7 @@ TEST(PairTurns, the_largest_turn_and_the_gain_are_those_of_a_look_at_all_element
       EXPECT_EQ(measured[k].extra.j, j);
       EXPECT_NEAR(measured[k].size, size, 1e-6 * size);
       EXPECT_NEAR(measured[k].extra.gain, 1.02 * aside + 1e-3 * size, 1e-6 * size);
-      // From a right angle on it is not measured.
+      // Angles of 90 degrees and more are not measured.
       EXPECT_NEAR(measured[k].turn, turn < 1.57 ? turn : 3.141592653589793, 1e-6);
     }
   }

@@ -1,5 +1,5 @@
-// A memory of poses keeps what came first, as far as there is room; and normals of poses are the same however often, and
-// in whichever order, they are asked for.
+// Checks that a memory of poses keeps the first ones that fit, and that normals of poses do not depend on how often, or
+// in which order, they are requested.
 
 #include "workflow/bake/poses/pose_memory.h"
 
@@ -75,7 +75,7 @@ TEST(PoseMemory, leaves_the_normals_of_poses_as_they_are) {
   std::vector<Pose> poses = {{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.25, 1}, {1, 0.25, 0.5}};
   for (int round = 0; round < 3; ++round) {
     for (const Pose& pose : poses) {
-      // As one that was never asked before has them.
+      // The expected normals come from an object that was never asked before.
       const std::vector<Vec3d> right = NormalTerms(shading, truth).weighted_at(pose, all);
       EXPECT_EQ(terms.weighted_at(pose, few), (std::vector<Vec3d>{right[3], right[4]}));
       EXPECT_EQ(terms.weighted_at(pose, all), right);

@@ -1,4 +1,4 @@
-// What a bake of a sequence makes keys and bends from, against whole numbers of any size.
+// Checks the normals from which a bake of a sequence makes keys and bends, against whole numbers of any size.
 
 #include "workflow/bake/sequence/sequence_normals.h"
 
@@ -17,7 +17,7 @@
 namespace chronormal::sequence_normals_test {
 namespace {
 
-// The faces that the points a + b have, which are twice those half way from a to b.
+// Returns the areas of the faces at the points a + b, which are twice the points half way from a to b.
 std::vector<test::IntegerVector> areas_of_sums(const Topology& topology, const std::vector<float>& a,
                                                const std::vector<float>& b) {
   const Segment segment{&topology, VectorView<const float>::packed(a.data(), a.size() / 3),

@@ -13,7 +13,7 @@
 namespace chronormal::tracks_test {
 namespace {
 
-// Two keys, two targets: in-tangents, values, out-tangents of each.
+// Makes a track of two keys and two targets: in-tangents, values, and out-tangents of each key.
 WeightTrack bent_track() {
   return {GltfInterpolation::kCubicSpline, {{0, 1}, {0, 0, 0.1, 0.3, 1, -2, 2, 1, 0.9, 0.6, 0, 0}}, 2};
 }
@@ -45,7 +45,7 @@ TEST(Tracks, pieces_that_are_cut_stay_within_the_tolerance) {
   EXPECT_LE(cut.error, 1e-4);
 }
 
-// A weight of 4 w (1 - w) is 0 at both keys and 1 half-way: a straight line leaves all of it out there.
+// A weight of 4 w (1 - w) is 0 at both keys and 1 half-way, where a straight line leaves all of it out.
 TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_a_gap) {
   const test::GltfFixture file(test::still_hills_document(1, 3));
   const GltfShading shading = read_gltf_shading(*file, 0).value();
@@ -72,7 +72,7 @@ TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_
   MeshWeights weights{
       {{GltfInterpolation::kLinear, {{0, 1}, {0, 1}}, 1}}, {{0, 0}}, {{}}, {}, 0, WeightUse(1), true, {}};
   for (const std::size_t pieces : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
-    // As many pieces as this tolerance takes: each leaves the square of its share.
+    // This tolerance takes that number of pieces: each leaves the square of its share.
     const auto count = static_cast<double>(pieces);
     Candidate form;
     form.own = {columns[0]};

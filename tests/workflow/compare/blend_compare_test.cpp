@@ -1,4 +1,4 @@
-// Comparisons of the deltas of blend shapes have the errors that are computed here.
+// Checks the errors in comparisons of the deltas of blend shapes against errors that are computed here.
 #include "chronormal/workflow/compare.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ std::vector<std::size_t> counts_of(const BlendSubject& subject) {
   return result;
 }
 
-// The vertices of a sheet of which an active target moves a face around, or the stored normal.
+// Tells for each vertex of a sheet whether an active target moves a face around it or its stored normal.
 std::vector<bool> moved_vertices(const ShadedMesh& mesh, const std::vector<double>& weights) {
   const auto moves = [](const std::vector<float>& deltas, std::size_t v) {
     return !deltas.empty() && test::vector_at(deltas, v) != test::Vector{0, 0, 0};
@@ -97,7 +97,7 @@ struct Expected {
   }
 };
 
-// A star of a set: the positions of each target alone at weight 1.
+// Makes a star of a set: the positions of each target alone at weight 1.
 Motion star_of(const BlendSet& set) {
   Motion motion;
   motion.topology = set.topology;
@@ -139,7 +139,7 @@ TEST(BlendCompare, errors_of_a_file_are_those_of_an_oracle) {
       EXPECT_NEAR(degrees(file.max), expected.max, 1e-4);
       EXPECT_GT(expected.max, 1);
       EXPECT_LT(quality(errors, BlendDeltas::kExact).max, kExactLimit);
-      // And the place is where the oracle finds that error.
+      // The stated place is where the oracle finds that error.
       const BlendError& worst = errors.deltas[0];
       std::vector<double> weights(3);
       for (const BlendError::Weight& w : worst.worst_weights) weights[w.target] = w.weight;
@@ -239,7 +239,7 @@ TEST(BlendCompare, worst_vertex_is_counted_within_its_primitive) {
               degrees(worst.quality.max), 1e-4);
 }
 
-// ---- what the deltas are
+// ---- the kinds of deltas
 
 TEST(BlendCompare, end_points_are_right_for_each_target_alone_at_weight_one_and_wrong_together) {
   GltfBuilder builder = random_sheet(4, 6, 2, 0.3).file();
@@ -254,12 +254,12 @@ TEST(BlendCompare, end_points_are_right_for_each_target_alone_at_weight_one_and_
   const BlendComparison together = compared(builder, {.animation = "1"});
   EXPECT_EQ(together.subjects[0].errors[0].active, 2U);
   EXPECT_GT(degrees(quality(together.subjects[0].errors[0], BlendDeltas::kEndPoint).max), 1);
-  // One pose: least squares cannot be beaten there.
+  // In a single pose, nothing beats least squares.
   EXPECT_LT(degrees(quality(together.subjects[0].errors[0], BlendDeltas::kLeastSquares).max), 0.01);
 }
 
 TEST(BlendCompare, least_squares_are_over_other_random_weights_but_over_those_of_an_animation) {
-  // Of as many poses as there are, and few of them, a fit that knew them would leave next to nothing.
+  // There are only as many poses as targets, so a fit that knew the judged poses would leave next to no error.
   const Motion star = star_of(test::random_blend_set(6, {.targets = 12, .reach = 0.7}));
   const BlendErrors random = compared(star, {.rows = 3, .active = 6}).subjects[0].errors[0];
   EXPECT_GT(degrees(quality(random, BlendDeltas::kLeastSquares).mean()), 0.2);
@@ -272,7 +272,7 @@ TEST(BlendCompare, least_squares_are_over_other_random_weights_but_over_those_of
   EXPECT_LT(quality(animated, BlendDeltas::kExact).max, kExactLimit);
 }
 
-// ---- which weights
+// ---- the choice of weights
 
 TEST(BlendCompare, active_targets_are_1_2_4_8_16_and_all_as_far_as_there_are_or_what_is_asked_for) {
   const auto counts = [](std::size_t targets, std::size_t active) {
@@ -317,7 +317,7 @@ TEST(BlendCompare, an_animation_gives_no_more_poses_than_asked_for_and_each_curv
   EXPECT_EQ(compared(builder, {.rows = 1000, .animation = "walk"}).subjects[0].errors[0].rows, once);
 }
 
-// ---- what is compared
+// ---- the compared samples
 
 TEST(BlendCompare, meshes_without_normals_and_those_that_stand_still_are_counted) {
   GltfBuilder builder = random_sheet(1, 4, 1, 0.1).file();
@@ -342,7 +342,7 @@ TEST(BlendCompare, meshes_without_normals_and_those_that_stand_still_are_counted
 }
 
 TEST(BlendCompare, every_method_is_judged_on_the_same_pairs_and_what_cannot_be_lit_is_off_by_180_degrees) {
-  // Deltas that take the base normal away: at weight 1 the file shows nothing, and the geometry has a normal there.
+  // The deltas take the base normal away: at weight 1 the file shows nothing, though the geometry has a normal there.
   ShadedMesh mesh = random_sheet(5, 5, 1, 0.1);
   mesh.targets[0].normals.clear();
   for (const float c : mesh.normals) mesh.targets[0].normals.push_back(-c);
@@ -361,7 +361,7 @@ TEST(BlendCompare, every_method_is_judged_on_the_same_pairs_and_what_cannot_be_l
 }
 
 TEST(BlendCompare, normals_that_collapse_are_left_out) {
-  // A triangle that the target folds onto a line: at weight 1, and nowhere else, it has no normal.
+  // The target folds a triangle onto a line, so that it has no normal at weight 1, and only there.
   GltfBuilder builder;
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};

@@ -36,7 +36,8 @@ const SchemeComparison& row(const Comparison& comparison, const std::string& sch
 }
 
 TEST(Compare, one_face_by_hand) {
-  // From +z to +x by a quarter turn of the frame: linear, halfway at t = 1/2, against the exact cross product.
+  // The normal goes from +z to +x by a quarter turn of the frame. Halfway, at t = 1/2, linear is compared with the
+  // exact cross product.
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
   motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, ""}, {{0, 0, 0, 0, 1, 0, 0, 0, 1}, 1, ""}};
@@ -44,7 +45,7 @@ TEST(Compare, one_face_by_hand) {
   CompareOptions options{{"linear", "polynomial"}, 3, Access::kRandom, {}};
   const auto comparison = compare(motion, options);
   ASSERT_TRUE(comparison.ok());
-  // At 1/2 the vertices are (1,1,0)/2 and (0,1,1)/2: n = (1, -1, 1) / 4; linear gives (1, 0, 1).
+  // At 1/2 the vertices are (1,1,0)/2 and (0,1,1)/2, so n = (1, -1, 1) / 4, but linear gives (1, 0, 1).
   const double expected = std::acos(2 / std::sqrt(2.0) / std::sqrt(3.0));
   EXPECT_NEAR(row(comparison.value(), "linear").quality.sum, expected, 1e-7);
   EXPECT_EQ(row(comparison.value(), "linear").quality.count, 3u);
@@ -54,7 +55,7 @@ TEST(Compare, one_face_by_hand) {
 }
 
 TEST(Compare, vertices_may_be_more_than_faces) {
-  // Of schemes that search, too, none takes a vertex for the face of that number: here there are 4 and 1.
+  // Schemes that search must not take a vertex for the face of the same number either: here are 4 vertices and 1 face.
   const Motion motion = fixtures::make_motion(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}),
                                               {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                                               {{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0.5}});
@@ -72,7 +73,7 @@ TEST(Compare, vertices_may_be_more_than_faces) {
   }
 }
 
-// The whole table against an implementation that shares nothing with it: mean angles over faces and samples.
+// Compares the whole table with an implementation that shares no code with it: average angles over faces and samples.
 TEST(Compare, agrees_with_the_oracle_to_the_printed_digits) {
   constexpr const char* kSchemes[] = {
       "recompute",         "polynomial",      "rational",         "linear",
@@ -193,7 +194,7 @@ TEST(Compare, refuses_what_makes_no_table) {
             "a shard keeps sums, and so does a run that goes on: the rest is of a whole motion");
 }
 
-// Elements as the oracle has them: the corners of each, and the first vertex or corner that shows it.
+// The elements of the oracle: the corners of each, and the first vertex or corner that shows it.
 struct OracleElements {
   reference::Mesh mesh;
   std::vector<std::vector<reference::Corner>> corners;
@@ -219,7 +220,7 @@ OracleElements oracle_elements(const Motion& motion, const ElementOptions& optio
   return elements;
 }
 
-// What a scheme gives for an element at t, from exact unit normals at the times that it asks for.
+// Evaluates a scheme for an element at t, from exact unit normals at the times that it asks for.
 std::optional<reference::Vector> oracle_normal(const std::string& scheme,
                                                const std::function<reference::Vector(reference::Real)>& exact,
                                                reference::Real t) {
@@ -283,7 +284,7 @@ TEST(Compare, vertices_and_corners_agree_with_the_oracle) {
   }
 }
 
-// Schemes between weighted normals, of which only those by area are quadratics.
+// Tests schemes between weighted normals; only area-weighted normals are quadratics.
 TEST(Compare, every_weighting_agrees_with_the_oracle) {
   fixtures::Random random(20261127);
   const Motion motion = fixtures::shaken(fixtures::box_grid(2), 0.3, random.below(1000));
@@ -303,7 +304,7 @@ TEST(Compare, every_weighting_agrees_with_the_oracle) {
         for (std::size_t i = 0; i < kSamples; ++i) {
           const Real t = static_cast<Real>(i) / (kSamples - 1);
           const auto exact = reference::exact_unit_normal(element, t);
-          // By definition polynomial is the quadratic through three normals, of lengths that only the library knows.
+          // By definition polynomial is the quadratic through three normals, whose lengths only the library knows.
           const auto found = scheme == "polynomial" ? exact : reference::unit_normal(scheme, element, t);
           sum += reference::angle(exact.value(), found.value());
         }
@@ -335,7 +336,7 @@ TEST(Compare, weightings_are_of_vertices_and_have_no_certificates) {
 }
 
 TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
-  // Elements are 240 corners in 42 points, but the vertex with the largest error keeps its own number.
+  // The elements are 240 corners in 42 points, but the vertex with the largest error keeps its own number.
   Motion motion = test::torn(fixtures::shaken(fixtures::icosphere(1), 0.01, 22));
   for (std::size_t v = 0; v < 240; ++v) {  // the point of vertex 239 alone goes far
     bool same = true;
@@ -349,7 +350,7 @@ TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
   const std::size_t apart = compare(motion, options).value().schemes[0].quality.max_at.element;
   EXPECT_LT(welded, 240U);
   EXPECT_LT(apart, 240U);
-  // Welded it is the first of its copies: no vertex before it lies at its place.
+  // With welding it is the first of its copies: no earlier vertex lies at its place.
   for (std::size_t v = 0; v < welded; ++v) {
     EXPECT_FALSE(std::equal(motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
                             motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3),
@@ -399,7 +400,7 @@ TEST(CompareCertified, no_sample_exceeds_the_bound_of_any_element) {
   }
 }
 
-// Faces that cancel have a normal, which schemes are held against; whole numbers say where there is none.
+// Normals of faces that cancel are judged where they exist; whole numbers tell where they do not.
 TEST(CompareCertified, vertices_whose_faces_cancel_are_seen) {
   fixtures::Random random(4917);
   constexpr std::size_t kSamples = 5;
@@ -503,7 +504,7 @@ TEST(BuiltinMorphs, eversion_turns_inside_out) {
   EXPECT_LT(volume(motion.segment(0).to), -1);
 }
 
-// A polygon that bends, on straight or curved paths.
+// Makes a polygon that bends, on straight or curved paths.
 Motion polygon(std::uint32_t corners) {
   Motion motion;
   std::vector<std::uint32_t> around(corners);
@@ -522,8 +523,8 @@ Motion polygon(std::uint32_t corners) {
   return motion;
 }
 
-// The normal of a vertex is that of its polygon, however many corners that has: of some that are few enough to be
-// computed for each corner, and of some that are not.
+// The normal of a vertex is the normal of its polygon, for polygons small enough to be computed at each corner and for
+// larger ones.
 TEST(Compare, vertices_of_a_polygon_have_the_errors_of_its_face) {
   for (const std::uint32_t corners : {3U, 5U, 32U, 33U, 34U, 200U}) {
     for (const std::size_t samples : {std::size_t{2}, std::size_t{5}, std::size_t{1000}}) {

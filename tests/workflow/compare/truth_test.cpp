@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// A round body with bumps, so that no two normals are alike, as it is at each of some times; of more than one block of
+// Makes a round body at some times, with bumps so that no two normals are alike, and with more than one block of
 // elements.
 Motion body_at(const std::vector<double>& times, const std::function<Vec3d(const Vec3d&, double)>& moved) {
   constexpr std::size_t kAround = 48, kUp = 24;
@@ -79,8 +79,8 @@ const Quality& row(const TruthComparison& comparison, const std::string& scheme)
   return comparison.rows.front().quality;
 }
 
-// The rule, written a second time for faces: nlerp of the ends, and the cross product of the blended positions, against
-// that of the frame that was left out.
+// Repeats the rule for faces: compares nlerp of the ends, and the cross product of the blended positions, with the face
+// of the frame that was left out.
 struct Means {
   double linear = 0, polynomial = 0;
 };

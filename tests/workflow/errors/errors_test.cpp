@@ -1,4 +1,4 @@
-// Every single error of an audit or a comparison: what the sums are made of, and the files of it.
+// Tests the single errors of an audit or a comparison, which add up to its sums, and their files.
 
 #include "chronormal/workflow/errors.h"
 

@@ -40,7 +40,7 @@ TEST(InspectGltf, targets_with_and_without_normals_are_counted) {
 }
 
 TEST(InspectGltf, normals_that_differ_at_one_place_are_split_and_wrong_lengths_are_counted) {
-  // 2 is at the place of 0 with the same normal, 3 with another, 4 with one that is only rounded.
+  // Vertex 2 is at the place of 0 with the same normal, 3 has another normal, and 4 one that differs by rounding only.
   GltfBuilder builder;
   const std::vector<float> places = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, -0.0F, 0, 0, 1, 0};
   const std::vector<float> normals = {0, 0, 1, 0, 0, 1.2F, 0, 0, 1, 0, 1, 0, 0, 1e-4F, 1, 0, 0, 0};
@@ -60,7 +60,7 @@ TEST(InspectGltf, tracks_tell_their_time_and_their_weights) {
   const std::size_t animation = builder.add_animation("a");
   builder.add_track(animation, 0, {0.5F, 2}, std::vector<float>{0, 0.25F, 1.5F, -0.5F});
   const std::size_t spline = builder.add_animation("b");
-  // The tangents before the first key and after the last are no weights, and lead nowhere.
+  // The tangents before the first key and after the last are not weights, and lead nowhere.
   builder.add_track(spline, 0, {1, 3}, std::vector<float>{9, 9, 0, 1, 0, 0, 0, 0, 0.5F, 0.75F, 9, 9}, "CUBICSPLINE");
   const GltfInspection found = inspect_document(builder);
   ASSERT_EQ(found.tracks.size(), 2U);
@@ -76,8 +76,8 @@ TEST(InspectGltf, tracks_tell_their_time_and_their_weights) {
 TEST(InspectGltf, range_of_a_spline_is_what_it_reaches_between_its_keys) {
   GltfBuilder builder = test::quad_document();
   const std::size_t animation = builder.add_animation("a");
-  // The first weight is 20 t (1 - t), with 5 in the middle; the second -9 t (1 - t)^2 / 2, with -2/3 at t = 1/3, over
-  // the two seconds from the first key to the second. To the third key nothing moves.
+  // The first weight is 20 t (1 - t), with 5 in the middle; the second is -9 t (1 - t)^2 / 2, with -2/3 at t = 1/3,
+  // over the two seconds from the first key to the second. Nothing moves from there to the third key.
   builder.add_track(animation, 0, {1, 3, 4},
                     std::vector<float>{0, 0, 0, 0, 10, -2.25F, -10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7, 7}, "CUBICSPLINE");
   const GltfInspection found = inspect_document(builder);
@@ -86,7 +86,8 @@ TEST(InspectGltf, range_of_a_spline_is_what_it_reaches_between_its_keys) {
 }
 
 TEST(InspectGltf, split_normals_of_a_motion_are_at_vertices_that_stay_together) {
-  // 3 and 4 are at the places of 0 and 1 with other normals; 3 parts from 0. The second primitive lies on the first.
+  // Vertices 3 and 4 are at the places of 0 and 1 with other normals; 3 parts from 0. The second primitive lies on the
+  // first.
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -1, 0});
   const std::size_t target = builder.add_positions({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
@@ -105,7 +106,7 @@ TEST(InspectGltf, split_normals_of_a_motion_are_at_vertices_that_stay_together) 
   EXPECT_EQ(split_of(builder), 1U);
   builder.add_primitive(mesh, with_normals({1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 0}));
   EXPECT_EQ(split_of(builder), 2U);
-  // A third primitive lies elsewhere, so that its normals are nobody else's.
+  // A third primitive lies elsewhere, so that it shares its normals with nobody.
   const std::size_t elsewhere = builder.add_positions({5, 0, 0, 6, 0, 0, 5, 1, 0, 5, 0, 1, 6, 0, 1, 5, -1, 0});
   auto third = with_normals({0, 0, -1, 0, 0, -1, 0, 0, -1, 0, -1, 0, 0, -1, 0, 0, -1, 0});
   third["attributes"]["POSITION"] = elsewhere;

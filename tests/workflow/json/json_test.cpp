@@ -1,4 +1,4 @@
-// The JSON of results, by the library: the very text that the program prints.
+// Tests the JSON of results from the library, which is the very text that the program prints.
 
 #include "workflow/json/json.h"
 

@@ -22,7 +22,7 @@
 namespace chronormal::parts_test {
 namespace {
 
-// A strip of triangles that bends, in eight segments.
+// Makes a strip of triangles that bends, in eight segments.
 Motion bending() {
   Motion motion;
   std::vector<std::uint32_t> corners;
@@ -163,7 +163,7 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   }
 }
 
-// Ends a run after so many segments, and gives what it kept to another one.
+// Ends a run after some segments, and hands its results to another run.
 TEST(KnownSegments, a_comparison_that_goes_on_gives_the_bytes_of_one_run) {
   const Motion motion = bending();
   MotionStream stream(motion);
@@ -388,8 +388,8 @@ TEST(MergeArrays, refuses_shards_that_do_not_make_a_whole) {
   EXPECT_EQ(merge_arrays(std::vector{folder / "gone.npy"}, folder / "x.npy", true).error().code, ErrorCode::kFailed);
 }
 
-// The three ways to divide a task, each as: write the part of a shard of a motion to a file; and merge files, which
-// returns the text of the result, or an error.
+// A way to divide a task: `write` writes the part of a shard of a motion to a file; `merge` returns the merged text of
+// files, or an error.
 struct Task {
   std::string name;
   std::function<void(MotionStream& stream, const Shard& shard, const std::string& path)> write;
@@ -489,7 +489,7 @@ TEST(Parts, no_damage_gives_other_bytes) {
       const Result<std::string> merged = task.merge(paths);
       EXPECT_FALSE(merged.ok()) << what;
     };
-    // Every byte of the ends of the file, which say what the part is, and some of the others.
+    // Damages every byte near the ends of the file, which describe the part, and some of the others.
     for (std::size_t at = 0; at < part.size(); at += at < 128 || at + 128 > part.size() ? 1 : 1 + random() % 97) {
       std::string damaged = part;
       damaged[at] = static_cast<char>(random());
@@ -507,8 +507,8 @@ TEST(Parts, no_damage_gives_other_bytes) {
   }
 }
 
-// A keyframe changes between the shards, drawn at random together with the number of shards. A motion that is kept is
-// looked at as a whole by every shard; of one that is not, keyframes that two shards read must be the same.
+// A keyframe changes between the shards, drawn at random together with the number of shards. If a motion is kept, every
+// shard looks at all of it; otherwise, keyframes that two shards read must be the same.
 TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together) {
   constexpr unsigned kSeed = 20261126;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -520,7 +520,7 @@ TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together
       const std::size_t count = 2 + random() % 3, later = 1 + random() % (count - 1);
       const Motion before = bending();
       Motion after = before;
-      // Where streams keep nothing, the one with which the first of the later shards begins; 0 and the last one, too.
+      // If streams keep nothing, the keyframe is the first of the later shard, or 0, or the last one.
       const std::size_t boundary = Shard{later, count}.of(8).first;
       const std::size_t changed = is_kept ? random() % 9 : std::vector<std::size_t>{0, boundary, 8}[random() % 3];
       std::vector<float>& positions = after.keyframes[changed].positions;
@@ -565,7 +565,7 @@ TEST(Parts, of_two_sequences_with_the_same_faces_and_times_do_not_belong_togethe
   }
 }
 
-// A keyframe that one pass of an audit reads again, and that is another one then.
+// One pass of an audit reads a keyframe again after it has changed.
 TEST(Parts, are_not_written_of_a_keyframe_that_changes_while_it_is_read) {
   const Motion motion = bending();
   std::vector<int> reads(9);

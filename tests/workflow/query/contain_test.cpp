@@ -1,4 +1,4 @@
-// Containment over whole motions: what segment after segment adds up to.
+// Checks the sum over all segments of containment in whole motions.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ const std::vector<T>& column(const QueryAnswer& answer, const std::string& table
   throw std::runtime_error("no column " + name);
 }
 
-// Points on straight lines through a box around the motion.
+// Makes points on straight lines through a box around the motion.
 PointPaths some_paths(const Motion& motion, std::size_t count) {
   std::vector<double> low(3, 1e30), high(3, -1e30);
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
@@ -45,7 +45,8 @@ PointPaths some_paths(const Motion& motion, std::size_t count) {
   return paths;
 }
 
-// Whether what the crossings add up to is what is inside at the end, as the same question of the last instants has it.
+// Checks that the sum of the crossings is the set of points inside at the end, according to the same question about the
+// last instants.
 void expect_sums(const Motion& motion, const PointPaths& paths) {
   const QueryAnswer answer = query_contain(motion, paths).value();
   const auto& points = column<std::int64_t>(answer, "crossing", "point");
@@ -69,7 +70,7 @@ void expect_sums(const Motion& motion, const PointPaths& paths) {
   for (std::size_t p = 0; p < winding.size(); ++p) ASSERT_EQ(winding[p], expected[p]) << p;
 }
 
-// A double pyramid that tumbles through seven keyframes.
+// Makes a double pyramid that tumbles through seven keyframes.
 Motion tumbling() {
   Motion motion;
   motion.topology =
@@ -108,7 +109,7 @@ TEST(QueryContain, each_target_is_a_motion_of_its_own_by_weight) {
   EXPECT_EQ(column<std::int64_t>(both, "crossing", "point").size(), count);
 }
 
-// The cache has the vertices of its mesh in another order.
+// The cache stores the vertices of its mesh in another order.
 TEST(QueryContain, a_cache_by_other_people_keeps_the_sum_over_all_of_its_segments) {
   const char* const data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";

@@ -1,4 +1,4 @@
-// Fronts of a whole motion, against rational numbers.
+// Compares the fronts of a whole motion with rational numbers.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using exact::Rational;
 
-// n . w of a face at a t of a segment, for an eye that moves from the first to the last time of the motion.
+// Returns n . w of a face at a t of a segment, for an eye that moves from the first to the last time of the motion.
 Rational front_at(const Motion& motion, std::size_t s, std::size_t face, const View& view, double t) {
   const Segment segment = motion.segment(s);
   exact::Triangle triangle;
@@ -46,7 +46,7 @@ TEST(QueryFacing, every_change_lies_in_its_bracket_for_the_eye_that_was_asked_fo
   fixtures::Random random(kSeed);
   std::size_t changes = 0;
   for (int i = 0; i < 40; ++i) {
-    // In every other motion all is slow, so that f changes little in a segment and brackets are closed in.
+    // Every other motion is slow, so that f changes little in a segment and brackets have to be narrowed.
     const bool is_slow = i % 2 == 0;
     const std::size_t face_count = is_slow ? 3000 : 40;
     Motion motion = fixtures::large_soup(face_count, static_cast<std::uint64_t>(i));

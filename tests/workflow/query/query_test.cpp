@@ -1,4 +1,4 @@
-// Which parts of segments lie in a span of time.
+// Tests which parts of segments lie in a span of time.
 #include "chronormal/workflow/query.h"
 
 #include <gmpxx.h>
@@ -15,7 +15,7 @@
 namespace chronormal::query_test {
 namespace {
 
-// In rational numbers: no instant of the span is left out, and no more than a rounding of t is added.
+// Checks in rational numbers that no instant of the span is left out, and no more than a rounding of t is added.
 TEST(SegmentParts, hold_the_whole_span) {
   constexpr std::uint64_t kSeed = 20261128;
   std::cout << "  from seed " << kSeed << '\n';

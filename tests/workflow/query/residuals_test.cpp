@@ -1,5 +1,5 @@
-// A mesh beside the origin, and the same mesh so far away that float32 cannot hold its coordinates and keyframes keep
-// residuals: every answer about the one is that about the other.
+// Compares a mesh beside the origin with the same mesh so far away that float32 cannot hold its coordinates and
+// keyframes keep residuals: every answer must be the same for both.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -36,7 +36,7 @@ constexpr int kMeshes = 16;
 constexpr Vec3d kAway{1.25, -1.5, 1.75};
 constexpr double kUnit = 0x1p-42, kSize = 0x1p-20;  // coordinates near the origin: 22 bits each
 
-// Both meshes have one segment, from a closed surface or a soup that has collapses, slivers and planes.
+// Two meshes of one segment, from a closed surface or a soup that has collapses, slivers and planes.
 struct Twins {
   Motion near, far;
 };
@@ -165,7 +165,7 @@ TEST_F(Residuals, leave_the_answers_of_queries_as_they_are_at_the_origin) {
   for_twins([](const Twins&, const Segment& near, const Segment& far, Random& random) {
     const std::size_t faces = near.topology->face_count();
     const fixtures::Point to = random.in_cube(1), first = random.in_cube(2 * kSize), last = random.in_cube(2 * kSize);
-    // Where the eye is must be a double beside the far mesh, too.
+    // The place of the eye must be a double beside the far mesh, too.
     const auto eye = [](const fixtures::Point& p, const Vec3d& away) {
       const auto whole = [](double x) { return kUnit * std::round(x / kUnit); };
       return Vec3d{whole(p[0]), whole(p[1]), whole(p[2])} + away;
@@ -213,7 +213,7 @@ TEST_F(Residuals, leave_points_inside_or_outside_as_they_are_at_the_origin) {
     const Result<Containment> in_near = make(twins.near), in_far = make(twins.far);
     ASSERT_TRUE(in_near.ok()) << in_near.error().text();
     ASSERT_TRUE(in_far.ok());
-    // Multiples of 2^-23, which both sides have.
+    // The points are multiples of 2^-23, which are representable in both places.
     constexpr double kGrid = 0x1p-23;
     std::vector<float> from, to, far_from, far_to;
     for (int i = 0; i < 3 * 300; ++i) {
@@ -247,7 +247,7 @@ TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin
   std::cout << "seed " << kSeed << '\n';
   for (int i = 0; i < kMeshes; ++i) {
     Random random(kSeed + static_cast<std::uint64_t>(i));
-    // Surfaces of ordinary faces: those that collapse are judged by the size of the coordinates.
+    // The surfaces have ordinary faces, since faces that collapse are judged by the size of the coordinates.
     Twins twins;
     for (const int k : {0, 1, 2}) {
       const Motion shaken = fixtures::shaken(fixtures::icosphere(1), 0.3, 100 * static_cast<std::uint64_t>(i) + 7);

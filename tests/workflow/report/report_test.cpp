@@ -1,5 +1,5 @@
-// What a report holds, as a page reads it: tests/support/report_file.h computes the number of each worst place from the
-// container alone.
+// Tests the content of a report as a page reads it: tests/support/report_file.h computes the number of each worst place
+// from the container alone.
 
 #include "workflow/report/report.h"
 
@@ -33,7 +33,7 @@ using test::ReportFile;
 
 constexpr double kAgree = 1e-3;  // degrees
 
-// The report of an input, with what it needs to live.
+// Makes the report of an input, and keeps alive what it needs.
 Result<Report> report_of(InputOptions input, const ReportOptions& options = {}) {
   input.shading = KeepShading::kAll;
   Result<Input> opened = open_input(input);
@@ -41,7 +41,7 @@ Result<Report> report_of(InputOptions input, const ReportOptions& options = {}) 
   return report(opened.value(), options);
 }
 
-// An input of bytes, which must outlive it.
+// Makes an input of bytes, which must outlive it.
 InputOptions input_of_glb(const std::string& glb) {
   InputOptions input;
   input.files = {"a.glb"};
@@ -59,7 +59,8 @@ ReportOptions without_plan() {
   return options;
 }
 
-// Says whether the numbers of the worst places follow from the container, the first of them that of the audit.
+// Checks that the numbers of the worst places follow from the container, and that the first is the worst error of the
+// audit.
 ReportFile expect_numbers(const Report& found, std::size_t most_places = kMostWorstPlaces) {
   ReportFile file(found.container);
   EXPECT_FALSE(file.json.is_null());
@@ -77,7 +78,7 @@ ReportFile expect_numbers(const Report& found, std::size_t most_places = kMostWo
   return file;
 }
 
-// A file of a mesh with three targets, which an animation plays together.
+// Makes a file of a mesh with three targets, which an animation plays together.
 test::GltfBuilder talking(const test::ShadedMesh& mesh) {
   test::GltfBuilder builder = mesh.file();
   const std::size_t animation = builder.add_animation("talk");
@@ -88,8 +89,8 @@ test::GltfBuilder talking(const test::ShadedMesh& mesh) {
 
 test::GltfBuilder sheet_file(std::uint64_t seed, double tilt) { return talking(test::random_sheet(seed, 9, 3, tilt)); }
 
-// A box whose six sides are quads, with normals of its sides, so that each of its vertices has three. Its upper side
-// turns, and one corner of it rises, so that no two vertices do the same.
+// Makes a box whose six sides are quads with their own normals, so that each vertex has three. Its upper side turns,
+// and one corner of it rises, so that no two vertices do the same.
 std::string box(double twist, bool with_normals) {
   std::string text;
   for (int i = 0; i < 8; ++i) {
@@ -232,7 +233,7 @@ TEST(Report, numbers_of_a_baked_file_follow_from_its_extra_targets) {
   how.encoding = BakeEncoding::kExact;
   const test::Baked baked = test::bake_bytes(sheet_file(13, 0.2).glb(), how);
   ASSERT_TRUE(baked.ok()) << baked.error;
-  // By the weighting that it was baked for, nothing is left to be seen.
+  // By the weighting that it was baked for, no error is left.
   ReportOptions by_angle = without_plan();
   by_angle.weighting = Weighting::kAngle;
   const Result<Report> found = report_of_glb(baked.bytes, by_angle);
@@ -293,7 +294,7 @@ TEST(Report, numbers_of_targets_over_a_base_follow_from_the_report_alone) {
   ASSERT_EQ(file.part(0)["motions"].size(), 2U);
   EXPECT_EQ(file.part(0)["motions"][1]["target"], 1);
   EXPECT_EQ(file.part(0)["motions"][1]["seconds"], false);
-  // Half of the vertices stay where they are.
+  // Half of the vertices do not move.
   EXPECT_EQ(file.part(0)["keyframes"]["positions"][1]["indices"]["count"], 12);
 }
 
@@ -310,7 +311,7 @@ TEST(Report, what_viewers_show_is_what_they_keep) {
   EXPECT_EQ(shown[1]["viewers"], nlohmann::json({"godot"}));
   EXPECT_EQ(shown[1]["least_weight"], 1e-4);
   EXPECT_EQ(shown[2]["viewers"], nlohmann::json({"gltfpack"}));
-  // 8 bits: every component is a whole number of 127ths.
+  // With 8 bits, every component is a whole number of 127ths.
   for (const float component : file.numbers<float>(shown[2]["targets"][0]["deltas"]))
     EXPECT_NEAR(component * 127, std::round(component * 127), 1e-4);
   ASSERT_EQ(weights.size(), 2U);
@@ -379,7 +380,7 @@ TEST(Report, plan_is_that_of_bake_or_says_why_there_is_none) {
   EXPECT_EQ(file.json["plan"]["command"], "bake");
   EXPECT_TRUE(file.json["plan_message"].is_null());
 
-  // A bake has no place to say what it did where extras are no object.
+  // A bake cannot be recorded if extras is not an object.
   test::GltfBuilder builder = sheet_file(15, 0);
   builder.json["meshes"][0]["extras"] = "mine";
   const Result<Report> refused = report_of_glb(builder.glb());
@@ -433,7 +434,7 @@ TEST(Report, names_in_files_cannot_leave_the_script_element) {
   EXPECT_EQ(page.value().find("</script>"), page.value().rfind("</script>"));
 }
 
-// A mesh that is too large for its page, and what must hold of the page nevertheless. Returns the report.
+// Checks the page of a mesh that is too large for it. Returns the report.
 Report expect_thinned(const InputOptions& input, ReportOptions options) {
   options.plan = false;
   const Result<Report> found = report_of(input, options);
@@ -447,7 +448,8 @@ Report expect_thinned(const InputOptions& input, ReportOptions options) {
   return found.value();
 }
 
-// The reports of a file that is too large for a page of so many bytes: within them, and whole.
+// Returns two reports of a file that is too large for a page of most_bytes: one within the limit, and one of the whole
+// file.
 std::pair<Report, Report> thinned_and_whole(const std::string& glb, std::size_t most_bytes) {
   ReportOptions options;
   options.template_bytes = kTemplate.size();
@@ -461,7 +463,7 @@ std::pair<Report, Report> thinned_and_whole(const std::string& glb, std::size_t 
   return {thinned, whole.value()};
 }
 
-// How many judged triangles meet in each vertex of part 0.
+// Counts the judged triangles that meet in each vertex of part 0.
 std::vector<std::size_t> corners_of_vertices(const ReportFile& file) {
   std::vector<std::size_t> result(file.part(0)["vertices"].get<std::size_t>());
   for (const std::uint32_t v : file.numbers<std::uint32_t>(file.part(0)["triangles"])) ++result[v];
@@ -476,7 +478,7 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   const nlohmann::json& part = file.part(0);
   EXPECT_GT(part["coarse"]["count"], 0);
   EXPECT_LT(part["vertices"], 80 * 80);
-  // Labels still say which vertex of the file it is.
+  // Labels still name the vertex of the file.
   for (std::size_t i = 0; i < found.worst.size(); ++i)
     EXPECT_EQ("mesh 0, primitive 0, vertex " + std::to_string(file.label(part, found.worst[i].vertex)),
               found.worst[i].label);
@@ -484,7 +486,7 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   EXPECT_TRUE(whole.thinned.empty());
   ASSERT_EQ(whole.worst.size(), found.worst.size());
   for (std::size_t i = 0; i < found.worst.size(); ++i) EXPECT_EQ(whole.worst[i].label, found.worst[i].label);
-  // Whatever is still judged has all of its triangles. (Each vertex of the sheet is an element of its own.)
+  // Every vertex that is still judged has all of its triangles. (Each vertex of the sheet is an element of its own.)
   const ReportFile all(whole.container);
   const std::vector<std::size_t> had = corners_of_vertices(all), has = corners_of_vertices(file);
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]);
@@ -498,8 +500,8 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   EXPECT_GT(judged, 200U);
 }
 
-// What the truth of each judged vertex of part 0 looks at, by the numbers that vertices have in the file: the vertices
-// around its polygons, and the ends of its edges. Throws where one of them is missing.
+// Returns the vertices that the truth of each judged vertex of part 0 depends on, by their numbers in the file: the
+// vertices around its polygons, and the ends of its edges. Throws if one of them is missing.
 std::map<std::size_t, std::vector<std::size_t>> seen_by_truths(const ReportFile& file) {
   const nlohmann::json &part = file.part(0), &truth = part["truth"], &offsets = truth["offsets"];
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]),

@@ -1,5 +1,5 @@
-// Samples that go on behind the rows of an earlier run; tests/cli/resume_cli_test.cpp and tests/faults/killed_test.cpp
-// have the whole way.
+// Tests samples that continue after the rows of an earlier run; tests/cli/resume_cli_test.cpp and
+// tests/faults/killed_test.cpp test the whole way.
 #include "workflow/sample/continued_samples.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kRun = "a run";
 const Moments kMoments{{0, 0.25, 0.5, 1}, {}};
 
-// Writes samples until `most` of them are there, and gives up then.
+// Writes `most` samples and then gives up.
 Result<SampleSummary> sampled(const test::TemporaryFolder& folder, std::size_t most, SampleOutput output) {
   const Motion motion = make_builtin_morph("twist").value();
   MotionStream stream(motion);
@@ -43,7 +43,7 @@ TEST(ContinuedSamples, count_the_normals_of_all_rows) {
   EXPECT_EQ(all.value().normals, whole.normals);
   EXPECT_EQ(all.value().zeros, whole.zeros);
   EXPECT_TRUE(test::read_whole(folder / "out.npy") == test::read_whole(folder / "whole.npy"));
-  // The output is whole, and only its journal was not removed any more.
+  // The output is whole, and only its journal was not yet removed.
   const Result<SampleSummary> again = sampled(folder, 1, output);
   ASSERT_TRUE(again.ok()) << again.error().text();
   EXPECT_EQ(again.value().normals, whole.normals);

@@ -1,4 +1,5 @@
-// Normals of glTF files against rationals that are made of the numbers in the file: base, deltas, weights and times.
+// Compares normals of glTF files with rational numbers made from the numbers in the file: base, deltas, weights and
+// times.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,7 +62,7 @@ struct File {
     return builder;
   }
 
-  // The weights of the mesh on a node at a time, straight between keys.
+  // Returns the weights of the mesh on a node at a time, linear between keys.
   [[nodiscard]] std::vector<Rational> weights_at(std::size_t node, const Rational& time) const {
     const auto& [times, values] = tracks[node];
     std::vector<Rational> weights(targets.size());
@@ -78,7 +79,7 @@ struct File {
     return weights;
   }
 
-  // The normals of all faces, and behind them of all vertices, by area.
+  // Returns the area-weighted normals of all faces, followed by the normals of all vertices.
   [[nodiscard]] std::vector<exact::Vector> normals(const std::vector<Rational>& weights,
                                                    const std::array<double, 16>* matrix) const {
     std::vector<exact::Vector> places(vertices()), normals(corners.size() / 3 + vertices());
@@ -106,8 +107,8 @@ struct File {
   }
 };
 
-// Fans of triangles with edges down to a thousandth, and slivers, all over the unit cube; targets that move each as a
-// whole, and its vertices a little against each other, those of a sliver along its line.
+// Makes fans of triangles with edges down to a thousandth, and slivers, all over the unit cube. Targets move each as a
+// whole, and its vertices a little against each other; vertices of a sliver move along its line.
 File random_file(Random& random, std::size_t nodes) {
   File file;
   std::vector<std::size_t> fan_of_vertex;
@@ -126,7 +127,7 @@ File random_file(Random& random, std::size_t nodes) {
       const double angle = 6.283 * static_cast<double>(i) / 5;
       const fixtures::Point off = random.in_cube(0.2 * sizes.back());
       const fixtures::Point flat = {sizes.back() * std::cos(angle), sizes.back() * std::sin(angle), 0};
-      // Rounding alone keeps the corners of a sliver from one line.
+      // Only rounding keeps the corners of a sliver from lying on one line.
       const double way = random.uniform(0.2, 1) * static_cast<double>(i);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double from_centre = is_sliver ? way * along[axis] : i == 0 ? off[axis] : flat[axis] + off[axis];
@@ -176,7 +177,7 @@ GltfMotion motion_of(const File& file, const std::string& animation, bool world)
   return std::move(motion).value();
 }
 
-// Holds unit normals of faces or of vertices against the exact ones, and keeps the largest error.
+// Compares unit normals of faces or of vertices with the exact ones, and keeps the largest error.
 class Judge {
  public:
   void add(const std::string& way, std::span<const float> found, std::span<const exact::Vector> exact,

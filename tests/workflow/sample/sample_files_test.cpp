@@ -1,4 +1,4 @@
-// Files of samples: their names, their bytes, and what is refused before the first one is written.
+// Tests files of samples: their names, their bytes, and the requests that are refused before the first file is written.
 #include "chronormal/workflow/sample.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ SampleOptions options_of(ElementKind kind, double crease_angle = 180) {
   return options;
 }
 
-// The normals that files must have, of as many times in one segment.
+// Returns the normals that files must have at a time, as one of `evaluations` times in a segment.
 std::vector<float> normals_at(const Motion& motion, const SampleOptions& options, double time, double evaluations = 1) {
   NormalSampler sampler = NormalSampler::make(motion, options).value();
   return sampler.normals_of_outputs(sampler.at_time(time, evaluations).value());
@@ -44,7 +44,7 @@ SampleSummary write_good(const Motion& motion, const SampleOptions& options, con
   return summary.value();
 }
 
-// An OBJ file as its words: positions, normals, and the normal of each corner.
+// The words of an OBJ file: positions, normals, and the normal of each corner.
 struct ObjWords {
   std::vector<float> positions, normals;
   std::vector<std::size_t> vertex_of_corner, normal_of_corner;

@@ -1,5 +1,5 @@
-// The normals of a scheme, as `sample --scheme` gives them: every scheme against the oracle of tests/support/reference.h,
-// on faces and on vertices, and what playing them step by step does.
+// Tests the normals of a scheme, as `sample --scheme` gives them: every scheme against the oracle of
+// tests/support/reference.h, on faces and on vertices, and the drift when they are played step by step.
 #include "workflow/sample/scheme_normals.h"
 
 #include <gtest/gtest.h>
@@ -186,7 +186,7 @@ TEST(SchemeNormals, steps_lead_through_all_segments_and_drift_as_far_as_is_said)
         EXPECT_NEAR(stepped.drift().largest, largest, 3e-7) << name;
         EXPECT_GT(stepped.drift().largest, 0) << name;
         drifts[anchor_interval == 0 ? 0 : 1] = stepped.drift().largest;
-        // Whoever begins in the middle gets the same bits.
+        // Playing from the middle gives the same bits.
         NormalSampler later = NormalSampler::make(motion, by_scheme(name, kind, stepping)).value();
         for (const std::size_t i : {std::size_t{500}, std::size_t{17}, std::size_t{130}})
           EXPECT_EQ(normals_at(later, moments.times[i]), normals_at(stepped, moments.times[i])) << name << " " << i;

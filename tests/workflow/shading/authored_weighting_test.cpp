@@ -1,5 +1,5 @@
-// The weighting of an author is found in the normals that he stored, held against an oracle for each weighting that
-// shares no code with src/; and none is found where there is nothing to find.
+// Checks that the weighting of an author is found in the stored normals, against an oracle for each weighting that
+// shares no code with src/, and that none is found where there is nothing to find.
 #include "workflow/shading/authored_weighting.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ using test::GltfBuilder;
 using test::GltfFixture;
 using test::ShadedMesh;
 
-// Faces around every vertex, which may be polygons.
+// Makes a mesh of faces, which may be polygons.
 reference::Mesh polygons(const ShadedMesh& mesh, const std::vector<std::vector<std::size_t>>& faces) {
   reference::Mesh result;
   result.faces = faces;
@@ -46,7 +46,7 @@ std::vector<std::vector<std::size_t>> triangles_of(const ShadedMesh& mesh) {
   return faces;
 }
 
-// The quads of a sheet, of which random_sheet() makes two triangles each.
+// Returns the quads of a sheet, each of which random_sheet() splits into two triangles.
 std::vector<std::vector<std::size_t>> quads_of(const ShadedMesh& mesh) {
   std::vector<std::vector<std::size_t>> faces;
   for (std::size_t c = 0; c < mesh.corners.size(); c += 6)
@@ -65,7 +65,7 @@ void store(const std::string& weighting, const std::vector<std::vector<std::size
   }
 }
 
-// A bumpy sheet, the normals of which follow a weighting, with one target that lifts a corner of it.
+// Makes a bumpy sheet whose normals follow a weighting, with one target that lifts a corner of it.
 ShadedMesh sheet(const std::string& weighting, std::uint64_t seed = 1, std::size_t side = 8) {
   ShadedMesh mesh = test::random_sheet(seed, side, 0, 0);
   store(weighting, triangles_of(mesh), mesh);
@@ -82,7 +82,7 @@ std::string_view detected_in(const ShadedMesh& mesh) {
   return weighting_name(audit.offsets[0].weighting);
 }
 
-// Normals as so many bits keep each component.
+// Rounds each component of the normals to a number of bits.
 void quantise(int bits, ShadedMesh& mesh) {
   const float most = static_cast<float>((1 << (bits - 1)) - 1);
   for (float& c : mesh.normals) c = std::round(c * most) / most;
@@ -139,7 +139,7 @@ TEST(AuthoredWeighting, survives_eight_bits_and_normals_that_an_author_bent) {
 
 TEST(AuthoredWeighting, of_quads_is_found_after_they_were_cut_into_triangles) {
   for (const std::string weighting : {"area", "angle"}) {
-    // A wave along columns that grow in width, so that large quads stand beside small ones; they are all but flat.
+    // A wave runs along columns that grow in width, so that large quads stand beside small ones; all are nearly flat.
     ShadedMesh mesh = sheet(weighting);
     for (std::size_t v = 0; v < mesh.vertices(); ++v) {
       float* const p = mesh.positions.data() + 3 * v;
@@ -161,7 +161,7 @@ TEST(AuthoredWeighting, is_area_where_all_agree_or_none_comes_close) {
   quantise(6, plane);
   bend(1, plane);
   EXPECT_EQ(detected_in(plane), "area");
-  // Hard edges: each face has normals of its own.
+  // With hard edges, each face has normals of its own.
   ShadedMesh flat = sheet("angle"), apart;
   for (const std::uint32_t v : flat.corners) {
     for (std::size_t c = 0; c < 3; ++c) apart.positions.push_back(flat.positions[3 * v + c]);
@@ -172,7 +172,7 @@ TEST(AuthoredWeighting, is_area_where_all_agree_or_none_comes_close) {
   apart.targets.emplace_back().positions.resize(apart.positions.size());
   apart.targets[0].positions.back() = 1;
   EXPECT_EQ(detected_in(apart), "area");
-  // Normals of a sphere far below, on a sheet that is none.
+  // The sheet has the normals of a sphere far below, though it is none.
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     ShadedMesh bent = sheet("angle", seed);
     for (std::size_t v = 0; v < bent.vertices(); ++v) {

@@ -1,4 +1,4 @@
-// The author's truth against sums over polygons in long double, on meshes that are drawn at random.
+// Compares the author's truth with sums over polygons in long double, on random meshes.
 #include "workflow/truth/author_truth.h"
 
 #include <gtest/gtest.h>
@@ -39,12 +39,12 @@ double degrees_between(const Vector& a, const Vector& b) {
   return static_cast<double>(std::atan2(length(cross(a, b)), dot(a, b)) * 180 / kPi);
 }
 
-// Polygons with positions and two targets, and what an author stores for them.
+// Polygons with positions and two targets, and the file in which an author stores them.
 struct Authored {
   std::vector<std::vector<std::size_t>> polygons;
   ShadedMesh file;
 
-  // The polygons at some weights of the targets.
+  // Returns the polygons at some weights of the targets.
   [[nodiscard]] reference::Mesh mesh(const std::vector<double>& weights) const {
     reference::Mesh result{polygons, {}, {}};
     for (std::size_t v = 0; v < file.vertices(); ++v) {
@@ -57,7 +57,7 @@ struct Authored {
     result.to = result.from;
     return result;
   }
-  // The weighted sums around all vertices.
+  // Returns the weighted sums around all vertices.
   [[nodiscard]] std::vector<Vector> sums(const std::string& weighting, const std::vector<double>& weights) const {
     const reference::Mesh at = mesh(weights);
     std::vector<Vector> result(file.vertices(), Vector{});
@@ -68,7 +68,7 @@ struct Authored {
     for (Vector& sum : result) sum = reference::normalised(sum);
     return result;
   }
-  // Stores normals: those of the base, and deltas of the targets.
+  // Stores the normals of the base, and the deltas of the targets.
   void store(const std::vector<Vector>& base, const std::vector<std::vector<Vector>>& keys) {
     file.normals.clear();
     for (const Vector& n : base)
@@ -86,7 +86,7 @@ struct Authored {
   }
 };
 
-// A sheet of quads, with hills, and targets that move every vertex.
+// Makes a hilly sheet of quads, with targets that move every vertex.
 Authored quads(std::mt19937& random, std::size_t side = 9) {
   Authored mesh;
   std::uniform_real_distribution<float> hill(-0.35F, 0.35F);
@@ -176,7 +176,7 @@ TEST(AuthorTruth, a_mesh_of_plain_triangles_keeps_its_triangles) {
 TEST(AuthorTruth, larger_polygons_are_found_in_whatever_order_their_triangles_are) {
   std::mt19937 random(kSeed + 2);
   for (int draw = 0; draw < 6; ++draw) {
-    // A cylinder of quads with a cap of n corners, which was cut from one of them, at random.
+    // A cylinder of quads has a cap of n corners, which is cut into triangles from one of them, at random.
     const std::size_t n = 5 + random() % 6;
     Authored mesh;
     std::uniform_real_distribution<float> hill(-0.15F, 0.15F);
@@ -221,7 +221,7 @@ TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
     Authored mesh = quads(random);
     std::array<std::vector<Vector>, 3> stored = {mesh.sums("angle", {0, 0}), mesh.sums("angle", {1, 0}),
                                                  mesh.sums("angle", {0, 1})};
-    // A third of the normals is bent, in each key otherwise.
+    // A third of the normals are bent, differently in each key.
     for (std::size_t v = 0; v < stored[0].size(); v += 3)
       for (std::vector<Vector>& of_key : stored) of_key[v] = bent(of_key[v], random, 0.3);
     mesh.store(stored[0], {stored[1], stored[2]});
@@ -233,14 +233,14 @@ TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
       EXPECT_LT(degrees_between(truth.at(v, mesh, {1, 0}), stored[1][v]), 0.02) << v;
       EXPECT_LT(degrees_between(truth.at(v, mesh, {0, 1}), stored[2][v]), 0.02) << v;
     }
-    // Where nothing was bent the truth is the rule at all weights.
+    // Where nothing was bent, the truth is the rule at all weights.
     const std::vector<Vector> right = mesh.sums("angle", {0.6, 0.7});
     for (std::size_t v = 1; v < right.size(); v += 3)
       EXPECT_LT(degrees_between(truth.at(v, mesh, {0.6, 0.7}), right[v]), 0.02) << v;
   }
 }
 
-// What is added to a sum, in the plane perpendicular to it: as long as the angle between them.
+// Returns the offset that the author adds to a sum: perpendicular to it, and as long as the angle between them.
 Vector added_to(const Vector& sum, const Vector& stored) {
   using namespace reference;
   const Vector across = normalised(add(stored, scaled(-dot(sum, stored), sum)));
@@ -253,7 +253,8 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
   RecordProperty("seed", static_cast<int>(kSeed + 8));
   constexpr std::size_t kSide = 9;
   for (int draw = 0; draw < 4; ++draw) {
-    // Both targets make five rows larger, so that their sums stay as they are, whatever edge azimuths are measured from.
+    // Both targets only scale five rows up, so that their sums stay as they are, whatever edge azimuths are measured
+    // from.
     Authored mesh = quads(random, kSide);
     for (auto& target : mesh.file.targets)
       for (std::size_t i = 0; i < 3 * 5 * kSide; ++i) target.positions[i] = mesh.file.positions[i];
@@ -292,7 +293,7 @@ TEST(AuthorTruth, azimuths_are_measured_from_the_edge_with_which_offsets_change_
   std::mt19937 random(kSeed + 13);
   constexpr std::size_t kSide = 9, kBent = 2 * kSide + 4;
   Authored mesh = quads(random, kSide);
-  // Five rows are flat, and all that moves there is a neighbour of the bent vertex, within the plane.
+  // Five rows are flat, and only a neighbour of the bent vertex moves there, within the plane.
   for (std::size_t v = 0; v < 5 * kSide; ++v) {
     mesh.file.positions[3 * v] = static_cast<float>(v % kSide);
     mesh.file.positions[3 * v + 1] = static_cast<float>(v / kSide);
@@ -323,7 +324,7 @@ TEST(AuthorTruth, smooth_normals_beside_faces_that_are_shaded_flat_add_up_these_
     const std::array<reference::Mesh, 3> keys = {mesh.mesh({0, 0}), mesh.mesh({1, 0}), mesh.mesh({0, 1})};
     for (std::size_t q = 0; q < mesh.polygons.size(); ++q) {
       if (random() % 5 != 0) continue;
-      // The flat face gets vertices of its own, while its corners go on counting for those around.
+      // The flat face gets vertices of its own, while its corners still count for the vertices around it.
       const std::vector<std::size_t>& corners = mesh.polygons[q];
       for (const std::size_t corner : corners) {
         const auto copy = static_cast<std::uint32_t>(mesh.file.vertices());
@@ -419,7 +420,7 @@ TEST(AuthorTruth, a_key_that_does_not_turn_as_the_surface_does_is_stale_and_the_
 }
 
 TEST(AuthorTruth, an_edge_that_is_hard_in_a_key_alone_stays_hard) {
-  // A box that was flat: the two halves of a sheet, with vertices of their own where they meet, and one normal there.
+  // The two halves of a sheet have vertices of their own where they meet, with one normal there: a box that was flat.
   ShadedMesh mesh;
   mesh.positions = {-1, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   mesh.corners = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
@@ -479,7 +480,7 @@ TEST(AuthorTruth, normals_that_a_bake_spread_over_its_targets_are_still_those_of
 TEST(AuthorTruth, keys_of_a_bake_that_no_author_made_tell_nothing) {
   std::mt19937 random(kSeed + 7);
   Authored mesh = quads(random);
-  // By area, and with the triangles of the file: the bake has nothing to learn from the author.
+  // The file follows area weights and its own triangles, so that the bake has nothing to learn from the author.
   mesh.polygons.clear();
   for (std::size_t c = 0; c < mesh.file.corners.size(); c += 3)
     mesh.polygons.push_back({mesh.file.corners[c], mesh.file.corners[c + 1], mesh.file.corners[c + 2]});

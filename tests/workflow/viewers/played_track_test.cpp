@@ -1,4 +1,4 @@
-// What viewers play of tracks of weights, against plain loops over what their sources do.
+// Compares how viewers play tracks of weights with plain loops that repeat their sources.
 #include "workflow/viewers/played_track.h"
 
 #include <gtest/gtest.h>
@@ -82,8 +82,8 @@ TEST(PlayedTrack, says_whether_it_is_as_specified) {
 }
 
 TEST(PlayedTrack, filament_multiplies_tangents_by_the_part_that_has_gone_by) {
-  // From 0 to 0 in an eighth of a second, leaving at 3 a second: at the middle an eighth of the tangent, times the time
-  // between the keys, and times a half in Filament.
+  // The weight goes from 0 to 0 in an eighth of a second and leaves at 3 a second. At the middle it is an eighth of the
+  // tangent times the time between the keys, and times a half in Filament.
   const Track track{GltfInterpolation::kCubicSpline, {0, 0.125F}, {0, 0, 0, 0, 3, 3, 0, 0, 0, 0, 0, 0}};
   EXPECT_NEAR(played(viewer_named("three"), track, {0, 0.125}, 0.0625)[0], 3 * 0.125 / 8, 1e-12);
   EXPECT_NEAR(played(viewer_named("filament"), track, {0, 0.125}, 0.0625)[0], 3.0 / 8 / 2, 1e-12);

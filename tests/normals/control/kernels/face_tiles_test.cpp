@@ -1,4 +1,4 @@
-// The tiles of faces against the public function of one face at a time, which uses no vectors of lanes, and against
+// Compares the tiles of faces with the public function for one face at a time, which uses no vectors of lanes, and with
 // sums of products in long double.
 
 #include "normals/control/kernels/face_tiles.h"
@@ -28,7 +28,7 @@ namespace {
 
 using fixtures::Point;
 
-// One by one: the kernel begins at four faces.
+// Computes one face by itself: the kernel begins at four faces.
 ControlNormals one_face(const Segment& segment, std::size_t f) {
   ControlNormals normals;
   face_control_normals(segment, {f, 1}, {&normals, 1});
@@ -44,7 +44,7 @@ bool same_bits(T a, T b) {
   return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
-// The largest sum of absolute products of any component of any of the four cross products of a triangle.
+// Returns the largest sum of absolute products of any component of any of the four cross products of a triangle.
 long double largest_products(const Segment& segment, std::size_t f) {
   const auto face = segment.topology->face(f);
   const auto edge = [&](const VectorView<const float>& points, std::size_t corner) {
@@ -65,7 +65,7 @@ long double largest_products(const Segment& segment, std::size_t f) {
   return largest;
 }
 
-// The first difference between the tiles of a range and its faces one by one, or nothing.
+// Describes the first difference between the tiles of a range and its faces one by one, or returns "".
 std::string difference(const Segment& segment, IndexRange faces) {
   std::vector<ControlTile> tiles((faces.count + kTile - 1) / kTile);
   face_control_tiles(segment, faces, tiles);
@@ -134,7 +134,7 @@ class Laid {
 constexpr Laid::Layout kLayouts[] = {Laid::Layout::kPacked, Laid::Layout::kPlanes, Laid::Layout::kStrideFour,
                                      Laid::Layout::kStrideSeven};
 
-// Every motion over the same faces.
+// Makes motions of every degree over the same faces.
 std::vector<Motion> motions_of_every_degree() {
   const Motion start = fixtures::smooth_morph(5);
   const auto moved = [&start](auto change) {
@@ -196,7 +196,7 @@ TEST(FaceTiles, have_no_noise_where_a_component_vanishes_and_no_negative_zero) {
     for (const auto end : kShapes)
       ASSERT_EQ(difference_on_all_targets(fixtures::degenerate_soup(start, end).segment(0)), "");
   }
-  // Planes through axes and diagonals, where products are zero or cancel, in every orientation.
+  // The planes go through axes and diagonals, where products are zero or cancel, in every orientation.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double slope : {0.0, 1.0, -1.0, 1.0 / 3}) {
       const Motion motion = test::with_positions(fixtures::moderate_soup(100), [k, slope](const Point& p) {
@@ -216,7 +216,7 @@ TEST(FaceTiles, overflow_to_infinity_and_underflow_to_zero_as_rounding_does) {
     });
     ASSERT_EQ(difference_on_all_targets(motion.segment(0)), "") << scale;
   }
-  // Edges beyond the range of float, of which the other is zero or tiny.
+  // One edge exceeds the range of float, and the other is zero or tiny.
   const float huge = std::numeric_limits<float>::max(), tiny = std::numeric_limits<float>::denorm_min();
   Motion motion = fixtures::moderate_soup(16);
   for (auto& keyframe : motion.keyframes) {
@@ -285,7 +285,7 @@ TEST(FaceTiles, take_polygons) {
 }
 
 TEST(FaceTiles, agree_where_neighbours_are_far_apart_in_memory) {
-  // Vertices in any order, so that the kernel asks for positions ahead.
+  // The vertices are in random order, so that the kernel prefetches positions.
   fixtures::Random random(9);
   Motion motion = fixtures::moderate_soup(30000);
   std::vector<std::uint32_t> corners(3000);
@@ -316,7 +316,8 @@ TEST(FaceControlNormals, have_the_bits_of_single_faces_on_every_target) {
 
 // ---- in float32 ----------------------------------------------------------------------------------------------------
 
-// The tiles of all triangles in float32, on all targets with the same bits, against those of one face at a time.
+// Compares the tiles of all triangles in float32, which must have the same bits on all targets, with the tiles of one
+// face at a time.
 void look_at(test::FloatTileFaults& seen, const Motion& motion) {
   const Segment segment = motion.segment(0);
   const std::size_t count = segment.topology->face_count();

@@ -1,4 +1,5 @@
-// Certificates of sixteen elements in lanes against those of one element, on elements that are about to be flagged.
+// Compares certificates of sixteen elements in lanes with certificates of one element, on elements that are about to be
+// flagged.
 
 #include "normals/curves/kernels/certify.h"
 
@@ -29,16 +30,16 @@ Vec3d vector(fixtures::Random& random) {
 
 double decade(fixtures::Random& random, double low, double high) { return std::pow(10, random.uniform(low, high)); }
 
-// Mostly curves that come near zero, by as much as any of the tests is about; sometimes ordinary ones, and such as no
-// lane should decide.
+// Draws mostly curves that come as close to zero as one of the tests looks for, and sometimes ordinary ones or curves
+// that no lane should decide.
 BoundedNormals element(fixtures::Random& random) {
   const Vec3d n0 = vector(random);
   BoundedNormals result;
   ControlNormals& c = result.normals;
   c = {n0, vector(random), vector(random)};
   if (random.below(4) != 0) {
-    // (s - k t)^2 n0, and a little of something else, which half of them have in a plane. Where k + 1 is a power of two,
-    // halves meet at the zero, so that proofs go on to the smallest distance.
+    // The curve is (s - k t)^2 n0 plus something small, which lies in a plane for half of the curves. If k + 1 is a
+    // power of two, halves meet at the zero, so that proofs go on to the smallest distance.
     const double halves[] = {1, 3, 7, 1.0 / 3};
     const double k = random.below(2) == 0 ? halves[random.below(4)] : decade(random, -3, 3);
     const double little = decade(random, -17, 0);
@@ -93,7 +94,8 @@ Decided decided(const BoundedNormals& c, const PrecisionLimits& limits) {
   return result;
 }
 
-// Says what is wrong with the certificates of one element, or nothing. `alone`: no other element was asked for.
+// Describes the fault of the certificates of one element, or returns "". `alone` says that no other element was
+// requested.
 std::string fault(const TileCertificates& found, std::size_t lane, const Decided& expected, bool alone) {
   const auto has = [lane](std::uint32_t bits) { return (bits >> lane & 1) != 0; };
   if (has(found.known) != expected.known) return expected.known ? "not known" : "known";

@@ -1,4 +1,5 @@
-// Every access to memory, on every instruction set and kind of block, writes the bits of plain stores and nothing else.
+// Checks that every kind of access to memory, on every instruction set and kind of block, writes the bits of plain
+// stores and nothing else.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ bool is_float(BlockKind kind) {
          kind == BlockKind::kQuadratic32;
 }
 
-// Some floats from 1 to 2, or whatever bits: the results of these are directions too.
+// Makes blocks of floats from 1 to 2, or of random bits, since any bits of the other kinds give directions.
 AlignedArray<std::uint32_t> some_blocks(BlockKind kind, fixtures::Random& random) {
   AlignedArray<std::uint32_t> words(kMost * bytes_of(kind) / 4);
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -40,7 +41,7 @@ AlignedArray<std::uint32_t> some_blocks(BlockKind kind, fixtures::Random& random
   return words;
 }
 
-// A form of results by how it is evaluated into words, and which of these it may write.
+// A form of results: how it is evaluated into words, and which words it may write.
 struct Form {
   const char* name;
   std::function<void(const BlockSpan&, const CurveWeights&, float* words, MemoryAccess)> evaluate;

@@ -1,4 +1,4 @@
-// Evaluations prefetch curves at the distance that was fastest in the median, and there are only so many trials.
+// Checks that evaluations prefetch curves at the distance with the fastest median, after a limited number of trials.
 
 #include "normals/curves/kernels/prefetch.h"
 
@@ -48,7 +48,7 @@ TEST(PrefetchRule, trials_are_repeated_after_a_while_and_replace_those_before) {
   constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
   EXPECT_EQ(try_all(3), kAll);
   for (const std::size_t fastest : {1U, 4U}) {
-    // The call that ended the trials found none, too.
+    // The call that ended the trials got none either.
     for (std::size_t call = 2; call < PrefetchRule::kCallsBetween; ++call) ASSERT_FALSE(rule.next()) << call;
     EXPECT_EQ(try_all(fastest), kAll);
     EXPECT_EQ(rule.best(), PrefetchRule::kDistances[fastest]);
@@ -81,7 +81,7 @@ TEST(PrefetchRule, a_rule_of_few_distances_tries_no_others) {
   EXPECT_EQ(rule.next(), std::nullopt);
 }
 
-// Threads meet at the last trial in some of many rounds only, in which they begin together and with few trials left.
+// Threads meet at the last trial only in some of many rounds, so they start together and with few trials left.
 TEST(PrefetchRule, threads_share_trials) {
   constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
   constexpr std::size_t kThreads = 4, kLeft = 3;
@@ -118,7 +118,7 @@ TEST(PrefetchRule, large_evaluations_try_until_they_know_and_keep_their_bits) {
   (void)curves.unit_normals(0.3, VectorView<float>::packed(first));
   for (std::size_t i = 0; i < PrefetchRule::kTrials; ++i)
     (void)curves.unit_normals(0.3, VectorView<float>::packed(later));
-  // The trials are over, unless tests in the same process came before, after which a repetition may have begun.
+  // The trials are over, unless a repetition has begun after tests that ran earlier in the same process.
   std::size_t left = 0;
   while (left <= PrefetchRule::kTrials * PrefetchRule::kDistances.size() &&
          prefetch_of_curves(WorkingSet::kSharedCache).next())

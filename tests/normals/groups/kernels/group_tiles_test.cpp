@@ -1,4 +1,4 @@
-// The tiles of vertices and corners against sums in the order that NormalGroups keeps, of faces taken one by one.
+// Compares the tiles of vertices and corners with sums of single faces, in the order that NormalGroups keeps.
 
 #include "normals/groups/kernels/group_tiles.h"
 
@@ -34,14 +34,14 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// What the tiles must hold: the public sums of faces, each computed alone and so without vectors of lanes; and the sums
-// of the absolute products along the path around each element, by component, of which the largest counts.
+// The expected content of the tiles: the public sums of faces, each computed alone and so without vectors of lanes; and
+// the sums of the absolute products along the path around each element, by component, of which the largest counts.
 struct Expected {
   std::vector<ControlNormals> normals;
   std::vector<double> magnitudes;
 };
 
-// The larger of the absolute values at both ends, component by component.
+// Returns the larger of the absolute values at both ends, component by component.
 Vec3d larger_of_ends(const Segment& segment, std::uint32_t a, std::uint32_t b) {
   const Vec3d from = to_double(segment.from[a]) - to_double(segment.from[b]);
   const Vec3d to = to_double(segment.to[a]) - to_double(segment.to[b]);
@@ -74,7 +74,7 @@ Expected expected_of(const Segment& segment, const NormalGroups& groups) {
   return expected;
 }
 
-// Whether a component is within the rounding of a sum in another order; zero must be zero, and of this sign.
+// Tells whether a component is within the rounding of a sum in another order; zero must be zero, with this sign.
 bool is_right(float value, double expected, float magnitude) {
   const auto rounded = static_cast<float>(expected);
   if (std::memcmp(&value, &rounded, sizeof(float)) == 0) return true;
@@ -103,7 +103,7 @@ std::string difference(const Expected& expected, IndexRange elements, std::span<
   return "";
 }
 
-// All elements in ranges of `step` from `first` on, both multiples of 16, by one object.
+// Compares all elements in ranges of `step` from `first` on, both multiples of 16, by one object.
 std::string difference_on_all_targets(const Segment& segment, const NormalGroups& groups, std::size_t first = 0,
                                       std::size_t step = 256) {
   const Expected expected = expected_of(segment, groups);
@@ -127,7 +127,7 @@ std::string difference_on_all_targets(const Motion& motion, std::size_t first = 
   return difference_on_all_targets(motion.segment(0), vertices_of(motion), first, step);
 }
 
-// A grid of columns x rows cells, twice as many triangles, row by row; every vertex moves.
+// Makes a grid of columns x rows cells with twice as many triangles, row by row, in which every vertex moves.
 Motion grid(std::size_t columns, std::size_t rows) {
   fixtures::Random random(11);
   std::vector<Point> from, to;
@@ -152,7 +152,7 @@ Motion grid(std::size_t columns, std::size_t rows) {
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-// The same mesh with faces, and vertices if asked for, in another order.
+// Returns the same mesh with its faces in another order, and its vertices too if vertices_too.
 Motion in_another_order(const Motion& motion, bool vertices_too) {
   const std::size_t vertex_count = motion.topology.vertex_count();
   std::vector<std::size_t> place(vertex_count);
@@ -176,7 +176,7 @@ TEST(GroupTiles, have_the_public_sums_for_every_count_and_offset) {
   const NormalGroups groups = vertices_of(motion);
   for (std::size_t step = kTile; step <= 10 * kTile; step += kTile)
     ASSERT_EQ(difference_on_all_targets(motion.segment(0), groups, 3 * kTile, step), "");
-  // Open and closed paths of odd and even length, in every place of a slice and at its end.
+  // The paths are open and closed, of odd and even length, in every place of a slice and at its end.
   for (std::size_t columns = 1; columns < 12; ++columns)
     ASSERT_EQ(difference_on_all_targets(grid(columns, 7)), "") << columns;
 }
@@ -227,7 +227,7 @@ TEST(GroupTiles, take_corners_at_creases_and_polygons) {
 }
 
 TEST(GroupTiles, are_zero_where_no_face_is) {
-  // Faces between vertices 20 to 22 and 60 to 62 of 100.
+  // Only vertices 20 to 22 and 60 to 62 of 100 have faces.
   std::vector<Point> from, to;
   fixtures::Random random(13);
   for (std::size_t v = 0; v < 100; ++v) {
@@ -265,7 +265,7 @@ TEST(GroupTiles, take_a_vertex_of_many_faces) {
 }
 
 TEST(GroupTiles, have_no_noise_where_faces_cancel) {
-  // Every face twice, the other way round, in an order of its own; then some of them once more.
+  // Every face occurs twice, in both orientations, in an order of its own; then some of them occur once more.
   for (const std::size_t more : {std::size_t{0}, std::size_t{3}}) {
     Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.3, 7);
     std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
@@ -276,8 +276,8 @@ TEST(GroupTiles, have_no_noise_where_faces_cancel) {
     motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), corners);
     ASSERT_EQ(difference_on_all_targets(motion), "");
   }
-  // Six faces around a vertex, and the same at other vertices of the same places, the other way round and with a path
-  // that begins elsewhere, so that other products are added up.
+  // Six faces surround a vertex. Other vertices at the same places have the same faces in the other orientation, with a
+  // path that begins elsewhere, so that other products are added up.
   fixtures::Random random(14);
   std::vector<Point> from = {random.in_cube(1)}, to = {random.in_cube(1)};
   for (std::size_t i = 0; i < 6; ++i) {
@@ -293,7 +293,7 @@ TEST(GroupTiles, have_no_noise_where_faces_cancel) {
     corners.insert(corners.end(), {0, 7 + i, 7 + (i + 1) % 6});
   }
   ASSERT_EQ(difference_on_all_targets(fixtures::make_motion(fixtures::make_triangles(13, corners), from, to)), "");
-  // A flat sheet, and one that stands on an axis.
+  // One sheet is flat, and one stands on an axis.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double slope : {0.0, 1.0, 1.0 / 3}) {
       const Motion flat = test::with_positions(grid(20, 20), [k, slope](const Point& p) {
@@ -319,7 +319,7 @@ TEST(GroupTiles, agree_at_any_scale_and_distance_from_the_origin) {
 
 // ---- in float32 ----------------------------------------------------------------------------------------------------
 
-// The tiles of all elements in float32, on all targets with the same bits, against sums in double.
+// Compares the tiles of all elements in float32, which must have the same bits on all targets, with sums in double.
 void look_at(test::FloatTileFaults& seen, const Segment& segment, const NormalGroups& groups) {
   std::vector<ControlTile> first;
   for (const auto target : supported_targets()) {
@@ -409,8 +409,8 @@ TEST(FloatGroupTiles, are_off_by_no_more_than_they_say_where_a_line_stands_for_a
       grid(30, 30), [](test::FloatTileFaults& seen, const Motion& motion) { look_at(seen, motion); });
 }
 
-// Compares the elements in double, and the bounds on their errors, with sums of integers of any size. Returns what is
-// wrong, or nothing, and counts the elements for which the bounds are of use.
+// Compares the elements in double, and the bounds on their errors, with sums of integers of any size. Describes the
+// first fault or returns "", and counts the elements for which the bounds are useful.
 std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, std::size_t& counted) {
   std::vector<BoundedTile> first;
   for (const auto target : supported_targets()) {
