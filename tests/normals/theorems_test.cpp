@@ -367,8 +367,7 @@ RC_GTEST_PROP(Theorems, polygon_of_three_corners_is_a_triangle_bit_for_bit, ()) 
 
 // ---- degrees -------------------------------------------------------------------------------------------------------
 
-// Returns the normals of one triangle whose corners move by `steps`, or rejects a triangle that begins with (almost) no
-// normal.
+// Returns the control normals of one triangle whose corners move by `steps`.
 ControlNormals moved_triangle(const std::array<Point, 3>& start, const std::array<Point, 3>& steps) {
   std::vector<Point> from(start.begin(), start.end()), to = from;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-/// How much memory the code of a test takes from the heap.
+/// Counts the memory that the code of a test takes from the heap.
 #ifndef CHRONORMAL_TESTS_SUPPORT_ALLOCATION_COUNTER_H_
 #define CHRONORMAL_TESTS_SUPPORT_ALLOCATION_COUNTER_H_
 
@@ -6,10 +6,10 @@
 
 namespace chronormal::test {
 
-/// Counts what operator new gives to this thread while it lives. One at a time on a thread.
+/// Counts what operator new gives to this thread while it lives. A thread can have one counter at a time.
 class AllocationCounter {
  public:
-  /// False under a sanitizer, which has an operator new of its own: then nothing is counted.
+  /// Returns false under a sanitizer, which has an operator new of its own, so that nothing is counted.
   [[nodiscard]] static bool works() noexcept;
 
   AllocationCounter();
@@ -18,9 +18,9 @@ class AllocationCounter {
   ~AllocationCounter();
 
   [[nodiscard]] std::size_t allocations() const noexcept;
-  /// The most bytes that were in use at once, beyond those of the start.
+  /// Returns the most bytes that were in use at once, beyond those at the start.
   [[nodiscard]] std::size_t peak_bytes() const noexcept;
-  /// Those in use now; negative where more was given back than taken.
+  /// Returns the bytes in use now; negative if more were given back than taken.
   [[nodiscard]] std::ptrdiff_t bytes() const noexcept;
 };
 

@@ -1,6 +1,6 @@
 /// A sheet as an author has it: quads, some hexagons and some faces shaded flat. Its normals are sums over polygons by
-/// the angle of their corners, all around a point where it is smooth; some were bent by hand, each way in each target,
-/// and some of these look to the other side.
+/// the angle of their corners, of all polygons around a smooth point. Some were bent by hand, differently in each
+/// target, and some of the bent ones look to the other side.
 #ifndef CHRONORMAL_TESTS_SUPPORT_AUTHORED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_AUTHORED_MESH_H_
 
@@ -19,8 +19,8 @@ namespace chronormal::test {
 
 class AuthoredMesh {
  public:
-  /// Over n x n points, with three targets. The last one pulls the point in the middle up so far that none of its edges
-  /// leaves beside its normal. This share of the polygons is flat.
+  /// Makes a sheet over n x n points, with three targets. The last one pulls the point in the middle up so far that
+  /// every edge leaves it close to its normal. `flat` is the share of polygons that are shaded flat.
   AuthoredMesh(std::uint64_t seed, std::size_t n, double flat = 0.15) : random_(seed), n_(n), flat_(flat) {
     make_polygons();
     make_keys();
@@ -40,7 +40,7 @@ class AuthoredMesh {
 
   [[nodiscard]] double around(double size) { return random_.uniform(-size, size); }
   [[nodiscard]] std::size_t middle() const { return n_ / 2 * n_ + n_ / 2; }
-  // Whether a point is in the middle or beside it.
+  // Tells whether a point is in the middle or beside it.
   [[nodiscard]] bool is_near(std::size_t i, std::size_t j) const {
     const std::size_t m = n_ / 2;
     return i + 1 >= m && i <= m + 1 && j + 1 >= m && j <= m + 1;
@@ -89,7 +89,7 @@ class AuthoredMesh {
     return unit_of(sum);
   }
 
-  // The unit normals of all points: all polygons around each count.
+  // Returns the unit normals of all points, to which all polygons around a point contribute.
   [[nodiscard]] std::vector<Vector> point_normals(const std::vector<Vector>& p) const {
     std::vector<Vector> sums(p.size(), Vector{0, 0, 0});
     for (const Polygon& polygon : polygons_) {
@@ -132,7 +132,7 @@ class AuthoredMesh {
     return static_cast<std::uint32_t>(mesh_.vertices() - 1);
   }
 
-  // One vertex for each smooth point, and one for each corner of a flat polygon.
+  // Writes one vertex for each smooth point, and one for each corner of a flat polygon.
   void write() {
     std::map<std::size_t, std::uint32_t> vertex_of;
     for (const Polygon& polygon : polygons_) {

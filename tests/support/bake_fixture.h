@@ -1,4 +1,4 @@
-/// Fields of hills that morph, as glTF files, and what a bake makes of them.
+/// Fields of hills that morph, as glTF files, and their bakes.
 #ifndef CHRONORMAL_TESTS_SUPPORT_BAKE_FIXTURE_H_
 #define CHRONORMAL_TESTS_SUPPORT_BAKE_FIXTURE_H_
 
@@ -80,7 +80,7 @@ class Hills {
       }
     }
     for (std::size_t v = 0; v < side * side; ++v) {
-      // Upwards, as an author might have bent them.
+      // The normals look upwards, as an author might have bent them.
       const double x = uniform(-0.3, 0.3), y = uniform(-0.3, 0.3), length = std::sqrt(x * x + y * y + 1);
       for (const double c : {x, y, 1.0}) normals.push_back(static_cast<float>(c / length));
     }
@@ -96,7 +96,7 @@ class Hills {
   [[nodiscard]] std::size_t below(std::size_t count) {
     return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_);
   }
-  /// Random deltas, of a share of the rows.
+  /// Draws random deltas for a share of the rows.
   [[nodiscard]] std::vector<float> deltas(double share = 1, double size = 0.4) {
     std::vector<float> result(positions.size());
     const auto rows = static_cast<std::size_t>(std::ceil(share * static_cast<double>(side_)));
@@ -105,7 +105,7 @@ class Hills {
     return result;
   }
 
-  /// A primitive of the field with some targets; normals: whether the base has them.
+  /// Makes a primitive of the field with some targets; with_normals says whether the base has normals.
   [[nodiscard]] GltfBuilder::Json primitive(GltfBuilder& builder, const std::vector<std::vector<float>>& targets,
                                             bool with_normals = true) const {
     std::vector<GltfBuilder::Json> of_targets;
@@ -122,7 +122,7 @@ class Hills {
   std::size_t side_;
 };
 
-/// Hills with `targets` targets, one mesh on node 0.
+/// Makes hills with `targets` targets, as one mesh on node 0.
 [[nodiscard]] inline GltfBuilder still_hills_document(std::size_t targets, unsigned seed = 1) {
   GltfBuilder builder;
   Hills hills(seed);
@@ -132,14 +132,14 @@ class Hills {
   return builder;
 }
 
-/// The same with an animation, which is still without a track.
+/// Makes the same hills with an animation that has no track yet.
 [[nodiscard]] inline GltfBuilder hills_document(std::size_t targets, unsigned seed = 1) {
   GltfBuilder builder = still_hills_document(targets, seed);
   builder.add_animation("move");
   return builder;
 }
 
-/// The same document with deltas of normals that are far off at every weight but 0: whatever a bake writes is better.
+/// Gives the document normal deltas with large errors at every weight but 0, so that any bake improves it.
 [[nodiscard]] inline GltfBuilder with_misleading_normals(GltfBuilder builder) {
   for (auto& mesh : builder.json["meshes"]) {
     for (auto& primitive : mesh["primitives"]) {
@@ -153,7 +153,7 @@ class Hills {
   return builder;
 }
 
-/// The error of a track at 101 times.
+/// Returns the error of a track at 101 times.
 [[nodiscard]] inline ShownError track_error(const Baked& baked, std::size_t animation = 0, std::size_t channel = 0) {
   const auto& target = baked.before->json["animations"][animation]["channels"][channel]["target"];
   const std::size_t mesh = baked.before->json["nodes"][target["node"].get<std::size_t>()]["mesh"];

@@ -1,4 +1,4 @@
-/// Blend shapes for tests, and their normals from blended positions by a route of its own: the vector area of a polygon
+/// Blend shapes for tests, and their normals from blended positions by a way of its own: the vector area of a polygon
 /// as the sum of p_i x p_{i+1}, never over a fan and never from a term, in rationals or in long double.
 #ifndef CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
@@ -29,7 +29,7 @@ struct BlendShapeOptions {
   double offset = 0;    ///< of the base, before it is scaled
 };
 
-/// A sheet whose targets move the vertices around a point each, some of them not at all.
+/// Makes a sheet whose targets each move the vertices around a point; some move none at all.
 [[nodiscard]] inline BlendSet random_blend_set(std::uint64_t seed, const BlendShapeOptions& options = {}) {
   fixtures::Random random(seed);
   const std::size_t cells = options.cells;
@@ -62,7 +62,7 @@ struct BlendShapeOptions {
       offsets.push_back(static_cast<std::uint32_t>(corners.size()));
     }
   }
-  // And a vertex without faces.
+  // One vertex has no faces.
   put(set.base, {0, 0, 5});
   set.topology = fixtures::make_polygons(points.size() + 1, std::move(offsets), std::move(corners));
   for (std::size_t k = 0; k < options.targets; ++k) {
@@ -79,7 +79,7 @@ struct BlendShapeOptions {
   return set;
 }
 
-/// Weights in [-1, 2], 0 for all but `active` targets.
+/// Draws weights in [-1, 2], 0 for all but `active` targets.
 [[nodiscard]] inline std::vector<double> random_weights(std::uint64_t seed, std::size_t targets, std::size_t active) {
   fixtures::Random random(seed);
   std::vector<double> weights(targets);
@@ -92,7 +92,7 @@ struct BlendShapeOptions {
   return weights;
 }
 
-/// The faces around each element; no groups: each face for itself.
+/// Returns the faces around each element; without groups, each face is an element.
 [[nodiscard]] inline std::vector<std::vector<std::uint32_t>> faces_of_elements(const BlendSet& set,
                                                                                const NormalGroups* groups) {
   std::vector<std::vector<std::uint32_t>> result;
@@ -109,7 +109,7 @@ struct BlendShapeOptions {
   return NormalGroups::of_vertices(set.topology, separate_points(set.topology.vertex_count()));
 }
 
-/// B(p, q) of a face, where p and q give a vector for each vertex; n = B(p, p).
+/// Returns B(p, q) of a face, where p and q give a vector for each vertex; n = B(p, p).
 template <class P, class Q>
 [[nodiscard]] exact::Vector exact_form(std::span<const std::uint32_t> face, const P& p, const Q& q) {
   exact::Vector sum{0, 0, 0};
@@ -139,7 +139,7 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// n(w) of all elements, without any rounding.
+/// Returns n(w) of all elements, without any rounding.
 [[nodiscard]] inline std::vector<exact::Vector> exact_normals(const BlendSet& set, const NormalGroups* groups,
                                                               std::span<const double> weights) {
   ExactPositions positions = exact_base(set);
@@ -160,7 +160,7 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// The same in long double, about a corner of each face, for sets that are too large for rationals.
+/// Does the same in long double, about a corner of each face, for sets that are too large for rationals.
 [[nodiscard]] inline std::vector<reference::Vector> real_normals(const BlendSet& set, const NormalGroups* groups,
                                                                  std::span<const double> weights) {
   std::vector<reference::Vector> positions;
@@ -192,7 +192,7 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// Which elements have a face with a corner that an active target moves.
+/// Tells which elements have a face with a corner that an active target moves.
 [[nodiscard]] inline std::vector<bool> touched_elements(const BlendSet& set, const NormalGroups* groups,
                                                         std::span<const double> weights) {
   std::set<std::uint32_t> moved;

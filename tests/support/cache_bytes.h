@@ -1,4 +1,4 @@
-/// Point caches, MD2 models, arrays and zip files made byte by byte, independent of the writers.
+/// Makes point caches, MD2 models, arrays and zip files byte by byte, independent of the writers.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CACHE_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_CACHE_BYTES_H_
 
@@ -17,7 +17,7 @@ namespace chronormal::test {
 /// Three vertices at two times, (1, 3, 3) each: a triangle that turns.
 inline const std::vector<float> kTurning[2] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 1, 0, 0, 0, 1.5F}};
 
-/// The same as a motion.
+/// Returns the same triangle as a motion.
 [[nodiscard]] inline Motion turning_motion(double first_time, double second_time) {
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
@@ -44,7 +44,7 @@ inline const std::vector<float> kTurning[2] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 
   return writer.bytes();
 }
 
-/// Three vertices, one triangle with the corners 0 2 1, two frames.
+/// Makes a model of three vertices, one triangle with the corners 0 2 1, and two frames.
 [[nodiscard]] inline std::string small_md2() {
   ByteWriter writer("IDP2", false);
   for (const std::int32_t value : {8, 1, 1, 52, 0, 3, 0, 1, 0, 2, 68, 68, 68, 80, 184, 184}) writer.add(value);
@@ -60,12 +60,12 @@ inline const std::vector<float> kTurning[2] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 
   return writer.bytes();
 }
 
-/// Chunks of a Maya cache, with 32-bit (FOR4) or 64-bit (FOR8) sizes.
+/// Writes chunks of a Maya cache, with 32-bit (FOR4) or 64-bit (FOR8) sizes.
 class MayaWriter {
  public:
   explicit MayaWriter(bool wide) : wide_(wide) {}
 
-  /// A chunk: padded, unless it is a group.
+  /// Returns a chunk, which is padded unless it is a group.
   [[nodiscard]] std::string chunk(const std::string& tag, const std::string& content, bool is_group = false) const {
     ByteWriter writer(tag, true);
     if (wide_) {
@@ -87,7 +87,7 @@ class MayaWriter {
   [[nodiscard]] std::string header(std::int32_t start) const {
     return group("CACH", chunk("VRSN", std::string("0.1\0", 4)) + integer("STIM", start) + integer("ETIM", start));
   }
-  /// The three chunks of one channel.
+  /// Returns the three chunks of one channel.
   template <class Real, class Given = float>
   [[nodiscard]] std::string points(const std::string& channel, const std::vector<Given>& positions) const {
     ByteWriter writer("", true);
@@ -100,7 +100,7 @@ class MayaWriter {
   bool wide_;
 };
 
-/// Two times (250 and 375 ticks), channels "other" (1 point) and "body" (3 points).
+/// Makes a cache of two times (250 and 375 ticks) and the channels "other" (1 point) and "body" (3 points).
 template <class Real>
 [[nodiscard]] std::string small_maya(bool wide) {
   const MayaWriter writer(wide);
@@ -123,7 +123,7 @@ template <class Real>
          "\n</Channels>\n</Autodesk_Cache_File>\n";
 }
 
-/// An array with a header as given; version 1, or else with a 32-bit length.
+/// Makes an array with the given header, whose length has 16 bits in version 1 and 32 bits otherwise.
 [[nodiscard]] inline std::string npy(const std::string& header, const std::string& data, std::uint8_t version = 1) {
   ByteWriter writer("\x93NUMPY", false);
   writer.add(version).add(std::uint8_t{0});
@@ -146,7 +146,7 @@ template <class T>
   return writer.bytes();
 }
 
-/// The two keyframes of kTurning as elements of (2, 3, 3).
+/// Returns the two keyframes of kTurning as elements of (2, 3, 3).
 template <class Real>
 [[nodiscard]] std::vector<Real> turning_elements(bool fortran) {
   std::vector<Real> elements(18);
@@ -179,7 +179,7 @@ struct ZipMember {
   return packed;
 }
 
-/// A zip file; size_of_first, where not 0, is the lie that the directory tells of the first member.
+/// Makes a zip file. If size_of_first is not 0, the directory states this false size for the first member.
 [[nodiscard]] inline std::string zip(const std::vector<ZipMember>& members, const std::string& comment = "",
                                      std::uint32_t size_of_first = 0) {
   std::string file, directory;
@@ -222,7 +222,7 @@ struct ZipMember {
   return end.bytes() + comment;
 }
 
-/// A motion with every array, each of another form.
+/// Makes a motion with all arrays, each in another form.
 [[nodiscard]] inline std::string small_npz(bool is_deflated) {
   return zip({{"positions.npy", npy(npy_header("<f4", "(2, 3, 3)"), raw(turning_elements<float>(false))), is_deflated},
               {"other.npy", npy("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': ()}", "abcd")},

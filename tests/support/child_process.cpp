@@ -22,13 +22,13 @@
 #define CHRONORMAL_SANITIZED
 #endif
 
-// Only where the compiler counts what runs (CHRONORMAL_COVERAGE).
+// This function exists only if the compiler instruments the code for coverage (CHRONORMAL_COVERAGE).
 extern "C" __attribute__((weak)) int __llvm_profile_write_file(void);
 
 namespace chronormal::test {
 namespace {
 
-// The largest resident memory so far. What the parent had at its peak is forgotten at the start.
+// Resets the largest resident memory so far, so that the peak of the parent does not count.
 void forget_peak() { std::ofstream("/proc/self/clear_refs") << 5; }
 
 std::size_t peak_bytes() {
@@ -48,8 +48,8 @@ void limit_address_space(std::size_t growth) {
   setrlimit(RLIMIT_AS, &limit);
 }
 
-// Takes whatever large pieces of its heap the parent has freed, and from then on large memory comes from the system and goes
-// back there: else the child would fill those pieces, and keep their pages when it frees them.
+// Takes the large pieces of the heap that the parent has freed, and makes the system serve all later large memory.
+// Otherwise the child would fill those pieces, and keep their pages when it frees them.
 void take_free_pieces() {
   constexpr std::size_t kLarge = std::size_t{1} << 16;
   mallopt(M_MMAP_THRESHOLD, kLarge);
@@ -72,7 +72,7 @@ void write_all(int file, const std::string& text) {
   }
 }
 
-// The growth as text, a mark, and the text of the work: what goes through the pipe.
+// Writes the growth as text, a mark, and the text of the work to the pipe.
 [[noreturn]] void work_and_exit(int out, unsigned most_seconds, const std::function<std::string()>& work,
                                 const std::function<void()>& prepare) {
   constexpr unsigned kWaits = 20;  // times that long for what waits, or for other processes

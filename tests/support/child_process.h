@@ -1,4 +1,5 @@
-/// A piece of a test in a process of its own: what it costs is measured, and what it breaks is not the test program.
+/// Runs a part of a test in a process of its own, so that its cost can be measured and it cannot break the test
+/// program.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CHILD_PROCESS_H_
 #define CHRONORMAL_TESTS_SUPPORT_CHILD_PROCESS_H_
 
@@ -15,12 +16,12 @@ struct ChildRun {
   std::size_t peak_growth = 0;  ///< bytes of resident memory at the peak, above those at the start
 };
 
-/// Whether a sanitizer watches: then memory is not what the program itself takes.
+/// Tells whether a sanitizer is active, under which memory is more than the program itself takes.
 [[nodiscard]] bool is_sanitized();
 
-/// Does the work in a forked process that is stopped after most_seconds of a processor, and, unless a sanitizer
-/// watches, may not take a GiB of address space more than it has at the start.
-/// `prepare` runs before that in the same process: what it brings into memory, such as the program's own pages, is no growth.
+/// Does the work in a forked process, which is stopped after most_seconds of processor time and, except under a
+/// sanitizer, may not take a GiB of address space more than at its start. `prepare` runs before that in the same
+/// process: the memory that it brings in, such as the program's own pages, does not count as growth.
 [[nodiscard]] ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work,
                                     const std::function<void()>& prepare = {});
 

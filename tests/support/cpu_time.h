@@ -1,4 +1,5 @@
-/// Time as this process has used it: what a test may limit, since a neighbour on the machine does not count.
+/// Measures the processor time of this process, which a test may limit because other work on the machine does not
+/// count.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 #define CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 
@@ -13,7 +14,7 @@
 
 namespace chronormal::test {
 
-/// Seconds of processors, of all threads, and of the system on their behalf.
+/// Returns the processor seconds of all threads, and of the system on their behalf.
 [[nodiscard]] inline double cpu_seconds(const rusage& usage) {
   const auto seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -36,8 +37,8 @@ class CpuClock {
   double start_ = now();
 };
 
-/// Expects that `many()` takes at most `limit` times as long as `few()`, and `once` seconds more. Both run in turn until
-/// that is so for the least time of each, at most ten times: a busy machine only ever adds time, and work that grows
+/// Expects that `many()` takes at most `limit` times as long as `few()` plus `once` seconds. Both run in turn until
+/// this holds for the least time of each, at most ten times: a busy machine only ever adds time, and work that grows
 /// faster fails all ten. Does nothing under sanitizers, whose own work grows in other ways.
 template <class Few, class Many>
 void expect_growth(double limit, double once, const Few& few, const Many& many) {

@@ -14,7 +14,7 @@
 
 namespace chronormal::test {
 
-/// A round body with bumps, of more than one block of elements, that turns by `angle` over the time from 0 to 1.
+/// Makes a round body with bumps, of more than one block of elements, that turns by `angle` over the time from 0 to 1.
 [[nodiscard]] inline Motion curved_motion(const std::vector<double>& times, double angle, std::size_t around = 48,
                                           std::size_t up = 24) {
   constexpr double kPi = 3.14159265358979323846;
@@ -48,9 +48,9 @@ namespace chronormal::test {
   return motion;
 }
 
-/// The positions (V, 3) of all vertices on the cubic from keyframe s to s + 1 at local t. Velocities are those of the
-/// keyframes where `given`, otherwise those of the parabola through a keyframe and its neighbours, and at both ends
-/// those of the cubic through the nearest four keyframes (or fewer where there are fewer).
+/// Returns the positions (V, 3) of all vertices on the cubic from keyframe s to s + 1 at local t. The velocities are
+/// those of the keyframes if `given`. Otherwise each comes from the parabola through a keyframe and its neighbours, and
+/// at both ends from the cubic through the nearest four keyframes, or through all if there are fewer.
 [[nodiscard]] inline std::vector<long double> on_curve(const Motion& motion, std::size_t s, long double t,
                                                        bool given = false) {
   const auto& keys = motion.keyframes;
@@ -60,7 +60,7 @@ namespace chronormal::test {
     const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, keys.size()), first = k == 0   ? 0
                                                                                          : is_end ? keys.size() - used
                                                                                                   : k - 1;
-    // Newton's divided differences, differentiated at the time of k.
+    // These are Newton's divided differences, differentiated at the time of k.
     std::vector<long double> x, f;
     for (std::size_t i = 0; i < used; ++i) {
       x.push_back(keys[first + i].time);
@@ -86,7 +86,7 @@ namespace chronormal::test {
   return result;
 }
 
-/// The normals (elements, 3) of all faces, or of all vertices with area weights, at these positions.
+/// Returns the normals (elements, 3) of all faces, or of all vertices with area weights, at these positions.
 [[nodiscard]] inline std::vector<std::array<long double, 3>> normals_of(const Motion& motion,
                                                                         const std::vector<long double>& positions,
                                                                         bool of_vertices) {
@@ -106,7 +106,7 @@ namespace chronormal::test {
   return of_vertices ? vertices : faces;
 }
 
-/// The angle between two directions, radians.
+/// Returns the angle between two directions in radians.
 template <class A, class B>
 [[nodiscard]] double angle_of(const A& a, const B& b) {
   long double cross = 0, dot = 0;

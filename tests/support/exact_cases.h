@@ -1,4 +1,4 @@
-/// Segments for tests that demand no wrong answer at all: hard motions, and small whole coordinates, which meet every
+/// Segments for tests that allow no wrong answer at all: hard motions, and small whole coordinates, which have every
 /// exact coincidence again and again.
 #ifndef CHRONORMAL_TESTS_SUPPORT_EXACT_CASES_H_
 #define CHRONORMAL_TESTS_SUPPORT_EXACT_CASES_H_
@@ -14,17 +14,17 @@
 
 namespace chronormal::test {
 
-/// How many cases are wanted: 100,000, or a tenth of that where a sanitizer watches, or what the variable
-/// CHRONORMAL_FULL_CASES says.
+/// Returns the number of requested cases: the value of CHRONORMAL_FULL_CASES, or else 100,000, or 10,000 under a
+/// sanitizer.
 [[nodiscard]] inline std::size_t wanted_cases() {
   const char* const full = std::getenv("CHRONORMAL_FULL_CASES");
   if (full != nullptr) return static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
   return is_sanitized() ? 10000 : 100000;
 }
-/// At how many instants a case is looked at: few, and 64 in one of fifty.
+/// Returns the number of instants at which a case is tested: few, and 64 for one case in fifty.
 [[nodiscard]] inline std::size_t wanted_times(Random& random) { return random.below(50) == 0 ? 64 : 3; }
 
-/// Corners among -3 ... 3, half of them in a plane.
+/// Makes a triangle with corners among -3 ... 3, which lie in a plane in half of the cases.
 [[nodiscard]] inline MovingTriangle on_a_lattice(Random& random) {
   MovingTriangle triangle;
   const bool is_flat = random.below(2) == 0;
@@ -35,7 +35,7 @@ namespace chronormal::test {
   return triangle;
 }
 
-/// Two corners close to each other, far from the third.
+/// Makes a triangle with two corners close to each other, far from the third.
 [[nodiscard]] inline MovingTriangle needle(Random& random) {
   MovingTriangle triangle = ordinary(random);
   const double width = random_decade(random, -9, -3);
@@ -46,8 +46,8 @@ namespace chronormal::test {
   return triangle;
 }
 
-/// Calls judge(segment, face, random), which returns what is wrong or nothing, on faces of all families until there are
-/// enough: so many, or a share of them. Returns the number of wrong answers, and prints a line for each family.
+/// Calls judge(segment, face, random), which describes a fault or returns "", on faces of all families until
+/// wanted_cases() / share are done. Returns the number of wrong answers, and prints a line for each family.
 template <class Judge>
 std::size_t judge_cases(std::uint64_t seed, const Judge& judge, std::size_t share = 1) {
   std::vector<HardMotions> families = hard_motions();

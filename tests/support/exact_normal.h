@@ -1,4 +1,4 @@
-/// Normals of moving triangles without any rounding, in rational numbers.
+/// Computes normals of moving triangles without any rounding, in rational numbers.
 ///
 /// Floats and doubles are rationals, and normals are polynomials in them, so n(t) and the control normals are rationals
 /// too. The only rounding is at the very end, when an angle becomes a double.
@@ -16,7 +16,7 @@ namespace chronormal::exact {
 using Rational = mpq_class;
 using Vector = std::array<Rational, 3>;
 
-/// Corners a, b, c at t = 0 and at t = 1.
+/// The corners a, b, c at t = 0 and at t = 1.
 struct Triangle {
   std::array<Vector, 3> from;
   std::array<Vector, 3> to;
@@ -26,7 +26,7 @@ struct ControlNormals {
   Vector n0, m, n1;
 };
 
-/// Any three finite floats or doubles, as they are. (Rationals know no NaN: GMP would divide by zero.)
+/// Takes any three finite floats or doubles exactly. (Rationals have no NaN: GMP would divide by zero.)
 template <class S>
 [[nodiscard]] Vector vector(S x, S y, S z) {
   return {Rational(static_cast<double>(x)), Rational(static_cast<double>(y)), Rational(static_cast<double>(z))};
@@ -43,7 +43,7 @@ template <class S>
 
 [[nodiscard]] inline Rational dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Largest absolute component.
+/// Returns the largest absolute component.
 [[nodiscard]] inline Rational max_abs(const Vector& a) {
   Rational largest = 0;
   for (const Rational& component : a) {
@@ -54,7 +54,7 @@ template <class S>
 
 [[nodiscard]] inline bool is_zero(const Vector& a) { return max_abs(a) == 0; }
 
-/// n(t) by eq. 1 on the corners at t, which may be any rational.
+/// Returns n(t) by eq. 1 from the corners at t, which may be any rational.
 [[nodiscard]] inline Vector normal_at(const Triangle& triangle, const Rational& time) {
   std::array<Vector, 3> corner;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -65,7 +65,7 @@ template <class S>
   return cross(subtract(corner[1], corner[0]), subtract(corner[2], corner[0]));
 }
 
-/// The sum of n(t) of some triangles of a segment, a chronormal::Segment.
+/// Returns the sum of n(t) of some triangles of a segment, a chronormal::Segment.
 template <class SegmentOfMesh, class Faces>
 [[nodiscard]] Vector sum_of_faces_at(const SegmentOfMesh& segment, const Faces& faces, const Rational& time) {
   Vector sum;
@@ -84,7 +84,7 @@ template <class SegmentOfMesh, class Faces>
 
 [[nodiscard]] inline Vector normal_at(const Triangle& triangle, double t) { return normal_at(triangle, Rational(t)); }
 
-/// n(t) by eq. 5.
+/// Returns n(t) by eq. 5.
 [[nodiscard]] inline Vector normal_at(const ControlNormals& normals, double t) {
   const Rational time(t), rest = 1 - time;
   const Rational w0 = rest * rest, wm = 2 * time * rest, w1 = time * time;
@@ -93,7 +93,7 @@ template <class SegmentOfMesh, class Faces>
   return sum;
 }
 
-/// n0, m and n1, the last two without (5): m is what makes the quadratic pass through the normal at t = 1/2.
+/// Returns n0, m and n1, the last two without eq. 5: m makes the quadratic pass through the normal at t = 1/2.
 [[nodiscard]] inline ControlNormals control_normals(const Triangle& triangle) {
   ControlNormals result{normal_at(triangle, 0.0), {}, normal_at(triangle, 1.0)};
   const Vector half = normal_at(triangle, 0.5);
@@ -101,7 +101,7 @@ template <class SegmentOfMesh, class Faces>
   return result;
 }
 
-/// Largest component of the three control normals.
+/// Returns the largest component of the three control normals.
 [[nodiscard]] inline Rational max_abs(const ControlNormals& normals) {
   Rational largest = max_abs(normals.n0);
   for (const Vector* v : {&normals.m, &normals.n1}) {
@@ -111,12 +111,12 @@ template <class SegmentOfMesh, class Faces>
   return largest;
 }
 
-/// Exact a / b as a double, to one rounding. Precondition: b is not zero.
+/// Returns the exact a / b as a double, with one rounding. Precondition: b is not zero.
 [[nodiscard]] inline double ratio(const Rational& a, const Rational& b) { return Rational(a / b).get_d(); }
 
-/// Angle in radians between a direction, taken as it is to the last bit, and an exact vector: right to 1e-15 relative,
-/// so that it tells 1e-12 from 1e-13. Cross and dot product are exact; both are divided by the lengths' scales, exactly
-/// again, before they become doubles. NaN if one of the two is zero, or the direction not finite.
+/// Returns the angle in radians between a direction, taken to the last bit, and an exact vector. It is right to 1e-15
+/// relative, so that 1e-12 and 1e-13 differ: cross and dot product are exact, and both are divided exactly by the
+/// scales of the lengths before they become doubles. Returns NaN if either is zero, or the direction is not finite.
 template <class S>
 [[nodiscard]] double angle(S x, S y, S z, const Vector& exact) {
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return std::nan("");

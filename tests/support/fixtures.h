@@ -1,4 +1,4 @@
-/// Motions for tests: made from a seed, the same to the last bit on every compiler and standard library.
+/// Makes motions for tests from a seed, the same to the last bit on every compiler and standard library.
 ///
 /// Random numbers come straight from std::mt19937_64, whose output the standard prescribes, and never through a
 /// distribution, whose algorithm it does not. Coordinates that went through sin or cos are rounded to a grid that is
@@ -27,7 +27,7 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
-  /// In [low, high).
+  /// Draws a number in [low, high).
   double uniform(double low, double high) {
     return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1p-53);
   }
@@ -38,14 +38,14 @@ class Random {
     return {x, y, uniform(-half_size, half_size)};
   }
 
-  /// Below `bound`; good enough for tests, not perfectly even.
+  /// Draws an integer below `bound`; not perfectly evenly, but well enough for tests.
   std::size_t below(std::size_t bound) { return static_cast<std::size_t>(engine_() % bound); }
 
  private:
   std::mt19937_64 engine_;
 };
 
-/// A motion of one segment between two keyframes. Throws where the topology is broken: a fixture never is.
+/// Makes a motion of one segment between two keyframes. Throws if the topology is broken, which no fixture is.
 [[nodiscard]] inline Motion make_motion(Topology topology, const std::vector<Point>& from,
                                         const std::vector<Point>& to) {
   Motion motion;
@@ -76,15 +76,15 @@ class Random {
   return std::move(topology).value();
 }
 
-/// Triangles that share nothing: 3 F vertices, face f has the corners 3 f, 3 f + 1, 3 f + 2.
+/// Makes triangles that share no vertices: 3 F vertices, face f has the corners 3 f, 3 f + 1, 3 f + 2.
 [[nodiscard]] inline Topology make_soup(std::size_t face_count) {
   std::vector<std::uint32_t> corners(3 * face_count);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
   return make_triangles(3 * face_count, std::move(corners));
 }
 
-/// A sheet of 2 x cells x cells triangles that twists, bends and waves: angles of up to a right angle or so between the
-/// ends, and every face moves. cells = 32 gives 2,048 faces.
+/// Makes a sheet of 2 x cells x cells triangles that twists, bends and waves: normals turn by up to about a right
+/// angle, and every face moves. cells = 32 gives 2,048 faces.
 [[nodiscard]] inline Motion smooth_morph(std::size_t cells = 32) {
   const auto snapped = [](Point p) {
     for (double& c : p) c = std::nearbyint(c * 0x1p20) * 0x1p-20;
@@ -117,7 +117,7 @@ class Random {
   return make_motion(make_triangles(vertex_count, std::move(corners)), from, to);
 }
 
-/// What a random soup looks like.
+/// The properties of a random soup.
 struct SoupOptions {
   std::size_t face_count = 1000;
   std::uint64_t seed = 1;
@@ -127,7 +127,7 @@ struct SoupOptions {
   double needle = 0;   ///< c is put on the line through a and b, this far beside it; 0: anywhere
 };
 
-/// Random triangles that share nothing.
+/// Makes random triangles that share no vertices.
 [[nodiscard]] inline Motion soup(const SoupOptions& options) {
   Random random(options.seed);
   const auto triangle = [&] {
@@ -164,17 +164,17 @@ struct SoupOptions {
   return make_motion(make_soup(options.face_count), from, to);
 }
 
-/// Independent triangles at both ends: the largest motion there is.
+/// Makes independent triangles at both ends, the largest possible motion.
 [[nodiscard]] inline Motion large_soup(std::size_t face_count = 1000, std::uint64_t seed = 1) {
   return soup({.face_count = face_count, .seed = seed});
 }
 
-/// Corners move by up to a fifth of the size.
+/// Makes triangles whose corners move by up to a fifth of the size.
 [[nodiscard]] inline Motion moderate_soup(std::size_t face_count = 1000, std::uint64_t seed = 2) {
   return soup({.face_count = face_count, .seed = seed, .motion = 0.2});
 }
 
-/// Triangles that are 1e-4 of their length wide, at both ends.
+/// Makes triangles that are 1e-4 of their length wide, at both ends.
 [[nodiscard]] inline Motion needle_soup(std::size_t face_count = 1000, std::uint64_t seed = 3) {
   return soup({.face_count = face_count, .seed = seed, .needle = 1e-4});
 }
@@ -187,13 +187,13 @@ struct SoupOptions {
   return soup({.face_count = face_count, .seed = seed, .size = 1e6});
 }
 
-/// Edges around 1 at coordinates around 10,000, where neighbouring floats are a thousandth apart.
+/// Makes edges around 1 at coordinates around 10,000, where neighbouring floats are a thousandth apart.
 [[nodiscard]] inline Motion far_soup(std::size_t face_count = 1000, std::uint64_t seed = 6) {
   return soup({.face_count = face_count, .seed = seed, .offset = 1e4});
 }
 
-/// Triangles whose normal nearly vanishes on the way: c passes close by the line through a and b, as close as `gap`
-/// times the size, at a time of its own for each face.
+/// Makes triangles whose normal nearly vanishes on the way: c passes the line through a and b as closely as `gap` times
+/// the size, at a different time for each face.
 [[nodiscard]] inline Motion collapsing_soup(double gap, std::size_t face_count = 1000, std::uint64_t seed = 7) {
   Random random(seed);
   std::vector<Point> from, to;
@@ -217,8 +217,8 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Triangles that move by every order of magnitude from 1e-9 to 1 of their size: their normals have every degree, and
-/// coefficients of every size.
+/// Makes triangles that move by every order of magnitude from 1e-9 to 1 of their size, so that their normals have every
+/// degree, and coefficients of every size.
 [[nodiscard]] inline Motion graded_soup(std::size_t face_count = 1000, std::uint64_t seed = 10) {
   Random random(seed);
   std::vector<Point> from, to;
@@ -235,8 +235,9 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Needles as thin as coordinates of 20 bits can make them: two edges of about 2^20 each with integer coordinates that
-/// span an area of 1 in one of the coordinate planes. They lie in that plane, or else anywhere across it.
+/// Makes needles as thin as coordinates of 20 bits allow: two edges of about 2^20 each with integer coordinates that
+/// span an area of 1 in one of the coordinate planes. They lie in that plane if in_plane, and otherwise anywhere across
+/// it.
 [[nodiscard]] inline Motion thinnest_soup(bool in_plane, std::size_t face_count = 1000, std::uint64_t seed = 13) {
   Random random(seed);
   const auto some = [&random] { return static_cast<std::int64_t>((1U << 19U) + random.below(1U << 19U)); };
@@ -272,7 +273,7 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Triangles that end as their own mirror image, b and c swapped: antipodal ends, and no normal half way through.
+/// Makes triangles that end as their own mirror image, b and c swapped: antipodal ends, and no normal half way through.
 [[nodiscard]] inline Motion inside_out_soup(std::size_t face_count = 1000, std::uint64_t seed = 8) {
   Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
   auto& to = motion.keyframes[1].positions;
@@ -282,23 +283,23 @@ struct SoupOptions {
   return motion;
 }
 
-/// Triangles that shrink to a point and grow out of it again, inside out twice: n(t) = (1 - 2 t)^2 n0.
+/// Makes triangles that shrink to a point and grow out of it again, inside out twice: n(t) = (1 - 2 t)^2 n0.
 [[nodiscard]] inline Motion point_reflected_soup(std::size_t face_count = 1000, std::uint64_t seed = 14) {
   Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
   for (float& c : motion.keyframes[1].positions) c = -c;
   return motion;
 }
 
-/// How the corners of degenerate_soup() lie at one end.
+/// The shape of the corners of degenerate_soup() at one end.
 enum class Shape { kTriangle, kLine, kPoint };
 
-/// Triangles that start and end as given: on a line they have no normal there, though exactly, since coordinates are
-/// small integers; from line to line they do have one in between.
+/// Makes triangles that start and end as given. On a line they have exactly no normal, since coordinates are small
+/// integers; from line to line they do have one in between.
 [[nodiscard]] inline Motion degenerate_soup(Shape start, Shape end, std::size_t face_count = 200,
                                             std::uint64_t seed = 9) {
   Random random(seed);
   const auto coordinate = [&random] { return static_cast<double>(random.below(2001)) - 1000; };
-  // On a line, c divides a b in the ratio `along`; were it the same at both ends, the corners would stay on a line.
+  // On a line, c divides a b in the ratio `along`. If it were the same at both ends, the corners would stay on a line.
   const auto append = [&](std::vector<Point>& points, Shape shape, double along) {
     std::array<Point, 3> corners{};
     for (Point& corner : corners) {
@@ -324,7 +325,7 @@ struct ClosedMesh {
   Topology topology;
 };
 
-/// A sphere of 20 x 4^subdivisions triangles, not to the last bit round.
+/// Makes a sphere of 20 x 4^subdivisions triangles, which is not round to the last bit.
 [[nodiscard]] inline ClosedMesh icosphere(int subdivisions = 2) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   std::vector<Point> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
@@ -359,7 +360,7 @@ struct ClosedMesh {
   return {std::move(points), make_triangles(vertex_count, std::move(corners))};
 }
 
-/// The surface of a cube [-1, 1]^3 as 6 x cells x cells quads: a closed mesh of polygons.
+/// Makes the surface of a cube [-1, 1]^3 from 6 x cells x cells quads: a closed mesh of polygons.
 [[nodiscard]] inline ClosedMesh box_grid(std::size_t cells = 4) {
   std::map<std::array<std::size_t, 3>, std::uint32_t> numbers;
   std::vector<Point> points;
@@ -395,7 +396,7 @@ struct ClosedMesh {
   return {std::move(points), make_polygons(vertex_count, std::move(offsets), std::move(corners))};
 }
 
-/// Moves every vertex of a closed mesh a random way, by up to `distance` in each coordinate.
+/// Moves every vertex of a closed mesh in a random direction, by up to `distance` in each coordinate.
 [[nodiscard]] inline Motion shaken(const ClosedMesh& mesh, double distance, std::uint64_t seed) {
   Random random(seed);
   std::vector<Point> to = mesh.points;

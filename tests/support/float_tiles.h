@@ -1,4 +1,4 @@
-/// Holds what tiles that were made in float32 promise against control normals in double.
+/// Checks the promises of tiles that were made in float32 against control normals in double.
 #ifndef CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 #define CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 
@@ -19,7 +19,7 @@
 
 namespace chronormal::test {
 
-/// The motion with another end, so that normals are of degree 1 or 0: each point moves along z; all move alike; they
+/// Gives the motion another end, so that normals are of degree 1 or 0: each point moves along z; all move alike; they
 /// grow along x; or nothing moves.
 [[nodiscard]] inline Motion of_low_degree(Motion motion, int kind) {
   const auto& from = motion.keyframes[0].positions;
@@ -31,7 +31,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// The motion with another end: every coordinate goes a share of its way, and a little of its own.
+/// Gives the motion another end: every coordinate goes a share of its way, plus a little of its own.
 [[nodiscard]] inline Motion of_small_steps(Motion motion, double share, fixtures::Random& random) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -40,7 +40,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Collects what was seen of some elements; `fault` is the last thing that was wrong, or nothing.
+/// Collects the findings of some elements; `fault` describes the last fault, or is "".
 struct FloatTileFaults {
   std::size_t elements = 0;
   std::size_t bending = 0;           ///< elements whose degree is said to be 2
@@ -50,8 +50,8 @@ struct FloatTileFaults {
   double largest_bound = 0;          ///< as a share of the absolute products
   std::string fault;
 
-  /// Looks at one element. `right` are its control normals, `products` at least the sum of the absolute products in any
-  /// of their components, and `count` how many cross products were added up.
+  /// Checks one element. `right` are its control normals, `products` is at least the sum of the absolute products in
+  /// any of their components, and `count` is the number of cross products in the sum.
   void look_at(const ControlTile& tile, std::size_t lane, const ControlNormals& right, double products,
                std::size_t count) {
     const std::string place = "element " + std::to_string(elements++);
@@ -65,7 +65,7 @@ struct FloatTileFaults {
       for (const double component : {v.x, v.y, v.z}) {
         const double off = std::fabs(double{tile.normals[k++][lane]} - component);
         if (off > 0 && in_range) largest_share = std::max(largest_share, off / bound);
-        // What underflows is too little for any curve to have it. NaN is beyond a bound, and needs none that is
+        // An error that underflows is too small to matter for any curve. NaN exceeds a bound, unless the bound is
         // infinite.
         if (!(off <= bound + 0x1p-140) && bound <= std::numeric_limits<float>::max())
           fault = place + " is off by " + std::to_string(off / bound) + " of its bound";
@@ -85,7 +85,8 @@ struct FloatTileFaults {
   }
 
  private:
-  /// How far what is kept without m gets from n(t), as a share of the bound: the line between the ends, or n0 alone.
+  /// Returns the largest distance from n(t) of a curve without m, which is the line between the ends or n0 alone, as a
+  /// share of the bound.
   [[nodiscard]] static double share_of_line(const ControlTile& tile, std::size_t lane, const ControlNormals& right) {
     const double n0[3] = {right.n0.x, right.n0.y, right.n0.z}, m[3] = {right.m.x, right.m.y, right.m.z},
                  n1[3] = {right.n1.x, right.n1.y, right.n1.z};
@@ -103,8 +104,8 @@ struct FloatTileFaults {
   }
 };
 
-/// Elements that hardly move are kept as lines, or as one normal, and the error that a tile tells has that in it.
-/// look(seen, motion) looks at the tiles of a motion.
+/// Checks that elements that hardly move are kept as lines, or as one normal, and that the stated error of a tile
+/// includes this. look(seen, motion) checks the tiles of a motion.
 template <class Look>
 void expect_lines_within_their_errors(const Motion& motion, const Look& look) {
   constexpr std::uint64_t kSeed = 20261126;

@@ -1,4 +1,4 @@
-/// Holds a page that a program has just written against the one that is committed.
+/// Compares a page that a program has just written with the committed one.
 #ifndef TESTS_SUPPORT_GENERATED_PAGE_H_
 #define TESTS_SUPPORT_GENERATED_PAGE_H_
 
@@ -15,7 +15,7 @@ namespace chronormal::test {
 
 inline const std::filesystem::path kDocs = std::filesystem::path(kSourceFolder) / "docs";
 
-/// A page without what stands in the blocks of one name, <!-- NAME --> to <!-- end of NAME -->.
+/// A page without the text in the blocks of one name, <!-- NAME --> to <!-- end of NAME -->.
 struct WithoutBlocks {
   std::string page;
   std::size_t count = 0;  ///< of blocks
@@ -53,7 +53,7 @@ inline void expect_same_text(const std::string& committed, const std::string& ge
                 << "\ngenerated: " << line_at(generated) << "\n(tools/make_* writes it anew)";
 }
 
-/// Expects every picture in FOLDER/pictures to be committed, the same, and shown in the page. Returns their number.
+/// Expects every picture in FOLDER/pictures to be committed, the same, and used in the page. Returns their number.
 inline std::size_t expect_same_pictures(const TemporaryFolder& folder, const std::string& page) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "pictures")) {

@@ -1,4 +1,4 @@
-/// GLB files that an edit wrote, taken apart without the reader.
+/// Takes GLB files that an edit wrote apart, without the reader.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 
@@ -41,7 +41,7 @@ struct GlbParts {
   return result;
 }
 
-/// What an edit would write; the text of the error where it can not.
+/// Returns the bytes that an edit would write, or the text of its error.
 [[nodiscard]] inline std::string bytes_or_error(const GltfEdit& edit, const std::string& path = "") {
   const Result<std::string> bytes = edit.bytes(path);
   return bytes ? bytes.value() : bytes.error().text();

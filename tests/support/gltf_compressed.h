@@ -1,4 +1,4 @@
-/// Compressed pieces of glTF files, made by the encoders of meshoptimizer and Draco.
+/// Makes compressed pieces of glTF files with the encoders of meshoptimizer and Draco.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_COMPRESSED_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_COMPRESSED_H_
 
@@ -21,7 +21,7 @@
 
 namespace chronormal::test {
 
-/// Vertex data of EXT_meshopt_compression, mode ATTRIBUTES. stride: bytes of an element.
+/// Encodes vertex data for EXT_meshopt_compression, mode ATTRIBUTES. stride is the bytes of an element.
 [[nodiscard]] inline std::string meshopt_attributes(const std::string& bytes, std::size_t stride) {
   const std::size_t count = bytes.size() / stride;
   std::vector<unsigned char> coded(meshopt_encodeVertexBufferBound(count, stride));
@@ -30,7 +30,7 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// Mode TRIANGLES. It may turn the corners of a triangle round, but keeps their order.
+/// Encodes for mode TRIANGLES, which may rotate the corners of a triangle but keeps their order.
 [[nodiscard]] inline std::string meshopt_triangles(const std::vector<std::uint32_t>& corners, std::size_t vertices) {
   std::vector<unsigned char> coded(meshopt_encodeIndexBufferBound(corners.size(), vertices));
   meshopt_encodeIndexVersion(1);
@@ -38,7 +38,7 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// Mode INDICES.
+/// Encodes for mode INDICES.
 [[nodiscard]] inline std::string meshopt_indices(const std::vector<std::uint32_t>& indices, std::size_t vertices) {
   std::vector<unsigned char> coded(meshopt_encodeIndexSequenceBound(indices.size(), vertices));
   meshopt_encodeIndexVersion(1);
@@ -46,7 +46,7 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// A view of `count` elements of `size` bytes, which exist only compressed: buffer 1 is the fallback, without a URI.
+/// Adds a view of `count` elements of `size` bytes that exist only compressed: buffer 1 is the fallback, without a URI.
 inline std::size_t add_meshopt_view(GltfBuilder& builder, const std::string& coded, std::size_t count, std::size_t size,
                                     const char* mode, const char* filter = nullptr) {
   builder.buffer.resize((builder.buffer.size() + 3) / 4 * 4, '\0');
@@ -74,7 +74,7 @@ inline std::size_t add_meshopt_view(GltfBuilder& builder, const std::string& cod
   return builder.add("bufferViews", std::move(view));
 }
 
-/// The same as floats of an attribute, without a filter.
+/// Adds such a view of floats of an attribute, without a filter.
 inline std::size_t add_meshopt_positions(GltfBuilder& builder, const std::vector<float>& positions) {
   const std::string coded = meshopt_attributes(bytes_of(positions), 12);
   const std::size_t count = positions.size() / 3;
@@ -101,8 +101,8 @@ struct DracoShares {
   std::vector<float> weights = {};
 };
 
-/// A triangle mesh coded by Draco; the attributes are POSITION, NORMAL, JOINTS and WEIGHTS, numbered from 0 as far as
-/// they are there. Without loss, unless positions are quantised to so many bits.
+/// Encodes a triangle mesh with Draco. The attributes are POSITION, NORMAL, JOINTS and WEIGHTS, numbered from 0 among
+/// the given ones. It is lossless, unless `bits` is set, to which positions are quantised.
 template <class T>
 [[nodiscard]] std::string draco_mesh(const std::vector<T>& positions, const std::vector<std::uint32_t>& corners,
                                      DracoOrder order, const std::vector<float>& normals = {}, int bits = 0,
@@ -140,7 +140,7 @@ template <class T>
   return {coded.data(), coded.size()};
 }
 
-/// A primitive whose indices, positions and normals exist only as coded by Draco; targets are as ever.
+/// Makes a primitive whose indices, positions and normals exist only in Draco's encoding; targets are ordinary.
 [[nodiscard]] inline GltfBuilder::Json draco_primitive(GltfBuilder& builder, const std::string& coded,
                                                        std::size_t vertex_count, std::size_t corner_count,
                                                        bool has_normals,

@@ -1,4 +1,4 @@
-/// Small documents that between them use all that the reader of glTF knows, to be broken.
+/// Makes small documents to be damaged, which together use everything that the reader of glTF supports.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_DOCUMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_DOCUMENTS_H_
 
@@ -12,7 +12,8 @@
 
 namespace chronormal::test {
 
-/// Strided normals, a sparse target over zeros, weights, a chain of nodes, and LINEAR and STEP tracks.
+/// Makes a document with strided normals, a sparse target over zeros, weights, a chain of nodes, and LINEAR and STEP
+/// tracks.
 [[nodiscard]] inline GltfBuilder sparse_document() {
   GltfBuilder builder = quad_document();
   const std::size_t sparse = builder.add_accessor_over(std::nullopt, "VEC3", 5126, 4);
@@ -33,7 +34,7 @@ namespace chronormal::test {
   return builder;
 }
 
-/// KHR_mesh_quantization, a fan without indices, and a CUBICSPLINE track of normalised integers.
+/// Makes a document with KHR_mesh_quantization, a fan without indices, and a CUBICSPLINE track of normalised integers.
 [[nodiscard]] inline GltfBuilder quantised_document() {
   GltfBuilder builder;
   const std::size_t base = builder.add_strided<std::uint16_t>("VEC3", {0, 0, 0, 99, 0, 0, 99, 99, 0, 0, 99, 50}, 8);
@@ -46,7 +47,8 @@ namespace chronormal::test {
   return builder;
 }
 
-/// EXT_meshopt_compression of positions, of a target with the exponential filter, and of triangles.
+/// Makes a document with EXT_meshopt_compression of positions, of a target with the exponential filter, and of
+/// triangles.
 [[nodiscard]] inline GltfBuilder meshopt_document() {
   GltfBuilder builder;
   const std::size_t base = add_meshopt_positions(builder, kQuad);
@@ -70,7 +72,7 @@ namespace chronormal::test {
   return builder;
 }
 
-/// KHR_draco_mesh_compression of positions and normals, with a target beside them.
+/// Makes a document with KHR_draco_mesh_compression of positions and normals, with a target beside them.
 [[nodiscard]] inline GltfBuilder draco_document(DracoOrder order = DracoOrder::kKept) {
   GltfBuilder builder;
   const std::size_t lift = builder.add_positions(kLift);
@@ -82,7 +84,7 @@ namespace chronormal::test {
   return builder;
 }
 
-/// All of them, by name.
+/// Returns all documents by name.
 [[nodiscard]] inline std::vector<std::pair<std::string, GltfBuilder>> all_documents() {
   std::vector<std::pair<std::string, GltfBuilder>> documents;
   documents.emplace_back("sparse", sparse_document());

@@ -1,5 +1,5 @@
-/// A viewer of glTF in a few lines, independent of the library: it reads a GLB, plays its weight tracks as appendix C of
-/// the specification has them, adds up targets in float32, and knows from the positions what it should have shown.
+/// A viewer of glTF in a few lines, independent of the library: it reads a GLB, plays its weight tracks by appendix C
+/// of the specification, adds up targets in float32, and computes the right normals from the positions.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 
@@ -35,7 +35,7 @@ class GltfPlayer {
     return bin_ == 0 ? std::string_view() : std::string_view(glb_).substr(bin_, word(bin_ - 8));
   }
 
-  /// All numbers of an accessor.
+  /// Returns all numbers of an accessor.
   [[nodiscard]] std::vector<float> accessor(std::size_t index) const {
     const Json& a = json.at("accessors").at(index);
     const std::size_t width = width_of(a.at("type")), count = a.at("count");
@@ -64,7 +64,7 @@ class GltfPlayer {
     return values;
   }
 
-  /// The weights that a channel gives at a time, in float32 as viewers have them.
+  /// Returns the weights that a channel gives at a time, in float32 as in viewers.
   [[nodiscard]] std::vector<float> weights_at(std::size_t animation, std::size_t channel, double time) const {
     const Json& a = json.at("animations").at(animation);
     const Json& sampler = a.at("samplers").at(a.at("channels").at(channel).at("sampler").get<std::size_t>());
@@ -95,7 +95,7 @@ class GltfPlayer {
     return result;
   }
 
-  /// The stored normal of a vertex with its deltas, added up in float32.
+  /// Adds up the stored normal of a vertex and its deltas in float32.
   [[nodiscard]] Vector shown(const Json& primitive, std::size_t vertex, const std::vector<float>& weights) const {
     const std::vector<float>& normals = cached(primitive.at("attributes").at("NORMAL"));
     std::array<float, 3> sum = {normals[3 * vertex], normals[3 * vertex + 1], normals[3 * vertex + 2]};

@@ -1,4 +1,5 @@
-/// What the vertices of a glTF mesh should show, from their positions alone: cross products in long double.
+/// Computes the right normals of the vertices of a glTF mesh from their positions alone, by cross products in long
+/// double.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_TRUTH_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_TRUTH_H_
 
@@ -11,7 +12,7 @@
 
 namespace chronormal::test {
 
-/// One mesh of a file before the bake. Vertices are those of all primitives with faces and normals.
+/// One mesh of a file before the bake. Its vertices are the vertices of all primitives with faces and normals.
 class GltfTruth {
  public:
   using Json = nlohmann::json;
@@ -61,7 +62,7 @@ class GltfTruth {
   std::vector<Vertex> vertices;
   bool uniform = false;  ///< all faces count alike, instead of by their area
 
-  /// n(w) of each vertex. Weights beyond those of the file are not looked at.
+  /// Returns n(w) of each vertex. Weights beyond the targets of the file are ignored.
   [[nodiscard]] std::vector<Vector> normals_at(const std::vector<double>& weights) const {
     std::vector<Vector> at(vertices.size());
     for (std::size_t v = 0; v < at.size(); ++v) {
@@ -88,7 +89,7 @@ class GltfTruth {
     return at;
   }
 
-  /// n turned by the smallest rotation from `from` to `to`, of any length.
+  /// Turns n by the smallest rotation from `from` to `to`, which may have any length.
   [[nodiscard]] static Vector turn(const Vector& from, const Vector& to, const Vector& n) {
     const Real scale = length_of(from) * length_of(to);
     if (scale == 0) return n;
@@ -118,7 +119,7 @@ class GltfTruth {
     }
   }
 
-  // Vertices at one place share a normal where those they store agree to 0.1 degrees, one by one.
+  // Lets vertices at one place share a normal if their stored normals agree to 0.1 degrees, one by one.
   void group(const std::vector<std::size_t>& here) {
     std::vector<std::size_t> root(here.size());
     for (std::size_t a = 0; a < here.size(); ++a) root[a] = a;
@@ -138,7 +139,7 @@ class GltfTruth {
   std::vector<std::size_t> group_;
 };
 
-/// Angles in degrees between what is shown and what should be.
+/// Angles in degrees between the rendered normals and the right ones.
 struct ShownError {
   double sum = 0, worst = 0;
   std::size_t judged = 0, left_out = 0;
@@ -151,14 +152,14 @@ struct ShownError {
   }
 };
 
-/// Poses of one mesh: what it is given in the file before the bake, and after it.
+/// A pose of one mesh: the weights in the file before the bake, and after it.
 struct Pose {
   std::vector<double> before;
   std::vector<float> after;
 };
 
-/// Compares a mesh after the bake with the truth of before. Vertices are left out where |n(w)| is below 1e-4 of the
-/// largest |n| that they have in these poses.
+/// Compares a mesh after the bake with the truth from before. Leaves out samples where |n(w)| is below 1e-4 of the
+/// largest |n| of the vertex in these poses.
 [[nodiscard]] inline ShownError shown_error(const GltfTruth& truth, const GltfPlayer& after, std::size_t mesh,
                                             const std::vector<Pose>& poses) {
   ShownError error;
@@ -186,7 +187,7 @@ struct Pose {
   return error;
 }
 
-/// The poses of a weight track at 101 times, from its first key to its last.
+/// Returns the poses of a weight track at 101 times, from its first key to its last.
 [[nodiscard]] inline std::vector<Pose> poses_of(const GltfPlayer& before, const GltfPlayer& after,
                                                 std::size_t animation, std::size_t channel) {
   const auto& a = before.json.at("animations").at(animation);

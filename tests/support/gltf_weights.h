@@ -1,5 +1,5 @@
-/// Weights of morph targets over time by the formulas of the glTF specification (appendix C), in long double, and where
-/// a motion puts its vertices: to hold the one against the other.
+/// Computes weights of morph targets over time by the formulas of the glTF specification (appendix C), in long double,
+/// and the positions of a motion, to compare the two.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_WEIGHTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_WEIGHTS_H_
 
@@ -12,8 +12,8 @@
 
 namespace chronormal::test {
 
-/// The weights at a time, of target_count targets. values as they stand in the file: (K, N), or (K, 3, N) for a cubic
-/// spline. At a key of STEP it is the value of that key.
+/// Returns the weights of target_count targets at a time. values are laid out as in the file: (K, N), or (K, 3, N) for
+/// a cubic spline. At a key of STEP, the value of that key counts.
 [[nodiscard]] inline std::vector<double> weights_at(GltfInterpolation interpolation, const std::vector<float>& times,
                                                     const std::vector<float>& values, std::size_t target_count,
                                                     double time) {
@@ -23,7 +23,7 @@ namespace chronormal::test {
     return static_cast<long double>(values.at(index));
   };
   constexpr std::size_t kIn = 0, kValue = 1, kOut = 2;
-  // The last key that is not after the time.
+  // Finds the last key that is not after the time.
   const auto after = std::upper_bound(times.begin(), times.end(), time, [](double t, float key) { return t < key; });
   const auto next = static_cast<std::size_t>(after - times.begin());
   std::vector<double> weights;
@@ -46,7 +46,8 @@ namespace chronormal::test {
   return weights;
 }
 
-/// All positions of a sequence at a time, on the straight way of the segment that it lies in; at its ends, still.
+/// Returns all positions of a sequence at a time, on the straight line of the segment that contains it; outside, the
+/// nearer end.
 [[nodiscard]] inline std::vector<double> positions_at(const Motion& motion, double time) {
   for (const Motion::SegmentKeys& segment : motion.segments) {
     const Motion::Keyframe& from = motion.keyframes.at(segment.from);

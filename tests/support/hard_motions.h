@@ -1,6 +1,7 @@
-/// Small motions whose normals are hard to point the right way in double, and ordinary ones among them.
+/// Makes small motions whose normals are hard to compute with the right direction in double, and ordinary ones among
+/// them.
 ///
-/// Made with random numbers alone, the same on every compiler but for the last bits of std::pow.
+/// They depend on random numbers alone, and are the same on every compiler but for the last bits of std::pow.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
 #define CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
 
@@ -25,21 +26,21 @@ struct MovingTriangle {
   std::array<Point, 3> from{}, to{};
 };
 
-/// 10^k for a random k.
+/// Returns 10^k for a random k.
 [[nodiscard]] inline double random_decade(Random& random, double low, double high) {
   return std::pow(10, random.uniform(low, high));
 }
 
 [[nodiscard]] inline Point scaled_point(double s, const Point& p) { return {s * p[0], s * p[1], s * p[2]}; }
 
-/// Coordinates that are whole numbers up to 2^10, so that sums of a few of them do not round.
+/// Draws coordinates that are whole numbers up to 2^10, so that sums of a few of them do not round.
 [[nodiscard]] inline Point whole_point(Random& random) {
   const auto one = [&random] { return static_cast<double>(random.below(2049)) - 1024; };
   const double x = one(), y = one();
   return {x, y, one()};
 }
 
-/// Every corner, at either end, of a size of its own between 1e-10 and 1e10.
+/// Makes a triangle each corner of which, at either end, has a size of its own between 1e-10 and 1e10.
 [[nodiscard]] inline MovingTriangle mixed_scales(Random& random) {
   MovingTriangle triangle;
   const bool stands_still = random.below(3) == 0, each_coordinate = random.below(4) == 0;
@@ -55,7 +56,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Three corners on a line through the origin but for the rounding of float32, one of them hardly off the origin.
+/// Makes a triangle whose three corners lie on a line through the origin but for the rounding of float32, one of them
+/// hardly off the origin.
 [[nodiscard]] inline MovingTriangle sliver_at_origin(Random& random) {
   MovingTriangle triangle;
   const double ratio = random.below(2) == 0 ? 2 : random.uniform(0.3, 3);
@@ -63,7 +65,7 @@ struct MovingTriangle {
     (*corners)[0] = scaled_point(random_decade(random, -14, -4), random.in_cube(1));
     (*corners)[1] = random.in_cube(2);
     for (std::size_t k = 0; k < 3; ++k) {
-      // As float32 has it; one more or less in the last place now and then.
+      // The coordinate is rounded to float32, and sometimes to the next float above or below.
       const auto b = static_cast<float>((*corners)[1][k]);
       const auto product = static_cast<float>(ratio * static_cast<double>(b));
       const std::array<float, 3> near{product, std::nextafter(product, 10.0F), std::nextafter(product, -10.0F)};
@@ -74,7 +76,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// c passes the line through a and b at t = 1/2, by `gap` exactly: all else lies in a plane, in whole numbers.
+/// Makes c pass the line through a and b at t = 1/2 at a distance of exactly `gap`: everything else lies in a plane, in
+/// whole numbers.
 [[nodiscard]] inline MovingTriangle passing_collapse(Random& random, double gap) {
   const Point a = whole_point(random), step = whole_point(random), by = whole_point(random);
   const double along = static_cast<double>(random.below(5)) - 2;
@@ -91,8 +94,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// The corners shrink to a point at t = 1 / (1 + r) and grow out of it again: n(t) has a double zero there. Half of
-/// them only nearly so.
+/// Makes the corners shrink to a point at t = 1 / (1 + r) and grow out of it again, where n(t) has a double zero. Half
+/// of the triangles do so only nearly.
 [[nodiscard]] inline MovingTriangle double_zero(Random& random) {
   constexpr std::array<double, 5> kRatios{1, 3, 7, 1.0 / 4, 1.5};  // 1.5 and 1/4: no double is 1 / (1 + r)
   const double r = kRatios[random.below(kRatios.size())];
@@ -112,10 +115,10 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// A flat triangle that turns over: the normal is zero once, and antipodal before and after.
+/// Makes a flat triangle that turns over: the normal is zero once, and antipodal before and after.
 [[nodiscard]] inline MovingTriangle turning_over(Random& random) {
   MovingTriangle triangle;
-  // The plane z = 7 + slope x - y over whole numbers; or along two axes.
+  // The plane is z = 7 + slope x - y over whole numbers, or lies along two axes.
   const bool is_whole = random.below(2) == 0;
   const std::size_t across = random.below(3);
   const double slope = static_cast<double>(random.below(4)), height = random.uniform(-1, 1);
@@ -128,7 +131,7 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// No normal at one end or at both: a line or a point, exactly or as nearly as float32 can.
+/// Makes a triangle without a normal at one end or at both: a line or a point, exactly or as nearly as float32 can.
 [[nodiscard]] inline MovingTriangle collapsed_at_ends(Random& random) {
   MovingTriangle triangle;
   for (auto* corners : {&triangle.from, &triangle.to}) {
@@ -150,7 +153,7 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Somewhere, moving by up to twice its size, at any scale and distance from the origin.
+/// Makes a triangle anywhere that moves by up to twice its size, at any scale and distance from the origin.
 [[nodiscard]] inline MovingTriangle ordinary(Random& random) {
   MovingTriangle triangle;
   const double size = random.below(3) == 0 ? random_decade(random, -44, 38) : 1;
@@ -167,7 +170,7 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Passes a collapse as near as float32 can say.
+/// Makes a triangle that passes a collapse as closely as float32 can represent.
 [[nodiscard]] inline MovingTriangle grazing(Random& random) {
   MovingTriangle triangle;
   const double when = random.uniform(0.05, 0.95), along = random.uniform(-0.5, 1.5);
@@ -186,7 +189,7 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Triangles of one kind that share nothing.
+/// Makes a motion of triangles that share no vertices.
 [[nodiscard]] inline Motion soup_of(const std::vector<MovingTriangle>& triangles) {
   std::vector<Point> from, to;
   for (const MovingTriangle& triangle : triangles) {
@@ -204,7 +207,7 @@ template <class Make>
   return soup_of(triangles);
 }
 
-/// Two huge faces around vertex 0 that cancel, wholly or but for a little, and a small one beside them.
+/// Makes two huge faces around vertex 0 that cancel, wholly or nearly, and a small one beside them.
 [[nodiscard]] inline Motion cancelling_fan(Random& random) {
   const double huge = random_decade(random, 2, 9), small = random_decade(random, -7, 0);
   std::vector<Point> from{{0, 0, 0}}, to{{0, 0, 0}};
@@ -232,7 +235,7 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-/// A dozen faces over a few vertices, which cancel in all degrees; quads among them now and then.
+/// Makes a dozen faces over a few vertices, which cancel to all degrees; sometimes there are quads among them.
 [[nodiscard]] inline Motion tangle_of_faces(Random& random) {
   const std::size_t vertices = 4 + random.below(5), faces = 4 + random.below(12);
   std::vector<Point> from, to;
@@ -253,7 +256,8 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_polygons(vertices, std::move(offsets), std::move(corners)), from, to);
 }
 
-/// So many faces around one vertex that adding them up rounds more than a few do, and opposite ones among them.
+/// Makes so many faces around one vertex that their sum rounds more than a sum of a few does, and opposite ones among
+/// them.
 [[nodiscard]] inline Motion many_faces(Random& random) {
   const std::size_t rim = 90 + random.below(400);
   const double height = random_decade(random, -9, 0);
@@ -272,9 +276,9 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(rim + 1, std::move(corners)), from, to);
 }
 
-/// A fan of faces around vertex 0 that cancel but for next to nothing, and stand still but for next to nothing. The rim
-/// lies in a plane, in whole numbers, and goes there and back, so that it encloses no area; its height over the plane
-/// is a small whole number times a power of two that double loses beside the height of vertex 0.
+/// Makes a fan of faces around vertex 0 that nearly cancel and nearly stand still. The rim lies in a plane, in whole
+/// numbers, and goes there and back, so that it encloses no area; its height over the plane is a small whole number
+/// times a power of two that double loses beside the height of vertex 0.
 [[nodiscard]] inline Motion cancelling_star(Random& random) {
   const std::size_t half = 2 + random.below(6), across = random.below(3);
   const auto small = [&random] { return static_cast<double>(random.below(15)) - 7; };

@@ -1,7 +1,7 @@
-/// Control normals that are hard to keep in few bits, and the judge of what was kept.
+/// Makes control normals that are hard to keep in few bits, and judges the kept ones.
 ///
-/// Made with random numbers and powers of two alone, the same bits on every compiler. The judge works in long double
-/// on the control normals as they are: on x86 its error is below 1e-18 of the largest control normal.
+/// They depend on random numbers and powers of two alone, and have the same bits on every compiler. The judge works in
+/// long double on the control normals as they are: on x86 its error is below 1e-18 of the largest control normal.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HARD_NORMALS_H_
 #define CHRONORMAL_TESTS_SUPPORT_HARD_NORMALS_H_
 
@@ -33,14 +33,14 @@ using RealVector = std::array<Real, 3>;
   return std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
 }
 
-/// The angle between u and n(t) in radians; NaN where u is not finite.
+/// Returns the angle between u and n(t) in radians, or NaN if u is not finite.
 [[nodiscard]] inline double angle_to(const Vec3f& u, const ControlNormals& c, double t) {
   const RealVector n = normal_in_long_double(c, t);
   const Real x = u.y * n[2] - u.z * n[1], y = u.z * n[0] - u.x * n[2], z = u.x * n[1] - u.y * n[0];
   return static_cast<double>(std::atan2(length({x, y, z}), u.x * n[0] + u.y * n[1] + u.z * n[2]));
 }
 
-/// The t at which |n(t)| is smallest, to 2^-40.
+/// Returns the t at which |n(t)| is smallest, to 2^-40.
 [[nodiscard]] inline double hardest_time(const ControlNormals& c) {
   const auto size = [&c](double t) { return length(normal_in_long_double(c, t)); };
   double best = 0;
@@ -59,7 +59,8 @@ using RealVector = std::array<Real, 3>;
   return size(low) < size(best) ? low : best;
 }
 
-/// Where errors show: the ends and what is near them, simple fractions, around the hardest time, and somewhere.
+/// Returns times at which errors show: the ends and their neighbourhood, simple fractions, the neighbourhood of the
+/// hardest time, and random ones.
 [[nodiscard]] inline std::vector<double> hard_times(const ControlNormals& c, fixtures::Random& random) {
   std::vector<double> times{0,   1,       1e-3,    1e-6, 0x1p-40, 1 - 1e-3, 1 - 1e-6,
                             0.5, 1.0 / 3, 2.0 / 3, 0.25, 0.75,    0x1p-150, 1 - 0x1p-53};
@@ -78,7 +79,7 @@ using RealVector = std::array<Real, 3>;
   return {x, y, random.uniform(-1, 1)};
 }
 
-/// 2^-k for a random k in [0, most].
+/// Returns 2^-k for a random k in [0, most].
 [[nodiscard]] inline double random_power(fixtures::Random& random, std::size_t most) {
   return std::ldexp(1, -static_cast<int>(random.below(most + 1)));
 }
@@ -87,7 +88,7 @@ using RealVector = std::array<Real, 3>;
   return {s * c.n0, s * c.m, s * c.n1};
 }
 
-/// Three vectors of the lengths that `factor` says, each turned away from n by a vector of up to `turn`.
+/// Returns three vectors whose lengths `factor` gives, each turned away from n by a vector of up to `turn`.
 template <class Factor>
 [[nodiscard]] ControlNormals three_near(fixtures::Random& random, const Vec3d& n, double turn, Factor factor) {
   std::array<Vec3d, 3> v;
@@ -103,7 +104,7 @@ struct HardFamily {
   ControlNormals (*make)(fixtures::Random&);
 };
 
-/// Each makes one element.
+/// Returns the families; each makes one element.
 [[nodiscard]] inline const std::vector<HardFamily>& hard_families() {
   using fixtures::Random;
   static const std::vector<HardFamily> families{
@@ -190,7 +191,7 @@ struct HardFamily {
            return Vec3d{x, y, component()};
          };
          ControlNormals c{vector(), vector(), vector()};
-         // All in one half of space, so that most are long enough for integers.
+         // All vectors lie in one half of space, so that most are long enough for integers.
          for (Vec3d* v : {&c.n0, &c.m, &c.n1}) v->z = std::fabs(v->z);
          if (r.below(2) == 0) c.m.z = largest;
          return c;
@@ -199,7 +200,7 @@ struct HardFamily {
   return families;
 }
 
-/// One element of any family, at any scale that double has where `any_scale`.
+/// Makes one element of any family, if any_scale at any scale that double has.
 [[nodiscard]] inline ControlNormals hard_element(fixtures::Random& random, bool any_scale) {
   const auto& families = hard_families();
   const ControlNormals c = families[random.below(families.size())].make(random);

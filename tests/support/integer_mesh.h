@@ -1,4 +1,4 @@
-/// A moving grid made with integers and powers of two alone, so that its coordinates have the same bits on every
+/// Makes a moving grid with integers and powers of two alone, so that its coordinates have the same bits on every
 /// compiler and mathematics library: for tests that compare with a constant, and for large meshes that cost little.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_
@@ -15,11 +15,11 @@
 
 namespace chronormal::test {
 
-/// cells x cells squares of two triangles. Bands of rows stand still, move along, turn in their plane, shrink to a
-/// point at an end, or move as they like, so that all degrees, formats and flagged elements are there.
+/// Makes cells x cells squares of two triangles. Bands of rows stand still, move along, turn in their plane, shrink to
+/// a point at an end, or move freely, so that all degrees, formats and flagged elements occur.
 [[nodiscard]] inline Motion integer_grid(std::size_t cells, std::uint64_t seed = 91) {
   std::mt19937_64 engine(seed);
-  // A signed integer of so many bits over 2^12.
+  // Returns a signed integer of `bits` bits over 2^12.
   const auto noise = [&engine](unsigned bits) {
     return static_cast<float>(static_cast<std::int64_t>(engine() & ((1u << bits) - 1)) - (1 << bits) / 2) * 0x1p-12F;
   };
@@ -75,7 +75,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// The same with vertices and faces in no order.
+/// Returns the same grid with vertices and faces in random order.
 [[nodiscard]] inline Motion shuffled_grid(std::size_t cells, std::uint64_t seed = 91) {
   Motion motion = integer_grid(cells, seed);
   fixtures::Random random(seed);

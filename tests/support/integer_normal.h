@@ -1,10 +1,10 @@
-/// Normals of moving polygons at one t in whole numbers of any size, fast enough for millions of them.
+/// Computes normals of moving polygons at one t in whole numbers of any size, fast enough for millions of them.
 ///
 /// A float is an integer times 2^-149 and a double t is T 2^-e, so the corners at t are (2^e - T) p + T q in units of
-/// 2^(-149 - e), and their cross products are integers as well. GMP holds them all; what becomes a double at the end is
-/// the direction alone. (exact_normal.h says the same in rational numbers, a hundred times as slowly.)
+/// 2^(-149 - e), and their cross products are integers as well. GMP holds them all; only the direction becomes a double
+/// at the end. (exact_normal.h gives the same in rational numbers, a hundred times as slowly.)
 ///
-/// Where n(t) = 0 the direction is that of n a moment earlier (at t = 0 later): 2^-1500 of the segment, far less than
+/// If n(t) = 0, the direction is that of n a moment earlier (at t = 0 later): by 2^-1500 of the segment, far less than
 /// any two terms of n can differ by.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
@@ -26,7 +26,7 @@ namespace chronormal::test {
 
 using IntegerVector = std::array<mpz_class, 3>;
 
-/// An instant as T 2^-e, T any integer.
+/// An instant as T 2^-e, where T is any integer.
 struct IntegerTime {
   mpz_class t;
   unsigned e = 0;
@@ -37,11 +37,11 @@ struct IntegerTime {
     const int e = 53 - exponent;  // t <= 1, so that it is positive
     return {mpz_class(mantissa), t == 0 ? 0 : static_cast<unsigned>(e)};
   }
-  /// A moment before, or after.
+  /// Returns a moment before, or after.
   [[nodiscard]] IntegerTime moved(int sign) const { return {(t << 1500) + sign, e + 1500}; }
 };
 
-/// value / 2^-149.
+/// Returns value / 2^-149.
 [[nodiscard]] inline mpz_class integer_of(float value) {
   int exponent = 0;
   const auto mantissa = static_cast<long>(std::ldexp(std::frexp(value, &exponent), 24));
@@ -51,7 +51,7 @@ struct IntegerTime {
                     : mpz_class(result >> static_cast<unsigned>(-shift));
 }
 
-/// The direction of v, of any length.
+/// Returns the direction of v, of any length.
 [[nodiscard]] inline std::array<double, 3> direction_of(const IntegerVector& v) {
   std::array<double, 3> mantissa{};
   std::array<long, 3> exponent{};
@@ -65,7 +65,7 @@ struct IntegerTime {
   return mantissa;
 }
 
-/// The angle between them in radians, right to 1e-15; NaN where u is not finite or zero.
+/// Returns the angle between u and n in radians, right to 1e-15; NaN if u is not finite or zero.
 [[nodiscard]] inline double angle_between(const Vec3f& u, const std::array<double, 3>& n) {
   const double x = u.y * n[2] - u.z * n[1], y = u.z * n[0] - u.x * n[2], z = u.x * n[1] - u.y * n[0];
   if (!(double{u.x} * u.x + double{u.y} * u.y + double{u.z} * u.z > 0.5)) return std::nan("");
@@ -82,7 +82,7 @@ class IntegerNormals {
     }
   }
 
-  /// n of all faces.
+  /// Returns n of all faces.
   [[nodiscard]] std::vector<IntegerVector> at(const IntegerTime& time) const {
     std::vector<IntegerVector> corners(from_.size()), normals(segment_.topology->face_count());
     const mpz_class s = (mpz_class(1) << time.e) - time.t;
@@ -115,7 +115,7 @@ class IntegerNormals {
 
 [[nodiscard]] inline bool is_zero(const IntegerVector& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
-/// The sum of some of them.
+/// Returns the sum over some faces.
 [[nodiscard]] inline IntegerVector sum_of(const std::vector<IntegerVector>& normals,
                                           std::span<const std::uint32_t> faces) {
   IntegerVector sum;

@@ -1,4 +1,4 @@
-/// Motions of polygons with many corners, whose vertices all share them. Drawn at random.
+/// Makes random motions of polygons with many corners, whose vertices all share them.
 #ifndef CHRONORMAL_TESTS_SUPPORT_LARGE_POLYGONS_H_
 #define CHRONORMAL_TESTS_SUPPORT_LARGE_POLYGONS_H_
 
@@ -21,7 +21,7 @@ enum class LargePolygons {
   kPrism,   ///< the same, with a band of quadrilaterals between them
 };
 
-/// A wavy polygon, or two, through a few keyframes.
+/// Makes a wavy polygon, or two, through a few keyframes.
 [[nodiscard]] inline Motion large_polygons(LargePolygons kind, std::uint32_t corners, fixtures::Random& random,
                                            int keyframes = 2) {
   const double height = kind == LargePolygons::kPrism ? std::ldexp(random.uniform(1, 2), -40) : 0;

@@ -1,5 +1,5 @@
-/// Where the tests find what they test: the program, the sources and the build folder. One source, places.cpp, is
-/// compiled with these paths, so that all other tests are the same objects whatever build they are linked into.
+/// Gives the places of what the tests need: the program, the sources and the build folder. One source, places.cpp, is
+/// compiled with these paths, so that all other tests are the same objects in every build.
 #ifndef TESTS_SUPPORT_PLACES_H_
 #define TESTS_SUPPORT_PLACES_H_
 

@@ -1,4 +1,4 @@
-/// PLY files made byte by byte, independent of the writer.
+/// Makes PLY files byte by byte, independent of the writer.
 #ifndef CHRONORMAL_TESTS_SUPPORT_PLY_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_PLY_BYTES_H_
 
@@ -30,7 +30,7 @@ class ByteWriter {
   bool big_endian_;
 };
 
-/// A header of V vertices and F faces, both of the most common form.
+/// Returns a header of V vertices and F faces, both of the most common form.
 [[nodiscard]] inline std::string ply_header(const std::string& encoding, const std::string& vertices,
                                             const std::string& faces) {
   return "ply\nformat " + encoding + " 1.0\nelement vertex " + vertices +
@@ -38,7 +38,7 @@ class ByteWriter {
          "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-/// Three vertices and one triangle.
+/// Makes three vertices and one triangle.
 [[nodiscard]] inline std::string small_binary_ply(bool big_endian) {
   ByteWriter writer(ply_header(big_endian ? "binary_big_endian" : "binary_little_endian", "3", "1"), big_endian);
   for (const float value : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.5F}) writer.add(value);
@@ -47,8 +47,8 @@ class ByteWriter {
   return writer.bytes();
 }
 
-/// Everything that may stand in a file: other elements before, between and after, lists, every scalar type, a face
-/// before its vertices (1, 2, 3, 4 x 0.5; a quad and a triangle).
+/// Makes a file with everything that may stand in one: other elements before, between and after, lists, every scalar
+/// type, and faces before the vertices (1, 2, 3, 4 x 0.5; a quad and a triangle).
 [[nodiscard]] inline std::string mixed_binary_ply(bool big_endian) {
   ByteWriter writer(std::string("ply\r\nformat ") + (big_endian ? "binary_big_endian" : "binary_little_endian") +
                         " 1.0\r\ncomment a b c\r\nobj_info d\r\n"

@@ -21,11 +21,11 @@ std::string contents(const std::filesystem::path& path) {
 }  // namespace
 
 ProcessResult run_shell(const std::string& command, const std::string& folder, const std::string& input) {
-  // Streams go through files: no pipe can fill up.
+  // Streams go through files, since a pipe could fill up.
   char name[] = "/tmp/chronormal_process_XXXXXX";
   const std::filesystem::path scratch = mkdtemp(name);
   std::ofstream(scratch / "in", std::ios::binary) << input;
-  // What a person sets for a terminal is not what a test expects.
+  // Settings of a person's terminal must not change the results of a test.
   const std::string line = "unset COLUMNS NO_COLOR CLICOLOR_FORCE; cd '" + folder + "' && ( " + command + " ) <'" +
                            (scratch / "in").string() + "' >'" + (scratch / "out").string() + "' 2>'" +
                            (scratch / "err").string() + "'";

@@ -1,4 +1,4 @@
-/// Runs a program the way a shell would, and keeps what it said.
+/// Runs a program the way a shell would, and keeps its output.
 #ifndef TESTS_SUPPORT_PROCESS_H_
 #define TESTS_SUPPORT_PROCESS_H_
 

@@ -1,7 +1,6 @@
-// Property tests draw from a fixed seed, so that a failure is there again in the next run. RapidCheck reads the
-// environment variable RC_PARAMS when the first property runs, and prints the seed; where the caller has set it, as in
+// Property tests draw from a fixed seed, so that a failure occurs again in the next run. RapidCheck reads the
+// environment variable RC_PARAMS when the first property runs, and prints the seed. A value from the caller is kept:
 //     RC_PARAMS=seed=1234 build/dev/tests/test_curves --gtest_filter=...
-// that stays.
 
 #include <cstdlib>
 

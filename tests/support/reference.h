@@ -1,6 +1,6 @@
-/// An oracle for every scheme: the textbook definition, in long double, by a route of its own.
+/// An oracle for every scheme: the textbook definition, in long double, by a way of its own.
 ///
-/// Nothing here includes a chronormal header or shares a line with src/: a slip in docs, headers and code alike would
+/// This file includes no chronormal header and shares no line with src/: a slip in docs, headers and code alike would
 /// have to be made a second time to stay hidden. Where there is a choice the long way is taken:
 ///
 ///     exact        eq. 1 on the interpolated vertices, never a polynomial
@@ -9,7 +9,7 @@
 ///     quaternion   frames as matrices -> quaternions -> slerp in four dimensions -> matrix -> third column
 ///     circle       plane, circumcentre, radius and in-plane angles of three points, never an axis formula
 ///     optimal      a dense search over the circles of eq. 6; only its error is known, not its path
-///     scaled       a dense search over the scale; the same
+///     scaled       a dense search over the scale; again, only its error is known
 ///
 /// A triangle is given by six points; t runs over [0, 1]. Functions return std::nullopt where a scheme is not defined
 /// (antipodal ends of a slerp, two coinciding points of a circle, a node without a normal, a quaternion arc of exactly
@@ -49,16 +49,16 @@ inline constexpr Real kNearAntipodal = 1e-6L;
 inline constexpr Real kNearCoincident = 1e-6L;
 /// Below this angle a slerp is a normalised lerp to the last bit of float32 many times over, radians.
 inline constexpr Real kTinyAngle = 1e-9L;
-/// |q0 . q1| below this: which arc is the shorter one is a rounding decision.
+/// If |q0 . q1| is below this, rounding decides which arc is the shorter one.
 inline constexpr Real kNearHalfTurn = 1e-9L;
 
-/// Which face of which segment it is: `quaternion:random` turns each by an angle of its own.
+/// The face and the segment of a triangle: `quaternion:random` turns each by an angle of its own.
 struct Place {
   std::uint64_t element = 0;
   std::uint64_t segment = 0;
 };
 
-/// Corners a, b, c at t = 0 and at t = 1.
+/// The corners a, b, c at t = 0 and at t = 1.
 struct Triangle {
   std::array<Vector, 3> from;
   std::array<Vector, 3> to;
@@ -107,7 +107,7 @@ template <class S>
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Angle in radians, by atan2; neither vector needs length 1.
+/// Returns the angle in radians, by atan2; neither vector needs length 1.
 template <class S>
 [[nodiscard]] S angle(const Vec<S>& a, const Vec<S>& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
@@ -121,7 +121,7 @@ template <class S>
 
 // ---- exact normals -------------------------------------------------------------------------------------------------
 
-/// Eq. 1 of the paper on the corners at t.
+/// Evaluates eq. 1 of the paper on the corners at t.
 [[nodiscard]] inline Vector exact_normal(const Triangle& triangle, Real t) {
   std::array<Vector, 3> corner{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -130,7 +130,7 @@ template <class S>
   return cross(subtract(corner[1], corner[0]), subtract(corner[2], corner[0]));
 }
 
-/// Exact unit normal; nothing where the normal is zero or drowned by the rounding of long double.
+/// Returns the exact unit normal, or nothing if it is zero or drowned by the rounding of long double.
 [[nodiscard]] inline std::optional<Vector> exact_unit_normal(const Triangle& triangle, Real t) {
   const Vector normal = exact_normal(triangle, t);
   Real edge = 0;
@@ -145,19 +145,19 @@ template <class S>
 
 // ---- slerp, Lagrange, de Casteljau ---------------------------------------------------------------------------------
 
-/// Spherical linear interpolation of unit vectors in any dimension, eq. 5 of the paper.
+/// Interpolates unit vectors spherically in any dimension, by eq. 5 of the paper.
 template <std::size_t N>
 [[nodiscard]] std::optional<std::array<Real, N>> slerp(const std::array<Real, N>& from, const std::array<Real, N>& to,
                                                        Real t) {
-  // Half the angle from chord and diagonal: well conditioned for near and far alike, and no cross product, which
-  // four dimensions do not have.
+  // Half the angle comes from chord and diagonal: this is well conditioned for near and far alike, and needs no cross
+  // product, which four dimensions do not have.
   const Real theta = 2 * std::atan2(length(subtract(to, from)), length(add(to, from)));
   if (theta > kPi - kNearAntipodal) return std::nullopt;
   if (theta < kTinyAngle) return normalised(add(scaled(1 - t, from), scaled(t, to)));
   return scaled(1 / std::sin(theta), add(scaled(std::sin((1 - t) * theta), from), scaled(std::sin(t * theta), to)));
 }
 
-/// Exact unit normals at `count` equidistant times from 0 to 1. What moves is a Triangle, or anything else that
+/// Returns exact unit normals at `count` equidistant times from 0 to 1. Moving is a Triangle, or any other type that
 /// exact_unit_normal() takes.
 template <class Moving>
 [[nodiscard]] std::optional<std::vector<Vector>> exact_nodes(const Moving& triangle, std::size_t count) {
@@ -170,7 +170,7 @@ template <class Moving>
   return nodes;
 }
 
-/// Lagrange interpolation of degree `degree` through exact unit normals, by Neville's recursion, normalised.
+/// Interpolates exact unit normals with degree `degree` by Lagrange, with Neville's recursion, and normalises.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> lagrange(const Moving& triangle, std::size_t degree, Real t) {
   auto nodes = exact_nodes(triangle, degree + 1);
@@ -186,7 +186,7 @@ template <class Moving>
   return normalised(nodes->front());
 }
 
-/// Spherical de Casteljau: slerp neighbours until one vector is left.
+/// Spherical de Casteljau: slerps neighbours until one vector is left.
 [[nodiscard]] inline std::optional<Vector> spherical_de_casteljau(const std::vector<Vector>& polygon, Real t) {
   if (polygon.size() == 1) return polygon.front();
   std::vector<Vector> shorter;
@@ -205,7 +205,7 @@ using Matrix = std::array<std::array<Real, N>, N>;  ///< rows
 
 using Quaternion = std::array<Real, 4>;  ///< w, x, y, z
 
-/// Columns tangent, binormal, normal: a rotation matrix.
+/// A rotation matrix with the columns tangent, binormal, normal.
 struct Frame {
   Vector tangent, binormal, normal;
 };
@@ -237,7 +237,7 @@ template <std::size_t N>
   return result;
 }
 
-/// Gauss-Jordan elimination with row pivoting.
+/// Inverts a matrix by Gauss-Jordan elimination with row pivoting.
 template <std::size_t N>
 [[nodiscard]] std::optional<Matrix<N>> inverse(Matrix<N> a) {
   Matrix<N> result{};
@@ -267,14 +267,15 @@ template <std::size_t N>
   return transposed(Matrix<3>{frame.tangent, frame.binormal, frame.normal});
 }
 
-/// Rotation matrix to unit quaternion: start from the component that is largest.
+/// Converts a rotation matrix to a unit quaternion, starting from the largest component.
 [[nodiscard]] inline Quaternion to_quaternion(const Matrix<3>& r) {
   const Real trace = r[0][0] + r[1][1] + r[2][2];
   std::array<Real, 4> four_squares{1 + trace, 1 + 2 * r[0][0] - trace, 1 + 2 * r[1][1] - trace,
                                    1 + 2 * r[2][2] - trace};
   const auto largest = static_cast<std::size_t>(
       std::distance(four_squares.begin(), std::max_element(four_squares.begin(), four_squares.end())));
-  // Products of two components, four times each: w x, w y, w z from the odd part, the others from the even part.
+  // These are products of two components, four times each: w x, w y, w z from the odd part, the others from the even
+  // part.
   const Real wx = r[2][1] - r[1][2], wy = r[0][2] - r[2][0], wz = r[1][0] - r[0][1];
   const Real xy = r[0][1] + r[1][0], xz = r[0][2] + r[2][0], yz = r[1][2] + r[2][1];
   Quaternion q{};
@@ -285,7 +286,7 @@ template <std::size_t N>
   return normalised(q);
 }
 
-/// Unit quaternion to rotation matrix.
+/// Converts a unit quaternion to a rotation matrix.
 [[nodiscard]] inline Matrix<3> to_matrix(const Quaternion& q) {
   const auto [w, x, y, z] = q;
   return {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
@@ -293,7 +294,7 @@ template <std::size_t N>
            {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
 }
 
-/// Quaternion slerp on the shorter arc; the normal is the third column of what comes out.
+/// Interpolates by a quaternion slerp on the shorter arc; the normal is the third column of the resulting matrix.
 [[nodiscard]] inline std::optional<Vector> quaternion_slerp(const Frame& from, const Frame& to, Real t) {
   const Quaternion q0 = to_quaternion(to_matrix(from));
   Quaternion q1 = to_quaternion(to_matrix(to));
@@ -314,7 +315,7 @@ template <std::size_t N>
   return Frame{tangent, cross(normal, tangent), normal};
 }
 
-/// M of eqs. 7 and 8: maps the corners (w = 1) and the normal (w = 0) at t = 0 to those at t = 1.
+/// Returns M of eqs. 7 and 8, which maps the corners (w = 1) and the normal (w = 0) at t = 0 to those at t = 1.
 [[nodiscard]] inline std::optional<Matrix<4>> triangle_map(const Triangle& triangle, const Vector& normal0,
                                                            const Vector& normal1) {
   const auto homogeneous = [](const std::array<Vector, 3>& corners, const Vector& normal) {
@@ -331,7 +332,7 @@ template <std::size_t N>
   return multiply(homogeneous(triangle.to, normal1), *back);
 }
 
-/// Rotation factor of the polar decomposition: Newton's iteration R <- (R + R^-T) / 2.
+/// Returns the rotation factor of the polar decomposition by Newton's iteration R <- (R + R^-T) / 2.
 [[nodiscard]] inline std::optional<Matrix<3>> polar_rotation(Matrix<3> r) {
   for (int i = 0; i < 100; ++i) {
     const auto back = inverse(r);
@@ -348,7 +349,7 @@ template <std::size_t N>
   return std::nullopt;
 }
 
-/// Angle by which `quaternion:random:SEED` turns the second frame about its normal.
+/// Returns the angle by which `quaternion:random:SEED` turns the second frame about its normal.
 [[nodiscard]] inline Real random_turn(std::uint64_t seed, const Place& place) {
   std::uint64_t z = seed + 0x9E3779B97F4A7C15U * (1 + place.element + 0x100000000U * place.segment);
   z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
@@ -357,7 +358,7 @@ template <std::size_t N>
   return 2 * kPi * (static_cast<Real>(z) / 0x1p64L);
 }
 
-/// The frames at both ends for one frame choice: "matrix", "edge", "polar" or "random".
+/// Returns the frames at both ends for one frame choice: "matrix", "edge", "polar" or "random".
 [[nodiscard]] inline std::optional<std::pair<Frame, Frame>> frames(std::string_view choice, const Triangle& triangle,
                                                                    std::uint64_t seed, const Place& place) {
   const auto normal0 = exact_unit_normal(triangle, 0);
@@ -417,14 +418,14 @@ struct Circle {
     return std::nullopt;
   }
   const Vector normal = cross(p, q);
-  // Circumcentre of the triangle of the three points.
+  // The circumcentre of the triangle of the three points follows.
   const Vector arm = scaled(1 / (2 * dot(normal, normal)),
                             add(scaled(dot(q, q), cross(normal, p)), scaled(dot(p, p), cross(q, normal))));
   Circle circle;
   circle.centre = add(first, arm);
   circle.radius = length(arm);
   circle.x = scaled(-1 / circle.radius, arm);
-  // Either side of the plane will do: which way round is decided by the angles below.
+  // Either side of the plane will do: the angles below decide the direction of the walk.
   const Real side = normal[0] + Real(0.37L) * normal[1] + Real(0.11L) * normal[2] > 0 ? 1 : -1;
   circle.y = cross(normalised(scaled(side, normal)), circle.x);
   const auto turn = [&circle](const Vector& point) {
@@ -442,7 +443,7 @@ struct Circle {
   return circle;
 }
 
-/// `circle` and `circle:timed`.
+/// Evaluates `circle` and `circle:timed`.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> circle_normal(const Moving& triangle, bool timed, Real t) {
   const auto u0 = exact_unit_normal(triangle, 0);
@@ -462,13 +463,13 @@ template <class Moving>
 
 // ---- every scheme by its name --------------------------------------------------------------------------------------
 
-/// A scheme's name, taken apart: "quaternion:random:7" is kind "quaternion:random" with number 7.
+/// A scheme's name in parts: "quaternion:random:7" is kind "quaternion:random" with number 7.
 struct SchemeName {
   std::string_view kind;
   std::uint64_t number = 0;
 };
 
-/// Takes a name apart; nothing if this oracle does not know it.
+/// Splits a name, or returns nothing if this oracle does not know it.
 [[nodiscard]] inline std::optional<SchemeName> parse_scheme(std::string_view name) {
   static constexpr std::array<std::string_view, 14> kPlain{
       "recompute",     "polynomial",        "rational",        "linear",           "quadratic", "cubic",
@@ -489,16 +490,16 @@ struct SchemeName {
   return std::nullopt;
 }
 
-/// Whether the path of a scheme is only known up to one number that it searches for.
+/// Tells whether the path of a scheme is only known up to one number that it searches for.
 [[nodiscard]] inline bool is_searched(std::string_view name) {
   return name == "quaternion:optimal" || name == "linear:scaled";
 }
 
-/// The unit normal that the scheme must give at t, or nothing where it is not defined or `name` is unknown.
+/// Returns the unit normal that the scheme must give at t, or nothing where it is not defined or `name` is unknown.
 ///
-/// For searched schemes, `observed_middle` is what the scheme under test gave at t = 1/2: it fixes the one number that
-/// was searched for, and every other t must then follow from it. Without it they have no answer here; the search
-/// itself is judged by optimal_circle_error() and scaled_linear_error().
+/// For searched schemes, `observed_middle` is the result of the tested scheme at t = 1/2: it fixes the one number of
+/// the search, from which every other t must then follow. Without it they have no answer here; the search itself is
+/// judged by optimal_circle_error() and scaled_linear_error().
 template <class Moving>
 [[nodiscard]] std::optional<Vector> unit_normal(std::string_view name, const Moving& triangle, Real t,
                                                 const Place& place = {},
@@ -526,7 +527,7 @@ template <class Moving>
     const auto ends = exact_nodes(triangle, 2);
     if (!ends || !observed_middle) return std::nullopt;
     if (kind == "linear:scaled") {
-      // The middle is u0 + s u1 in some length: s is the ratio of the areas that it spans with either end.
+      // The middle is u0 + s u1 of some length: s is the ratio of the areas that it spans with either end.
       const Real with_end = length(cross(*observed_middle, ends->back()));
       const Real with_start = length(cross(ends->front(), *observed_middle));
       if (length(cross(ends->front(), ends->back())) < kNearCoincident) return std::nullopt;
@@ -562,8 +563,8 @@ struct ExactSamples {
   }
 };
 
-/// Mean angle in radians between exact samples and a curve, a function of t that returns a VectorD of any length.
-/// Looks at every `stride`-th sample.
+/// Returns the average angle in radians between exact samples and a curve, a function of t that returns a VectorD of
+/// any length. Looks at every `stride`-th sample.
 template <class Curve>
 [[nodiscard]] double mean_error(const ExactSamples& exact, Curve&& curve, std::size_t stride = 1) {
   double sum = 0;
@@ -576,7 +577,7 @@ template <class Curve>
   return counted == 0 ? 0 : sum / static_cast<double>(counted);
 }
 
-/// Golden section: the smallest value of f that a search in [low, high] meets.
+/// Returns the smallest value of f that a golden-section search in [low, high] meets.
 template <class F>
 [[nodiscard]] double golden_section_minimum(F&& f, double low, double high, int steps) {
   const double golden = (std::sqrt(5.0) - 1) / 2;
@@ -596,8 +597,8 @@ template <class F>
   return best;
 }
 
-/// Global minimum of f over [grid.front(), grid.back()]: looks at all grid points with `coarse`, then refines around
-/// the best few local minima with `fine`. The grid ascends.
+/// Returns the global minimum of f over [grid.front(), grid.back()]: looks at all grid points with `coarse`, then
+/// refines around the best few local minima with `fine`. The grid must ascend.
 template <class Coarse, class Fine>
 [[nodiscard]] double dense_minimum(const std::vector<double>& grid, Coarse&& coarse, Fine&& fine) {
   std::vector<double> values;
@@ -618,7 +619,7 @@ template <class Coarse, class Fine>
   return best;
 }
 
-/// One circle of eq. 6 through u0 and u1: the angle phi of its axis picks it.
+/// Returns the error of one circle of eq. 6 through u0 and u1, chosen by the angle phi of its axis.
 [[nodiscard]] inline double circle_family_error(const ExactSamples& exact, const VectorD& u0, const VectorD& u1,
                                                 double phi, std::size_t stride = 1) {
   const VectorD axis =
@@ -631,8 +632,8 @@ template <class Coarse, class Fine>
       exact, [&](double t) { return add(w, add(scaled(std::cos(t * arc), p), scaled(std::sin(t * arc), q))); }, stride);
 }
 
-/// What a dense search over all pairs of frames finds: the smallest mean error in radians, over `exact`, of any
-/// constant-speed circle of eq. 6 on its shorter arc (|phi| <= pi/2). Nothing where the ends coincide or are antipodal.
+/// Searches all pairs of frames densely and returns the smallest average error in radians, over `exact`, of any
+/// constant-speed circle of eq. 6 on its shorter arc (|phi| <= pi/2), or nothing if the ends coincide or are antipodal.
 ///
 /// `density` points are spread evenly over phi, and as many evenly over the direction in which the circle leaves u0:
 /// where u0 and u1 are close, all circles that differ visibly are crammed into phi near +-pi/2.
@@ -659,14 +660,14 @@ template <class Coarse, class Fine>
       [&](double phi) { return circle_family_error(exact, u0, u1, phi); });
 }
 
-/// Mean error of u0 + t (s u1 - u0).
+/// Returns the average error of u0 + t (s u1 - u0).
 [[nodiscard]] inline double scaled_family_error(const ExactSamples& exact, const VectorD& u0, const VectorD& u1,
                                                 double s, std::size_t stride = 1) {
   return mean_error(
       exact, [&](double t) { return add(scaled(1 - t, u0), scaled(t * s, u1)); }, stride);
 }
 
-/// The smallest mean error of u0 + t (s u1 - u0) over all s > 0, radians.
+/// Returns the smallest average error of u0 + t (s u1 - u0) over all s > 0, in radians.
 [[nodiscard]] inline std::optional<double> scaled_linear_error(const Triangle& triangle, const ExactSamples& exact,
                                                                std::size_t density = 320,
                                                                std::size_t coarse_stride = 2) {

@@ -1,6 +1,6 @@
-/// An oracle for the normals of vertices and corners, in long double, by a route of its own.
+/// An oracle for the normals of vertices and corners, in long double, by a way of its own.
 ///
-/// As in reference.h, nothing here includes a chronormal header or shares a line with src/. Where there is a choice the
+/// Like reference.h, this file includes no chronormal header and shares no line with src/. Where there is a choice the
 /// slow way is taken: vector areas from the vertices at t about their centre, never from a fan or a polynomial; groups
 /// of corners by flooding over all pairs, never by sorting.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
@@ -23,7 +23,7 @@ struct Mesh {
   std::vector<Vector> from, to;                 ///< positions of each vertex
 };
 
-/// Corner `place` of face `face`.
+/// The corner `place` of face `face`.
 struct Corner {
   std::size_t face = 0, place = 0;
 };
@@ -45,7 +45,7 @@ struct Corner {
   return add(scaled(1 - t, mesh.from[vertex]), scaled(t, mesh.to[vertex]));
 }
 
-/// Twice the vector area of a polygon at t. Zero where it is nothing but rounding.
+/// Returns twice the vector area of a polygon at t, or zero if the area is nothing but rounding.
 [[nodiscard]] inline Vector vector_area(const Mesh& mesh, std::size_t face, Real t) {
   const auto& vertices = mesh.faces[face];
   std::vector<Vector> points;
@@ -64,7 +64,7 @@ struct Corner {
   return length(sum) > 1e-15L * size ? sum : Vector{};
 }
 
-/// What one corner adds to the normal of its element. `weighting` is a name of the command line.
+/// Returns the contribution of one corner to the normal of its element. `weighting` is a name of the command line.
 [[nodiscard]] inline Vector contribution(const Mesh& mesh, const Corner& corner, const std::string& weighting, Real t) {
   const Vector area = vector_area(mesh, corner.face, t);
   const Vector here = position(mesh, vertex_of(mesh, corner), t);
@@ -82,7 +82,7 @@ struct Corner {
     if (!(edges > 0)) return {};
     return scaled(std::pow(edges, weighting == "inverse-edges" ? Real(-1) : Real(-0.5L)), normalised(area));
   }
-  // The angle by the half-angle formula of Kahan, not by a cross product.
+  // The angle comes from the half-angle formula of Kahan, not from a cross product.
   Real corner_angle = 0;
   if (length(next) > 0 && length(previous) > 0) {
     const Vector a = normalised(next), b = normalised(previous);
@@ -91,7 +91,7 @@ struct Corner {
   return scaled(corner_angle, weighting == "angle" ? normalised(area) : area);
 }
 
-/// The normal of the corners that share one, at t.
+/// Returns the normal at t of corners that share one.
 [[nodiscard]] inline Vector element_normal(const Mesh& mesh, const std::vector<Corner>& corners,
                                            const std::string& weighting, Real t) {
   Vector sum{};
@@ -137,8 +137,8 @@ struct MovingElement {
   return class_of;
 }
 
-/// Which corners share a normal at a crease angle in degrees; `point` names the point of each vertex. Faces must have
-/// normals at t = 0, and no angle may be within rounding of the crease angle.
+/// Returns classes of corners that share a normal at a crease angle in degrees; `point` names the point of each vertex.
+/// Faces must have normals at t = 0, and no angle may be within rounding of the crease angle.
 [[nodiscard]] inline std::vector<std::size_t> crease_classes(const Mesh& mesh, const std::vector<std::size_t>& point,
                                                              Real degrees) {
   const std::vector<Corner> corners = corners_of(mesh);

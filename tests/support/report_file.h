@@ -1,5 +1,5 @@
-/// A report as a page reads it: the container, and the number that a page computes at a vertex of a sample, in double
-/// and from the container alone. Nothing here includes code of src/.
+/// Reads a report as a page does: takes the container apart, and computes the number that a page shows at a vertex of a
+/// sample, in double and from the container alone. Nothing here includes code of src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 
@@ -50,7 +50,7 @@ class ReportFile {
 
   [[nodiscard]] const Json& part(std::size_t p) const { return json["parts"][p]; }
 
-  /// The angle between what is shown and what should be, in degrees, at a place of json["worst"].
+  /// Returns the angle in degrees between the rendered normal and the right one at a place of json["worst"].
   [[nodiscard]] double degrees_at(const Json& place) const {
     const Json& of = part(place["part"]);
     const Json& motion = of["motions"][place["motion"].get<std::size_t>()];
@@ -58,7 +58,7 @@ class ReportFile {
                                 : keyframe_degrees(of, motion, place["sample"], place["vertex"]);
   }
 
-  /// The number of a vertex in the file, or in its primitive.
+  /// Returns the number of a vertex in the file, or in its primitive.
   [[nodiscard]] std::size_t label(const Json& of, std::size_t vertex) const {
     if (!of["labels"].is_null()) return numbers<std::uint32_t>(of["labels"])[vertex];
     for (const Json& primitive : of["primitives"])
@@ -86,11 +86,11 @@ class ReportFile {
   static double length(const Point& a) { return std::sqrt(dot(a, a)); }
   static Point unit(const Point& a) { return length(a) > 0 ? scaled(a, 1 / length(a)) : a; }
   static double angle(const Point& a, const Point& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
-  // v turned about an axis of length 1.
+  // Turns v about an axis of length 1.
   static Point turned(const Point& axis, double by, const Point& v) {
     return sum(sum(scaled(v, std::cos(by)), cross(axis, v), std::sin(by)), axis, dot(axis, v) * (1 - std::cos(by)));
   }
-  // v turned as `from` has to turn to look at `to`, but by no more than `most`.
+  // Turns v by the rotation from `from` to `to`, but by no more than `most`.
   static Point turned(const Point& from, const Point& to, const Point& v, double most = 10) {
     const Point axis = cross(from, to);
     if (length(axis) < 1e-12) return v;
@@ -100,7 +100,7 @@ class ReportFile {
     return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
   }
 
-  // The weighted normal of an element at some positions.
+  // Returns the weighted normal of an element at some positions.
   [[nodiscard]] Point normal(const Json& of, const std::vector<Point>& positions, std::uint32_t element) const {
     const std::vector<std::uint32_t> triangles = numbers<std::uint32_t>(of["triangles"]),
                                      elements = numbers<std::uint32_t>(of["element"]),
@@ -109,7 +109,7 @@ class ReportFile {
     const std::string weighting = of["weighting"];
     Point result = {};
     for (std::size_t t = 0; 3 * t < triangles.size();) {
-      // The polygon of a fan.
+      // Collects the polygon of a fan.
       const std::size_t first = 3 * t;
       std::vector<std::uint32_t> polygon(triangles.begin() + static_cast<std::ptrdiff_t>(3 * t),
                                          triangles.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
@@ -122,7 +122,7 @@ class ReportFile {
     return result;
   }
 
-  // What a corner of a polygon adds to a sum.
+  // Returns the contribution of a corner of a polygon to a sum.
   static Point term(const std::string& weighting, const std::vector<Point>& positions,
                     const std::vector<std::uint32_t>& polygon, std::size_t corner) {
     const auto place = [&](std::size_t i) { return positions[polygon[i % polygon.size()]]; };
@@ -141,7 +141,7 @@ class ReportFile {
     throw std::logic_error("a weighting of no name");
   }
 
-  // What the author of a glTF mesh would see of an element, at some positions and weights.
+  // Returns the normal that the author of a glTF mesh intends for an element, at some positions and weights.
   [[nodiscard]] Point truth(const Json& of, const std::vector<Point>& positions, const std::vector<double>& weights,
                             std::uint32_t element) const {
     const Point triangles = normal(of, positions, element);
@@ -172,7 +172,7 @@ class ReportFile {
     return result;
   }
 
-  // A sum with what the author added to it, as an angle from it and one around it.
+  // Adds the author's offset to a sum, as an angle from it and one around it.
   [[nodiscard]] Point with_offset(const Json& offsets, const std::vector<Point>& positions,
                                   const std::vector<double>& weights, std::uint32_t element, const Point& n) const {
     const std::vector<std::uint32_t> elements = numbers<std::uint32_t>(offsets["elements"]),
@@ -222,7 +222,7 @@ class ReportFile {
     return result;
   }
 
-  // The weights of all targets at a sample.
+  // Returns the weights of all targets at a sample.
   [[nodiscard]] std::vector<double> weights_at(const Json& track, std::size_t sample, std::size_t targets) const {
     const std::vector<std::uint32_t> moved = numbers<std::uint32_t>(track["targets"]);
     const std::vector<float> values = numbers<float>(track["values"]);

@@ -1,5 +1,5 @@
 /// A morphing mesh with normals, as a glTF file and as an oracle of what it shows, in long double and with loops of its
-/// own: nothing here includes code of src/ but for the builder of files.
+/// own: nothing here includes code of src/ except for the builder of files.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 
@@ -29,7 +29,7 @@ inline Vector vector_at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-/// Rodrigues: v turned about the axis from x to from, the way that takes the unit vector `from` to `to`.
+/// Turns v by the rotation that takes the unit vector `from` to `to`, by the formula of Rodrigues.
 inline Vector rotated(const Vector& from, const Vector& to, const Vector& v) {
   const Vector axis = crossed(from, to);
   if (length_of(axis) == 0) return v;
@@ -50,7 +50,7 @@ struct ShadedMesh {
 
   [[nodiscard]] std::size_t vertices() const { return positions.size() / 3; }
 
-  /// The file: mesh 0 with this as its only primitive, node 0.
+  /// Returns the file: mesh 0 with this as its only primitive, on node 0.
   [[nodiscard]] GltfBuilder file() const {
     GltfBuilder builder;
     builder.add_node(builder.add_mesh(primitive(builder)));
@@ -72,7 +72,7 @@ struct ShadedMesh {
     return result;
   }
 
-  /// The vertices that share their place, their stored normal and all their deltas of positions with v.
+  /// Tells whether two vertices share their place, their stored normal and all their deltas of positions.
   [[nodiscard]] bool same_element(std::size_t a, std::size_t b) const {
     const auto same = [&](const std::vector<float>& v) {
       return v.empty() || (v[3 * a] == v[3 * b] && v[3 * a + 1] == v[3 * b + 1] && v[3 * a + 2] == v[3 * b + 2]);
@@ -89,7 +89,7 @@ struct ShadedMesh {
     return p;
   }
 
-  /// Sum of the cross products of all faces around the element of v.
+  /// Returns the sum of the cross products of all faces around the element of v.
   [[nodiscard]] Vector normal(std::size_t v, const std::vector<double>& weights) const {
     Vector sum = {0, 0, 0};
     for (std::size_t c = 0; c < corners.size(); ++c) {
@@ -109,7 +109,7 @@ struct ShadedMesh {
     return n;
   }
 
-  /// The error of vertex v, in degrees.
+  /// Returns the error of vertex v, in degrees.
   [[nodiscard]] Real error(std::size_t v, const std::vector<double>& weights) const {
     const Vector base = unit_of(normal(v, std::vector<double>(weights.size())));
     const Vector right = rotated(base, unit_of(vector_at(normals, v)), unit_of(normal(v, weights)));
@@ -117,8 +117,8 @@ struct ShadedMesh {
   }
 };
 
-/// Two triangles, 0 1 2 in the plane z = 0 and 2 1 3 beside it, which a target folds up by 90 degrees about the edge
-/// from 1 to 2. Both are halves of squares of size 2, and all base normals are (0, 0, 1).
+/// Makes two triangles, 0 1 2 in the plane z = 0 and 2 1 3 beside it, which a target folds up by 90 degrees about the
+/// edge from 1 to 2. Both are halves of squares of size 2, and all base normals are (0, 0, 1).
 [[nodiscard]] inline ShadedMesh hinge() {
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2, 2, 1, 3};
@@ -128,7 +128,7 @@ struct ShadedMesh {
   return mesh;
 }
 
-/// A sheet of n x n vertices that is bumpy, with base normals that are tilted from the geometry's by up to `tilt`
+/// Makes a bumpy sheet of n x n vertices, with base normals that are tilted from the geometry's by up to `tilt`
 /// radians, and targets that move and shade at random.
 [[nodiscard]] inline ShadedMesh random_sheet(std::uint64_t seed, std::size_t n, std::size_t target_count, double tilt) {
   fixtures::Random random(seed);
@@ -150,7 +150,7 @@ struct ShadedMesh {
     for (std::size_t v = 0; v < n * n; ++v) {
       const bool moves = random.below(3) > 0;
       const double side = moves ? 0.35 : 0, up = moves ? 0.7 : 0;
-      // One after the other: the order of arguments is that of the compiler.
+      // The numbers are drawn one after the other, since the compiler chooses the order of arguments.
       const double x = random.uniform(-side, side), y = random.uniform(-side, side);
       push(target.positions, x, y, random.uniform(-up, up));
       const double nx = random.uniform(-0.5, 0.5), ny = random.uniform(-0.5, 0.5);

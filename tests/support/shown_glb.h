@@ -1,6 +1,6 @@
-/// What a viewer shows of a GLB file with one morphing mesh of one primitive and one animation, all of whose targets
-/// have positions and normals: what tests of baked sequences need. Weights are computed in double; normals are summed
-/// in float, as viewers do. Anything else throws.
+/// A viewer for tests of baked sequences: shows a GLB file with one morphing mesh of one primitive and one animation,
+/// all of whose targets have positions and normals. Computes weights in double and adds up normals in float, as viewers
+/// do. Throws on any other file.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 
@@ -41,7 +41,7 @@ class ShownGlb {
   [[nodiscard]] std::size_t targets() const { return position_deltas.size(); }
   [[nodiscard]] double end() const { return times.back(); }
 
-  /// Appendix C of the specification.
+  /// Evaluates the weights by appendix C of the specification.
   [[nodiscard]] std::vector<double> weights(double time) const {
     std::size_t k = 0;
     while (k + 2 < times.size() && time >= times[k + 1]) ++k;

@@ -1,5 +1,5 @@
-/// A skin over a morphing mesh, as JSON and bytes of a glTF file and as an oracle of what it does, in long double and with
-/// loops of its own: nothing here includes code of src/ but for the builder of files.
+/// A skin over a morphing mesh, as JSON and bytes of a glTF file and as an oracle of its effect, in long double and
+/// with loops of its own: nothing here includes code of src/ except for the builder of files.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::test {
 
-/// Three rows of four numbers: what takes (x, y, z, 1) to a place.
+/// A matrix of three rows of four numbers, which maps (x, y, z, 1) to a place.
 struct Rows {
   std::array<std::array<Real, 4>, 3> m = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
@@ -34,7 +34,7 @@ struct Rows {
   }
 };
 
-/// After b, a.
+/// Returns the product that applies b first, then a.
 [[nodiscard]] inline Rows after(const Rows& a, const Rows& b) {
   Rows result;
   for (std::size_t r = 0; r < 3; ++r) {
@@ -52,7 +52,7 @@ struct Trs {
   std::array<Real, 4> rotation = {0, 0, 0, 1};
   std::array<Real, 3> scale = {1, 1, 1};
 
-  /// Turns the axes by v + 2 w (u x v) + 2 u x (u x v), u = (x, y, z).
+  /// Returns the matrix, whose axes are turned by v + 2 w (u x v) + 2 u x (u x v), u = (x, y, z).
   [[nodiscard]] Rows rows() const {
     Real length = 0;
     for (const Real c : rotation) length += c * c;
@@ -79,7 +79,7 @@ struct Trs {
   }
 };
 
-/// Joints with shares of four vertices a set, and inverse bind matrices.
+/// A skin: the joints and weights of each vertex, four a set, and inverse bind matrices.
 struct Skin {
   std::vector<std::array<float, 16>> inverse_binds;  ///< column by column; empty: the file has none
   std::vector<std::vector<std::uint8_t>> joints;     ///< of each set, four for each vertex
@@ -102,7 +102,7 @@ struct Skin {
     builder.json["nodes"][0]["skin"] = builder.add("skins", skin);
   }
 
-  /// What takes a vertex to where a joint carries it.
+  /// Returns the matrix that takes a vertex to where a joint carries it.
   [[nodiscard]] Rows of_joint(std::size_t joint, const std::vector<Rows>& world) const {
     Rows bind;
     for (std::size_t k = 0; k < 12 && !inverse_binds.empty(); ++k)
@@ -110,7 +110,7 @@ struct Skin {
     return after(world[joint], bind);
   }
 
-  /// The blended matrix of a vertex where the joints are at these places of the world.
+  /// Returns the blended matrix of a vertex for joints at these places of the world.
   [[nodiscard]] Rows blended(std::size_t vertex, const std::vector<Rows>& world) const {
     Real sum = 0;
     for (const auto& of_set : weights)
@@ -130,8 +130,8 @@ struct Skin {
   }
 };
 
-/// How viewers carry a normal: through the blended matrix, through its inverse transpose, or through the cofactors of each
-/// joint.
+/// How viewers carry a normal: through the blended matrix, through its inverse transpose, or through the cofactors of
+/// each joint.
 enum class Carry { kBlended, kInverseTranspose, kByJoint };
 
 [[nodiscard]] inline Vector by_cofactors(const Rows& matrix, const Vector& n) {
@@ -152,8 +152,9 @@ enum class Carry { kBlended, kInverseTranspose, kByJoint };
   return sum;
 }
 
-/// What is on the screen: how far the shown normal of a vertex is from the right one, both carried by the blended
-/// matrix; and how far the normal of the geometry, carried likewise, is from that of the skinned surface.
+/// The errors on the screen: the angle between the rendered and the right normal of a vertex, both carried by the
+/// blended matrix; and the angle between the normal of the geometry, carried likewise, and the normal of the skinned
+/// surface.
 struct SeenErrors {
   double shown = 0, skinning = 0;
 };

@@ -1,4 +1,4 @@
-/// A folder of its own for a test, removed with all that is in it.
+/// Gives a test a folder of its own, which is removed with all its contents.
 #ifndef CHRONORMAL_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 #define CHRONORMAL_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 
@@ -35,7 +35,7 @@ class TemporaryFolder {
     std::ofstream(path_ / name, std::ios::binary) << bytes;
     return *this / name;
   }
-  /// How many files and folders are in it.
+  /// Returns the number of files and folders in it.
   [[nodiscard]] std::size_t entry_count() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
   }
@@ -44,7 +44,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// All bytes of a file; empty where it can not be read.
+/// Returns all bytes of a file, or "" if it cannot be read.
 [[nodiscard]] inline std::string read_whole(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

@@ -1,5 +1,5 @@
-/// What viewers show, once more: plain loops over the formulas of their sources, in double and in integers, without any
-/// of the library. A viewer is named, and each is written down by itself.
+/// Repeats what viewers show: plain loops over the formulas of their sources, in double and in integers, without any of
+/// the library. Each viewer is written down by itself, under its name.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
 
@@ -26,7 +26,7 @@ using Triple = std::array<double, 3>;
   return size > 0 ? Triple{v[0] / size, v[1] / size, v[2] / size} : Triple{};
 }
 
-/// A 16-bit float by its bits: ten digits are kept, and the first that is not kept rounds up.
+/// Returns a value as a 16-bit float, by its bits: ten digits are kept, and the first digit that is dropped rounds up.
 [[nodiscard]] inline double as_half(double value) {
   const auto narrow = static_cast<float>(value);
   std::uint32_t bits = 0;
@@ -45,14 +45,15 @@ using Triple = std::array<double, 3>;
   return std::copysign((1 + kept) * std::pow(2.0, exponent), value);
 }
 
-/// The two coordinates of a direction on an octahedron, whose lower half is folded out; sum is |x| + |y| + |z|.
+/// Maps a direction to two coordinates on an octahedron, whose lower half is folded out; sum is |x| + |y| + |z|.
 [[nodiscard]] inline std::array<double, 2> on_octahedron(const Triple& v, double sum) {
   const double x = v[0] / sum, y = v[1] / sum;
   if (v[2] >= 0) return {x, y};
   return {(1 - std::fabs(y)) * (x >= 0 ? 1 : -1), (1 - std::fabs(x)) * (y >= 0 ? 1 : -1)};
 }
 
-/// Godot: a direction on an octahedron whose two coordinates are integers from 0 to 65535, cut off.
+/// Keeps a direction as Godot does: on an octahedron with two coordinates that are truncated to integers from 0 to
+/// 65535.
 [[nodiscard]] inline Triple through_godot(const Triple& v) {
   const double sum = std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]);
   if (sum == 0) return {};
@@ -69,8 +70,9 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({x, y, z});
 }
 
-/// Filament: of a normal without texture coordinates a frame by Frisvad's rule, of its matrix (t, n x t, n) a
-/// quaternion by the four cases of Shepperd's method, of that four integers of 16 bits, and of these the third axis.
+/// Keeps a normal as Filament does without texture coordinates: makes a frame by Frisvad's rule, turns its matrix (t, n
+/// x t, n) into a quaternion by the four cases of Shepperd's method, keeps four integers of 16 bits, and takes the
+/// third axis.
 [[nodiscard]] inline Triple through_filament(const Triple& n) {
   if (n == Triple{}) return {};
   const double a = 1 / (1 + n[1]);
@@ -92,7 +94,7 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({2 * x * z + 2 * w * y, 2 * y * z - 2 * w * x, 1 - 2 * x * x - 2 * y * y});
 }
 
-/// The integer nearest to |value| times `most`, found by trying all of them, with the sign of the value.
+/// Returns the integer nearest to |value| times `most`, found by trying all of them, with the sign of the value.
 [[nodiscard]] inline int nearest_integer(double value, int most) {
   int best = 0;
   for (int k = 1; k <= most; ++k)
@@ -100,10 +102,11 @@ using Triple = std::array<double, 3>;
   return value < 0 ? -best : best;
 }
 
-/// gltfpack, and glTF Transform at 8 bits.
+/// Keeps a value as gltfpack does, and glTF Transform at 8 bits.
 [[nodiscard]] inline double as_byte(double value) { return nearest_integer(value, 127) / 127.0; }
 
-/// glTF Transform at 10 bits: nine binary digits beside the sign, written once and a part of them again, make fifteen.
+/// Keeps a value as glTF Transform does at 10 bits: nine binary digits beside the sign are written, and a part of them
+/// again, to make fifteen.
 [[nodiscard]] inline double as_ten_bits(double value) {
   std::string digits;
   const int kept = std::abs(nearest_integer(value, 511));
@@ -112,7 +115,8 @@ using Triple = std::array<double, 3>;
   return std::copysign(std::stoi(fifteen, nullptr, 2) / 32767.0, value);
 }
 
-/// glTF Transform's meshopt: a direction on an octahedron with coordinates from -127 to 127, and then three such bytes.
+/// Keeps a direction as glTF Transform's meshopt does: on an octahedron with coordinates from -127 to 127, and then as
+/// three such bytes.
 [[nodiscard]] inline Triple through_meshopt(const Triple& v) {
   const double sum = std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]);
   if (sum == 0) return {};
@@ -132,7 +136,7 @@ using Triple = std::array<double, 3>;
   return {change(v[0]), change(v[1]), change(v[2])};
 }
 
-/// The unit normal that a viewer shows of N, its deltas and these weights.
+/// Returns the unit normal that a viewer shows for N, its deltas and these weights.
 [[nodiscard]] inline Triple shown_by(std::string_view viewer, const Triple& normal, const std::vector<Triple>& deltas,
                                      const std::vector<double>& weights) {
   const auto plus = [](const Triple& a, double w, const Triple& b) {
@@ -177,7 +181,7 @@ using Triple = std::array<double, 3>;
   return scaled_to_one(sum);
 }
 
-/// The weights that a viewer plays of a track at a time that is no key. start and end: of the animation.
+/// Returns the weights that a viewer plays from a track at a time between keys. start and end belong to the animation.
 [[nodiscard]] inline std::vector<double> played_by(std::string_view viewer, GltfInterpolation interpolation,
                                                    const std::vector<float>& times, const std::vector<float>& values,
                                                    std::size_t targets, double start, double end, double time) {
@@ -205,7 +209,7 @@ using Triple = std::array<double, 3>;
     return weights;
   }
   if (viewer == "playcanvas" && is_spline) {
-    // The tracks that its parser makes: as many as there are numbers for each key, one number each.
+    // Its parser makes one track of single numbers for each number of a key.
     const std::size_t tracks = values.size() / times.size(), keys = times.size();
     std::vector<double> weights;
     for (std::size_t j = 0; j < targets; ++j) {

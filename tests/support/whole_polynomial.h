@@ -1,9 +1,9 @@
-/// Polynomials with whole coefficients of any size: the judge of roots and signs that the product claims to know
+/// Polynomials with whole coefficients of any size, which judge the roots and signs that the product claims to know
 /// exactly.
 ///
 /// Positions in float32 are whole numbers times 2^-149, and a whole t needs no fractions, so values at t = -1, 0, 1 and
-/// 2 are whole, and the polynomial is that through them. Roots are counted by Descartes' rule and halving, on the
-/// polynomial without its multiple roots.
+/// 2 are whole, and determine the polynomial. Roots are counted by Descartes' rule and halving, on the polynomial
+/// without its multiple roots.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
 
@@ -25,13 +25,13 @@ namespace chronormal::test {
 using Whole = mpz_class;
 using WholeVector = std::array<Whole, 3>;
 
-/// A vector of floats times 2^149.
+/// Returns a vector of floats times 2^149.
 [[nodiscard]] inline WholeVector whole(const Vec3f& v) {
   const auto one = [](float x) { return Whole(std::ldexp(static_cast<double>(x), 149)); };
   return {one(v.x), one(v.y), one(v.z)};
 }
 
-/// p + t (q - p) for a whole t.
+/// Returns p + t (q - p) for a whole t.
 [[nodiscard]] inline WholeVector on_line(const WholeVector& p, const WholeVector& q, long t) {
   WholeVector result;
   for (std::size_t k = 0; k < 3; ++k) result[k] = p[k] + t * (q[k] - p[k]);
@@ -50,7 +50,7 @@ using WholeVector = std::array<Whole, 3>;
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-/// The normal of a polygon at a whole t: the sum over its triangles, times 2^298.
+/// Returns the normal of a polygon at a whole t: the sum over its triangles, times 2^298.
 [[nodiscard]] inline WholeVector whole_normal(const Segment& segment, std::span<const std::uint32_t> vertices, long t) {
   const auto corner = [&](std::size_t c) {
     return on_line(whole(segment.from[vertices[c]]), whole(segment.to[vertices[c]]), t);
@@ -66,7 +66,7 @@ using WholeVector = std::array<Whole, 3>;
 
 class WholePolynomial {
  public:
-  /// The polynomial of degree up to 3 with these values at t = -1, 0, 1, 2, times 6.
+  /// Returns 6 times the polynomial of degree up to 3 with these values at t = -1, 0, 1, 2.
   [[nodiscard]] static WholePolynomial through(const Whole& at_minus_1, const Whole& at_0, const Whole& at_1,
                                                const Whole& at_2) {
     const Whole c3 = at_2 - 3 * at_1 + 3 * at_0 - at_minus_1, c2 = 3 * (at_1 - 2 * at_0 + at_minus_1);
@@ -78,7 +78,7 @@ class WholePolynomial {
 
   [[nodiscard]] static WholePolynomial greatest_common_divisor(WholePolynomial p, WholePolynomial q);
 
-  /// The sign at a double, which may be anything finite.
+  /// Returns the sign at a double, which may be anything finite.
   [[nodiscard]] int sign_at(double t) const {
     int exponent = 0;
     const Whole mantissa(std::ldexp(std::frexp(t, &exponent), 53));
@@ -91,7 +91,7 @@ class WholePolynomial {
     return sgn(value);
   }
 
-  /// Whether it has one root, and the sign of the derivative of p there.
+  /// Tells whether the polynomial is linear; slope_at_root() returns the sign of the derivative of p at its root.
   [[nodiscard]] bool is_linear() const { return a_.size() == 2; }
   [[nodiscard]] int slope_at_root(const WholePolynomial& p) const {
     const Whole root = -a_[0], unit = a_[1];  // t = root / unit
@@ -104,16 +104,16 @@ class WholePolynomial {
     return is_odd ? sgn(slope) * sgn(unit) : sgn(slope);
   }
 
-  /// How many different roots there are in [0, 1].
+  /// Counts the different roots in [0, 1].
   [[nodiscard]] std::size_t count_roots() const {
     const std::size_t at_ends = (sign_at(0) == 0 ? 1U : 0U) + (sign_at(1) == 0 ? 1U : 0U);
     const std::vector<Whole> b = bernstein();
     return at_ends + (variations(b) < 2 ? variations(b) : count_in(without_multiple_roots().bernstein()));
   }
 
-  /// How many different roots there are in [low, high], for 0 <= low < high <= 1.
+  /// Counts the different roots in [low, high], for 0 <= low < high <= 1.
   [[nodiscard]] std::size_t count_roots(double low, double high) const {
-    // p(low + s (high - low)), with low and high whole numbers times 2^-shift.
+    // Computes p(low + s (high - low)), with low and high whole numbers times 2^-shift.
     constexpr int kShift = 1080;
     const auto scaled = [](double t) {
       int exponent = 0;
@@ -125,7 +125,7 @@ class WholePolynomial {
     std::vector<Whole> moved;
     Whole power = 1;
     for (std::size_t k = a_.size(); k-- > 0;) {
-      // moved = moved * (from + s step) + a_k power
+      // This step is moved = moved * (from + s step) + a_k power.
       std::vector<Whole> next(moved.size() + 1);
       for (std::size_t i = 0; i < moved.size(); ++i) {
         next[i] += moved[i] * from;
@@ -158,12 +158,12 @@ class WholePolynomial {
     return result;
   }
 
-  // Quotient and remainder of a multiple.
+  // The quotient and the remainder of a multiple.
   struct Division;
   [[nodiscard]] Division divided_by(const WholePolynomial& q) const;
   [[nodiscard]] WholePolynomial without_multiple_roots() const;
 
-  // Bernstein coefficients, times a positive number.
+  // Returns the Bernstein coefficients, times a positive number.
   [[nodiscard]] std::vector<Whole> bernstein() const {
     if (a_.empty()) return {};
     const std::size_t n = a_.size() - 1;
@@ -190,10 +190,10 @@ class WholePolynomial {
     return count;
   }
 
-  // Roots in the open interval (0, 1), all of which are simple.
+  // Counts the roots in the open interval (0, 1), all of which are simple.
   static std::size_t count_in(const std::vector<Whole>& b) {
     if (variations(b) < 2) return variations(b);
-    // Halves, times 2^n.
+    // Both halves are scaled by 2^n.
     std::vector<Whole> before = b, after = b, row = b;
     const std::size_t n = b.size() - 1;
     for (std::size_t level = 0; level <= n; ++level) {

@@ -1,8 +1,8 @@
-/// Winding numbers and crossings of moving points, in whole numbers and rationals: what containment is held against.
+/// Computes winding numbers and crossings of moving points in whole numbers and rationals, to check containment.
 ///
 /// A winding number is counted along a slanted half-line, and not an upright one, with signs of determinants of whole
-/// numbers. Where one of them is zero because the point is on something, the point is really moved, by a small step
-/// along x, one that is smaller by far along y, and one that is smaller still along z, and asked again. Roots are
+/// numbers. If a determinant is zero because the point lies on something, the point is actually moved, by a small step
+/// along x, a far smaller one along y, and a still smaller one along z, and the question is repeated. Roots are
 /// isolated by Sturm's theorem in rationals.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
@@ -27,7 +27,7 @@ namespace chronormal::exact {
 using Integers = std::array<mpz_class, 3>;
 using Corners = std::array<std::uint32_t, 3>;
 
-/// A float times 2^149, which is whole.
+/// Returns a float times 2^149, which is whole.
 [[nodiscard]] inline mpz_class whole(float x) {
   int exponent = 0;
   const auto mantissa = static_cast<long>(std::ldexp(std::frexp(x, &exponent), 24));
@@ -36,7 +36,7 @@ using Corners = std::array<std::uint32_t, 3>;
   return mpz_class(mantissa) << static_cast<unsigned>(shift);
 }
 
-/// A double from 0 to 1, with at most 53 places behind the point.
+/// A double from 0 to 1, with at most 53 binary places after the point.
 struct Fraction {
   std::int64_t numerator;  // of 2^53
 
@@ -45,7 +45,7 @@ struct Fraction {
   }
 };
 
-/// 2^(149 + 53) times a coordinate at t, and so whole, as seen from a point that moves too.
+/// Returns 2^(149 + 53) times a coordinate at t relative to a moving point, which is whole.
 [[nodiscard]] inline Integers seen_at(const Vec3f& from, const Vec3f& to, const Vec3f& point_from,
                                       const Vec3f& point_to, const Fraction& t) {
   const mpz_class after = t.numerator, before = (std::int64_t{1} << 53) - t.numerator;
@@ -56,7 +56,7 @@ struct Fraction {
           at(from.z, to.z, point_from.z, point_to.z)};
 }
 
-/// Integer is mpz_class, or std::int64_t where that is enough.
+/// A place whose Integer is mpz_class, or std::int64_t if that is enough.
 template <class Integer>
 using Place = std::array<Integer, 3>;
 
@@ -69,7 +69,7 @@ template <class Integer>
   return sign_of(Integer(a[0] * x + a[1] * y + a[2] * z));
 }
 
-/// The winding number of the origin, or nothing where a determinant is zero.
+/// Returns the winding number of the origin, or nothing if a determinant is zero.
 template <class Integer>
 [[nodiscard]] std::optional<int> winding_along(const std::vector<Place<Integer>>& vertices,
                                                std::span<const Corners> faces, const Place<Integer>& direction) {
@@ -92,7 +92,7 @@ template <class Integer>
   return number;
 }
 
-/// The winding number of a point at t. Corners are those of triangles.
+/// Returns the winding number of a point at t. The faces are triangles.
 [[nodiscard]] inline int winding_number(const Segment& segment, std::span<const Corners> faces, const Vec3f& from,
                                         const Vec3f& to, double t) {
   std::vector<Integers> vertices;
@@ -105,7 +105,7 @@ template <class Integer>
       if (abs(x) > largest) largest = abs(x);
     }
   }
-  // As small as they can be.
+  // Common factors of two are removed to make the numbers as small as possible.
   for (Integers& v : vertices) {
     for (mpz_class& x : v) x >>= zeros;
   }
@@ -117,7 +117,7 @@ template <class Integer>
   }
   const std::array<Integers, 4> directions{{{3, 7, 11}, {-13, 5, 8}, {17, -19, 6}, {-5, -23, 29}}};
   if (const auto number = winding_along(vertices, faces, directions[0])) return *number;
-  // Steps that are small against anything that is not zero: volumes and areas are whole, and areas below size^2.
+  // The steps are small against anything that is not zero: volumes and areas are whole, and areas are below size^2.
   const mp_bitcnt_t size = mpz_sizeinbase(largest.get_mpz_t(), 2) + 8, finest = 7 * size;
   for (Integers& v : vertices) {
     for (std::size_t k = 0; k < 3; ++k) v[k] = (v[k] << finest) - (mpz_class(1) << (finest - (2 * k + 3) * size));
@@ -128,7 +128,7 @@ template <class Integer>
   throw std::logic_error("no direction meets no edge");
 }
 
-/// Coefficients of 1, t, t^2 ...
+/// The coefficients of 1, t, t^2 ...
 using Polynomial = std::vector<mpq_class>;
 
 [[nodiscard]] inline Polynomial times(const Polynomial& p, const Polynomial& q) {
@@ -149,7 +149,7 @@ using Polynomial = std::vector<mpq_class>;
   return sgn(value);
 }
 
-/// The sequence of Sturm: how many different roots there are between two times that are none.
+/// Counts by Sturm's sequence the different roots between two times that are not roots.
 class SturmSequence {
  public:
   explicit SturmSequence(Polynomial p) {
@@ -201,7 +201,7 @@ struct ExactCrossing {
   bool inward;
 };
 
-/// All crossings of faces, for a point that goes through no edge and touches no face: says so where it does.
+/// All crossings of faces for a point that goes through no edge and touches no face; otherwise is_general is false.
 struct ExactCrossings {
   bool is_general = true;
   std::vector<ExactCrossing> list;
@@ -218,7 +218,7 @@ struct ExactCrossings {
     };
     return Line{seen(a.x, b.x, from.x, to.x), seen(a.y, b.y, from.y, to.y), seen(a.z, b.z, from.z, to.z)};
   };
-  // By the normal, and not by a vertical line: the point is between the edges where all three areas point like n.
+  // The test uses the normal, and not a vertical line: the point is between the edges if all three areas point like n.
   const auto cross = [](const Line& a, const Line& b) {
     Line result;
     for (std::size_t k = 0; k < 3; ++k) {

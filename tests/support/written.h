@@ -1,4 +1,4 @@
-/// The bytes of a motion as a file, by the function that programs use, write_motion().
+/// Writes a motion as a file by the function that programs use, write_motion(), and returns the bytes.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WRITTEN_H_
 #define CHRONORMAL_TESTS_SUPPORT_WRITTEN_H_
 
@@ -9,7 +9,7 @@
 
 namespace chronormal::test {
 
-/// The bytes of a file of this extension (".pc2"). Errors: those of write_motion().
+/// Returns the bytes of a file of this extension (".pc2"). Errors are those of write_motion().
 [[nodiscard]] inline Result<std::string> written(const Motion& motion, const std::string& extension) {
   const TemporaryFolder folder;
   const std::string path = folder / ("motion" + extension);

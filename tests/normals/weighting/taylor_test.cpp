@@ -99,7 +99,7 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
 }
 
 RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
-  // The enclosure is therefore narrow enough to reveal a missing remainder.
+  // A wider enclosure would hide a missing remainder.
   fixtures::Random random(*rc::gen::arbitrary<std::uint64_t>());
   const Quadratic p{random.uniform(0.3, 0.6), random.uniform(-0.3, 0.3)};
   const Series<6> taylor = power<6>(p.about(0), -0.5, reciprocal(square_root(p.about(0)[0])));
