@@ -1,5 +1,6 @@
-// A sheet as an author has it: quads, some hexagons and some faces shaded flat; normals are sums over polygons by the angle of
-// their corners, all around a point where it is smooth; some were bent by hand, each way in each key, and some look to the other side.
+// A sheet as an author has it: quads, some hexagons and some faces shaded flat. Its normals are sums over polygons by
+// the angle of their corners, of all polygons around a smooth point. Some were bent by hand, differently in each key,
+// and some look to the other side.
 import { writeFile } from './fixtures.mjs';
 import { randomNumbers } from './random.mjs';
 
@@ -10,7 +11,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => a.map((x) => x / Math.hypot(...a));
 const single = (a) => a.map(Math.fround);
 
-// Polygons over n x n points: corners counterclockwise, and the triangles that an exporter cuts them into.
+// Makes polygons over n x n points: corners counterclockwise, and the triangles into which an exporter cuts them.
 function polygonsOf(n, random) {
   const polygons = [], middle = n >> 1, quad = [[0, 1, 2], [0, 2, 3]], ears = [[5, 0, 1], [2, 3, 4], [5, 1, 2], [5, 2, 4]];
   const isNear = (i, j) => Math.max(Math.abs(i + 0.5 - middle), Math.abs(j + 0.5 - middle)) < 1;
@@ -28,7 +29,7 @@ function polygonsOf(n, random) {
 
 const faceNormal = ({ corners }, p) => unit(corners.reduce((sum, v, i) => plus(sum, cross(p[v], p[corners[(i + 1) % corners.length]])), [0, 0, 0]));
 
-// The unit normals of all points: all polygons around each count.
+// Returns the unit normals of all points, to which all polygons around a point contribute.
 function pointNormals(polygons, p) {
   const sums = p.map(() => [0, 0, 0]);
   for (const polygon of polygons) {
@@ -56,7 +57,7 @@ export async function writeAuthored(path, seed, n = 12) {
     return bent.map((x) => side[v] * x);
   }));
 
-  // One vertex for each smooth point, and one for each corner of a flat polygon.
+  // There is one vertex for each smooth point, and one for each corner of a flat polygon.
   const vertices = [], indices = [], vertexOf = new Map();
   for (const polygon of polygons) {
     const flat = polygon.isFlat ? keys.map((p) => faceNormal(polygon, p)) : null;

@@ -1,5 +1,5 @@
 // Babylon.js as a viewer, in the page: its loader, its animation groups, and the normals that its own glTF material
-// computes, which shows them instead of colours when asked to.
+// computes, which it can show instead of colours.
 import { Animation } from '@babylonjs/core/Animations/animation.js';
 import { AnimationGroup } from '@babylonjs/core/Animations/animationGroup.js';
 import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
@@ -46,7 +46,7 @@ export function play(model, animation, time) {
   group.goToFrame(time * FRAMES_PER_SECOND);
 }
 
-// Sets the weights of the first targets of every mesh; drive() sets those of extra targets.
+// Sets the weights of the first targets of every mesh; drive() sets the weights of correction targets.
 export function setWeights({ scene }, weights) {
   for (const { morphTargetManager } of scene.meshes)
     if (morphTargetManager)
@@ -76,7 +76,7 @@ export const detach = ({ scene }) => live.detach(scene);
 
 export const dispose = ({ scene }) => scene.dispose();
 
-// World-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
+// Draws the world-space normals of all pixels, RGBA in float32: (n + 1) / 2, with alpha 0 where nothing is drawn.
 export async function drawNormals({ scene }, { eye, at, degrees, near, far }, size) {
   engine.setSize(size.width, size.height);
   const camera = new FreeCamera('camera', Vector3.FromArray(eye), scene);

@@ -1,4 +1,4 @@
-// Blender without a window, which runs a script of this folder.
+// Runs a script of this folder in Blender, without a window.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
@@ -7,8 +7,8 @@ export function runBlender(script, ...args) {
   return runBlenderAs({}, fileURLToPath(new URL(script, import.meta.url)), ...args);
 }
 
-// Runs the script at a path, with options of spawnSync() such as `env` and `uid`, and returns what Blender printed. On one
-// thread: on several, the sums of normals of the same mesh, and so the bytes of its exports, are not always the same.
+// Runs the script at a path, with options of spawnSync() such as `env` and `uid`, and returns what Blender printed. It
+// uses one thread: with several, the sums of normals of the same mesh, and so the bytes of its exports, may differ.
 export function runBlenderAs(how, path, ...args) {
   const options = ['--background', '--factory-startup', '--threads', '1', '--python-exit-code', '1', '--python', path];
   const { status, stdout, stderr, error } = spawnSync('blender', [...options, '--', ...args], {

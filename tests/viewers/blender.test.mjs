@@ -1,8 +1,8 @@
-// What Blender makes of a baked file, and what a bake makes of that. Run by ctest as `blender`, where Blender is installed
-// (`./test --full pipelines` installs it).
+// Imports baked files into Blender, and bakes what Blender exports. Run by ctest as `blender`, where Blender is
+// installed (`./test --full pipelines` installs it).
 //
-// Blender shows normals that it makes itself, so that a bake changes no picture there. It must not change the shape either;
-// and whoever exports the file again bakes it again.
+// Blender renders normals that it computes itself, so that a bake changes no picture there. It must not change the
+// shape either; and an exported file can be baked again.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -32,7 +32,7 @@ function throughBlender(input, again) {
 const audited = (path) => JSON.parse(chronormal('audit', path, '--json', '--quiet'));
 const kinds = (path) => audited(path).findings.map(({ kind }) => kind);
 
-// How far vertices are from where they were, at worst. Shape keys must have their names still.
+// Returns the largest distance of a vertex from its former place. Shape keys must keep their names.
 function distance(before, after) {
   assert.equal(after.meshes.length, before.meshes.length);
   let worst = 0;
@@ -46,7 +46,7 @@ function distance(before, after) {
   return worst;
 }
 
-// Blender 3.4 imports no target whose name is empty.
+// Names the targets, since Blender 3.4 imports no target whose name is empty.
 async function nameTargets(path) {
   const document = await newIO().read(path);
   for (const mesh of document.getRoot().listMeshes())
@@ -66,7 +66,7 @@ async function checkRoundTrip(context, original) {
     const imported = throughBlender(baked, again);
     const apart = distance(before, imported);
     context.diagnostic(`${encoding}: vertices are up to ${apart.toPrecision(2)} from where they were`);
-    // Blender 3.4 reads the values of a cubic spline, and not its tangents.
+    // Blender 3.4 reads the values of a cubic spline, but not its tangents.
     if (encoding === 'harmless') assert.ok(apart < 1e-5);
     assert.ok(imported.meshes.some(({ keys }, m) => keys.length > extras[m]), 'the bake added no target');
 
@@ -75,13 +75,14 @@ async function checkRoundTrip(context, original) {
     const second = bake(again, anew);
     assert.deepEqual(await newComplaints(anew, again), []);
     assert.ok(kinds(anew).includes('baked') && !kinds(anew).includes('emptied'), `${encoding}: ${kinds(anew)}`);
-    // The author of the second file is Blender, which made its normals anew: what is right of it is no polynomial, and fitted.
+    // The author of the second file is Blender, which computed its normals anew: they are no polynomial, so the bake
+    // fits them.
     const text = ({ mean_degrees_before: before, mean_degrees_after: mean, worst_degrees_after: worst }) =>
       `${before.toFixed(3)} on average -> ${mean.toFixed(3)} / ${worst.toFixed(2)}`;
     const outcome = `${encoding}: first ${text(first)}, again ${text(second)}`;
     context.diagnostic(outcome);
     assert.ok(second.mean_degrees_after <= Math.max(1.2 * first.mean_degrees_after + 0.05, 0.1 * second.mean_degrees_before), outcome);
-    // A surface is better as a whole: one normal of it may be a little farther off.
+    // A surface gets better as a whole, while a single normal may get a little worse.
     assert.ok(second.worst_degrees_after <= 1.2 * second.worst_degrees_before + 0.05, outcome);
     const spare = join(folder, 'spare.glb');
     if (encoding === 'harmless') assert.ok(distance(throughBlender(again, spare), throughBlender(anew, spare)) < 1e-5);

@@ -1,5 +1,5 @@
-// The add-on of blender/, used in Blender as a person does, and its files judged by the normals that Blender itself evaluates.
-// Run by ctest as `blender`, where Blender is installed.
+// Uses the add-on of blender/ in Blender as a person does, and judges its files by the normals that Blender itself
+// evaluates. Run by ctest as `blender`, where Blender is installed.
 //
 //   CHRONORMAL_SEED  another seed for the models and poses; the one that is used is printed
 import assert from 'node:assert/strict';
@@ -18,15 +18,15 @@ import { read, shownNormals } from './reader.mjs';
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 
-// Degrees, as in blender_truth.test.mjs: at the base and at keys, and at times of the animation.
+// Limits in degrees, as in blender_truth.test.mjs: at the base and at keys, and at times of the animation.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
 
-// Degrees by which two judges of one pose differ, who match corners and vertices in ways of their own.
+// The difference in degrees between two judges of one pose, which match corners and vertices in different ways.
 const AGREE = 0.02;
 
-// The edges of `facets` become hard by their angle in a deformed pose alone, which no target can show.
+// The edges of `facets` become hard by their angle only in a deformed pose, which no target can show.
 const HARD_IN_POSES = ['facets'];
 
 const PLAIN = /the plain file stands/;
@@ -35,7 +35,8 @@ let folder, program;
 const at = (name) => join(folder, name);
 const bytes = (name) => readFileSync(at(name));
 
-// Runs a task of blender_addon.py, and returns what it wrote down. The add-on is that of the folder unless `how` says else.
+// Runs a task of blender_addon.py, and returns its results. The add-on is the one of the folder unless `how` names
+// another.
 function run(how, task, ...args) {
   const env = { BLENDER_USER_SCRIPTS: at('user'), TMPDIR: folder, HOME: folder, ...how.env };
   runBlenderAs({ ...how, env }, at('scripts/blender_addon.py'), task, folder, ...args);
@@ -48,7 +49,8 @@ function write(name, text, mode) {
 }
 
 before(() => {
-  // All in a folder that any user may read: root may write into every folder, so that one task is run as somebody else.
+  // Everything lies in a folder that any user may read. One task runs as another user, since root may write into every
+  // folder.
   folder = mkdtempSync(join(tmpdir(), 'chronormal_addon_'));
   chmodSync(folder, 0o777);
   program = at('chronormal');
@@ -65,7 +67,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 const text = ({ stills, times }) =>
   [stills, times].map(({ mean, worst }) => `${mean.toFixed(4)} / ${worst.toFixed(3)}`).join(', at times ');
 
-// The worst error of a file at an instant of a truth, by the vertices of the file.
+// Returns the worst error of a file at an instant of a truth, over the vertices of the file.
 function worstAt(model, posed, i) {
   let worst = 0;
   model.exported.meshes[0].primitives.forEach((primitive, p) => {
@@ -107,7 +109,8 @@ describe('The add-on', () => {
         assert.ok(times.mean <= MEAN && times.worst <= WORST, `${form}: ${times.mean} / ${times.worst} degrees`);
       }
       own.diagnostic(said);
-      // A warning says that a key half-way, which no file can mend without a program, is beyond the tolerance.
+      // A warning says that the error at a key half-way exceeds the tolerance, which no file can mend without a
+      // program.
       assert.equal(level, said.includes('no candidate is within') ? 'WARNING' : 'INFO', said);
       assert.match(said, HARD_IN_POSES.includes(model.name) ? /^Normals/ : /^Normals were corrected: error on average .* correction targets?\./);
       assert.ok(!said.includes('--'), 'an artist knows no option of a command');
@@ -128,7 +131,7 @@ describe('The add-on', () => {
     eachModel(context, (model, { over_time: plain, baked_over_time: baked, leaves }, own) => {
       const { times } = errors(model.exported, model);
       own.diagnostic(`plain ${plain.average}, corrected ${baked.average}, the file ${times.mean}`);
-      // The panel looks at every frame, and the truth was noted at every third.
+      // The panel looks at every frame, but the truth was recorded at every third.
       assert.ok(plain.poses > 40 && plain.worst >= times.worst - AGREE);
       assert.ok(plain.findings.some(([kind]) => kind === 'FRAME') && plain.findings.some(([kind]) => kind === 'PLACE'));
       if (!HARD_IN_POSES.includes(model.name)) assert.ok(baked.mean <= MEAN && baked.worst <= WORST, JSON.stringify(baked));
@@ -142,8 +145,8 @@ describe('The add-on', () => {
       if (jumps) assert.ok(Math.abs(jumps.said - jumps.there) < 1e-3 && jumps.ones === 2, JSON.stringify(jumps));
     }));
 
-  // What Blender imports are triangles with normals of their own, so that it is another model than that of the author: the
-  // plain file, imported and exported, is what the baked one is held against.
+  // Blender imports triangles with custom normals, which is another model than the author's. So the baked file is
+  // compared with the plain file, imported and exported.
   test('makes the corrections of a baked file idle when it is imported, and bakes the keys of its author again', async (context) => {
     const names = ['head', 'sharp_cylinder', 'triangles', 'mixed', 'weighted'];
     for (const name of names) chronormal('bake', at(`${name}.glb`), '-o', at(`${name}.baked.glb`), '--quiet');

@@ -1,5 +1,5 @@
-// The normals that Blender itself evaluates for a model, as blender_truth.py writes them, and what a viewer that adds up
-// deltas shows of a file beside them.
+// Reads the normals that Blender itself evaluates for a model, as blender_truth.py writes them, and compares them with
+// a viewer that adds up the deltas of a file.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
@@ -28,8 +28,8 @@ const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);
 const near = (a, b) => a.every((x, c) => Math.abs(x - b[c]) < ROUNDING);
 const plus = (array, delta, v) => vector(array, v).map((x, c) => x + (delta?.[3 * v + c] ?? 0));
 
-// Finds the loop of Blender's mesh that each vertex of an exported primitive was made from: it is where the vertex is
-// in the base and at each key, and has the nearest normals there.
+// Finds the loop of Blender's mesh that each vertex of an exported primitive was made from: it has the place of the
+// vertex in the base and at each key, and the nearest normals.
 function loopsOf(primitive, truth) {
   const stills = truth.instants.flatMap(({ time }, i) => (time === undefined ? [i] : []));
   const deltas = [null, ...primitive.targets];

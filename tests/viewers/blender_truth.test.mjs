@@ -1,4 +1,4 @@
-// Holds `audit` and `bake` against the normals that Blender itself evaluates for models that it exports. Run by ctest
+// Compares `audit` and `bake` with the normals that Blender itself evaluates for models that it exports. Run by ctest
 // as `blender`, where Blender is installed.
 //
 //   CHRONORMAL_SEED  another seed for the models; the one that is used is printed
@@ -14,7 +14,7 @@ import { read } from './reader.mjs';
 
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 
-// Degrees that are allowed at the base and at each key alone, and on average and at worst at times of the animation.
+// The allowed degrees at the base and at each key alone, and on average and at worst at times of the animation.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
@@ -22,7 +22,7 @@ const WORST = 1;
 const text = ({ stills, times }) =>
   [stills, times].map(({ mean, worst }) => `${mean.toFixed(4)} / ${worst.toFixed(3)}`).join(', at times ');
 
-// Bakes also where the nearest that can be written is not within the tolerance, which is exit code 4.
+// Bakes a file, and accepts exit code 4, with which the closest result exceeds the tolerance.
 function bake(...args) {
   try {
     chronormal('bake', ...args, '--no-audit', '--quiet');
@@ -40,7 +40,7 @@ function assertNoFaultAtKeys({ subjects, findings }) {
   for (const { name, worst_at_keys_degrees: worst } of targets) assert.ok(worst <= AT_KEYS, `${name}: ${worst}`);
 }
 
-// The audit samples the animation at all times at which Blender evaluated it, and at more.
+// Checks the audit of the animation, which samples all times at which Blender evaluated it, and more.
 function assertSameBetween({ subjects }, { times }) {
   const { mean_degrees: mean, worst_degrees: worst } = subjects.find(({ kind }) => kind === 'track');
   const message = `audit ${mean} / ${worst} degrees, Blender ${times.mean} / ${times.worst}`;
@@ -78,7 +78,8 @@ describe("Blender's own normals", () => {
       assertSameBetween(audited, errors(model.exported, model));
     }));
 
-  // The edges of `facets` become hard by their angle in a deformed pose, and the exporter has fixed before which vertices are one.
+  // The edges of `facets` become hard by their angle in a deformed pose, but the exporter has fixed before which
+  // vertices are one.
   test('are shown at every time after a bake for a viewer that adds up deltas', (context) =>
     eachModel(context, async (model, own) => {
       const baked = `${model.path}.closest.glb`;

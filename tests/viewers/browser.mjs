@@ -1,5 +1,5 @@
-// Headless Chromium with the page of page.mjs in it. Nothing is loaded from anywhere: whatever the page asks for is one
-// of the files below, or is refused.
+// Runs headless Chromium with the page of page.mjs in it. The page can load only the files below; all other requests
+// are refused.
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { join } from 'node:path';
@@ -10,7 +10,7 @@ import puppeteer from 'puppeteer-core';
 const ADDRESS = 'http://chronormal.invalid/';
 const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 
-// Filament is a script that makes a global of that name, and asks for its program when it starts.
+// Filament is a script that defines a global of that name, and asks for its program when it starts.
 const HTML = `<!doctype html><title>chronormal</title><link rel="icon" href="data:,">
 <script src="filament.js"></script><script src="page.js"></script>`;
 
@@ -40,7 +40,7 @@ export function launch() {
 
 const TYPES = { '/': 'text/html', js: 'text/javascript', html: 'text/html', wasm: 'application/wasm' };
 
-// A server of this machine; body(path) is what it has there, or nothing.
+// Starts a server on this machine; body(path) returns the content of a path, or nothing.
 async function listen(body) {
   const server = createServer(({ url }, response) => {
     const found = body(url.slice(1));
@@ -59,7 +59,7 @@ export function serveFolder(folder, fallback) {
   });
 }
 
-// A page of a server of this machine, which serves the files of folders by their names, and what else is given.
+// Opens a page on a server of this machine, which serves the files of folders by their names, and other given contents.
 export async function openFolder(contents) {
   const { address, close: stop } = await listen((path) => {
     const [first, ...rest] = path.split('/'), found = contents[first];

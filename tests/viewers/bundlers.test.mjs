@@ -1,5 +1,5 @@
-// The npm package as its users bundle it: an application of a few lines, built from the packed package by Vite, webpack, esbuild
-// and rollup as js/README.md says, or by nobody, audits a GLB in Chromium, in a worker and without one.
+// Tests the npm package as its users bundle it: an application of a few lines, built from the packed package by Vite,
+// webpack, esbuild and rollup as js/README.md says, or not bundled, audits a GLB in Chromium, with and without a worker.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test tests/viewers/bundlers.test.mjs
 import assert from 'node:assert/strict';
@@ -48,7 +48,7 @@ after(async () => {
   remove();
 });
 
-// A folder of its own for an application, where the package is installed.
+// Makes a folder for an application in which the package is installed.
 function makeApp(name, files = {}) {
   const root = join(folder, name), modules = join(root, 'node_modules');
   cpSync(installed, join(modules, 'chronormal'), { recursive: true });
@@ -57,7 +57,7 @@ function makeApp(name, files = {}) {
   return root;
 }
 
-// What the page at an address says that the audits came to; whatever it asks for comes from there.
+// Returns the results of the audits that the page at an address shows; whatever it requests comes from there.
 async function saidAt(address) {
   const page = await browser.newPage(), faults = [];
   page.on('console', (message) => ['error', 'warn'].includes(message.type()) && faults.push(message.text()));
@@ -85,14 +85,14 @@ async function assertAuditsIn(served) {
   }
 }
 
-// Puts what a page needs besides scripts into the folder that a bundler has made.
+// Puts what a page needs besides scripts into the output folder of a bundler.
 function complete(made) {
   writeFileSync(join(made, 'index.html'), HTML);
   writeFileSync(join(made, 'bumps.glb'), face);
   return made;
 }
 
-// The file of settings that the README shows for a bundler, in a folder.
+// Writes the settings that the README shows for a bundler into a folder, and returns them.
 async function settings(root, name) {
   const code = [...readme.matchAll(/```js\n([^`]*)```/g)].map(([, text]) => text).find((text) => text.startsWith(`// ${name}\n`));
   assert.ok(code, `no ${name} in the README`);

@@ -1,5 +1,5 @@
-// A captured face of 57 targets in a worker, under Node.js and in a page: whether memory is enough, whether the page goes on
-// meanwhile, and what becomes of a call that is stopped, or that gets too little memory. Takes minutes.
+// Bakes a captured face of 57 targets in a worker, under Node.js and in a page. Tests whether memory is enough, whether
+// the page stays responsive, and how a call ends that is stopped or gets too little memory. Takes minutes.
 //
 //   CHRONORMAL_DATA   the folder of the real data
 import assert from 'node:assert/strict';
@@ -19,7 +19,7 @@ const { audit, bake, ChronormalError } = await load('index.node.js');
 describe('a captured face', { skip: NO_DATA }, () => {
   const face = DATA && new Uint8Array(readFileSync(join(DATA, 'rigs/ict_capture.glb')));
   if (DATA) writeFileSync(join(folder, 'face.glb'), face);
-  // What the program makes of it.
+  // The file that the native program makes from the face.
   let made;
   const expected = () => {
     if (!made) {
@@ -66,7 +66,7 @@ describe('a captured face', { skip: NO_DATA }, () => {
     const { openFolder } = await import('./browser.mjs');
     const { page, close } = await openFolder({ chronormal: installed, 'face.glb': face, 'page.html': '<!doctype html><title>page</title>' });
     try {
-      // Started, and asked for again and again: the page answers, and no single question takes minutes.
+      // The bake is started and then polled: the page answers, and no single question takes minutes.
       await page.evaluate((options) => {
         window.state = { ticks: 0, heard: 0 };
         const start = performance.now(), clock = setInterval(() => ++state.ticks, 100);

@@ -1,9 +1,9 @@
-// What `chronormal bake` writes is closer to the truth than what it was given, in every viewer, by what they draw. Run by
-// ctest as `in_viewers`.
+// Tests that the output of `chronormal bake` is closer to the truth than its input, in every viewer, by what they draw.
+// Run by ctest as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM  the program
 //   CHRONORMAL_DATA     a head by Blender and a test of morphs, where it is set
-//   CHRONORMAL_FULL=1   every file in every viewer; otherwise one file in those that viewers.test.mjs does not draw in
+//   CHRONORMAL_FULL=1   every file in every viewer; otherwise one file in the viewers that viewers.test.mjs leaves out
 //   CHRONORMAL_UPDATE_DOCS=1  with it, writes docs/pictures/head.png, which is rendered here
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -28,7 +28,7 @@ const PICTURE = fileURLToPath(new URL('../../docs/pictures/head.png', import.met
 const PICTURE_TIME = 1.25;
 const VIEWERS = FULL ? ['three', 'babylon', 'playcanvas', 'filament'] : ['playcanvas', 'filament'];
 
-// Degrees that are no difference: what PlayCanvas loses to half floats.
+// Fewer degrees than this are no difference: PlayCanvas loses as much to half floats.
 const ROUNDING = 0.05;
 
 describe('what is baked is closer to the truth', () => {
@@ -44,7 +44,7 @@ describe('what is baked is closer to the truth', () => {
     assert.deepEqual(browser?.faults, []);
   });
 
-  // The same for the same arguments is done once.
+  // Calls f only once for the same arguments.
   function once(f) {
     const known = new Map();
     return (...all) => {
@@ -57,14 +57,14 @@ describe('what is baked is closer to the truth', () => {
   const bake = once((input, ...options) => {
     const name = [basename(input, extname(input)), 'baked', ...options].join('.');
     const output = join(folder, `${name}.glb`);
-    // The still meshes that are the truth have area-weighted normals, whatever the author's were.
+    // The still meshes that give the truth have area-weighted normals, whatever normals the author chose.
     const how = options.includes('--encode') ? options : ['--encode', 'harmless', ...options];
     chronormal('bake', input, '-o', output, '--weighting', 'area', ...how);
     return output;
   });
 
-  // {files, moments} of an animation of a file: the file as it was and as it is baked (in full also by --encode exact,
-  // for the figures of docs/viewers.md), and the truth at some times.
+  // Returns {files, moments} of an animation of a file: the file before and after the bake (in full also by --encode
+  // exact, for the figures of docs/viewers.md), and the truth at some times.
   const prepare = once(async (input, animation) => {
     const unbaked = Buffer.from(await newIO().writeBinary(await newIO().read(input)));
     const baked = [bake(input), ...(FULL ? [bake(input, '--encode', 'exact')] : [])];
@@ -90,7 +90,7 @@ describe('what is baked is closer to the truth', () => {
     assert.ok(rows.every(([{ mean }, then]) => then.mean < mean + ROUNDING), shown);
   }
 
-  // Draws the head of README, and holds the picture of the documents against that.
+  // Draws the head of the README, and compares it with the picture in the documents.
   async function assertPicture() {
     const input = join(DATA, 'rigs', 'blender_suzanne_two_keys.glb');
     const output = join(folder, 'head.glb');

@@ -1,8 +1,8 @@
-// Filament as a viewer, in the page: its loader, its animator, and the light of its glTF material, which shows normals as
-// colours. browser.mjs puts `Filament` itself into the page.
+// Filament as a viewer, in the page: its loader, its animator, and the light of its glTF material, which shows normals
+// as colours. browser.mjs puts `Filament` itself into the page.
 //
-// A light from all sides, whose irradiance is (n + 1) / 2 in three colours, makes a white and rough surface show
-// k (n + 1) / 2, where k depends on material and view; under a light of 1 the same surface shows k.
+// A light from all sides, whose irradiance is (n + 1) / 2 in three colours, makes a white and rough surface show k (n +
+// 1) / 2, where k depends on material and view; under a light of 1 the same surface shows k.
 
 const NORMALS = [0.5, 0.5, 0.5, 0, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0];  // spherical harmonics in RGB: 1, y, z, x
 const WHITE_MATERIAL = { metallicFactor: 0, roughnessFactor: 1 };
@@ -31,7 +31,7 @@ function createViewer() {
   return { gl, camera, engine, lights, loader, renderer, scene, swapChain, view };
 }
 
-// Notes the framebuffer that was drawn into last: Filament has no function in JavaScript that reads one.
+// Notes the framebuffer of the last drawing, since Filament has no function in JavaScript to read one.
 function framebuffersNoted(gl) {
   const bind = gl.bindFramebuffer.bind(gl);
   gl.bindFramebuffer = (target, framebuffer) => {
@@ -51,7 +51,7 @@ async function loadAs(bytes, material) {
   return { asset, animator: asset.getInstance().getAnimator() };
 }
 
-// A GLB in which everything has the same material, without textures.
+// Returns a GLB in which everything has the same material, without textures.
 function withMaterial(bytes, pbrMetallicRoughness) {
   const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(12, true);
   const json = JSON.parse(new TextDecoder().decode(bytes.subarray(JSON_AT, JSON_AT + length)));
@@ -80,7 +80,7 @@ export function dispose({ asset }) {
   viewer.loader.destroyAsset(asset);
 }
 
-// World-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
+// Draws the world-space normals of all pixels, RGBA in float32: (n + 1) / 2, with alpha 0 where nothing is drawn.
 export async function drawNormals({ asset }, viewed, size) {
   const { engine, lights, scene, view } = viewer;
   const { Filament } = window;
@@ -114,7 +114,7 @@ function lookFrom({ eye, at, degrees, near, far }, size) {
 async function render(light) {
   const { engine, renderer, scene, swapChain, view } = viewer;
   scene.setIndirectLight(light);
-  // A frame is refused until the browser has said, in a task of its own, that an earlier one is done.
+  // A frame is refused until the browser has reported, in a task of its own, that an earlier one is done.
   while (!renderer.beginFrame(swapChain)) {
     engine.execute();
     await new Promise((resolve) => setTimeout(resolve));
@@ -136,8 +136,8 @@ async function drawn(light, { width, height }) {
 const BLUE_MATERIAL = { baseColorFactor: [0.03, 0.22, 0.47, 1], metallicFactor: 0.1, roughnessFactor: 0.35 };
 const SKY = [0.5, 0.55, 0.6, 0.25, 0.27, 0.3, 0.1, 0.1, 0.1, -0.1, -0.1, -0.1];
 
-// A canvas with a file at a time of an animation, lit by a sun and a sky, with nothing behind it. The next
-// picture takes it away.
+// Returns a canvas with a file at a time of an animation, lit by a sun and a sky, on a transparent background. The next
+// picture overwrites it.
 export async function drawLit(bytes, animation, time, viewed, size) {
   const model = await loadAs(bytes, BLUE_MATERIAL);
   const { Filament } = window;

@@ -1,5 +1,5 @@
-// The filters of EXT_meshopt_compression, as the program decodes them, held against npm meshoptimizer as it runs in
-// browsers, bit for bit where normals are. Each filter is tried on positions: `chronormal convert` writes them as they were decoded.
+// Compares the filters of EXT_meshopt_compression, as the program decodes them, with npm meshoptimizer as it runs in
+// browsers, bit for bit where normals are. Each filter is tried on positions: `chronormal convert` writes them as decoded.
 //
 //   CHRONORMAL_PROGRAM        the program
 import assert from 'node:assert/strict';
@@ -15,8 +15,8 @@ const BYTE = 5120;
 const SHORT = 5122;
 const FLOAT = 5126;
 
-// Every (x, y) of so many steps along each side of the square, for each number of bits; all there are where the steps
-// are as many. tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
+// Returns every (x, y) of up to mostSteps steps along each side of the square, for each number of bits; with few bits
+// these are all values. tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
 function lattice(T, leastBits, mostBits, mostSteps) {
   const elements = [];
   for (let bits = leastBits; bits <= mostBits; ++bits) {
@@ -29,13 +29,13 @@ function lattice(T, leastBits, mostBits, mostSteps) {
   return T.from(elements);
 }
 
-// The same numbers in every run: 0 <= x < 1.
+// Draws 0 <= x < 1, the same numbers in every run.
 function randomNumbers(seed) {
   let state = seed;
   return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
 }
 
-// Three components that leave a fourth as the largest, which is named by the two lowest bits of the last number.
+// Makes three components that leave a fourth as the largest; the two lowest bits of the last number name it.
 function quaternions(count) {
   const random = randomNumbers(1);
   const elements = new Int16Array(4 * count);
@@ -62,7 +62,7 @@ const encoded = (elements, count) => {
   return MeshoptEncoder.encodeGltfBuffer(bytes, count, bytes.length / count, 'ATTRIBUTES', 0);
 };
 
-// What a browser makes of compressed elements.
+// Decodes compressed elements as a browser does.
 function decoded(elements, count, filter) {
   const target = new Uint8Array(elements.byteLength);
   MeshoptDecoder.decodeGltfBuffer(target, count, target.length / count, encoded(elements, count), 'ATTRIBUTES', filter);
@@ -78,7 +78,7 @@ function chunk(type, bytes) {
   return Buffer.concat([head, bytes]);
 }
 
-// A file whose positions are the first three numbers of compressed elements, with a target that moves nothing.
+// Makes a file whose positions are the first three numbers of compressed elements, with a target that moves nothing.
 function glbOf(elements, count, componentType, filter) {
   const stream = encoded(elements, count);
   const compression = { buffer: 0, byteLength: stream.length, byteStride: elements.byteLength / count, count, filter };
@@ -127,7 +127,7 @@ describe('the program decodes as browsers do', () => {
   });
   after(() => rmSync(folder, { recursive: true, force: true }));
 
-  // The positions that the program reads: it writes them as float32 behind the header of a PLY file.
+  // Returns the positions that the program reads, which it writes as float32 after the header of a PLY file.
   function positionsOf(elements, count, componentType, filter) {
     const input = join(folder, `${filter}.glb`);
     writeFileSync(input, glbOf(elements, count, componentType, filter));

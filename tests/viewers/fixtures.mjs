@@ -1,9 +1,9 @@
-// Moving glTF files made here: a tube that twists, waves and swells, with what may go wrong when it is baked.
+// Makes moving glTF files: a tube that twists, waves and swells, with properties that make a bake difficult.
 import { Accessor, Document } from '@gltf-transform/core';
 import { ExactNormals } from './exact.mjs';
 import { newIO } from './reader.mjs';
 
-// A tube around the y axis, closed around, open at its ends: rows x columns quads, each two triangles.
+// Makes a tube around the y axis, closed around, open at its ends: rows x columns quads, each two triangles.
 function tube(columns, rows) {
   const indices = [];
   for (let r = 0; r < rows; ++r) {
@@ -16,7 +16,7 @@ function tube(columns, rows) {
   return { columns, rows, indices: Uint16Array.from(indices) };
 }
 
-// place(angle, height) is where a vertex is: height from -1 to 1.
+// Places each vertex at place(angle, height), where height goes from -1 to 1.
 function placed({ columns, rows }, place) {
   const positions = [];
   for (let r = 0; r <= rows; ++r)
@@ -30,7 +30,7 @@ function twisted(turn) {
   return (a, y) => straight(a + turn * (y + 1) * 0.5, y);
 }
 
-// Ripples across and around.
+// Makes ripples across and around.
 function waved(a, y) {
   const radius = 0.55 + 0.22 * Math.sin(9 * y + 2 * a);
   return [radius * Math.cos(a), y, radius * Math.sin(a)];
@@ -52,7 +52,7 @@ function unitNormals(positions, indices) {
   return result;
 }
 
-// A primitive as writeFile() takes it: base and targets with the right normal of each shape stored.
+// Makes a primitive as writeFile() takes it: base and targets with the right normal of each shape stored.
 function primitiveOf(grid, base, targets, { targetNormals = true } = {}) {
   const positions = placed(grid, base);
   const normals = unitNormals(positions, grid.indices);
@@ -70,12 +70,13 @@ function primitiveOf(grid, base, targets, { targetNormals = true } = {}) {
   };
 }
 
-// Only some triangles of a primitive, with all of its vertices.
+// Keeps some triangles of a primitive, and all of its vertices.
 function part(primitive, from, to) {
   return { ...primitive, indices: primitive.indices.slice(from, to) };
 }
 
-// {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}], weights?, names?} as one GLB.
+// Writes {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}], weights?, names?} as one
+// GLB.
 export async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }], tracks = [], weights, names }) {
   const document = new Document();
   const buffer = document.createBuffer();
@@ -129,7 +130,7 @@ const grid = tube(36, 48);
 const twist = () => primitiveOf(grid, straight, [twisted(2.4)]);
 const wave = () => primitiveOf(grid, straight, [waved]);
 
-// Name -> what writes it. All have one target active at a time, but for `pair`.
+// Maps a name to the function that writes the file. All files have one target active at a time, except `pair`.
 export const fixtures = {
   twist: (path) => writeFile(path, { primitives: [twist()], tracks: [linear([0, 1, 0.25])] }),
   wave: (path) => writeFile(path, { primitives: [wave()], tracks: [linear([0, 1])] }),
@@ -141,7 +142,7 @@ export const fixtures = {
   spline: (path) =>
     writeFile(path, {
       primitives: [wave()],
-      // In-tangent, value and out-tangent of three keys: the weight goes beyond 0.8, and out of [0, 1].
+      // The values are in-tangent, value and out-tangent of three keys: the weight exceeds 0.8, and leaves [0, 1].
       tracks: [{ node: 0, interpolation: 'CUBICSPLINE', times: [0, 1, 2], values: [0, 0, 6, 0, 0.8, -3, 0.4, 0.2, 0] }],
     }),
   step: (path) =>
@@ -172,7 +173,7 @@ export const fixtures = {
       nodes: [{ at: [-1.3, 0, 0] }, { at: [0, 0, 0] }, { at: [1.3, 0, 0], weights: [0.5] }],
       tracks: [linear([0, 1, 0]), linear([1, 0.25], 1, [0, 1.5])],
     }),
-  // Base normals that an author has bent away from those of the geometry.
+  // An author has bent these base normals away from the geometry's.
   authored: (path) => {
     const primitive = twist();
     for (let v = 0; v < primitive.normals.length; v += 3) {
@@ -182,7 +183,7 @@ export const fixtures = {
     primitive.targets[0].normals = null;
     return writeFile(path, { primitives: [primitive], tracks: [linear([0, 1])] });
   },
-  // Two targets one after the other, as an exporter writes a sequence of keyframes.
+  // The two targets follow each other, as an exporter writes a sequence of keyframes.
   keyframes: (path) =>
     writeFile(path, {
       primitives: [primitiveOf(grid, straight, [twisted(1.8), waved])],
@@ -195,7 +196,7 @@ export const fixtures = {
     }),
 };
 
-// A mesh of one or two primitives with two targets and no animation.
+// Writes a mesh of one or two primitives with two targets and no animation.
 export function writeStill(path, { parts, weights = null }) {
   const whole = primitiveOf(grid, straight, [twisted(1.2), waved]);
   const size = whole.indices.length / parts;
@@ -203,7 +204,7 @@ export function writeStill(path, { parts, weights = null }) {
   return writeFile(path, { primitives, weights });
 }
 
-// The keyframes of a sequence, as the text of OBJ files.
+// Returns the keyframes of a sequence, as the text of OBJ files.
 export function sequenceFrames() {
   return [straight, twisted(1.6), waved].map((place) => {
     const positions = placed(grid, place);
@@ -215,7 +216,8 @@ export function sequenceFrames() {
   });
 }
 
-// A vase that gets flutes and twists, for the picture: with target normals, or without, as many exporters write it.
+// Writes a vase that gets flutes and twists, for the picture, with or without target normals, which many exporters
+// omit.
 export function writeVase(path, { targetNormals }) {
   const profile = (y) => 0.45 + 0.13 * Math.sin(2.4 * y + 2);
   const fluted = (a, y) => {

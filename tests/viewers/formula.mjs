@@ -1,6 +1,6 @@
-// The formula in a page of JavaScript, as an oracle for what the program bakes: one target whose weight is w. With
-// n(w) = c0 + w c1 + w^2 c2, a viewer that shows N + w D + w (1 - w) E gets the direction of n(w) from
-// N = c0 / |c0|, D = (c1 + c2) / |c0| and E = -c2 / |c0| on an extra target that moves nothing.
+// Applies the formula in a page of JavaScript, as an oracle for bakes with one target, whose weight is w. With n(w) =
+// c0 + w c1 + w^2 c2, a viewer that shows N + w D + w (1 - w) E gets the direction of n(w) from N = c0 / |c0|, D = (c1
+// + c2) / |c0| and E = -c2 / |c0| on a correction target that moves nothing.
 import { Accessor } from '@gltf-transform/core';
 import { ExactNormals } from './exact.mjs';
 import { describe, newIO } from './reader.mjs';

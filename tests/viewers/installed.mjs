@@ -1,6 +1,6 @@
-// The npm package as a user has it: packed, and unpacked in a folder where nothing else is installed but what it works with.
+// Installs the npm package as a user does: packed, and unpacked in a folder with nothing else but its peers.
 //
-//   CHRONORMAL_PROGRAM   the native program, which it is held against
+//   CHRONORMAL_PROGRAM   the native program, which it is compared with
 //   CHRONORMAL_NPM       the folder of the package
 import { execFileSync, spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, mkdtempSync, rmSync, symlinkSync } from 'node:fs';

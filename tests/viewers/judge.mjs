@@ -1,9 +1,10 @@
-// Holds what a file makes a viewer show, at many times, against the exact normals of the file that it was baked from.
+// Compares the normals that a file makes a viewer show, at many times, with the exact normals of the file before the
+// bake.
 import { drive } from '../../examples/drive.mjs';
 import { ExactNormals, angle, exactPositions, length } from './exact.mjs';
 import { nodeWeights, shownNormals, shownPositions } from './reader.mjs';
 
-// A sum of cross products shorter than this part of the longest one that the vertex sees has no direction to speak of.
+// A sum of cross products shorter than this share of the longest one of the vertex has no reliable direction.
 const NO_DIRECTION = 1e-4;
 
 export function timesOf(animation, count) {
@@ -11,20 +12,21 @@ export function timesOf(animation, count) {
   return Array.from({ length: count }, (_, i) => start + ((end - start) * i) / (count - 1));
 }
 
-// The middles of equal parts of an animation: times at which viewers agree that they are in it.
+// Returns the middles of equal parts of an animation, at which all viewers agree that they are inside it.
 export function timesWithin({ start, end }, count) {
   return Array.from({ length: count }, (_, i) => start + ((end - start) * (i + 0.5)) / count);
 }
 
-// Whether any target of a mesh moves any vertex.
+// Tells whether any target of a mesh moves any vertex.
 export function moves(mesh) {
   const somewhere = (array) => array?.some((number) => number !== 0) ?? false;
   return mesh.primitives.some((primitive) => primitive.targets.some((target) => somewhere(target.positions)));
 }
 
-// Degrees over (vertex, state) pairs: {mean, max, where, pairs, excluded, flat, drift}. excluded pairs have no
-// direction, or no triangle; flat counts primitives without normals, which viewers shade by themselves; drift is how far
-// a vertex of `shown` is from its place in `source`, as part of the size of its mesh.
+// Returns an empty result in degrees over samples of a vertex and a state: {mean, max, where, pairs, excluded, flat,
+// drift}. excluded counts samples without a direction or a triangle; flat counts primitives without normals, which
+// viewers shade by themselves; drift is the largest distance of a vertex of `shown` from its place in `source`,
+// relative to the size of its mesh.
 function nothing() {
   return { mean: 0, max: 0, where: '', pairs: 0, excluded: 0, flat: 0, drift: 0 };
 }
@@ -71,7 +73,7 @@ function averaged(result) {
   return { ...result, mean: result.mean / Math.max(result.pairs, 1) };
 }
 
-// All nodes at some times of an animation. Meshes that never move are left out.
+// Compares all nodes at some times of an animation. Leaves out meshes that never move.
 export function compareAnimation(source, shown, animation, times) {
   const result = nothing();
   source.nodes.forEach((node, n) => {
@@ -86,14 +88,14 @@ export function compareAnimation(source, shown, animation, times) {
   return averaged(result);
 }
 
-// Whether the weights of a track never change.
+// Tells whether the weights of a track never change.
 function stands({ times, values, interpolation }) {
   const width = values.length / times.length;
   return interpolation !== 'CUBICSPLINE' && values.every((value, i) => value === values[i % width]);
 }
 
-// Meshes that no animation moves, as a viewer shows them that drives every target by itself, and all of them together.
-// What drives extra targets stands in the mesh.
+// Compares meshes that no animation moves, in a viewer that drives every target alone, and all targets together. The
+// mesh itself says how correction targets are driven.
 function compareUndriven(source, shown) {
   const moving = source.animations.flatMap(({ tracks }) => tracks.filter((track) => !stands(track)));
   const driven = new Set(moving.map(({ node }) => source.nodes[node].mesh));
@@ -116,8 +118,8 @@ function compareUndriven(source, shown) {
   return averaged(result);
 }
 
-// One result for each animation that has weights, and one for the meshes that none moves. An animation whose weights
-// never change is looked at once.
+// Returns one result for each animation that has weights, and one for the meshes that no animation moves. An animation
+// whose weights never change is sampled once.
 export function compareFiles(source, shown, count = 101) {
   const results = source.animations.flatMap((animation, a) => {
     if (animation.tracks.length === 0) return [];

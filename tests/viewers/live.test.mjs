@@ -1,5 +1,5 @@
-// chronormal/three and chronormal/babylon: when extra targets get their weights, of which meshes, and when no more. What is
-// drawn with them is tested by pixels in viewers.test.mjs.
+// Tests when chronormal/three and chronormal/babylon set the weights of correction targets, on which meshes, and when
+// they stop. viewers.test.mjs tests by pixels what is drawn with these weights.
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { NullEngine } from '@babylonjs/core/Engines/nullEngine.js';
@@ -19,7 +19,7 @@ import * as babylon from '../../js/src/babylon.js';
 import { drive, formulasOf } from '../../js/src/drive.js';
 import * as three from '../../js/src/three.js';
 
-// Two targets of the mesh itself; targets 2 and 3 are w0 w1 and w0 (1 - w0); nothing but animations drives target 4.
+// The mesh has two targets of its own; targets 2 and 3 are w0 w1 and w0 (1 - w0); only animations drive target 4.
 const mark = () => ({
   chronormal: {
     version: 2,
@@ -44,7 +44,7 @@ test('extra weights are the sums of their terms, and other versions are left alo
 });
 
 describe('three.js', () => {
-  // A mesh as the loader makes it; the mark may stand in the object above.
+  // Makes a mesh as the loader does; the mark may stand in the parent object.
   function meshOf(userData) {
     const geometry = new THREE.BoxGeometry();
     geometry.morphTargetsRelative = true;
@@ -158,7 +158,8 @@ describe('three.js', () => {
       const track = new THREE.NumberKeyframeTrack('face.morphTargetInfluences', [0], weights);
       return new THREE.AnimationClip(name, 1, [track]);
     };
-    // As a baked file has them: with extra weights that are right in this clip alone, and one that only clips drive.
+    // Clips of a baked file look like this: the weights of correction targets are right in this clip alone, and one
+    // target is driven only by clips.
     const clips = [clip('a', [1, 0, 0, 0, 0.5]), clip('b', [0, 0.5, 0, 0, 0])];
     const mixer = new THREE.AnimationMixer(mesh);
     clips.forEach((each) => mixer.clipAction(each).setEffectiveWeight(0.5).play());
@@ -166,7 +167,7 @@ describe('three.js', () => {
     mixer.update(0.1);
     draw(mesh);
     assert.deepEqual(weightsOf(mesh), [0.5, 0.25, 0.125, 0.25, 0.25]);
-    // Another mixer, of another copy.
+    // Another mixer plays another copy.
     const copy = mesh.clone(), other = new THREE.AnimationMixer(copy);
     other.clipAction(clips[0]).play();
     three.attach(copy);
@@ -196,7 +197,7 @@ describe('Babylon.js', () => {
     new FreeCamera('camera', new Vector3(0, 0, -5), scene);
     return scene;
   }
-  // A mesh as the loader makes it, below a node with the extras.
+  // Makes a mesh as the loader does, below a node with the extras.
   function meshOf(scene, extras = mark()) {
     const mesh = CreateBox('face', {}, scene), manager = new MorphTargetManager(scene);
     for (let k = 0; k < TARGETS; ++k) manager.addTarget(MorphTarget.FromMesh(mesh, `target ${k}`, 0));

@@ -1,8 +1,8 @@
-// The npm package, installed from its tarball in a folder where nothing else is.
+// Tests the npm package, installed from its tarball in a folder with nothing else.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test tests/viewers/npm.test.mjs
 //
-// CHRONORMAL_NPM is the folder of the package. What the program makes is what is expected, byte for byte.
+// CHRONORMAL_NPM is the folder of the package. Its output must equal the output of the native program, byte for byte.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -20,7 +20,7 @@ after(remove);
 const { bake, audit, inspect, compare, ChronormalError } = await load('index.node.js');
 const readme = readFileSync(join(installed, 'README.md'), 'utf8');
 
-// A face with two targets and an animation: what convert makes of the built-in bumps, baked nowhere yet.
+// The face has two targets and an animation: convert makes it from the built-in bumps, and it is not baked yet.
 const made = native(['convert', '--sample', 'bumps', '-o', 'bumps.glb']);
 assert.equal(made.status, 0, made.stderr);
 const face = new Uint8Array(readFileSync(join(folder, 'bumps.glb')));
@@ -116,7 +116,7 @@ test('wrong input is refused in the words of the program, and the next call work
   assert.equal((await inspect(face)).report.command, 'inspect');
 });
 
-// What a call comes to: its report, or the code and the words of what it was refused with.
+// Returns the report of a call, or the code and the message of its refusal.
 const outcomeOf = (call) => call.then(({ report }) => report, ({ name, code, message }) => ({ name, code, message }));
 
 test('a file of any name is read under it, or refused with it, in a worker and in this thread', async () => {
@@ -195,7 +195,7 @@ test('where memory runs out, that is said, and the next call works', async () =>
 
 test('progress is said while it goes on, up to its end', async () => {
   const heard = [];
-  // Nothing is said in the first 0.3 s: so many samples take some seconds.
+  // The first 0.3 s report no progress, so the audit takes enough samples for some seconds.
   await audit(face, { samples: 6001, onProgress: (progress) => heard.push(progress) });
   assert.ok(heard.length > 2, JSON.stringify(heard));
   for (const { label, percent } of heard) assert.ok(typeof label === 'string' && percent >= 0 && percent <= 100);

@@ -11,8 +11,9 @@ const viewers = { three, babylon, playcanvas, filament };
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
 const loaded = (viewer, base64) => viewers[viewer].load(bytesOf(base64));
 
-// For each moment {time, truth, view}: what the viewer draws of each file at that time of an animation, against the
-// still file `truth`. Files are GLB in base64. Returns, for each moment, what compareNormals() says of each file.
+// For each moment {time, truth, view}, compares what the viewer draws of each file at that time of an animation with
+// the still file `truth`. Files are GLB in base64. Returns, for each moment, the result of compareNormals() for each
+// file.
 window.compareInViewer = async (viewer, files, animation, moments, size) => {
   const { play, drawNormals, dispose } = viewers[viewer];
   const models = [];
@@ -87,16 +88,17 @@ async function ofPictures(viewer, file, times, view, size, made) {
   return results;
 }
 
-// The normals at the pixels [x, y] of each picture; null where nothing is.
+// Returns the normals at the pixels [x, y] of each picture; null where nothing is drawn.
 window.normalsInViewer = (viewer, file, times, view, size, pixels) =>
   ofPictures(viewer, file, times, view, size, (picture) => pixels.map(([x, y]) => normalAt(picture, size, x, y)));
 
-// The middle of all that is drawn, in pixels; null where nothing is.
+// Returns the middle of the drawn pixels; null if there are none.
 window.middlesInViewer = (viewer, file, times, view, size) =>
   ofPictures(viewer, file, times, view, size, (picture) => middleOf(picture, size));
 
-// What the viewer draws of a file when a program has set the weights of its own targets, then while our package drives the
-// extra ones, when it does so no more, and when the program has driven them itself, against the still file of the moment.
+// Compares the viewer's picture of a file with the still file of the moment four times: after a program has set the
+// weights of the file's own targets, while our package drives the correction targets, after it has stopped, and after
+// the program has driven them itself.
 window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, setWeights, drive, attach, detach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];
@@ -112,7 +114,7 @@ window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
   return results;
 };
 
-// The same while clips are blended, whose sum the weights are: in three.js of a clone, whose mixer does so.
+// Does the same while clips are blended, whose sum gives the weights; in three.js the mixer of a clone plays them.
 window.compareBlended = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, blend, attach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];

@@ -1,5 +1,5 @@
-// The page with the engine inside: files that are dropped show the numbers of the program, what it bakes has the program's bytes,
-// what it cannot read gets a message that helps, and it asks for nothing.
+// Tests the page with the engine inside: dropped files show the numbers of the program, its bakes have the program's
+// bytes, unreadable files get a helpful message, and it makes no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_PAGE           the page: build/web/chronormal.html, by ./run page or ./test --full npm
@@ -44,7 +44,7 @@ afterEach(() => assert.deepEqual(pages.faults.splice(0), []));
 const audited = (file) => JSON.parse(chronormal('audit', file, '--json', '-q'));
 const said = () => page.$eval('.message', (box) => (box.hidden ? '' : box.innerText));
 
-// Gives files to the page, and waits for what it shows, or says.
+// Gives files to the page, and waits until it shows a report or a message.
 async function drop(...files) {
   await page.evaluate(() => {
     delete document.getElementById('report').dataset.ready;
@@ -61,7 +61,8 @@ async function downloaded(name) {
   }
 }
 
-// What the program writes, or what it says where it writes nothing; a file that is less right than asked for is written too.
+// Returns the file that the program writes, or its message if it writes none. A file that misses the tolerance is
+// written too.
 function bakedByProgram(file) {
   const target = path('expected.glb');
   rmSync(target, { force: true });
@@ -106,7 +107,7 @@ const setSliders = (weights) => page.evaluate((values) => {
   });
 }, weights);
 
-// One half of the picture, drawn as normals by a camera that is given, or by that of the page; {camera, pixels}.
+// Draws one half of the picture as normals by a given camera, or by the page's; returns {camera, pixels}.
 const half = (side, camera) => page.evaluate((right, given) => {
   const { view, setMode } = globalThis.chronormal, { canvas } = view;
   setMode('normals');
@@ -124,7 +125,7 @@ const half = (side, camera) => page.evaluate((right, given) => {
   };
 }, side === 'right', camera);
 
-// The mesh of a file at some weights with the exact normals there, as a file of its own, with a target that is not shown.
+// Writes the mesh of a file at some weights with the exact normals there as a file, with a target that is not shown.
 async function writeFrozen(target, source, weights) {
   const io = newIO(), document = await io.read(source), root = document.getRoot();
   const described = (await read(source)).meshes[0], truth = new ExactNormals(described).at(weights);

@@ -1,12 +1,12 @@
-// Files whose pictures can be read as numbers: a board of squares with a normal and deltas of its own each, and a square
-// that one target moves.
+// Makes files whose pictures can be read as numbers: a board of squares that each have a normal and deltas of their
+// own, and a square that one target moves.
 import { linear, writeFile } from './fixtures.mjs';
 
 export const BOARD = 12;      // squares in a row, and rows
 export const SIZE = { width: 192, height: 192 };
 const DISTANCE = 20;
 
-// A camera in front of a square of some width around the origin, which fills the picture.
+// Returns a camera in front of a square of some width around the origin, which fills the picture.
 function viewOf(width) {
   const degrees = (2 * Math.atan(width / 2 / DISTANCE) * 180) / Math.PI;
   return { eye: [0, 0, DISTANCE], at: [0, 0, 0], degrees, near: DISTANCE / 2, far: 2 * DISTANCE };
@@ -18,8 +18,8 @@ export const BOARD_VIEW = viewOf(BOARD);
 export const BOARD_PIXELS = Array.from({ length: BOARD * BOARD }, (_, p) =>
   [p % BOARD, Math.floor(p / BOARD)].map((c) => Math.floor(((c + 0.5) * SIZE.width) / BOARD)));
 
-// `patches` has, for each square, {normal, deltas}: one vector, and one for each target; null for all squares where the
-// target has no normals. `rows` are the weights at times 0, 1, 2, ...
+// Writes a board. `patches` has {normal, deltas} for each square: one vector, and one for each target, or null for all
+// squares if the target has no normals. `rows` are the weights at times 0, 1, 2, ...
 export function writeBoard(path, patches, rows) {
   const corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
   const places = patches.flatMap((_, p) =>
@@ -39,11 +39,11 @@ const REACH = 4;  // how far the last target moves the square to the right at a 
 
 export const MOVER_VIEW = viewOf(4 * REACH);
 
-// The weight that has moved the middle of the square there.
+// Returns the weight that moves the middle of the square to a pixel.
 export const weightOfMiddle = ([x]) => 4 * (x / SIZE.width - 0.5) + 0.5;
 
-// A square, half a reach left of the middle, that one of some targets moves, the last where nothing else is said. A track
-// is as writeFile() takes it.
+// Writes a square, half a reach left of the middle, that one of some targets moves, by default the last. `track` is as
+// writeFile() takes it.
 export function writeMover(path, { targets = 1, moving = targets - 1, names, ...track }) {
   const positions = Float32Array.from([-1, 0, 0, 0, -1, 0, 1, 0, 0, 0, 1, 0], (c, i) => (i % 3 === 0 ? c - REACH / 2 : c));
   const normals = Float32Array.from([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]);

@@ -1,4 +1,4 @@
-// Pictures of wrong beside right, in the page: files side by side at the same moment, lit by a viewer.
+// Draws pictures of wrong beside right in the page: files side by side at the same moment, lit by a viewer.
 import * as THREE from 'three';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import * as filament from './filament_page.mjs';
@@ -10,7 +10,7 @@ const FAMILY = '"DejaVu Sans", "Liberation Sans", sans-serif';
 const FONTS = [`600 17px ${FAMILY}`, `14px ${FAMILY}`];
 const SAMPLES = 2;  // rendered that much larger, each way
 
-// Each of `items` is {bytes, caption}, a caption two lines. Returns a PNG as a data URL.
+// Draws `items`, each {bytes, caption} with a caption of two lines. Returns a PNG as a data URL.
 export async function drawPicture(viewer, items, animation, time, view, size) {
   const drawLit = { three: drawLitByThree, filament: filament.drawLit }[viewer];
   const canvas = document.createElement('canvas');
@@ -33,7 +33,7 @@ export async function drawPicture(viewer, items, animation, time, view, size) {
   return canvas.toDataURL('image/png');
 }
 
-// A canvas with a file as three.js draws it with its standard material under the lights of a room.
+// Returns a canvas with a file as three.js draws it with its standard material under the lights of a room.
 async function drawLitByThree(bytes, animation, time, view, size) {
   const renderer = rendererOf(size);
   renderer.toneMapping = THREE.ACESFilmicToneMapping;
@@ -56,7 +56,7 @@ async function drawLitByThree(bytes, animation, time, view, size) {
   return renderer.domElement;
 }
 
-// How different two PNGs are: the mean of |a - b| over all channels, of 255. Infinity where their sizes differ.
+// Returns the difference of two PNGs: the average of |a - b| over all channels, of 255. Infinity if their sizes differ.
 export async function differenceOfPictures(bytes, others) {
   const [a, b] = await Promise.all([bytes, others].map((png) => createImageBitmap(new Blob([png]))));
   if (a.width !== b.width || a.height !== b.height) return Infinity;

@@ -1,4 +1,4 @@
-// Other people's tools that rewrite glTF files, run as a person runs them, and what `chronormal audit` says of the result.
+// Runs other people's tools that rewrite glTF files, as a person runs them, and audits the results.
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, mkdirSync, symlinkSync } from 'node:fs';
 import { delimiter, join, resolve } from 'node:path';
@@ -16,7 +16,7 @@ export function makeWorkshop(folder) {
   return folder;
 }
 
-// Runs a line of a shell there; gltf-transform and gltfpack are those of package-lock.json.
+// Runs a shell line there, with the gltf-transform and gltfpack of package-lock.json.
 export function runLine(line, folder) {
   const path = [TOOLS, join(folder, 'bin'), process.env.PATH].join(delimiter);
   const options = { cwd: folder, encoding: 'utf8', env: { ...process.env, PATH: path }, maxBuffer: 1 << 28 };
@@ -25,7 +25,7 @@ export function runLine(line, folder) {
   if (status !== 0) throw new Error(`${line}: exit code ${status}\n${stderr}${stdout}`);
 }
 
-// Runs a line that makes web.glb of head.glb, and gives the path of the result.
+// Runs a line that makes web.glb from head.glb, and returns the path of the result.
 export function webOf(line, head, result, folder) {
   copyFileSync(head, join(folder, 'head.glb'));
   runLine(line, folder);
@@ -33,13 +33,14 @@ export function webOf(line, head, result, folder) {
   return result;
 }
 
-// Degrees against the positions that the file itself has: {mean, worst}. `how` are further options of audit.
+// Returns the errors in degrees against the positions in the file itself: {mean, worst}. `how` are further options of
+// audit.
 export function audited(path, ...how) {
   const report = JSON.parse(chronormal('audit', path, ...how, '--json', '--quiet'));
   return { mean: report.mean_degrees, worst: report.worst_degrees };
 }
 
-// The largest component of a normal delta, of any target.
+// Returns the largest component of a normal delta, of any target.
 export function largestDelta(file) {
   let largest = 0;
   for (const { primitives } of file.meshes)
@@ -48,7 +49,7 @@ export function largestDelta(file) {
   return largest;
 }
 
-// What a careful exporter writes: every target has the normal of its shape, of length 1, and nothing else is added.
+// Writes the file of a careful exporter: every target has the unit normals of its shape, and nothing else is added.
 export async function writePlainEndPoints(input, output) {
   const io = newIO();
   const document = await io.read(input);

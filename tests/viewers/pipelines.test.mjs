@@ -24,7 +24,7 @@ const DATA = process.env.CHRONORMAL_DATA;
 const NO_DATA = !FULL || !DATA ? 'set CHRONORMAL_FULL=1, and CHRONORMAL_DATA to the folder of the real data' : false;
 const PAGE = fileURLToPath(new URL('../../docs/web.md', import.meta.url));
 
-// Tools, and by how many degrees a baked file may be worse after them than a file with plain end-point deltas.
+// The tools, and the degrees by which a baked file may be worse after them than a file with plain end-point deltas.
 const PACK_12 = '-vn 12 -vtf -af 0';
 const LINES = [
   ['gltf-transform quantize head.glb web.glb', 1],
@@ -52,7 +52,7 @@ let folder;
 before(() => (folder = makeWorkshop(mkdtempSync(join(tmpdir(), 'chronormal_pipelines_')))));
 after(() => rmSync(folder, { recursive: true, force: true }));
 
-// A file in the forms that are sent through tools, by name.
+// Returns the variants of a file that are sent through tools, by name.
 const inputs = new Map();
 async function inputsOf(name) {
   if (!inputs.has(name)) {
@@ -66,7 +66,7 @@ async function inputsOf(name) {
   return inputs.get(name);
 }
 
-// What a tool makes of one of these, in degrees.
+// Returns the errors after a tool on one of these inputs, in degrees.
 const measured = new Map();
 async function measure(line, name, kind) {
   const key = [line, name, kind].join('\n');
@@ -81,21 +81,22 @@ async function measure(line, name, kind) {
 async function assertKept(context, name, lines) {
   const { exported, baked } = await inputsOf(name);
   const faults = [];
-  // Tools cut what is beyond 1. A vertex may keep a delta of its author that is.
+  // Tools clamp components beyond 1. A vertex may keep such a delta of its author.
   const [authored, largest] = [largestDelta(await read(exported)), largestDelta(await read(baked))];
   if (!(largest <= Math.max(1, authored))) faults.push(`a component of ${largest}, where ${authored} was the largest`);
   for (const [line, allowed] of lines) {
     const plain = await measure(line, name, 'plain');
     const kept = await measure(line, name, 'baked');
-    // What keeps the delta of its author is as far off as in the file as it came. A bake may add keys, and audit looks at
-    // each interval between two keys equally often: a file with few is looked at more often before it is called better.
+    // A vertex that keeps the delta of its author keeps the error of the original file. A bake may add keys, and audit
+    // samples each interval between two keys equally often, so a file with few keys is sampled more often before it is
+    // called better.
     const exported = await measure(line, name, 'exported');
     let worst = Math.max(plain.worst, exported.worst);
     if (kept.worst > worst + allowed) worst = Math.max(worst, audited(exported.path, '--samples', '81').worst);
     const text = (degrees) => `${degrees.mean.toFixed(3)} / ${degrees.worst.toFixed(2)}`;
     const outcome = `${line}: plain ${text(plain)}, baked ${text(kept)}`;
     context.diagnostic(outcome);
-    // A surface is better as a whole: one normal of it may be a little farther off.
+    // A surface gets better as a whole, while a single normal may get a little worse.
     if (!(kept.worst <= 1.05 * worst + allowed && kept.mean <= plain.mean + allowed)) faults.push(outcome);
   }
   assert.deepEqual(faults, []);
@@ -108,7 +109,7 @@ describe('a baked file is no worse than one with plain end-point deltas, after t
     test(name, { skip: NO_DATA }, (context) => assertKept(context, name, LINES));
 });
 
-// Whatever tools did to positions, base normals and tracks: what is baked then is right for that.
+// Checks that a bake after the tools is right, whatever they did to positions, base normals and tracks.
 async function assertExactLast(name, lines) {
   for (const [line] of lines) {
     const { path } = await measure(line, name, 'exported');
@@ -166,7 +167,7 @@ function blocksOfPage() {
   return blocks;
 }
 
-// The tables about a file: their columns, and {index, line} of their rows.
+// Returns the tables about a file: their columns, and {index, line} of their rows.
 function tablesOfPage(name) {
   const tables = [];
   lines.forEach((line, begin) => {

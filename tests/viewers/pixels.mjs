@@ -1,7 +1,7 @@
-// Pictures of normals: RGBA in float32, (n + 1) / 2, alpha 0 where nothing was drawn, the lowest row first.
+// Pictures of normals: RGBA in float32, (n + 1) / 2, with alpha 0 where nothing was drawn, and the lowest row first.
 import { angle } from './exact.mjs';
 
-// The normal of a pixel, and null where nothing is.
+// Returns the normal of a pixel, or null where nothing is drawn.
 export function normalAt(picture, { width }, x, y) {
   const i = 4 * (y * width + x);
   return picture[i + 3] > 0 ? normalIn(picture, i) : null;
@@ -9,7 +9,7 @@ export function normalAt(picture, { width }, x, y) {
 
 const normalIn = (picture, i) => [2 * picture[i] - 1, 2 * picture[i + 1] - 1, 2 * picture[i + 2] - 1];
 
-// The mean of the places of all pixels where something is, and null where there are none.
+// Returns the average place of all drawn pixels, or null if there are none.
 export function middleOf(picture, { width, height }) {
   const sum = [0, 0];
   let count = 0;

@@ -67,7 +67,7 @@ export function dispose({ asset, entity }) {
   asset.unload();
 }
 
-// World-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
+// Draws the world-space normals of all pixels, RGBA in float32: (n + 1) / 2, with alpha 0 where nothing is drawn.
 export async function drawNormals({ entity }, { eye, at, degrees, near, far }, size) {
   const device = app.graphicsDevice;
   const colorBuffer = new Texture(device, {

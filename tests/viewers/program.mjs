@@ -1,4 +1,4 @@
-// The program, as a user calls it. CHRONORMAL_PROGRAM says where it is.
+// Runs the program as a user does. CHRONORMAL_PROGRAM says where it is.
 import { spawnSync } from 'node:child_process';
 
 export function chronormal(...args) {

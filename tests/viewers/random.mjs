@@ -1,7 +1,7 @@
-// Numbers and directions at hazard, the same everywhere for the same seed.
+// Draws random numbers and directions, the same everywhere for the same seed.
 import { length } from './exact.mjs';
 
-// mulberry32: numbers from 0 to 1.
+// Draws numbers from 0 to 1 by mulberry32.
 export function randomNumbers(seed) {
   let state = seed;
   return () => {
@@ -12,7 +12,7 @@ export function randomNumbers(seed) {
   };
 }
 
-// A vector of length 1 whose z is at least some number.
+// Draws a unit vector whose z is at least leastZ.
 export function randomDirection(random, leastZ = -1) {
   for (;;) {
     const v = [0, 1, 2].map(() => 2 * random() - 1);

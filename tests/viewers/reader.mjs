@@ -1,5 +1,5 @@
-// What a glTF file holds, as plain arrays, and what every viewer must make of it at a time: the formulas of glTF 2.0,
-// written down here once more, in float32 where viewers add in float32. It knows nothing about extra targets.
+// Reads a glTF file as plain arrays, and computes what every viewer must show at a time: the formulas of glTF 2.0 are
+// repeated here, in float32 where viewers add in float32. It knows nothing about correction targets.
 import { Logger, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 
@@ -11,7 +11,8 @@ export function newIO() {
   return new NodeIO().setLogger(errorsOnly).registerExtensions(ALL_EXTENSIONS);
 }
 
-// All numbers of an accessor: floats as they are stored, normalised integers as the numbers they stand for.
+// Returns all numbers of an accessor: floats as they are stored, normalised integers as the numbers that they stand
+// for.
 function numbers(accessor) {
   const width = accessor.getElementSize();
   const result = new Float32Array(accessor.getCount() * width);
@@ -39,8 +40,9 @@ function readPrimitive(primitive) {
   };
 }
 
-// {meshes: [{name, primitives, weights, extras}], nodes: [{mesh, weights}], animations: [{name, start, end, tracks}]}.
-// Nodes are those with a mesh, in the order of the file; a track names its node by the index in that list.
+// Returns {meshes: [{name, primitives, weights, extras}], nodes: [{mesh, weights}], animations: [{name, start, end,
+// tracks}]}. The nodes are those with a mesh, in the order of the file; a track names its node by the index in that
+// list.
 export function describe(document) {
   const root = document.getRoot();
   const meshes = root.listMeshes();
@@ -81,13 +83,13 @@ export async function read(path) {
   return describe(await newIO().read(path));
 }
 
-// The weights that a track gives at a time (glTF 2.0, appendix C), rounded to float32 as viewers keep them.
+// Returns the weights that a track gives at a time (glTF 2.0, appendix C), rounded to float32 as viewers keep them.
 export function weightsAt(track, time) {
   const { times, values, interpolation } = track;
   const spline = interpolation === 'CUBICSPLINE';
   const last = times.length - 1;
   const count = values.length / times.length / (spline ? 3 : 1);
-  // Of key k: the in-tangents (0), values (1) or out-tangents (2) of a spline, else the values.
+  // Part 0, 1 or 2 of key k of a spline is its in-tangents, values or out-tangents; other keys have only values.
   const at = (k, part, i) => values[spline ? (3 * k + part) * count + i : k * count + i];
   const weights = (weight) => Float32Array.from({ length: count }, (_, i) => weight(i));
   if (time <= times[0]) return weights((i) => at(0, 1, i));
@@ -107,14 +109,14 @@ export function weightsAt(track, time) {
   );
 }
 
-// The weights of a node at a time of an animation: by its track, else its own, else those of its mesh.
+// Returns the weights of a node at a time of an animation: from its track, else its own, else those of its mesh.
 export function nodeWeights(file, node, animation, time) {
   const track = animation?.tracks.find((candidate) => candidate.node === node);
   if (track) return weightsAt(track, time);
   return file.nodes[node].weights ?? file.meshes[file.nodes[node].mesh].weights;
 }
 
-// base + sum_i w_i delta_i in float32, one product and one sum after the other.
+// Computes base + sum_i w_i delta_i in float32, one product and one sum after the other.
 export function morphed(base, deltas, weights) {
   const result = Float32Array.from(base);
   deltas.forEach((delta, i) => {

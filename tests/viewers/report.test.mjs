@@ -1,4 +1,4 @@
-// The page of `chronormal report`: its numbers are those of the program, what it draws as right is right, and it asks for nothing.
+// Tests the page of `chronormal report`: its numbers equal the program's, its right half is right, and it makes no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place
@@ -123,7 +123,7 @@ test('weights that are set by hand drive the extra targets of a baked file', () 
 
 const DAMAGED = /^the data of this page (are damaged|end too early|are no report|have version)/;
 
-// Where the arrays of a container are: {begin, size, count} in bytes, of each array of numbers with a point.
+// Returns the places of the floating-point arrays of a container: {begin, size, count}, in bytes.
 function arraysOf(bytes) {
   const size = bytes.readUInt32LE(12), first = Math.ceil((16 + size) / 8) * 8, found = [];
   const look = (value) => {
@@ -147,7 +147,7 @@ test(`data with a number that is not finite, at a place of the seed ${SEED}, are
   }
 });
 
-// The data that stand in a page, with some characters of their base64 changed or cut off.
+// Changes or cuts off some characters of the base64 data in a page.
 function damage(page, random) {
   const [, before, data, after] = page.match(/^(.*id="chronormal-data">)([^<]*)(<.*)$/s);
   const from = Math.floor(data.length * random()), kind = Math.floor(4 * random());

@@ -1,5 +1,5 @@
-// How the real viewers make a normal of what is stored, and a weight of a track: what they draw, held against rules that
-// are written down here in double. docs/viewers.md says what was found out. Run by ctest as `in_viewers`.
+// Tests how real viewers make a normal from stored numbers, and a weight from a track: compares their pictures with rules
+// that are written down here in double. docs/viewers.md has the findings. Run by ctest as `in_viewers`.
 //
 //   CHRONORMAL_FULL=1  all viewers, and all that they do; otherwise the normals of Filament and PlayCanvas
 import assert from 'node:assert/strict';
@@ -24,16 +24,16 @@ const scaled = (a, s) => a.map((c) => s * c);
 const unit = (a) => scaled(a, 1 / length(a));
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-// A normal of any length, from a normal N and deltas D_k that a file stores.
+// The rules give a normal of any length from a normal N and deltas D_k that a file stores.
 const rules = {
-  // N + sum of w_k D_k, as glTF has it.
+  // glTF specifies N + sum of w_k D_k.
   sum: ({ normal, deltas }, w) => deltas.reduce((n, delta, k) => plus(n, delta, w[k]), normal),
-  // N + sum of w_k (u_k - N), with a direction u_k kept for each target: that of N + D_k.
+  // Some viewers show N + sum of w_k (u_k - N), with a direction u_k kept for each target: that of N + D_k.
   unit: ({ normal, deltas }, w) =>
     deltas.reduce((n, delta, k) => plus(n, minus(unit(plus(normal, delta)), normal), w[k]), normal),
 };
 
-// The rule of each viewer, and the degrees that it may be off: PlayCanvas keeps deltas and their sum as half floats, and
+// The rule of each viewer, and its allowed error in degrees: PlayCanvas keeps deltas and their sum as half floats, and
 // Filament directions as quaternions of 16 bits.
 const viewers = {
   three: { rule: 'sum', degrees: 0.001, splines: true },
@@ -46,8 +46,8 @@ const anyWeights = (random) => [0, 1, 2].map(() => 3.5 * random() - 1.5);
 const targetsOfLength = (lengthOf) => (normal, random) =>
   [0, 1, 2].map(() => minus(scaled(randomDirection(random, 0.35), lengthOf(random)), normal));
 
-// The deltas of one square, from its normal, and the weights at a key of the track. `free` is how far off Filament is at
-// least, in degrees, where N + D_k is not of length 1: it takes for an orthonormal frame what is none.
+// The deltas of one square, from its normal, and the weights at a key of the track. `free` is the least error of
+// Filament in degrees if N + D_k is not of length 1: it treats a frame as orthonormal that is not.
 const boards = {
   'targets whose normals are unit': { deltas: targetsOfLength(() => 1), weights: anyWeights },
   'targets whose normals are a hundredth too long': {
@@ -78,8 +78,8 @@ const boards = {
 
 const TIMES = [0.25, 0.8, 1.5, 2.3, 2.9];
 
-// {rows, weights, patches}: the weights at the keys 0, 1, 2, 3 and at TIMES, and squares whose normal no rule makes
-// short at any of these.
+// Returns {rows, weights, patches}: the weights at the keys 0, 1, 2, 3 and at TIMES, and squares whose normal no rule
+// makes short at any of them.
 function boardOf({ deltas, weights: weightsOf }) {
   const random = randomNumbers(SEED);
   const rows = Array.from({ length: 4 }, () => weightsOf(random));
@@ -94,8 +94,8 @@ function boardOf({ deltas, weights: weightsOf }) {
   return { rows, weights, patches };
 }
 
-// The weight that Filament makes of a spline: it multiplies the tangents by the part of the key interval that has gone
-// by, not by how long the interval is.
+// Returns the weight that Filament makes of a spline: it multiplies the tangents by the elapsed share of the key
+// interval, and not by the length of the interval.
 function splineInFilament({ times, values }, time) {
   let k = 0;
   while (k + 2 < times.length && times[k + 1] <= time) ++k;
@@ -119,7 +119,7 @@ describe('a real viewer', () => {
     assert.deepEqual(browser?.faults, []);
   });
 
-  // The largest angle over all squares and times between what a viewer shows and what each rule says.
+  // Returns the largest angle over all squares and times between the normals of a viewer and of each rule.
   async function worstByRule(viewer, { rows, weights, patches }) {
     const path = join(folder, 'board.glb');
     await writeBoard(path, patches, rows);
@@ -143,8 +143,8 @@ describe('a real viewer', () => {
   }
   if (!FULL) return;
 
-  // Where some targets have normals and others have none, three.js takes the base normal for what is missing, Babylon.js
-  // shows the base normal alone where the first has none, and PlayCanvas counts only those that have some.
+  // If only some targets have normals, three.js takes the base normal for the missing ones, Babylon.js shows the base
+  // normal alone if the first target has none, and PlayCanvas counts only targets with normals.
   for (const viewer of Object.keys(viewers)) {
     const right = viewer === 'filament';
     test(`shows ${right ? 'right' : 'wrong'} normals where a target has none and the next has: ${viewer}`, async () => {
@@ -158,7 +158,7 @@ describe('a real viewer', () => {
     });
   }
 
-  // Where a target has moved a square at some times, as weights. A pixel is 0.02.
+  // Returns the places to which a target has moved a square at some times, as weights. A pixel is 0.02.
   async function weightsInViewer(viewer, track, times, page) {
     const path = join(folder, 'mover.glb');
     await writeMover(path, track);
@@ -191,14 +191,14 @@ describe('a real viewer', () => {
         if (viewer === 'filament') {
           assert.ok(farthest(shown, MOMENTS.map((time) => splineInFilament(tracks.CUBICSPLINE, time))) < NEAR);
         } else {
-          // PlayCanvas cuts the numbers of each key into one track more for each tangent, and then looks for tangents
+          // PlayCanvas splits the numbers of each key into one more track for each tangent, and then looks for tangents
           // in each of these: after the first key there are none, and the target stays away.
           const late = shown.filter((_, i) => MOMENTS[i] > tracks.CUBICSPLINE.times[1]);
           assert.ok(farthest(late, late.map(() => 0)) < NEAR);
         }
       });
 
-    // PlayCanvas looks for a target by its name, where it has one: of the same name only the last is found.
+    // PlayCanvas looks for a target by its name, if it has one: of targets with the same name only the last is found.
     const mixes = viewer === 'playcanvas';
     test(`${mixes ? 'mixes up' : 'tells apart'} targets of the same name: ${viewer}`, async () => {
       const track = { interpolation: 'STEP', times: [0, 1], values: [0.75, 0.25, 0.75, 0.25], targets: 2, moving: 0 };

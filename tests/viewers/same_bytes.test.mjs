@@ -1,5 +1,5 @@
-// The package and the native program make the same bytes and say the same of every file of the real data: a few in
-// ./test --full npm, all with CHRONORMAL_FULL=1.
+// Checks that the package and the native program make the same bytes and print the same about every file of the real data:
+// a few in ./test --full npm, all with CHRONORMAL_FULL=1.
 //
 //   CHRONORMAL_DATA   the folder of the real data
 import assert from 'node:assert/strict';
@@ -15,14 +15,14 @@ const NO_DATA = DATA ? false : 'set CHRONORMAL_DATA to the folder of the real da
 const { folder, remove, native, wasm } = install();
 after(remove);
 
-// Whatever a folder holds, by its path in it.
+// Returns the paths of all files in a folder.
 const filesOf = (root) =>
   readdirSync(root, { recursive: true, withFileTypes: true })
     .filter((entry) => entry.isFile())
     .map((entry) => relative(root, join(entry.parentPath ?? entry.path, entry.name)))
     .sort();
 
-// Both run a command in a folder of each, where there is a folder `out`.
+// Runs a command with both programs, each in a folder of its own that has a folder `out`.
 function both(args) {
   const [expected, found] = [['native', native], ['wasm', wasm]].map(([name, run]) => {
     const cwd = join(folder, name);
@@ -34,7 +34,7 @@ function both(args) {
   return { expected, found };
 }
 
-// Returns how many files there are then.
+// Checks that both have the same outcome, and returns the number of files.
 function assertSame(args) {
   const { expected, found } = both(args), what = args.join(' ');
   assert.equal(found.status, expected.status, `${what}\n${found.stderr}`);
@@ -51,7 +51,7 @@ function assertSame(args) {
 const found = DATA
   ? ['gltf', 'rigs', 'attack'].flatMap((part) => filesOf(join(DATA, part)).map((path) => join(DATA, part, path)))
   : [];
-// The captured face takes minutes: captured_face.test.mjs.
+// captured_face.test.mjs tests the captured face, which takes minutes.
 const models = found.filter((path) => /^\.(gltf|glb|vrm)$/.test(extname(path)) && basename(path) !== 'ict_capture.glb');
 const quick = ['AnimatedMorphCube.gltf', '01_cs_morph.gltf', 'wild_times.in.glb'];
 const dance = DATA ? join(DATA, 'sequences/rumba_13') : '';

@@ -1,4 +1,4 @@
-// A sequence of OBJ files as a description of the kind that reader.mjs makes, to hold a baked sequence against.
+// Describes a sequence of OBJ files in the form of reader.mjs, to compare it with a baked sequence.
 import { ExactNormals, length } from './exact.mjs';
 
 function parse(text) {
@@ -14,7 +14,7 @@ function parse(text) {
   return { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) };
 }
 
-// One mesh whose targets are frames 1, 2, ... as deltas, driven by hats with a corner at each frame.
+// Makes one mesh whose targets are frames 1, 2, ... as deltas, driven by hat functions with a corner at each frame.
 export function describeSequence(texts, framesPerSecond) {
   const frames = texts.map(parse);
   const [{ positions, indices }] = frames;
@@ -44,7 +44,7 @@ export function describeSequence(texts, framesPerSecond) {
   };
 }
 
-// `baked` with its vertices in the order of the sequence, by their place in the first frame.
+// Returns `baked` with its vertices in the order of the sequence, by their place in the first frame.
 export function inOrderOf(sequence, baked) {
   const [wanted] = sequence.meshes[0].primitives;
   const [primitive] = baked.meshes[0].primitives;

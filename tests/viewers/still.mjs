@@ -1,15 +1,15 @@
-// A moving file at one time as a file that does not move: positions and exact normals as the mesh has them then. What a
-// viewer draws of it is the truth that its own drawing of the moving file is held against.
+// Makes a file that does not move from a moving file at one time: it has the positions and the exact normals of the
+// mesh then. A viewer's picture of it is the truth for the viewer's picture of the moving file.
 import { Accessor, getBounds } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { ExactNormals, exactPositions, length } from './exact.mjs';
 import { describe, newIO, nodeWeights } from './reader.mjs';
 
-// Degrees of view, and from where: a direction that sees three sides of a box.
+// The field of view in degrees, and the direction of the camera, which sees three sides of a box.
 const VIEW_DEGREES = 35;
 const VIEW_FROM = [0.5, 0.45, 1];
 
-// For each time {time, truth, view}: a GLB in base64, and a camera that sees all of it.
+// Returns for each time {time, truth, view}: a GLB in base64, and a camera that sees all of it.
 export async function stillMoments(path, animation, times) {
   const io = newIO();
   const source = await io.read(path);

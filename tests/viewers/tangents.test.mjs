@@ -1,6 +1,6 @@
-// Morphs that are lit through a normal map, whose tangents `chronormal bake` makes anew, in Babylon.js, which adds up those
-// of targets. Held against a mesh that stands still, whose tangents follow from the formula of its surface. Run by ctest
-// as `viewers`.
+// Tests morphs that are lit through a normal map, whose tangents `chronormal bake` recomputes, in Babylon.js, which adds
+// up tangents of targets. Compares with a mesh that stands still, whose tangents follow from the formula of its surface.
+// Run by ctest as `viewers`.
 //
 //   CHRONORMAL_PROGRAM   the program
 //   CHRONORMAL_CHROMIUM  the browser, where it is not in its usual place
@@ -23,16 +23,16 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => a.map((c) => c / Math.hypot(...a));
 
-// A square sheet that bends around an axis and shears: where it is, and along which way x and y go there.
+// A square sheet that bends around an axis and shears: its places, and the directions of x and y there.
 const bent = (x, y) => [Math.sin(BEND * x) / BEND + SHEAR * y, y, (1 - Math.cos(BEND * x)) / BEND];
 const alongX = (x) => [Math.cos(BEND * x), 0, Math.sin(BEND * x)];
 const alongY = () => [SHEAR, 1, 0];
 
-// [x, y] of all vertices, from -1/2 to 1/2.
+// The [x, y] of all vertices, from -1/2 to 1/2.
 const places = Array.from({ length: (CELLS + 1) ** 2 }, (_, i) =>
   [i % (CELLS + 1), Math.floor(i / (CELLS + 1))].map((c) => c / CELLS - 0.5));
 
-// A picture of one pixel: a normal that leans along both ways of the texture.
+// Makes a picture of one pixel: a normal that leans along both directions of the texture.
 function normalMap() {
   const chunk = (type, data) => {
     const body = Buffer.concat([Buffer.from(type), data]), word = Buffer.alloc(8);
@@ -46,7 +46,7 @@ function normalMap() {
     chunk('IDAT', deflateSync(Buffer.from([0, ...pixel]))), chunk('IEND', Buffer.alloc(0))]);
 }
 
-// The CRC-32 of a chunk. Node.js 18 has none.
+// Returns the CRC-32 of a chunk, which Node.js 18 does not offer.
 function checksum(bytes) {
   let rest = 0xffffffff;
   for (const byte of bytes) {
@@ -56,7 +56,7 @@ function checksum(bytes) {
   return (rest ^ 0xffffffff) >>> 0;
 }
 
-// The sheet with a target that bends it, whose normals are right at weight 1 and which has no tangents.
+// Writes the sheet with a target that bends it, whose normals are right at weight 1 and which has no tangents.
 async function writeSheet(path) {
   const document = new Document(), buffer = document.createBuffer();
   const accessor = (type, numbers, Numbers = Float32Array) =>
@@ -91,7 +91,7 @@ async function writeSheet(path) {
   await newIO().write(path, document);
 }
 
-// What stands still has its normals from the moving mesh; its tangents go along x, upright on these.
+// Gives the still mesh tangents along x, perpendicular to its normals, which come from the moving mesh.
 async function withRightTangents(glb) {
   const document = await newIO().readBinary(Buffer.from(glb, 'base64'));
   const primitive = document.getRoot().listMeshes()[0].listPrimitives()[0];

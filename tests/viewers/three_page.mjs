@@ -32,12 +32,12 @@ export function play(model, animation, time) {
   model.mixer.setTime(time);
 }
 
-// Sets the weights of the first targets of every mesh; drive() sets those of extra targets.
+// Sets the weights of the first targets of every mesh; drive() sets the weights of correction targets.
 export function setWeights({ scene }, weights) {
   scene.traverse(({ morphTargetInfluences: w }) => w && weights.forEach((weight, i) => (w[i] = weight)));
 }
 
-// Puts a clone in its place, whose mixer blends a clip for each weight.
+// Replaces the model by a clone whose mixer blends a clip for each weight.
 export function blend({ scene }, weights) {
   const [original] = scene.children, copy = original.clone(), mixer = new THREE.AnimationMixer(copy);
   scene.remove(original);

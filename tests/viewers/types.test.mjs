@@ -1,4 +1,4 @@
-// The types of the npm package: they know what the functions take and what reports have, as the package and the program do.
+// Tests the types of the npm package: they match the arguments of its functions and the contents of reports.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test tests/viewers/types.test.mjs
 import assert from 'node:assert/strict';
@@ -16,7 +16,7 @@ const { flagsOf } = await load('options.js');
 const COMMANDS = ['audit', 'bake', 'compare', 'inspect'];
 const REPORTS = { audit: 'AuditReport', bake: 'BakeReport', compare: 'CompareReport', inspect: 'InspectReport' };
 
-// What a call is for, and not the program; and what the program has for people and for files of a system.
+// The options that only a call has, and the options of the program that serve people and files of a system.
 const CALL = ['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit'];
 const FOR_PEOPLE = ['help', 'json', 'csv', 'output', 'force', 'quiet', 'sample', 'each', 'errors', 'drivers', 'shard', 'resume', 'table'];
 
@@ -24,7 +24,7 @@ const listed = (name) => readFileSync(new URL(`../cli/${name}`, import.meta.url)
 const optionsOf = (command) => listed('stable_options.txt').filter(([of, option]) => of === command && !FOR_PEOPLE.includes(option.slice(2)))
   .map(([, option]) => option.slice(2).replace(/-([a-z])/g, (_, letter) => letter.toUpperCase()));
 
-// A program of TypeScript that is this text, and the lines of it that are wrong.
+// Compiles a text as a program of TypeScript, and returns its faulty lines.
 function checked(text) {
   const path = join(folder, 'user.mts');
   writeFileSync(path, text);
@@ -112,7 +112,7 @@ test('what compilers refuse is refused when it runs, and nothing else', () => {
   const lines = drawn.map(({ command, name, value }) => `${command}(null! as Uint8Array, { ${name}: ${JSON.stringify(value)} });`);
   const { faults } = checked([`import { ${COMMANDS.join(', ')} } from 'chronormal';`, ...lines].join('\n'));
   const refusedByTypes = new Set(faults.map(({ line }) => line - 1)), known = new Map();
-  // Whether the program knows the words of an option; what it makes of them on some file is another question.
+  // Tells whether the program knows the words of an option, whatever it makes of them on some file.
   const knows = (command, flags) => {
     const key = [command, ...flags].join('\0');
     if (!known.has(key)) {
@@ -160,7 +160,7 @@ test('reports have the types of theirs, and every key that may be in one', () =>
   assert.deepEqual(faults.map(({ line, said }) => `${reports[line - 6]?.run}: ${said}`), []);
 
   const checker = program.getTypeChecker(), exported = checker.getExportsOfModule(checker.getSymbolAtLocation(source));
-  // Of several inputs, which a call does not have.
+  // These keys belong to several inputs, which a call does not have.
   const elsewhere = (path) => /^(audit (error|files)|compare inputs)/.test(path);
   const parts = (type) => (type.isUnion() ? type.types.flatMap(parts) : [type]);
   for (const [command, path] of listed('stable_json.txt').filter(([command, path]) => COMMANDS.includes(command) && !elsewhere(`${command} ${path}`))) {

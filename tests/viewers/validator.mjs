@@ -1,11 +1,11 @@
-// What the validator of Khronos says of a file, errors and warnings only.
+// Returns the complaints of the Khronos validator about a file, errors and warnings only.
 import { readFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import validator from 'gltf-validator';
 
 const WARNING = 1;
 
-// Each as "CODE at POINTER: message".
+// Formats each complaint as "CODE at POINTER: message".
 export async function complaints(path) {
   const report = await validator.validateBytes(new Uint8Array(await readFile(path)), {
     uri: path,
@@ -18,7 +18,7 @@ export async function complaints(path) {
     .map((issue) => `${issue.code} at ${issue.pointer ?? issue.offset}: ${issue.message}`);
 }
 
-// Those of a file that the file it was made from did not have: bake does not mend what it is given.
+// Returns the complaints that the source file did not have, since bake does not mend its input.
 export async function newComplaints(path, sourcePath) {
   const before = new Set(await complaints(sourcePath));
   return (await complaints(path)).filter((complaint) => !before.has(complaint));

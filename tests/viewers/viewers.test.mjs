@@ -1,4 +1,4 @@
-// What `chronormal bake` writes, held against other people's glTF: the validator of Khronos, a reader that adds up
+// Compares the output of `chronormal bake` with other people's glTF: the validator of Khronos, a reader that adds up
 // targets in float32, three.js and Babylon.js in Chromium, and glTF Transform. Run by ctest as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM        the program
@@ -35,13 +35,13 @@ const PICTURE = fileURLToPath(new URL('../../docs/pictures/shading.png', import.
 let folder;
 const original = (name) => join(folder, `${name}.glb`);
 
-// Bakes a file, and returns where. What was baked with the same options before is not baked again.
+// Bakes a file, and returns the path of the result. The same file is baked only once with the same options.
 const bakedBefore = new Map();
 function bake(input, ...options) {
   const key = [input, ...options].join(' ');
   if (!bakedBefore.has(key)) {
     const output = join(folder, `${basename(input, extname(input))}.${bakedBefore.size}.glb`);
-    // The truth that files are held against is area-weighted, whatever the normals of their authors are.
+    // The truth is area-weighted, whatever normals the authors chose.
     chronormal('bake', input, '-o', output, '--weighting', 'area', ...options);
     bakedBefore.set(key, output);
   }
@@ -127,7 +127,7 @@ async function assertSequence(paths, output) {
 }
 
 describe('a fault is found where', () => {
-  // Each spoils a description of twist.baked.
+  // Each function spoils a description of twist.baked.
   const faults = {
     'the extra target has no weight': ({ track: { values } }) => values.forEach((_, i) => i % 2 && (values[i] = 0)),
     'the tangents of a key are swapped': ({ track }) => {
@@ -169,8 +169,8 @@ describe('glTF Transform keeps normals exact', () => {
   }
 });
 
-// What a viewer draws of a file as it was and of the baked one, against exact normals, at some times: wrong by more
-// than `wrong` degrees before in at least 7 of them, and less than 1 in every one after.
+// Compares pictures of a file before and after the bake with exact normals at some times. Errors must exceed `wrong`
+// degrees before the bake in at least 7 of them, and be below 1 in every one after it.
 async function assertDrawn(page, viewer, input, { wrong = 5, count = 15 } = {}) {
   const output = bake(input, '--encode', 'exact');
   const times = timesOf((await read(input)).animations[0], count);
@@ -183,11 +183,11 @@ async function assertDrawn(page, viewer, input, { wrong = 5, count = 15 } = {}) 
   assert.ok(rows.filter(([before]) => before.p99 > wrong).length >= 7, shown);
 }
 
-// What a program sets two targets to.
+// The weights that a program sets for two targets.
 const WEIGHTS = [0.8, 0.6];
 
-// A mesh of some primitives that no animation moves: a program sets weights, and then those of the extra targets by what
-// the file says (examples/drive.mjs). Without the latter the normals are wrong.
+// Tests a mesh of some primitives that no animation moves: a program sets weights, and then the weights of the
+// correction targets by the formulas in the file (examples/drive.mjs). Without the latter the normals are wrong.
 async function assertDriven(page, viewer, parts) {
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.${parts}.${viewer}.glb`));
   await writeStill(still, { parts });
@@ -195,7 +195,7 @@ async function assertDriven(page, viewer, parts) {
   await assertDrivenLike(page, viewer, still, moved, WEIGHTS);
 }
 
-// Also of a file whose mesh stands still at some weights.
+// Does the same for a file whose mesh stands still at some weights.
 async function assertDrivenLike(page, viewer, still, moved, weights) {
   const [moment] = await stillMoments(moved, 0, [0]);
   const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
@@ -207,7 +207,8 @@ async function assertDrivenLike(page, viewer, still, moved, weights) {
   if (viewer !== 'playcanvas') assert.deepEqual(after, attached); // examples/drive.mjs has the other two
 }
 
-// The head of Blender's monkey with two shape keys that overlap, at weights drawn from a fixed seed, without its animation.
+// Tests the head of Blender's monkey with two shape keys that overlap, at weights drawn from a fixed seed, without its
+// animation.
 async function assertSuzanneDriven(page, viewer) {
   const random = randomNumbers(21), weights = [random(), random()];
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `suzanne.${name}.${viewer}.glb`));
@@ -220,7 +221,7 @@ async function assertSuzanneDriven(page, viewer) {
   await assertDrivenLike(page, viewer, still, moved, weights);
 }
 
-// The same where clips are blended, each of which knows nothing of the others.
+// Does the same while clips are blended, each of which knows nothing of the others.
 async function assertBlended(page, viewer) {
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.blended.${viewer}.glb`));
   await writeStill(still, { parts: 2 });
@@ -233,7 +234,7 @@ async function assertBlended(page, viewer) {
   assert.ok(attached.pixels > 2000 && attached.p99 < 1, JSON.stringify(attached));
 }
 
-// Draws wrong beside right, at one moment of a vase, and holds it against the picture in the documents.
+// Draws wrong beside right, at one moment of a vase, and compares it with the picture in the documents.
 async function assertPicture(page) {
   const TIME = 0.4;
   const [bare, stored] = ['bare', 'stored'].map((name) => join(folder, `vase.${name}.glb`));
@@ -283,8 +284,8 @@ describe('Chromium', () => {
       test(`shows right normals of ${name} in ${viewer}`, async () =>
         assertDrawn(browser.page, viewer, original(name)));
     }
-    // The largest error of the cube is 4.02 degrees, and for most of the time it stands still; that of the stress test
-    // is 2.69, on few vertices.
+    // The largest error of the cube is 4.02 degrees, and for most of the time it stands still. The stress test has 2.69
+    // degrees, on few vertices.
     for (const [name, how] of [
       ['AnimatedMorphSphere', {}],
       ['AnimatedMorphCube', { wrong: 2, count: 41 }],

@@ -1,6 +1,6 @@
-// docs/rigs.md, from the file to the line of code: an avatar is baked and loaded by three-vrm, whose expressions set the
-// weights of targets; and a tracker of faces sets them by name. Run in Node.js; what is drawn with such weights is tested
-// by pixels in viewers.test.mjs.
+// Tests docs/rigs.md, from the file to the line of code: an avatar is baked and loaded by three-vrm, whose expressions
+// set the weights of targets; and a tracker of faces sets them by name. Runs in Node.js; viewers.test.mjs tests by
+// pixels what is drawn with such weights.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -21,7 +21,7 @@ const BONES = ['hips', 'spine', 'head', ...['left', 'right'].flatMap((side) =>
   ['UpperLeg', 'LowerLeg', 'Foot', 'UpperArm', 'LowerArm', 'Hand'].map((bone) => side + bone))];
 const EXPRESSIONS = { happy: [[0, 1]], aa: [[1, 0.75]] }; // [target, weight]
 
-// A GLB with other JSON.
+// Returns a GLB with changed JSON.
 function withJson(glb, change) {
   const size = glb.readUInt32LE(12), json = JSON.parse(glb.subarray(20, 20 + size).toString());
   change(json);
@@ -32,7 +32,7 @@ function withJson(glb, change) {
   return Buffer.concat([head, padded, glb.subarray(20 + size)]);
 }
 
-// The least of an avatar that three-vrm takes for one: the bones that have to be there, and two expressions.
+// Writes the smallest avatar that three-vrm accepts: the required bones, and two expressions.
 async function writeAvatar(path) {
   await writeStill(join(folder, 'still.glb'), { parts: 1 });
   const glb = withJson(readFileSync(join(folder, 'still.glb')), (json) => {
@@ -72,7 +72,7 @@ async function load(path) {
 
 const draw = (face) => face.onBeforeRender(null, null, null, face.geometry, face.material, null);
 
-// Degrees in the mean between what is shown with these weights and the normals of the surface.
+// Returns the average error in degrees between the normals rendered with these weights and the normals of the surface.
 async function errorOf(face) {
   const [mesh] = (await read(baked)).meshes, [primitive] = mesh.primitives, w = face.morphTargetInfluences;
   const own = new ExactNormals((await read(avatar)).meshes[0]).at(Float32Array.from(w.slice(0, 2)))[0];

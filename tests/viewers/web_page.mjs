@@ -1,5 +1,5 @@
-// A page of web/ in headless Chromium, opened from its file: whatever it asks for besides is refused and noted, and so is every
-// error that it makes.
+// Opens a page of web/ from its file in headless Chromium, refuses and records every other request, and records its
+// errors.
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
 
