@@ -1,4 +1,4 @@
-/// What the translation unit of every header (every_header.cpp.in) tells of itself.
+/// Describes the translation unit of every header (every_header.cpp.in).
 #ifndef CHRONORMAL_TESTS_ARCHITECTURE_EVERY_HEADER_H_
 #define CHRONORMAL_TESTS_ARCHITECTURE_EVERY_HEADER_H_
 
@@ -6,7 +6,7 @@
 
 namespace chronormal {
 
-/// How many headers it includes.
+/// The number of headers that it includes.
 extern const std::size_t kEveryHeaderCount;
 
 }  // namespace chronormal

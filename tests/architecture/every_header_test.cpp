@@ -1,5 +1,5 @@
-// The one-definition rule: no two headers of the product give one name to two things. The check is that
-// every_header.cpp, which CMake makes of every_header.cpp.in, compiles; here, that it leaves no header out.
+// Tests the one-definition rule: no two headers of the product give one name to two things. The check is that
+// every_header.cpp compiles, which CMake makes from every_header.cpp.in; this test checks that it leaves no header out.
 
 #include "tests/architecture/every_header.h"
 

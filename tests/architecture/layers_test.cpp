@@ -1,6 +1,6 @@
-// The folder is the layer, and a folder in it is a room. A file includes only what stands above it: its own room, the
-// rooms before that on its floor, and the floors before its own. The path alone decides, so this test needs no list of
-// files. docs/architecture.md draws the same plan.
+// Tests the layers: each folder is a layer, and a folder in it is a room. A file may include only what stands above it:
+// its own room, the rooms before that on its floor, and the floors before its own. The path alone decides, so this test
+// needs no list of files. docs/architecture.md draws the same plan.
 
 #include <gtest/gtest.h>
 
@@ -55,14 +55,14 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// The parts of a path.
+// Splits a path into its parts.
 std::vector<std::string> parts_of(const std::string& path) {
   std::vector<std::string> parts;
   for (const fs::path& part : fs::path(path)) parts.push_back(part.string());
   return parts;
 }
 
-// Where a file stands: its floor, and the room there; room 0 is the floor itself, above all of its rooms. The program
+// The place of a file: its floor, and the room there. Room 0 is the floor itself, above all of its rooms. The program
 // begins in main.cpp, which therefore stands below the rooms of its floor.
 struct Place {
   std::size_t floor = 0;
@@ -71,7 +71,8 @@ struct Place {
   auto operator<=>(const Place&) const = default;
 };
 
-// The room of a public header is the one that has its source, src/FLOOR/ROOM/STEM.cpp; without one it is the floor.
+// Returns the room of a public header, which is the room of its source, src/FLOOR/ROOM/STEM.cpp, or the floor if it has
+// none.
 std::string room_of_public_header(const std::string& floor, const fs::path& header) {
   for (const auto& [name, rooms] : kFloors) {
     if (name != floor) continue;
@@ -82,8 +83,8 @@ std::string room_of_public_header(const std::string& floor, const fs::path& head
   return "";
 }
 
-// The place of include/chronormal/FLOOR/STEM.h, src/FLOOR/ROOM/..., cli/..., or of these as they are included; nothing
-// for a path that is in no layer, or in a folder that is no room.
+// Returns the place of include/chronormal/FLOOR/STEM.h, src/FLOOR/ROOM/..., cli/..., or of the same paths as they are
+// included; nothing for a path that is in no layer, or in a folder that is not a room.
 std::optional<Place> place_of(const std::string& path) {
   std::vector<std::string> parts = parts_of(path);
   if (!parts.empty() && (parts[0] == "include" || parts[0] == "src")) parts.erase(parts.begin());
@@ -108,7 +109,7 @@ std::optional<Place> place_of(const std::string& path) {
   return std::nullopt;
 }
 
-// What a line includes in quotes, "" if it does not.
+// Returns the path that a line includes in quotes, or "".
 std::string included_by(const std::string& line) {
   const std::size_t hash = line.find_first_not_of(" \t");
   if (hash == std::string::npos || line[hash] != '#' || line.find("include", hash) == std::string::npos) return "";
@@ -117,7 +118,7 @@ std::string included_by(const std::string& line) {
   return last == std::string::npos ? "" : line.substr(first + 1, last - first - 1);
 }
 
-// What is wrong with the includes of one file; empty if nothing is.
+// Describes the faults of the includes of one file; empty if there are none.
 std::vector<std::string> violations(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   const auto own = place_of(path);
@@ -150,7 +151,7 @@ std::vector<fs::path> product_files() {
   return files;
 }
 
-// The lines of a file that use an instruction set by itself and not through Highway.
+// Returns the lines of a file that use an instruction set directly and not through Highway.
 std::vector<std::string> raw_intrinsics(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(text)) {
@@ -198,7 +199,7 @@ TEST(Layers, every_file_includes_only_its_own_room_and_those_above) {
 // The rooms of bake, from the one that uses none of the others to the last.
 const std::vector<std::string> kRoomsOfBake = {"poses", "deltas", "judge", "fits", "candidates", "write", "sequence"};
 
-// The lines that include a room of bake which comes later than that of the file.
+// Returns the lines that include a room of bake after the file's own.
 std::vector<std::string> later_rooms(const std::string& room, const std::string& text) {
   const auto place_of = [](const std::string& name) {
     return std::find(kRoomsOfBake.begin(), kRoomsOfBake.end(), name) - kRoomsOfBake.begin();
@@ -238,8 +239,8 @@ TEST(Layers, public_headers_include_only_public_headers) {
   }
 }
 
-// Only the library chronormal has Highway: chronormal_io and the program are built without its headers, in wasm too. And
-// it has it through one header, which does without.
+// Only the library chronormal uses Highway: chronormal_io and the program are built without its headers, in wasm too.
+// The library includes it through one header, without which it does not need Highway.
 TEST(Layers, kernels_stand_in_the_library_that_has_highway) {
   std::size_t kernels = 0;
   for (const fs::path& file : product_files()) {
@@ -319,8 +320,8 @@ TEST(Layers, raw_intrinsics_stand_in_two_files) {
   }
 }
 
-// The lines by which a private header declares names where public ones live. An inline namespace keeps the two apart
-// for the linker and the compiler, and needs no word where the names are used.
+// Returns the lines by which a private header declares names in the public namespace. An inline namespace keeps private
+// names apart for the linker and the compiler, and need not be written where the names are used.
 std::vector<std::string> public_names(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(text)) {
@@ -341,7 +342,7 @@ TEST(Layers, private_headers_declare_internal_names) {
   }
 }
 
-// A file holds one idea whole.
+// A file holds one whole idea.
 TEST(Layers, files_hold_one_idea) {
   for (const fs::path& file : product_files()) {
     const std::size_t limit = file.string().starts_with("include/") ? 400 : 1200;
@@ -349,7 +350,7 @@ TEST(Layers, files_hold_one_idea) {
   }
 }
 
-// Several test files are compiled as one (CHRONORMAL_UNITY), so that their names must not meet.
+// Several test files are compiled as one (CHRONORMAL_UNITY), so that their names must not collide.
 TEST(Layers, every_test_file_has_a_namespace_of_its_own) {
   std::size_t count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {

@@ -1,4 +1,5 @@
-// What is computed is the same on every machine: no function of the standard library that rounds as its system likes.
+// Checks that results are the same on every machine: no function of the standard library is used whose rounding depends
+// on the system.
 
 #include <gtest/gtest.h>
 

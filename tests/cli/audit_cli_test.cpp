@@ -1,4 +1,4 @@
-// What scripts and people get from `audit`: the verdict, the tables, the JSON, exit codes.
+// Tests `audit` for scripts and people: the verdict, the tables, the JSON, exit codes.
 
 #include <gtest/gtest.h>
 
@@ -144,7 +144,7 @@ TEST_F(AuditCli, viewers_are_in_the_json_with_their_errors_and_sources) {
 }
 
 TEST_F(AuditCli, tolerance_is_a_gate_for_every_viewer_that_is_named) {
-  // Each normal is right at weight 1, and on the way the long one turns too soon where deltas are added as they are.
+  // Each normal is right at weight 1; on the way, the long one turns too soon in viewers that add deltas unchanged.
   test::ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals = {0, 0, 0, -1, 0, 0, -1, 0, 0, -3, 0, -1};
   folder_.write("long.glb", mesh.file().glb());
@@ -225,7 +225,7 @@ TEST_F(AuditCli, json_is_one_object_with_schema_2) {
   EXPECT_EQ(json["authored_offsets"][0]["vertices"], 4);
 }
 
-// What is said on standard error is in the JSON of whoever does not read that.
+// Notes on standard error are also in the JSON, for callers that do not read standard error.
 TEST_F(AuditCli, notes_on_a_file_are_in_the_json_of_audit_and_bake) {
   test::GltfBuilder builder = test::hinge().file();
   builder.json["extensionsRequired"] = {"FOO_bar"};
@@ -378,7 +378,7 @@ TEST_F(AuditCli, long_tables_are_cut_and_json_is_not) {
 }
 
 TEST_F(AuditCli, long_tables_show_the_worst) {
-  // 20 targets of which every third folds the hinge by its whole angle, and the others by a tenth of that.
+  // Every third of 20 targets folds the hinge by its whole angle, and the others by a tenth of that.
   test::ShadedMesh mesh = test::hinge();
   const auto slight = [&] {
     test::ShadedMesh::Target target = mesh.targets[0];
@@ -392,7 +392,7 @@ TEST_F(AuditCli, long_tables_show_the_worst) {
   const std::string text = text_of("many.glb --samples 2");
   const std::string table = text.substr(0, text.find("... and 4 more"));
   for (int i = 0; i < 20; ++i) {
-    // The first of equals are shown: all 7 that are off by 90 degrees, and 9 of the rest.
+    // The table shows the first of equals: all 7 with an error of 90 degrees, and 9 of the rest.
     const bool is_shown = i % 3 == 0 || i < 14;
     EXPECT_EQ(table.find("\ntarget " + std::to_string(i) + " ") != std::string::npos, is_shown) << i << "\n" << table;
   }
@@ -405,7 +405,7 @@ std::string last_line(const std::string& text) {
 }
 
 TEST_F(AuditCli, faults_are_said_once_for_each_mesh_and_cause_the_worst_first) {
-  // Twenty targets that lack normals, most of them after a few degrees, and a mesh before them that is better.
+  // Twenty targets lack normals, most of them after a few degrees, and a mesh before them is better.
   const auto slight = [](float share) {
     test::ShadedMesh::Target target = test::hinge().targets[0];
     for (float& c : target.positions) c *= share;
@@ -432,7 +432,7 @@ TEST_F(AuditCli, faults_are_said_once_for_each_mesh_and_cause_the_worst_first) {
 }
 
 TEST_F(AuditCli, targets_together_are_a_fault_of_their_own_where_they_are_worse_than_alone) {
-  // Two targets that fold by 14 degrees each, and by 27 together.
+  // Two targets fold by 14 degrees each, and by 27 together.
   test::ShadedMesh mesh = test::hinge();
   for (float& c : mesh.targets[0].positions) c *= 0.125F;
   mesh.targets[0].positions[9] = 0;
@@ -467,7 +467,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
     const ProcessResult result = run_shell(std::string(kProgram) + " bake " + arguments, folder_.path(), "");
     ASSERT_EQ(result.exit_code, 0) << result.err;
   };
-  // Nothing drives the target of a still file: one delta is all, before and after.
+  // Nothing drives the target of a still file, so one delta is all it can have, before and after.
   test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
   sheet.targets[0].normals.clear();
   test::GltfBuilder builder = sheet.file();
@@ -482,16 +482,16 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   std::string advice = last_line(text_of("still_baked.glb"));
   expect_words(advice, {"was baked before", "where no animation moves them"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // One delta where extra targets could be driven.
+  // The file was baked with one delta where correction targets could be driven.
   bake("sheet.glb -o endpoint.glb --encode endpoint -q");
   advice = last_line(text_of("endpoint.glb"));
   expect_words(advice, {"was baked before", "bake the original with --encode exact"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // What all viewers show alike, where fewer viewers would let more be right.
+  // The file was baked for all viewers alike, while fewer viewers would allow smaller errors.
   bake("sheet.glb -o alike.glb -q");
   advice = last_line(run("alike.glb --tolerance 1e-6").out);
   expect_words(advice, {"was baked before", "bake the original with a smaller --tolerance, with --for"});
-  // A bake whose positions were moved afterwards.
+  // The positions of this bake were moved afterwards.
   bake("hinge.glb -o baked.glb --encode exact -q");
   std::string bytes = test::read_whole(folder_ / "baked.glb");
   const float folded = -2;
@@ -502,9 +502,9 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   folder_.write("moved.glb", bytes);
   advice = last_line(text_of("moved.glb"));
   expect_words(advice, {"was baked before", "start again from the file before its bake"});
-  // What is judged by another rule is not what bake writes for.
+  // An error by another rule is not what bake corrects.
   expect_words(last_line(text_of("hinge.glb --rule lerp")), {"without --rule, audit says what bake can do"});
-  // A fault is what the tolerance says where that is less than a degree.
+  // A tolerance below a degree defines what counts as a fault.
   expect_words(last_line(text_of("baked.glb --tolerance 0.1")),
                {"nothing to do: no normal is off by more than 0.1 degrees"});
 }
@@ -536,7 +536,7 @@ TEST_F(AuditCli, several_gltf_files_are_a_row_each) {
   EXPECT_EQ(json["files"][1]["input"]["name"], "models/m10.glb");
   EXPECT_EQ(json["files"][1]["worst_degrees"], 90.0);
   EXPECT_EQ(json["files"][0]["judged"], 0);
-  // A folder is a list, though there is one file in it.
+  // A folder is a list, even if it holds one file.
   EXPECT_EQ(Json::parse(run("models/deep --json").out)["files"].size(), 1U);
 }
 
@@ -576,7 +576,7 @@ TEST_F(AuditCli, gltf_files_and_keyframes_are_not_mixed) {
 }
 
 TEST_F(AuditCli, weighting_of_the_author_is_said_and_can_be_overridden) {
-  // Around vertex 0 a wide face and a narrow one that leans: by angle its normal is (0, -s, 1 + c) in some length.
+  // A wide face and a leaning narrow one meet in vertex 0: by angle its normal is (0, -s, 1 + c) in some length.
   test::ShadedMesh mesh;
   mesh.corners = {0, 1, 2, 0, 2, 3};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -8, 8, 8};

@@ -1,4 +1,4 @@
-// What is left of a file where the writing of a new one fails or is killed: the old one, or the new one, never a part.
+// Checks that a file is the old one or the new one, never a part, where the writing of a new one fails or is killed.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -36,7 +36,8 @@ class InterruptedBake : public testing::Test {
     EXPECT_TRUE(test::read_whole(folder_ / (folder + "/old.glb")) == kOld);
     EXPECT_EQ(entries(folder), 1) << "a temporary file is left";
   }
-  // The same where the disk has so little room. Only root may mount one, so that the test is skipped for other users.
+  // Does the same on a disk with this little room. Only root may mount one, so that the test is skipped for other
+  // users.
   void mount_disk_of(std::size_t kilobytes) const {
     fs::create_directory(folder_ / "small");
     const std::string mount = "mount -t tmpfs -o size=" + std::to_string(kilobytes) + "k none small";
@@ -75,7 +76,7 @@ TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
     fs::permissions(folder_ / "closed", fs::perms::owner_all);
     return;
   }
-  // Permissions are nothing to root; a mount is.
+  // Permissions do not stop root, but a mount does.
   const std::string mount = "mount --bind closed closed && mount -o remount,bind,ro closed";
   if (run_shell(mount, folder_.path()).exit_code != 0) GTEST_SKIP() << "root may not mount here";
   expect_refused("closed");
@@ -84,9 +85,8 @@ TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
 
 TEST_F(InterruptedBake, full_disk_keeps_its_file) { expect_refused_on_a_disk_of(64); }
 
-// The arrays wait in a file of their own until the JSON in front of them is known, and are given back to the disk one
-// after the other as they are copied: the largest has 214 KB, and there the disk has room for all of them, and not for
-// one more.
+// The arrays wait in a file of their own until the JSON in front of them is known, and each is deleted from the disk
+// after it is copied. The largest has 214 KB; the disk has room for all of them, but not for one more.
 TEST_F(InterruptedBake, disk_that_is_full_at_the_end_keeps_its_file) {
   expect_refused_on_a_disk_of(whole_.size() / 1024 + 100);
 }

@@ -1,4 +1,4 @@
-// `bake --encode keys` on the command line: its report, its exit codes, and what it refuses.
+// Tests `bake --encode keys` on the command line: its report, its exit codes, and refused requests.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ TEST_F(BakeKeysCommand, report_counts_keys_and_what_they_save) {
   const std::string text = run("--sample bend --encode keys --tolerance 2 --force -o bend.glb").out;
   EXPECT_NE(text.find(" between keyframes; 0 keyframes left out; "), std::string::npos) << text;
   EXPECT_NE(text.find("\nkeys: at most "), std::string::npos) << text;
-  // The mark is that of harmless, so that everything that reads it knows what it is.
+  // The mark is that of harmless, so that all its readers understand it.
   const Json audited = Json::parse(
       run_shell(std::string(kProgram) + " audit bend.glb --json --for three --tolerance 2.01", folder_.path()).out);
   EXPECT_LE(audited["viewers"][0]["worst_degrees"], 2.01) << audited;

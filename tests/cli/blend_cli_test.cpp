@@ -1,5 +1,4 @@
-// What scripts depend on when they give compare --blend: its three forms, which normals it is about, and what is
-// refused.
+// Tests what scripts depend on in compare --blend: its three forms, the normals that it compares, and refused requests.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What scripts depend on: exit codes, what goes to stdout and what to stderr, the JSON, and files that are never half
+// Tests what scripts depend on: exit codes, the texts on stdout and stderr, the JSON, and that files are never half
 // written. Runs the program itself.
 
 #include <gtest/gtest.h>
@@ -52,13 +52,13 @@ class Cli : public testing::Test {
     text << std::ifstream(folder_ / name, std::ios::binary).rdbuf();
     return text.str();
   }
-  // Two keyframes, a.obj and b.obj.
+  // Writes two keyframes, a.obj and b.obj.
   void write_two_frames() const {
     write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     write("b.obj", "v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
   }
 
-  // The names that the help of the program lists.
+  // Returns the names that the help of the program lists.
   [[nodiscard]] std::vector<std::string> command_names() const {
     std::vector<std::string> commands;
     bool are_listed = false;
@@ -70,7 +70,7 @@ class Cli : public testing::Test {
     return commands;
   }
 
-  // The long names of the options that the help of a command lists.
+  // Returns the long names of the options that the help of a command lists.
   [[nodiscard]] std::vector<std::string> option_names(const std::string& command) const {
     std::vector<std::string> names;
     for (const std::string& line : lines_of(run(command + " --help").out)) {
@@ -140,11 +140,11 @@ TEST_F(Cli, help_and_version_have_short_ways) {
 
 TEST_F(Cli, a_mistyped_option_is_answered_with_the_nearest) {
   expect_error(run("compare a.obj b.obj --shcemes linear"), 2, {"'--shcemes'; did you mean --schemes?"});
-  // Also where something that is required is missing, or the mistake is in a value's own name.
+  // The answer is the same if something required is missing, or if the mistake is in a value's own name.
   expect_error(run("bake --tolerence=3"), 2, {"'--tolerence'; did you mean --tolerance?"});
   expect_error(run("bake -z a.obj"), 2, {"there is no option '-z'"});
   expect_error(run("compare a.obj b.obj --colour-of-the-sky"), 2, {"'--colour-of-the-sky'\n"});
-  // What follows an option that takes a value is that value.
+  // The text after an option that takes a value is that value.
   expect_error(run("compare a.obj b.obj --samples --sample"), 2, {"--samples"});
 }
 
@@ -189,7 +189,7 @@ TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
   }
 }
 
-// An input that takes an option, for each option that a command lists. What every command needs besides is added.
+// An input that takes an option, for each option that a command lists. Further needs of every command are added.
 const std::map<std::string, std::string> kUses = {
     {"--access", "a.obj b.obj --access sequential"},
     {"--active", "--base a.obj b.obj --blend 2 --active 1"},
@@ -273,7 +273,7 @@ const std::map<std::string, std::string> kUses = {
     {"--world", "face.glb --world"},
 };
 
-// What a command needs besides its input.
+// Returns the arguments that a command needs besides its input.
 std::string needs_of(const std::string& command, const std::string& use) {
   if (use == "--help") return "";
   if (command == "bake") return " -o out.glb";
@@ -363,7 +363,7 @@ TEST_F(Cli, colours_are_for_terminals) {
   EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " --json").out, with("", audit + " --json").out);
   EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " -o table.txt").out, "");
   EXPECT_EQ(read("table.txt"), piped.out);
-  // Emphasis takes no room in a table, and names cannot bring their own.
+  // Emphasis takes no room in a table, and names cannot add any.
   std::string plain;
   bool is_mark = false;
   for (const char c : forced.out) {
@@ -422,7 +422,7 @@ TEST_F(Cli, a_name_that_is_too_long_stands_above_its_row) {
 TEST_F(Cli, what_an_error_quotes_from_a_file_is_safe_to_print) {
   const std::string gltf =
       R"({"asset":{"version":"2.0"},"extensionsUsed":["E"],"extensionsRequired":["\u001b[31mE\n"]})";
-  // An extension that nothing uses is an error for --strict alone, and a note otherwise.
+  // An extension that nothing uses is an error only for --strict, and otherwise a note.
   for (const bool strict : {true, false}) {
     const ProcessResult result = run(strict ? "inspect --strict -" : "inspect -", gltf);
     EXPECT_EQ(result.exit_code, strict ? 3 : 0);
@@ -446,7 +446,7 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   expect_error(run("compare a.obj b.obj --schemes linear,nlerp"), 2, {"nlerp", "quaternion:optimal"});
   expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"--schemes", "empty name"});
   expect_error(run("compare a.obj b.obj --schemes linear,"), 2, {"--schemes", "empty name"});
-  // An empty text, or one that stands for no number, is none, and not an option that was not given.
+  // An empty text, or one that is not a number, is an error, and does not count as a missing option.
   for (const char* const option :
        {"audit a.obj --tolerance", "audit a.obj --samples", "audit a.obj --fps", "compare a.obj b.obj --samples",
         "compare a.obj b.obj --blend", "compare a.obj b.obj --crease", "sample a.obj --crease",
@@ -540,7 +540,7 @@ TEST_F(Cli, json_is_one_object_as_the_contract_has_it) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"linear", "quadratic", "cubic", "polynomial", "slerp", "decasteljau:4",
                                              "quaternion:matrix", "quaternion:optimal", "circle:timed"}));
-  // Linear at the middle, by hand: the angle between (1, 0, 1) and (1, -1, 1), at t = 1/4 and 3/4 alike.
+  // The error of linear by hand: the angle between (1, 0, 1) and (1, -1, 1), at t = 1/4 and 3/4 alike.
   EXPECT_NEAR(json["schemes"][0]["max_degrees"].get<double>(), 35.264389683, 1e-5);
   for (const Json& row : json["schemes"]) EXPECT_EQ(row["missing"], 0);
 }
@@ -704,7 +704,7 @@ TEST_F(Cli, each_keeps_the_notes_and_names_the_motion_that_failed) {
   expect_error(run("compare --each walk/ --sample twist"), 3, {"walk/", "frame 1", "2.obj", "line 4"});
 }
 
-// Work that takes longer than a progress bar waits before it shows.
+// A command that takes longer than the delay of the progress bar.
 constexpr const char* kSecondOfWork = "compare --sample eversion --schemes linear:scaled --samples 31";
 
 TEST_F(Cli, progress_stays_off_when_stderr_is_no_terminal) { EXPECT_EQ(run(kSecondOfWork).err, ""); }
@@ -730,7 +730,7 @@ TEST_F(Cli, long_work_shows_on_a_terminal_its_pace_and_the_time_that_is_left) {
   const std::string line = shown.substr(begin + 1, end - begin - 1);
   EXPECT_TRUE(line.starts_with("sampling [") && line.ends_with(" left")) << line;
   EXPECT_LE(line.size(), 80U) << line;
-  // So many times at that rate take about as long as it says. Both are rounded.
+  // The remaining samples at that rate take about the stated time. Both numbers are rounded.
   const double rate = std::stod(line.substr(line.find("%, ") + 3));
   double seconds = 0;
   for (std::size_t at = line.find("/s, ") + 4; line.compare(at, 4, "left") != 0;) {

@@ -1,5 +1,5 @@
-// Each figure of `compare` stands where its name says, in the table, in the JSON and in the CSV: against figures by
-// hand.
+// Checks that each figure of `compare` stands where its name says, in the table, in the JSON and in the CSV, against
+// figures by hand.
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Three triangles that move in the first of two segments: one without area, one whose normal turns over at t = 1/4, and
-// one from z to -y in which linear interpolation is off by 45 - atan(1/2) degrees at t = 1/2. Of 3 x 2 x 3 pairs 6 have
-// no exact normal, and linear is wrong at two: there, and by 180 degrees where opposite normals cancel.
+// Three triangles move in the first of two segments: one without area, one whose normal turns over at t = 1/4, and one
+// from z to -y in which linear interpolation has an error of 45 - atan(1/2) degrees at t = 1/2. Of 3 x 2 x 3 samples 6
+// have no exact normal, and linear is wrong in two: there, and by 180 degrees where opposite normals cancel.
 class CompareFigures : public testing::Test {
  protected:
   CompareFigures() {

@@ -1,4 +1,4 @@
-// `compare --truth`: its forms agree, its remarks say what the figures say, and it refuses what does not go with it.
+// Tests `compare --truth`: its forms agree, its remarks match the figures, and it refuses options that do not fit.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 class CompareTruth : public testing::Test {
  protected:
-  // Two triangles that turn by an angle from frame to frame, about an axis through neither.
+  // Writes two triangles that turn by an angle from frame to frame, about an axis through neither.
   void write_turn(double angle, int frames, bool with_velocities = false) {
     for (int frame = 0; frame < frames; ++frame) {
       std::ostringstream text;

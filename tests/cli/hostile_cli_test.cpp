@@ -1,5 +1,5 @@
-// What the program does where files and the system are not as it would like them: names that are no plain words, inputs
-// without an end, limits, and messages that must say what is the matter.
+// Tests the program with hostile files and systems: names that are not plain words, inputs without an end, limits, and
+// messages that must say what is wrong.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -42,7 +42,7 @@ class HostileCli : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// The first character that a terminal would obey; empty where there is none.
+// Describes the first character that a terminal would obey, or returns "".
 std::string find_unsafe(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -55,7 +55,7 @@ std::string find_unsafe(std::string_view text) {
   return "";
 }
 
-// Names that a file system takes; the second is no UTF-8.
+// Names that a file system accepts; the second is not UTF-8.
 const std::vector<std::string> kNames = {"esc\x1b[31m csi\u009b31m rtl\u202etxt two\nlines del\x7f", "raw\xff\x9b"};
 
 TEST_F(HostileCli, names_of_files_are_printed_without_what_a_terminal_obeys) {
@@ -174,7 +174,7 @@ TEST_F(HostileCli, writing_beyond_the_limit_of_the_shell_is_an_error_and_leaves_
 }
 
 TEST_F(HostileCli, signals_that_are_ignored_stay_ignored) {
-  // A shell ignores SIGINT for what it runs in the background, and SIGHUP where it is told to, as nohup does.
+  // A shell ignores SIGINT for its background jobs, and SIGHUP if told to, as nohup does.
   const ProcessResult result =
       run("sample --sample twist --times 0:0.001:1 -o out.npy & sleep 0.1; kill -INT $!; kill -HUP $!; wait $!",
           "trap '' HUP; ");
@@ -188,7 +188,7 @@ TEST_F(HostileCli, a_closed_stream_is_not_taken_for_the_output) {
     EXPECT_EQ(run("convert --sample twist --force -o out.npz" + std::string(closed)).exit_code, 0) << closed;
     EXPECT_EQ(test::read_whole(folder_ / "out.npz"), test::read_whole(folder_ / "right.npz")) << closed;
   }
-  // What is said about zeros has nowhere to go, and does not go into the file.
+  // The note about zeros has nowhere to go, and must not go into the file.
   folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   EXPECT_EQ(run("sample flat.obj -o flat.npy 2>&-").exit_code, 0);
   EXPECT_EQ(test::read_whole(folder_ / "flat.npy").find("chronormal"), std::string::npos);
@@ -262,7 +262,7 @@ TEST_F(HostileCli, a_sentence_that_holds_for_several_meshes_is_said_once) {
   EXPECT_EQ(result.err.find("by --encode exact", first + 1), std::string::npos) << result.err;
 }
 
-// Whatever its name looks like, an output is never written over another one, or over what is read.
+// An output never replaces another output or an input, whatever its name looks like.
 TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name) {
   folder_.write("a.obj", kFirst);
   folder_.write("b.obj", kSecond);
@@ -300,8 +300,8 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
   EXPECT_EQ(run("audit a.obj b.obj --errors sub/new.npz -o new.npz").exit_code, 0);
 }
 
-// A pipe that nobody reads takes no messages, which changes no exit code. Where it is to take data, the program ends as
-// others do in front of `head`.
+// Messages to a pipe without a reader are lost, which changes no exit code. If the pipe was to take data, the program
+// ends as others do in front of `head`.
 TEST_F(HostileCli, a_reader_that_is_gone_ends_only_what_was_to_be_read) {
   folder_.write("a.obj", kFirst);
   folder_.write("b.obj", kSecond);
@@ -324,7 +324,7 @@ TEST_F(HostileCli, a_reader_that_is_gone_ends_only_what_was_to_be_read) {
   EXPECT_EQ(test::read_whole(folder_ / "err.txt"), "");
 }
 
-// A library that is loaded before the program may have set another rounding mode: nothing comes of it.
+// A library that is loaded before the program may set another rounding mode, which must change nothing.
 TEST_F(HostileCli, the_rounding_mode_of_a_viewer_changes_no_byte) {
   if (std::string(kProgram).ends_with("_sanitized"))
     GTEST_SKIP() << "the layer would replace the malloc of a sanitizer";
@@ -345,7 +345,7 @@ TEST_F(HostileCli, the_rounding_mode_of_a_viewer_changes_no_byte) {
   }
 }
 
-// A GLB of so many meshes that share a grid of 3,600 vertices and its targets.
+// Makes a GLB of mesh_count meshes that share a grid of 3,600 vertices and its targets.
 std::string grid_of_targets(int mesh_count, int target_count) {
   test::GltfBuilder builder;
   std::vector<float> positions, lift;
@@ -382,11 +382,11 @@ TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion)
   EXPECT_EQ(run("query cones many.glb --max-expansion 10000").exit_code, 0);
 }
 
-// No table of a mesh alone is too large, but all together are.
+// The table of each mesh is small enough, but all together are too large.
 TEST_F(HostileCli, errors_of_many_meshes_need_max_expansion) {
   folder_.write("many.glb", grid_of_targets(60, 5));
   expect(run("audit many.glb --samples 9 --errors e.npz"), 3, {"the errors of every sample", "--max-expansion"});
-  // Without normals in the file nothing is judged, but that is another question.
+  // The file has no normals, so nothing is judged, but that is another question.
   expect(run("audit many.glb --samples 9 --errors e.npz --max-expansion 10000"), 3, {"nothing was judged"});
 }
 
@@ -410,8 +410,8 @@ TEST_F(HostileCli, a_small_stack_is_enough) {
   }
 }
 
-// Files that seem to have a terabyte, of which nearly all was never written. (p.ply and q.ply are as long as their
-// headers say.)
+// The files claim a terabyte, of which nearly all was never written. (p.ply and q.ply are as long as their headers
+// say.)
 TEST_F(HostileCli, sparse_files_are_refused_at_once_and_whole) {
   folder_.write("mesh.obj", kFirst);
   const std::string header =

@@ -1,4 +1,4 @@
-// What scripts and people get from `inspect`: facts, trouble in words, the JSON, exit codes.
+// Tests `inspect` for scripts and people: facts, trouble in words, the JSON, exit codes.
 
 #include <gtest/gtest.h>
 

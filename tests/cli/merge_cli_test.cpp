@@ -1,5 +1,5 @@
-// `--shard` and `merge`: many machines together write what one would have written. The choice of keyframes is tested
-// here, too.
+// Tests `--shard` and `merge`: many machines together write what one would have written. The choice of keyframes is
+// tested here, too.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace {
 
 class Merge : public testing::Test {
  protected:
-  // A strip of two triangles that folds over six keyframes.
+  // Writes a strip of two triangles that folds over six keyframes.
   Merge() {
     for (int k = 0; k < 6; ++k) {
       const std::string height = std::to_string(0.1 * k * k);

@@ -1,4 +1,4 @@
-// --path: what commands say of curves, when they warn, and what they refuse.
+// Tests --path: the reports of commands about curves, their warnings, and refused requests.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 class Paths : public testing::Test {
  protected:
-  // Two triangles that turn by an angle from frame to frame, and lean over.
+  // Writes two triangles that turn by an angle from frame to frame, and lean over.
   void write_turn(double angle, double lean = 0.1) {
     for (int frame = 0; frame < 5; ++frame) {
       std::ostringstream text;
@@ -32,7 +32,7 @@ class Paths : public testing::Test {
       folder_.write("f" + std::to_string(frame) + ".obj", text.str());
     }
   }
-  // One triangle that turns as these do, with a multiple of its velocities in a second a frame.
+  // Writes one triangle that turns in the same way, with a multiple of its velocities at one frame a second.
   void write_turn_with_velocities(double angle, double factor) {
     for (int frame = 0; frame < 5; ++frame) {
       std::ostringstream text;
@@ -71,7 +71,7 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
   EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:0.5").err.find("are within 0.5 degrees"), std::string::npos);
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom -q").err, "");
   EXPECT_EQ(run("inspect 'f*.obj'").err, "");
-  // Every command knows the pieces, each in its way.
+  // Every command uses the pieces in its way.
   const auto pieces = json("inspect 'f*.obj' --path catmull-rom:0.5 --json")["input"]["keyframes"].get<int>() - 1;
   EXPECT_GT(pieces, 4);
   EXPECT_EQ(json("compare 'f*.obj' --path catmull-rom:0.5 --json --no-times")["input"]["segments"], pieces);
@@ -119,7 +119,7 @@ TEST_F(Paths, all_warn_of_velocities_that_are_not_those_of_the_motion) {
           << command << factor << result.err;
     }
   }
-  // Velocities of a motion at 24 frames a second, where frames count as seconds.
+  // These are the velocities of a motion at 24 frames a second, while frames count as seconds.
   write_turn_with_velocities(0.3, 24);
   EXPECT_NE(run("compare 'v*.ply' --path hermite").err.find("vertices would go 24.1 times"), std::string::npos);
   EXPECT_EQ(run("compare 'v*.ply' --fps 24 --path hermite").err.find("vertices would go"), std::string::npos);

@@ -1,4 +1,4 @@
-// What scripts and people get from `query`: tables, JSON, arrays, and the exit codes of misuse.
+// Tests `query` for scripts and people: tables, JSON, arrays, and the exit codes of misuse.
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 
 class QueryCli : public testing::Test {
  protected:
-  // Two triangles of a square. The last vertex comes across the diagonal, and back again by the same way: face 1 turns
-  // over at t = 1/2 of both segments, and face 0 stands still.
+  // Writes two triangles of a square. The last vertex crosses the diagonal, and comes back by the same way: face 1
+  // turns over at t = 1/2 of both segments, and face 0 stands still.
   QueryCli() {
     for (const auto& [name, corner] : {std::pair{"a.obj", "1 1 0"}, {"b.obj", "0 0 0"}, {"c.obj", "1 1 0"}})
       folder_.write(name, std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nv ") + corner + "\nf 1 2 3\nf 2 4 3\n");
@@ -33,7 +33,7 @@ class QueryCli : public testing::Test {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return Json::parse(result.out);
   }
-  // Brackets are narrower than this.
+  // Compares with a tolerance that is wider than the brackets.
   static void expect_near(const Json& values, const std::vector<double>& wanted) {
     ASSERT_EQ(values.size(), wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(values[i].get<double>(), wanted[i], 1e-12) << i;
@@ -101,8 +101,8 @@ TEST_F(QueryCli, faces_show_their_front_in_intervals) {
 }
 
 TEST_F(QueryCli, an_eye_moves_over_the_whole_motion) {
-  // It passes the plane z = 0 at time 1, so that face 0 is hidden from then on, and face 1 is seen from its front in
-  // the first quarter and the second.
+  // The eye passes the plane z = 0 at time 1, so that face 0 is hidden from then on, and face 1 shows its front in the
+  // first quarter and the second.
   const Json arrays = json_of("facing a.obj b.obj c.obj --eye .2,.2,1,.2,.2,-1").at("arrays");
   EXPECT_EQ(arrays.at("segment"), Json({0, 0, 1}));
   EXPECT_EQ(arrays.at("face"), Json({0, 1, 1}));

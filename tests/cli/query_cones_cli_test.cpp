@@ -1,4 +1,4 @@
-// What scripts and people get from `query cones` and `query shutter`.
+// Tests `query cones` and `query shutter` for scripts and people.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 
 class QueryCones : public testing::Test {
  protected:
-  // A triangle that a hinge on the x axis lifts by a right angle, and one that stands still beside it.
+  // Writes a triangle that a hinge on the x axis lifts by a right angle, and one that stands still beside it.
   QueryCones() {
     folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3\nf 4 5 6\n");
     folder_.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3\nf 4 5 6\n");
@@ -111,7 +111,7 @@ TEST_F(QueryCones, shutter_has_the_mean_of_every_face_and_of_the_whole_span) {
   EXPECT_NEAR(arrays.at("length")[0].get<double>(), std::hypot(y, z), 1e-12);
   EXPECT_LT(arrays.at("ends_off")[0].get<double>(), 1e-5);
   EXPECT_NEAR(arrays.at("length")[1].get<double>(), 1, 1e-7);
-  // There and back again: the ends of the span are the same, and lerp of them sees no motion.
+  // The motion goes there and back: the ends of the span are the same, and lerp between them sees no motion.
   EXPECT_EQ(arrays.at("span_face"), Json({0, 1}));
   EXPECT_NEAR(arrays.at("span_ends_off")[0].get<double>(), 45, 1e-5);
   EXPECT_NEAR(arrays.at("span_mean_unit")[0][2].get<double>(), z, 1e-9);

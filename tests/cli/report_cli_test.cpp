@@ -1,5 +1,4 @@
-// What scripts and people get from `report`: the page, its data, the table, the JSON, and what is said where there is
-// no page.
+// Tests `report` for scripts and people: the page, its data, the table, the JSON, and the message if there is no page.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// `--resume`: a run that failed goes on where it stopped, with the same bytes; a journal of another run is refused.
-// Runs that are killed stand in tests/faults/killed_test.cpp. Here it is a limit of the size of files that ends them.
+// Tests `--resume`: a run that failed continues where it stopped, with the same bytes; a journal of another run is
+// refused. Here a limit of the size of files ends the runs; tests/faults/killed_test.cpp kills them.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 class Resume : public testing::Test {
  protected:
-  // A strip of triangles that folds over nine keyframes.
+  // Writes a strip of triangles that folds over nine keyframes.
   Resume() {
     for (int k = 0; k < 9; ++k) {
       std::string text;
@@ -32,14 +32,14 @@ class Resume : public testing::Test {
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& before = "") const {
     return run_shell(before + std::string(kProgram) + " " + arguments, folder_.path());
   }
-  // No file may get larger than so many blocks of 512 bytes, or of 1,024 where the shell is another one.
+  // Runs with a limit of the size of files in blocks of 512 bytes, or of 1,024 in other shells.
   [[nodiscard]] ProcessResult cut(const std::string& arguments, const std::string& blocks = "4") const {
     return run(arguments, "ulimit -f " + blocks + "; ");
   }
   [[nodiscard]] std::string file(const std::string& name) const { return test::read_whole(folder_ / name); }
   [[nodiscard]] bool exists(const std::string& name) const { return fs::exists(folder_ / name); }
 
-  // Ends a run too early, and goes on with it.
+  // Ends a run too early, and continues it.
   void check(const std::string& command, const std::string& undisturbed, const std::string& blocks = "4") const {
     const std::string out = " --resume -o out";
     ASSERT_EQ(run(command + undisturbed + " -o whole").exit_code, 0);
@@ -124,7 +124,7 @@ TEST_F(Resume, files_of_other_people_are_not_touched) {
 }
 
 TEST_F(Resume, a_run_that_has_done_nothing_leaves_nothing) {
-  // A row of the first one, and a record of the others, are too large for the limit.
+  // A row of the first command, and a record of the others, are too large for the limit.
   for (const std::string command :
        {"sample --sample twist --times 0,1 --format npy", "compare --sample twist", "audit --sample twist"}) {
     const ProcessResult failed = cut(command + " --resume -o out", command.starts_with("sample") ? "4" : "2");

@@ -1,4 +1,4 @@
-// What scripts and people get from `sample`: arrays and meshes with normals, exit codes, and the normals of other tools
+// Tests `sample` for scripts and people: arrays and meshes with normals, exit codes, and the normals of other tools
 // where the environment variable CHRONORMAL_DATA says where their files are.
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ constexpr double kDegreesPerRadian = 57.29577951308232;
 class SampleCli : public testing::Test {
  protected:
   SampleCli() {
-    // A right angle that opens, with a seam: vertices 2 and 4, 3 and 5 are one point each.
+    // A right angle opens, with a seam: vertices 2 and 4, and 3 and 5, are one point each.
     folder_.write("a.obj",
                   std::string("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\n") + kFaces);
     folder_.write("b.obj",
@@ -49,7 +49,7 @@ class SampleCli : public testing::Test {
     EXPECT_EQ(result.out, "");
     EXPECT_NE(result.err.find(word), std::string::npos) << word << "\n" << result.err;
   }
-  // The array that the arguments write to standard output, without a word on the other stream.
+  // Returns the array that the arguments write to standard output, without any text on standard error.
   [[nodiscard]] test::ArrayFile array_of(const std::string& arguments) const {
     const ProcessResult result = run(arguments + " -o -");
     EXPECT_EQ(result.exit_code, 0) << arguments << "\n" << result.err;
@@ -69,8 +69,8 @@ TEST_F(SampleCli, vertices_across_a_seam_are_exact_by_hand) {
   const test::ArrayFile array = array_of("a.obj b.obj --times 0,0.5,1");
   EXPECT_EQ(array.shape, (std::vector<std::size_t>{3, 8, 3}));
   const auto normals = array.as<float>();
-  // The second quad goes from (1, 0, 0) to (0, 0, 1): its normal at t is (-t, 0, 1 - t); at the seam (0, 0, 1) comes to
-  // it.
+  // The second quad goes from (1, 0, 0) to (0, 0, 1), so its normal at t is (-t, 0, 1 - t); at the seam (0, 0, 1) is
+  // added.
   for (const auto& [time, t] : {std::pair{0U, 0.0}, std::pair{1U, 0.5}, std::pair{2U, 1.0}}) {
     const double length = std::sqrt(t * t + (2 - t) * (2 - t));
     for (const std::size_t v : {2U, 3U, 4U, 5U}) {
@@ -107,8 +107,8 @@ TEST_F(SampleCli, elements_lengths_and_hard_edges) {
 }
 
 TEST_F(SampleCli, gltf_files_have_hard_edges_by_their_own_normals) {
-  // Two triangles that meet at a right angle along x, with vertices of their own there and one target; the normals of
-  // the seam agree (smooth) or differ (hard).
+  // Two triangles meet at a right angle along x, with vertices of their own there and one target; the normals of the
+  // seam agree (smooth) or differ (hard).
   const auto distinct = [this](const std::vector<float>& normals) {
     test::GltfBuilder builder;
     const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, /**/ 0, 0, 0, 0, 0, -1, 1, 0, 0});
@@ -216,7 +216,7 @@ TEST_F(SampleCli, a_name_that_several_targets_have_is_refused_with_their_numbers
   expect_error("twice.glb -o n.npy --weights smile=1", 2,
                "targets 0 and 1 all have the name 'smile': say which by its number");
   EXPECT_EQ(array_of("twice.glb --weights 1=1").elements, array_of("twice.glb --weights 0,1").elements);
-  // A number that is the name of another target is that name.
+  // A number that is the name of another target means that target.
   builder.json["meshes"][0]["extras"]["targetNames"] = {"1", "smile"};
   folder_.write("number.glb", builder.glb());
   EXPECT_EQ(array_of("number.glb --weights 1=1").elements, array_of("number.glb --weights 1,0").elements);
@@ -233,7 +233,7 @@ TEST_F(SampleCli, keys_are_the_times_of_the_keyframes) {
   ASSERT_EQ(run_shell(std::string(kProgram) + " convert a.obj b.obj b.obj --fps 4 -o c.mdd", folder_.path()).exit_code,
             0);
   EXPECT_EQ(times_of("a.obj c.mdd"), (std::vector<double>{0, 0.25, 0.5}));
-  // A cubic spline is cut into many pieces, whose ends are no keys; where weights jump, there is one.
+  // A cubic spline is cut into many pieces, whose ends are not keys; where weights jump, there is one key.
   test::GltfBuilder builder = test::quad_document();
   const std::vector<float> times = {0.5F, 1, 3};
   builder.add_track(0, 0, times, std::vector<float>{0, 0, 0, 0, 9, 9, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 9, 9},
@@ -328,7 +328,7 @@ TEST_F(SampleCli, elements_without_a_normal_are_counted_on_stderr) {
   EXPECT_EQ(row(test::parse_npy(result.out).as<float>(), 3), (std::array<float, 3>{0, 0, 0}));
 }
 
-// The second face turns by a quarter turn, which exact normals and linear ones do as its edge goes straight, and slerp
+// The second face makes a quarter turn: exact and linear normals follow the straight way of its edge, and slerp turns
 // evenly.
 TEST_F(SampleCli, a_scheme_is_written_in_every_format) {
   const auto tangent_of = [&](const std::string& scheme) {
@@ -367,7 +367,7 @@ TEST_F(SampleCli, steps_say_how_far_they_drift) {
   EXPECT_EQ(array.shape, (std::vector<std::size_t>{17, 8, 3}));
   const test::ArrayFile of_targets = array_of("--base a.obj b.obj --scheme slerp --step 8 -q");
   EXPECT_EQ(of_targets.shape, (std::vector<std::size_t>{9, 8, 3}));
-  // Two shards are what one run writes.
+  // Two shards together equal one run.
   const std::string steps = "a.obj b.obj a.obj --scheme slerp --step 100 ";
   ASSERT_EQ(run(steps + "-o all.npy").exit_code, 0);
   for (const char* const shard : {"1", "2"})
@@ -396,7 +396,7 @@ TEST_F(SampleCli, help_lists_weightings_and_examples) {
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
 }
 
-// The normals that an OBJ file stores for its corners.
+// Returns the normals that an OBJ file stores for its corners.
 std::vector<std::array<double, 3>> stored_normals(const fs::path& path) {
   std::vector<std::array<double, 3>> normals, of_corners;
   std::ifstream text(path);
@@ -422,7 +422,8 @@ class SampleCliGolden : public SampleCli {
     data_ = folder;
   }
 
-  // The largest angle between what `sample` writes for the corners of a file and what it stores, in degrees.
+  // Returns the largest angle in degrees between the normals that `sample` writes for the corners of a file and the
+  // stored ones.
   [[nodiscard]] double largest_difference(const std::string& file, const std::string& options) const {
     const std::string path = (data_ / file).string();
     const auto expected = stored_normals(path);

@@ -1,5 +1,5 @@
-// Numbers as text: what <charconv> or its stand-in writes is what the C library writes, and reads back as the same
-// number. It is run under Node.js too (wasm_bits), where the stand-in is what runs.
+// Tests numbers as text: <charconv> or its stand-in writes the same text as the C library, which reads back as the same
+// number. This also runs under Node.js (wasm_bits), where the stand-in is used.
 #include "core/charconv.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace chronormal::charconv_test {
 namespace {
 
-// Numbers of all sizes, and those at the ends of what there is.
+// Returns numbers of all sizes, and the extremes.
 std::vector<double> numbers() {
   std::vector<double> result = {0.0,
                                 -0.0,

@@ -1,4 +1,4 @@
-// result, vec3, views, parallel.
+// Tests result, vec3, views, and parallel.
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,4 +1,4 @@
-// What a mistyped name was meant to be, against a search over all edits.
+// Compares the suggestion for a mistyped name with a search over all edits.
 #include "core/nearest.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace chronormal::nearest_test {
 namespace {
 
-// All words that one edit makes of a word over two letters.
+// Returns all words that one edit makes from a word over two letters.
 std::set<std::string> edited(const std::string& word) {
   std::set<std::string> words;
   for (std::size_t i = 0; i <= word.size(); ++i) {

@@ -55,7 +55,7 @@ TEST(ParallelFor, throws_what_the_body_throws) {
       if (i == 13) throw std::out_of_range("thirteen");
     };
     EXPECT_THROW(parallel_for(100, throwing), std::out_of_range);
-    // And is none the worse for it.
+    // The pool still works afterwards.
     std::atomic<std::size_t> sum = 0;
     parallel_for(100, [&](std::size_t i) { sum += i; });
     EXPECT_EQ(sum, 4950u);
@@ -94,7 +94,7 @@ TEST(ParallelFor, in_its_body_shares_the_threads_of_the_outer_loop) {
 TEST(ParallelFor, helps_with_the_loops_inside_while_it_waits) {
   const ThreadLimit two(2);
   Crowd crowd;
-  // The other thread cannot be through with its piece before this one waits, and has work for two then.
+  // The other thread cannot finish its piece before this one waits, and has work for two then.
   const auto caller = std::this_thread::get_id();
   std::atomic<bool> is_helped = false;
   std::atomic<std::size_t> begun = 0;
@@ -228,7 +228,7 @@ TEST(ParallelFor, in_a_child_of_fork_has_one_thread_and_does_all_pieces) {
   EXPECT_EQ(thread_count(), 4u);
 }
 
-// The pieces that other threads had begun are not done in the child, which hears of that.
+// The child does not finish the pieces that other threads had begun, and gets an error.
 TEST(ParallelFor, that_is_forked_in_the_middle_ends_as_interrupted_in_the_child) {
   const ThreadLimit two(2);
   const auto caller = std::this_thread::get_id();
@@ -299,7 +299,7 @@ TEST(ThreadLimit, belongs_to_the_thread_that_made_it) {
   EXPECT_EQ(elsewhere, without);
 }
 
-// A loop in a loop that takes seconds, unless it is ended.
+// Runs a nested loop that takes seconds unless it is interrupted.
 void loop_for_long() {
   parallel_for(40, [](std::size_t) {
     parallel_for(40, [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(5)); });

@@ -11,7 +11,7 @@
 namespace chronormal::polynomial_test {
 namespace {
 
-// The definition of the Bernstein form, term by term.
+// Evaluates the definition of the Bernstein form, term by term.
 double bernstein_sum(const Bernstein<double, 4>& b, double t) {
   double sum = 0;
   for (int k = 0; k <= 4; ++k)
@@ -80,14 +80,14 @@ Bernstein<double, 3> cubic_with_roots(double a, double b, double c) {
 }
 
 RC_GTEST_PROP(Polynomial, roots_are_found_where_they_were_put, ()) {
-  // Apart by 1e-2 at least, some of them outside [0, 1].
+  // The roots are at least 1e-2 apart, some of them outside [0, 1].
   const int a = *rc::gen::inRange(-100, 30), b = *rc::gen::inRange(31, 60), c = *rc::gen::inRange(61, 200);
   std::vector<double> expected;
   for (const int r : {a, b, c}) {
     if (0 <= r && r <= 100) expected.push_back(r / 100.0);
   }
   const auto roots = roots_in_unit_interval(cubic_with_roots(a / 100.0, b / 100.0, c / 100.0));
-  // A root at an end is on the edge of being in.
+  // Rounding decides whether a root at an end is inside.
   RC_PRE(a != 0 && c != 100);
   RC_ASSERT(roots.count == expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) RC_ASSERT(std::fabs(roots.t[i] - expected[i]) < 1e-12);

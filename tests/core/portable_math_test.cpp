@@ -17,7 +17,7 @@ constexpr unsigned kSeed = 20;
 constexpr int kCases = 200000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// How many units in the last place a value is off, of a value that has more digits.
+// Returns the error of a value in units in the last place, against a value with more digits.
 double units_off(double value, long double right) {
   const auto nearest = static_cast<double>(right);
   const long double unit = std::nextafter(std::fabs(nearest), kInfinity) - std::fabs(nearest);
@@ -83,7 +83,8 @@ TEST(PortableMath, special_arguments_give_what_the_standard_library_gives) {
   EXPECT_EQ(portable::atan(-kInfinity), -std::numbers::pi / 2);
 }
 
-// The same on every machine and from every compiler: js/test holds the wasm module to the same files.
+// Checks the same bits on every machine and from every compiler: js/test compares the wasm module with the same
+// constant.
 TEST(PortableMath, the_bits_are_these) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> among(-20, 20);

@@ -1,4 +1,4 @@
-// Words with numbers in them, which reports and JSON share.
+// Tests words with numbers in them, which reports and JSON share.
 
 #include "core/text.h"
 
@@ -43,7 +43,8 @@ TEST(Text, numbers_in_messages_have_no_long_fractions_but_differ_where_they_are_
   std::mt19937 random(50);
   SCOPED_TRACE("seed 50");
   for (int round = 0; round < 10000; ++round) {
-    // Whole numbers of up to five digits over a power of ten, as people write them, and what computing leaves of them.
+    // The numbers are whole ones of up to five digits over a power of ten, as people write them, with the errors that
+    // computing adds.
     const std::string written = std::to_string(random() % 100000) + "e-" + std::to_string(random() % 5);
     const double meant = std::stod(written);
     double found = meant;

@@ -1,4 +1,4 @@
-// Integers of many digits against GMP.
+// Compares integers of many digits with GMP.
 
 #include "core/wide_integer.h"
 
@@ -23,7 +23,7 @@ mpz_class value_of(const WideInteger<kMost>& integer) {
   return value;
 }
 
-// Of any exponent, subnormal ones and zeros included.
+// Draws a float of any exponent, including subnormal ones and zeros.
 float any_float(fixtures::Random& random) {
   switch (random.below(8)) {
     case 0:
@@ -75,7 +75,7 @@ TEST(WideInteger, is_multiplied_by_every_double_from_0_to_1) {
     product.add_product(factor, fraction);
     product.add_shifted(factor, fraction.scale);
     product.settle();
-    // (t + 1) factor, in units of 2^-scale.
+    // The product is (t + 1) factor, in units of 2^-scale.
     const mpq_class expected = (mpq_class(t) + 1) * value_of(factor) * (mpz_class(1) << fraction.scale);
     ASSERT_EQ(mpq_class(value_of(product)), expected) << t;
   }

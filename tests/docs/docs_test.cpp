@@ -1,9 +1,8 @@
-// The documents are executed: every command in them runs, and what they print stands as it is printed.
+// Executes the documents: every command in them runs, and its output must stand there as it is printed.
 //
 // A block ```console holds commands ("$ ./run ...") with their output; "..." alone on a line stands for any lines. A
-// command whose output has measured times in it says --no-times, or shows no output. Output "?" is to be filled in. A
-// block ```cpp or ```js under a line
-// <!-- examples/NAME.cpp --> is that file, which the tests run.
+// command that prints measured times uses --no-times, or shows no output. Output "?" is to be filled in. A block ```cpp
+// or ```js under a line <!-- examples/NAME.cpp --> is that file, which the tests run.
 //
 // With CHRONORMAL_UPDATE_DOCS=1 the blocks are rewritten instead (tools/update_docs).
 
@@ -52,7 +51,7 @@ std::string read(const fs::path& path) {
   return text.str();
 }
 
-// A document without its blocks of code, where "](" is no link.
+// Returns a document without its blocks of code, in which "](" is not a link.
 std::string without_code(const std::string& text) {
   std::string prose;
   bool inside_code = false;
@@ -84,10 +83,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 }
 
 // Runs a command with the program and the examples that were built with this test, in a folder of the document's own.
-// The lines of tables may be as long as a page shows them.
+// Tables may have lines as long as a page shows.
 ProcessResult run_documented(std::string command, const fs::path& folder) {
   command = replaced(command, "build/release", kBuildFolder);
-  // ./run makes the page of a report where it is missing, which needs npm: here any page will do.
+  // If the page of a report is missing, ./run makes it with npm: here any page will do.
   if (command.starts_with("./run report ") && command.find(".html") != std::string::npos) {
     std::ofstream(folder / "page.html") << "<!--chronormal-data-->";
     command += " --template page.html";
@@ -96,7 +95,7 @@ ProcessResult run_documented(std::string command, const fs::path& folder) {
   return run_shell("export COLUMNS=128; { " + command + "\n} 2>&1", folder.string());
 }
 
-// What stands between two texts on a line, "" if they do not.
+// Returns the text between two texts on a line, or "".
 std::string between(const std::string& line, const std::string& before, const std::string& after) {
   const std::size_t first = line.find(before);
   if (first == std::string::npos) return "";
@@ -121,7 +120,7 @@ std::string joined(const Lines& lines) {
   return text;
 }
 
-// The lines of one console block, checked, or with the output as it is now.
+// Checks the lines of one console block, and returns them with the current output.
 Lines check_console(const Lines& block, const fs::path& folder, const std::string& where) {
   Lines renewed;
   for (std::size_t i = 0; i < block.size();) {
@@ -140,7 +139,7 @@ Lines check_console(const Lines& block, const fs::path& folder, const std::strin
 
     const ProcessResult result = run_documented(command, folder);
     const Lines actual = lines_of(result.out);
-    // A command may be shown to fail: then its message is shown too.
+    // A document may show a command that fails, if it shows the message too.
     if (shown.empty()) {
       EXPECT_EQ(result.exit_code, 0) << where << ": " << command << "\n" << result.out;
     }
@@ -158,7 +157,7 @@ Lines check_console(const Lines& block, const fs::path& folder, const std::strin
   return renewed;
 }
 
-// A test for each document, by its path in the repository, so that they run side by side.
+// There is one test for each document, named by its path in the repository, so that they run side by side.
 class Commands : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> documents_with_commands() {
@@ -258,7 +257,7 @@ TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
                          cell["end point"] + "|" + cell["least squares"] + "|" + cell["exact"] + "|");
     }
   }
-  // The rows of the page without blanks at the rims of cells; a name stands in the first of its rows only.
+  // The rows of the page lose the blanks at the ends of cells; a name stands only in the first of its rows.
   Lines shown;
   std::string last;
   for (const std::string& line : lines_of(read(kRoot / "docs/cpp.md"))) {

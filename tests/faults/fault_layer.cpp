@@ -1,5 +1,5 @@
-// A layer between the program and the system, in which the n-th call fails. It is put there by LD_PRELOAD, so that the
-// program under test is the one that users get.
+// A layer between the program and the system, in which the n-th call fails. LD_PRELOAD inserts it, so that the program
+// under test is the one that users get.
 //
 //     CHRONORMAL_FAULT=write:3:28          the third write() fails with errno 28 (ENOSPC)
 //     CHRONORMAL_FAULT=write:3:28+         so do all after it
@@ -9,10 +9,11 @@
 //     CHRONORMAL_FAULT=A,B                 two of these
 //     CHRONORMAL_ROUNDING=down             floating-point numbers are rounded down from the start, or "up", or to "zero"
 //     CHRONORMAL_FAULT_COUNTS=FILE         at the end, FILE gets how many calls there were of each kind, and as
-//                                          "start" how many times memory was asked for before the first other call
+//                                          "start" how many times memory was requested before the first other call
 //
-// Calls count from main() on: what the libraries need to start is not ours. close() closes before it fails, as Linux
-// does, and unlink() removes. fsync() only counts, since no power will be cut. Nothing here allocates, and all goes to the kernel directly.
+// Calls count from main() on, since earlier calls belong to the libraries. close() closes before it fails, as Linux
+// does, and unlink() removes. fsync() only counts, since no power will be cut. Nothing here allocates, and everything
+// goes to the kernel directly.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -138,7 +139,7 @@ __attribute__((destructor)) void write_counts() {
   (void)::syscall(SYS_close, file);
 }
 
-// What is to happen at this call; nullptr for nothing.
+// Returns the fault of this call, or nullptr.
 const Fault* fault_at(int kind) {
   if (!is_armed) return nullptr;
   const long number = ++counts[kind], any = kind == kMalloc ? 0 : ++counts[kAny];
@@ -155,7 +156,7 @@ const Fault* fault_at(int kind) {
   return found;
 }
 
-// Whether the call fails, with errno.
+// Tells whether the call fails, and sets errno.
 bool fails(int kind) {
   const Fault* const fault = fault_at(kind);
   if (fault == nullptr || fault->is_short) return false;
@@ -224,7 +225,7 @@ int ftruncate(int file, off_t size) noexcept {
 off_t lseek(int file, off_t at, int from) noexcept {
   return fails(kSeek) ? -1 : static_cast<off_t>(::syscall(SYS_lseek, file, at, from));
 }
-// What cannot be removed stays: nobody can ask the program to do better than to try.
+// Deletes a file, or leaves it: nobody can ask the program to do better than to try.
 int unlink(const char* path) noexcept {
   const bool is_refused = fails(kUnlink);
   const long result = ::syscall(SYS_unlinkat, AT_FDCWD, path, 0);

@@ -1,11 +1,11 @@
-// Every call of the program to the system fails once, and memory runs out at every place: whatever the command, its
-// output is the old one or the new one, nothing else remains, and the exit code is a documented one. The faults come
-// from a layer beneath the program (fault_layer.cpp), which itself is the one that users get.
+// Makes every call of the program to the system fail once, and lets memory run out at every place: whatever the
+// command, its output must be the old one or the new one, with no other traces, and the exit code must be a documented
+// one. The faults come from a layer beneath the program (fault_layer.cpp), which itself is the one that users get.
 //
-// ./test --full slow runs a sample of the faults. `./test --full faults` (CHRONORMAL_FULL=1) runs all of them, but for some of those
-// of memory: until it has read its arguments, every command asks for the same memory about 8,000 times, to make the table
-// of all options. `help` and `usage` fail at each of these, and the other commands at one in 20. What asks for memory
-// more than 3,000 times after that, as `bake` does, fails at about 3,000 of these places.
+// ./test --full slow runs a sample of the faults. `./test --full faults` (CHRONORMAL_FULL=1) runs all of them, except
+// for some faults of memory: until it has read its arguments, every command requests the same memory about 8,000 times,
+// to make the table of all options. `help` and `usage` fail at each of these, and the other commands at one in 20. A
+// command like `bake` that requests memory more than 3,000 times after that fails at about 3,000 of these places.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ struct Command {
   friend void PrintTo(const Command& command, std::ostream* out) { *out << command.arguments; }
 };
 
-// Inputs are in the folder in/, outputs go to out/.
+// The commands: inputs are in the folder in/, outputs go to out/.
 const std::vector<Command> kCommands = {
     {"help", "bake --help"},
     {"usage", "compare --no-such-option"},
@@ -100,11 +100,11 @@ struct Outcome {
   Files files;  // all in the folder out
 };
 
-// Every fault, or one of so many.
+// Returns the step between faults: every one in the full test, otherwise one in `many`.
 std::size_t one_of(std::size_t many) { return std::getenv("CHRONORMAL_FULL") != nullptr ? 1 : many; }
 
-// The shards under sanitizers leave these tests out; whoever runs the sanitized program by hand learns why they cannot
-// run: the fault layer and the address sanitizer would both replace malloc.
+// Tells whether the program is sanitized, so that a run by hand says why these tests cannot run: the fault layer and
+// the address sanitizer would both replace malloc. The sanitized shards leave these tests out.
 bool is_sanitized_program() { return std::string(kProgram).ends_with("_sanitized"); }
 
 class Faults : public testing::TestWithParam<Command> {
@@ -192,13 +192,13 @@ class Faults : public testing::TestWithParam<Command> {
     ::_exit(98);
   }
 
-  // A run leaves files for the next one, which are of use with its journal alone; the journal is named last.
+  // Tells whether a file is kept for the next run. Such files are useful only with the journal, which is named last.
   [[nodiscard]] static bool is_kept(const std::string& name) {
     const std::vector<std::string>& kept = GetParam().kept;
     return std::find(kept.begin(), kept.end(), name) != kept.end();
   }
 
-  // Outputs are old or new, and there is nothing else; with success they are all new.
+  // Checks that outputs are old or new, with no other files; after a success all must be new.
   void check_files(const Outcome& run, const std::string& what) const {
     for (const auto& [name, bytes] : run.files) {
       const auto wanted = expected_.files.find(name);
@@ -215,7 +215,7 @@ class Faults : public testing::TestWithParam<Command> {
     }
   }
 
-  // A run of which something failed: it fails with exit code 1 and says so, or it does all that was asked for.
+  // Checks a run with a fault: it fails with exit code 1 and a message, or does everything that was requested.
   void check(const Outcome& run, const std::string& what) const {
     check_files(run, what);
     if (run.exit_code == expected_.exit_code) {
@@ -228,7 +228,7 @@ class Faults : public testing::TestWithParam<Command> {
     }
   }
 
-  // How often a command other than `help` and `usage` asks for memory before it reads its arguments.
+  // Returns how often a command other than `help` and `usage` requests memory before it reads its arguments.
   [[nodiscard]] std::size_t mallocs_of_table() {
     constexpr std::size_t kMostOfArguments = 500;
     const std::size_t start = counts_["start"];
@@ -236,7 +236,7 @@ class Faults : public testing::TestWithParam<Command> {
     return is_whole || start < kMostOfArguments ? 0 : start - kMostOfArguments;
   }
 
-  // A fault at one of so many calls of a kind; what is harmless must not change the exit code.
+  // Makes one in `many` calls of a kind fail; a harmless fault must not change the exit code.
   void check_each(const std::string& kind, const std::string& how, std::size_t many, bool is_harmless = false) {
     const std::size_t table = kind == "malloc" ? mallocs_of_table() : 0;
     const std::size_t most = table > 0 ? kMostPlaces : counts_[kind];
@@ -278,8 +278,8 @@ TEST_P(Faults, calls_that_fail_end_in_exit_1_and_no_trace) {
   check_each("lock", code(EWOULDBLOCK), 1);
 }
 
-// Through a power cut, too, an output is the old one or the new one: the file is flushed before it gets its name, and
-// its folder after that. Some file systems cannot flush a folder, so that the file alone has to succeed.
+// An output must be the old one or the new one after a power cut, too: the file is flushed before it gets its name, and
+// its folder after that. Some file systems cannot flush a folder, so that only the file has to succeed.
 TEST_P(Faults, every_output_and_its_folder_are_flushed) {
   const std::size_t of_journal = GetParam().kept.empty() ? 0 : 2;
   EXPECT_EQ(counts_["fsync"], 2 * expected_.files.size() + of_journal);
@@ -328,7 +328,7 @@ TEST_P(Faults, inputs_that_become_shorter_while_they_are_read_end_in_exit_1) {
   for (std::size_t n = 1; n <= counts_["mmap"]; ++n) {
     const std::string fault = "mmap:" + std::to_string(n) + ":short";
     const Outcome shrunk = run(fault, {});
-    // A result that is read again to be judged may be what is shortened, or memory, which is not.
+    // The shortened file may also be a result that is read again to be judged, or memory, which does not get shorter.
     EXPECT_TRUE(shrunk.exit_code == 1 || shrunk.exit_code == expected_.exit_code) << fault << ": " << shrunk.err;
     for (const auto& [name, bytes] : shrunk.files)
       EXPECT_TRUE(expected_.files.count(name) == 1 || is_kept(name)) << fault << ": " << name;
@@ -351,7 +351,7 @@ TEST_P(Faults, streams_that_are_full_or_closed_change_exit_codes_only_where_data
   }
 }
 
-// Calls that fail while stderr takes nothing, and pairs of calls that fail.
+// Calls fail while stderr takes nothing, and pairs of calls fail.
 TEST_P(Faults, pairs_of_failures_leave_no_trace) {
   std::vector<std::string> single;
   for (const char* const kind : {"write", "fsync", "close", "rename", "open", "change", "truncate", "seek", "unlink"})

@@ -1,4 +1,4 @@
-// A run with --resume that is killed at any call to the system, and started again, gives the bytes of an undisturbed
+// Kills a run with --resume at any call to the system, and starts it again, which must give the bytes of an undisturbed
 // run. ./test --full slow kills at random calls, `./test --full faults` (CHRONORMAL_FULL=1) at each.
 
 #include <gtest/gtest.h>
@@ -49,20 +49,21 @@ class Killed : public testing::TestWithParam<Command> {
     ASSERT_GT(calls_, 20U);
   }
 
-  // layer is what stands before the path of the layer of faults; empty for none.
+  // Runs the command. layer is the text before the path of the layer of faults, or empty for none.
   [[nodiscard]] ProcessResult run(const std::string& more, const std::string& layer = "") const {
     const std::string before = layer.empty() ? "" : layer + kFaultLayer + " ";
-    // With a command behind it, the shell that the program runs in is not the program itself, and says where it ended.
+    // A further command keeps the shell alive as another process than the program, so that it reports how the program
+    // ended.
     return run_shell(before + kProgram + " " + GetParam().arguments + more + "; exit $?", folder_.path());
   }
   [[nodiscard]] ProcessResult run_to(std::size_t call, int signal) const {
     return run(" --resume -q -o out",
                "CHRONORMAL_FAULT=any:" + std::to_string(call) + ":signal" + std::to_string(signal) + " LD_PRELOAD=");
   }
-  // Goes on until it is done, and looks at what is there.
+  // Resumes until the run is done, and checks the files.
   void finish(const std::string& what) const {
     const ProcessResult done = run(" --resume -q -o out");
-    // A run that was killed after its journal was gone is done: only its output is there.
+    // A run that was killed after its journal was removed is done: only its output exists.
     if (done.exit_code != 0) {
       EXPECT_NE(done.err.find("the file exists already"), std::string::npos) << what << ": " << done.err;
     }

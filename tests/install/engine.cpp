@@ -1,5 +1,4 @@
-// A program that knows nothing but the one function of plugin.cpp: it writes a file of three vertices and has them
-// counted.
+// A program that knows only the one function of plugin.cpp: it writes a file of three vertices and has them counted.
 #include <cstdio>
 
 extern "C" long vertices_of(const char* path);

@@ -14,7 +14,7 @@
 namespace chronormal::motion_stream_test {
 namespace {
 
-// A triangle whose first coordinate is the number of the keyframe.
+// Makes a triangle whose first coordinate is the number of the keyframe.
 Motion outline_of(std::size_t keyframes) {
   Motion outline;
   outline.topology = Topology::triangles(3, {0, 1, 2}).value();

@@ -1,4 +1,4 @@
-// Topologies, motions, the check of what comes from outside, and the place of a time.
+// Tests topologies, motions, the check of outside data, and the segment of a time.
 
 #include <gtest/gtest.h>
 
@@ -120,7 +120,7 @@ TEST(Validate, refuses_segments_that_lead_nowhere) {
   expect_invalid(motion, "", "two keyframes");
 }
 
-// From 2 s over 3 s to 5 s.
+// Makes keyframes at 2 s, 3 s and 5 s.
 Motion three_keyframes() {
   Motion motion = two_frames();
   motion.keyframes.push_back(motion.keyframes.back());

@@ -1,4 +1,4 @@
-// Curves through keyframes against the formulas of textbooks, and their pieces against the curves.
+// Compares curves through keyframes with the formulas of textbooks, and their pieces with the curves.
 #include "chronormal/motion/paths.h"
 
 #include <gtest/gtest.h>
@@ -75,9 +75,9 @@ TEST(Path, hermite_needs_a_velocity_and_curves_a_sequence) {
 
 // ---- pieces --------------------------------------------------------------------------------------------------------
 
-// Holds the normals of all faces, or of all vertices, of the pieces against those of the curve at times between, and
-// returns the largest angle in degrees, less what rounding of positions to float32 may do to the face, twice: once in
-// the pieces, and once where a piece that is as near as that is good enough.
+// Compares the normals of all faces, or of all vertices, of the pieces with those of the curve at times between, and
+// returns the largest angle in degrees. Subtracts twice the effect that rounding of positions to float32 may have on
+// the face: once in the pieces, and once where a piece that is as close as that is good enough.
 double largest_error(const Motion& motion, const Motion& pieces, bool of_vertices, bool given) {
   double largest = 0;
   for (std::size_t p = 0; p < pieces.segments.size(); ++p) {
@@ -107,7 +107,7 @@ double largest_error(const Motion& motion, const Motion& pieces, bool of_vertice
           }
           const double size = static_cast<double>(
               std::sqrt(exact[e][0] * exact[e][0] + exact[e][1] * exact[e][1] + exact[e][2] * exact[e][2]));
-          // Two edges of a triangle or four of a quad, each up to 1.8 times its largest component, and a little more.
+          // A triangle has two edges or a quad four, each up to 1.8 times its largest component, and a little more.
           rounding = 2 * 57.3 * 0x1p-24 * 16 * static_cast<double>(face.size() - 2) * widest * 1.2 * furthest / size;
         }
         largest = std::max(largest, test::angle_of(exact[e], found[e]) * 57.29577951308232 - rounding);
@@ -141,7 +141,7 @@ TEST(Pieces, have_the_normals_of_the_curve_within_the_tolerance) {
   }
 }
 
-// Random tetrahedra and quads that tumble, swell and wander, thin ones among them.
+// The motions are random tetrahedra and quads that tumble, swell and wander, thin ones among them.
 TEST(Pieces, of_random_motions_are_within_the_tolerance) {
   const std::uint64_t seed = 20261127;
   RecordProperty("seed", std::to_string(seed));
@@ -212,7 +212,7 @@ TEST(Pieces, are_no_more_than_was_allowed) {
   EXPECT_EQ(cut_into_segments(motion, curve(), 0).value().cut.pieces, 2U);
 }
 
-// Vertex 2 goes through the line of the other two between keyframes 1 and 2.
+// Vertex 2 passes beside the line of the other two between keyframes 1 and 2.
 TEST(Pieces, a_face_that_turns_over_decides_nothing) {
   Motion motion;
   motion.topology = Topology::triangles(6, {0, 1, 2, 3, 4, 5}).value();
@@ -225,7 +225,7 @@ TEST(Pieces, a_face_that_turns_over_decides_nothing) {
     EXPECT_LE(cut.cut.beyond, 1U);
     EXPECT_TRUE(validate(cut.motion).ok());
   }
-  // The same where it goes through the line itself.
+  // Now it goes through the line itself.
   for (Motion::Keyframe& key : motion.keyframes)
     key.positions[8] = 0, key.positions[7] += static_cast<float>(0.01 * key.time * key.time);
   const CutMotion through = cut_into_segments(motion, curve()).value();
@@ -285,7 +285,8 @@ TEST(Pieces, that_leave_float32_are_an_error) {
   EXPECT_EQ(cut_into_segments(motion, {PathKind::kHermite, 1}).error().code, ErrorCode::kUsage);
 }
 
-// ---- how far paths bend --------------------------------------------------------------------------------------------
+// ---- the bend of paths
+// ------------------------------------------------------------------------------------------------
 
 TEST(Bend, of_a_rigid_turn_is_the_sine_of_half_its_angle) {
   Motion motion;

@@ -1,5 +1,5 @@
-// docs/benchmarks.md is what its generator makes of bench/results/*.json, byte for byte; and it makes nothing of
-// results that lack a rival.
+// Checks that the generator of docs/benchmarks.md makes it from bench/results/*.json, byte for byte, and that it
+// refuses results that lack a baseline.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ ProcessResult generate(const std::string& results, const std::string& folder) {
   return run_shell(command, folder);
 }
 
-// Any of the results, to plant faults in.
+// Returns any of the results, to plant faults in.
 Json some_results() {
   for (const auto& entry : fs::directory_iterator(kResults)) {
     if (entry.path().extension() == ".json") return Json::parse(test::read_whole(entry.path().string()));
@@ -33,7 +33,7 @@ Json some_results() {
   return {};
 }
 
-// What the generator says of results with a fault; "" where it takes them.
+// Returns the message of the generator about results with a fault, or "" if it accepts them.
 std::string refusal(const Json& results) {
   const test::TemporaryFolder from, to;
   from.write("planted.json", results.dump());
@@ -91,7 +91,7 @@ TEST(Benchmarks, results_without_a_size_a_scheme_or_an_accuracy_make_no_page) {
   EXPECT_NE(refusal(planted).find("missing: accuracy, grid, faces: recompute"), std::string::npos);
 }
 
-// As a run has them, whatever the results have: a nanosecond for each way and number of active targets, and 8 for
+// Adds rows like a run's, whatever the results have: a nanosecond for each way and number of active targets, and 8 for
 // recompute.
 Json with_blend_rows(Json results) {
   Json rows = Json::array();

@@ -1,4 +1,4 @@
-// The tables of `compare --table latex` go through LaTeX as they are, whatever the inputs are called.
+// Checks that LaTeX accepts the tables of `compare --table latex`, whatever the inputs are called.
 
 #include <gtest/gtest.h>
 

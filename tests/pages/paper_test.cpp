@@ -1,4 +1,5 @@
-// docs/paper.md is what its generator writes: figures, prose and pictures, byte for byte, but for the block of times.
+// Checks that the generator writes docs/paper.md: figures, prose and pictures, byte for byte, except for the block of
+// times.
 
 #include <gtest/gtest.h>
 

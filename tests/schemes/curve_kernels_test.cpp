@@ -1,5 +1,5 @@
-// Formulas on every instruction set, in every layout, at every remainder: the same bits. What they compute is held
-// against an independent oracle in oracle_test.cpp.
+// Checks that formulas give the same bits on every instruction set, in every layout, at every remainder.
+// oracle_test.cpp compares their results with an independent oracle.
 
 #include "schemes/kernels/curve_kernels.h"
 
@@ -21,7 +21,7 @@
 namespace chronormal::curve_kernels_test {
 namespace {
 
-// All formulas, and each that is played.
+// The schemes that together use all formulas, including each that can be played.
 const std::vector<std::string> kSchemes = {
     "linear",          "quadratic", "cubic",         "lagrange:4",       "lagrange:9",        "linear:scaled",
     "rational",        "slerp",     "decasteljau:2", "decasteljau:4",    "decasteljau:5",     "quaternion:matrix",
@@ -29,7 +29,7 @@ const std::vector<std::string> kSchemes = {
 
 constexpr std::size_t kElements = 150;
 
-// Faces that move by much, by little, not at all and to their opposite, and every tenth is nothing at all.
+// Faces that move by much, by little, not at all and to their opposite; every tenth has no area at all.
 struct Subject {
   Subject() : normals(kElements) {
     fixtures::Random random(5);
@@ -65,7 +65,7 @@ struct Subject {
 
 using Bits = std::vector<std::uint32_t>;
 
-// x, y, z of every vector.
+// Returns the bits of x, y, z of every vector.
 Bits bits_of(VectorView<const float> view) {
   Bits bits;
   for (std::size_t i = 0; i < view.count; ++i) {
@@ -74,7 +74,7 @@ Bits bits_of(VectorView<const float> view) {
   return bits;
 }
 
-// Memory for `count` vectors in some layout, full of a value that nothing may change where no vector lies.
+// Memory for `count` vectors in some layout, filled with a value that must not change outside of the vectors.
 class Layout {
  public:
   static constexpr int kCount = 5;
@@ -102,7 +102,7 @@ class Layout {
 
   [[nodiscard]] VectorView<float> view() const { return view_; }
 
-  // How many values were written.
+  // Counts the values that were written.
   [[nodiscard]] std::size_t touched() const {
     std::size_t count = 0;
     for (const float value : values_) count += value != kUntouched ? 1 : 0;
@@ -259,7 +259,7 @@ TEST(CurveFormulas, write_past_the_caches_what_they_write_into_them) {
   }
 }
 
-// FNV-1a over the results of all formulas and of three steps of all that are played.
+// Hashes the results of all formulas, and three steps of all that are played, by FNV-1a.
 TEST(CurveFormulas, give_the_bits_that_every_compiler_and_instruction_set_has_given) {
   constexpr std::size_t kCount = 777;
   for (const std::int64_t id : supported_targets()) {
@@ -286,7 +286,7 @@ TEST(CurveFormulas, give_the_bits_that_every_compiler_and_instruction_set_has_gi
 }
 
 TEST(CurveFormulas, have_the_sine_and_cosine_of_core) {
-  // u(t) = cos(t A) (1, 0, 0) + sin(t A) (0, 1, 0)
+  // The arc is u(t) = cos(t A) (1, 0, 0) + sin(t A) (0, 1, 0).
   constexpr std::size_t kCount = 1 << 14;
   AlignedArray<float> planes(7 * kCount);
   for (std::size_t i = 0; i < kCount; ++i) {

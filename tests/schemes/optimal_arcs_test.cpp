@@ -1,5 +1,5 @@
-// The fast search of quaternion:optimal on every instruction set, and the elements that it leaves to the slow one.
-// oracle_test.cpp measures by a dense search how good its arcs are.
+// Tests the fast search of quaternion:optimal on every instruction set, and the elements that it leaves to the slow
+// one. oracle_test.cpp measures the quality of its arcs by a dense search.
 #include "schemes/kernels/optimal_arcs.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Vec3d vector(fixtures::Random& random) {
   return {p[0], p[1], p[2]};
 }
 
-// Makes elements that turn by about so much, on a path that is bent by about this share of the turn.
+// Makes elements that turn by about `turn`, on a path that is bent by about the share `bend` of the turn.
 std::vector<ControlNormals> turning(fixtures::Random& random, double turn, double bend, std::size_t count) {
   std::vector<ControlNormals> normals;
   for (std::size_t i = 0; i < count; ++i) {

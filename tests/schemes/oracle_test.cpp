@@ -1,4 +1,4 @@
-// Every scheme against an oracle that shares no code with it (tests/support/reference.h).
+// Compares every scheme with an oracle that shares no code with it (tests/support/reference.h).
 
 #include <gtest/gtest.h>
 
@@ -31,11 +31,12 @@ using test::scheme_names;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// How far from 1 a length may be. `rational` alone divides by a length that is not measured but evaluated, as a quartic
-// in float32 that loses digits where n(t) is small against its control normals: its direction is as good as any.
+// Returns the allowed deviation of a length from 1. Only `rational` divides by a length that is evaluated and not
+// measured, as a quartic in float32 that loses digits where n(t) is small against its control normals; its direction is
+// as good as any.
 double length_tolerance(std::string_view scheme) { return scheme == "rational" ? 2e-6 : 1e-6; }
 
-// A motion with everything that schemes and oracles are prepared from.
+// A motion with all data that schemes and oracles are prepared from.
 struct Subject {
   explicit Subject(Motion moving) : motion(std::move(moving)), normals(motion.topology.face_count()) {
     face_control_normals(motion.segment(0), faces(), normals);
@@ -60,7 +61,7 @@ struct Subject {
   std::vector<ControlNormals> normals;
 };
 
-// What a scheme gives for all faces at equidistant samples.
+// The results of a scheme for all faces at equidistant samples.
 class Output {
  public:
   Output(const std::string& name, const Subject& subject, std::size_t sample_count)
@@ -106,12 +107,13 @@ const std::array<Family, 3> kFamilies{
     Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(); }},
 };
 
-// Fewer faces, for the dense searches.
+// Families of fewer faces, for the dense searches.
 const std::array<Family, 4> kSmallFamilies{
     Family{"smooth morph", [] { return fixtures::smooth_morph(10); }},
     Family{"soup, independent ends", [] { return fixtures::large_soup(200, 11); }},
     Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(200, 12); }},
-    // From one frame to the next: ends so close that all circles that differ are crammed into phi near +-pi/2.
+    // Small steps, as from one frame to the next, have ends so close that all circles that differ are crammed into phi
+    // near +-pi/2.
     Family{"soup, motion 0.02", [] { return fixtures::soup({.face_count = 200, .seed = 13, .motion = 0.02}); }},
 };
 
@@ -159,7 +161,7 @@ TEST_P(SchemeOracle, agrees_with_the_scheme) {
   }
 }
 
-// Motions on which something vanishes, overflows or is undefined in one scheme or another.
+// Motions on which something vanishes, overflows or is undefined in some scheme.
 const std::array<Family, 16> kNastyFamilies{
     Family{"needles", [] { return fixtures::needle_soup(200); }},
     Family{"edges of 1e-6", [] { return fixtures::tiny_soup(200); }},
@@ -344,8 +346,8 @@ TEST(Oracle, finds_no_pair_of_frames_better_than_its_dense_search) {
 
 // ---- searched schemes ----------------------------------------------------------------------------------------------
 
-// Compares the mean errors, face by face, of a scheme that searches with a dense search over the same family and with
-// members of the family that a scheme computes outright.
+// Compares the average errors, face by face, of a scheme that searches with a dense search over the same family and
+// with members of the family that a scheme computes outright.
 template <class DenseSearch>
 void expect_nearly_optimal(const std::string& name, const std::vector<std::string>& members, DenseSearch&& search) {
   constexpr std::size_t kSamples = 201;
@@ -401,8 +403,8 @@ TEST(LinearScaled, is_within_a_few_thousandths_of_a_dense_search_and_never_worse
 }
 
 TEST(LinearScaled, meets_an_element_of_degree_1_by_the_ratio_of_its_areas) {
-  // An edge that rests and one that moves: n is linear in t, so that a line from n0 to n1 has its direction throughout.
-  // A search that is not told the ratio of the areas stops up to 3e-4 rad short of these.
+  // One edge rests and one moves, so that n is linear in t and a line from n0 to n1 has its direction throughout. A
+  // search that is not told the ratio of the areas stops up to 3e-4 rad short of it.
   struct Case {
     double ratio, turn;
   };

@@ -1,4 +1,4 @@
-// Names, costs, and every degenerate case by name. Accuracy against an independent oracle is in oracle_test.cpp.
+// Tests names, costs, and every degenerate case by name. oracle_test.cpp tests accuracy against an independent oracle.
 
 #include "chronormal/schemes/scheme.h"
 
@@ -12,7 +12,7 @@
 namespace chronormal::scheme_test {
 namespace {
 
-// Every scheme once, parameters filled in.
+// Returns every scheme once, with values for its parameters.
 std::vector<std::string> all_schemes() {
   std::vector<std::string> names;
   for (const SchemeDescription& description : scheme_descriptions()) {
@@ -128,7 +128,8 @@ TEST(Schemes, equal_ends_of_a_still_face_stay_where_they_are) {
 }
 
 TEST(Schemes, equal_ends_with_motion_between_give_unit_normals) {
-  // Turned by half a turn about a line in its plane, and the corners swapped back: same normal at both ends.
+  // The triangle makes half a turn about a line in its plane, and the corners are swapped back, so that both ends have
+  // the same normal.
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {1, 1, 0, 0, 1, 0.5f, 1, 0, 0.25f}}), "moving");
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {1, 1, 0, 0, 1, 0, 1, 0, 0}}), "half a turn in the plane");
 }
@@ -143,7 +144,7 @@ TEST(Schemes, antipodal_ends_give_unit_normals) {
 }
 
 TEST(Schemes, antipodal_ends_through_a_third_direction_are_met_by_the_circle) {
-  // Half a turn about the x axis, cut into a segment: the middle is upright, and the circle knows it.
+  // A segment is half a turn about the x axis: the middle is upright, and the circle knows it.
   const Prepared flip({{0, -1, 0, 1, -1, 0, 0, 1, 0}, {0, 1, 0, 1, 1, 0.01f, 0, -1, 0}});
   const Vec3d middle = unit_normal_at(flip.normals[0], 0.5).vector;
   EXPECT_LT(angle(evaluate("circle:timed", flip, 0.5).normal, middle), 1e-5);
@@ -208,7 +209,8 @@ TEST(Schemes, an_edge_without_length_takes_the_direction_in_which_it_grows) {
 }
 
 TEST(Schemes, a_collapse_inside_the_segment_gives_unit_normals) {
-  // Through a point (double zero at 1/2: the direction stays), through a line at 1/2 (it jumps), and at 1/3.
+  // The motions go through a point (a double zero at 1/2, where the direction stays), through a line at 1/2 (where it
+  // jumps), and through a line at 1/3.
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {0, 0, 0, -1, 0, 0, 0, -1, 0}}), "through a point");
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, kReversed}), "through a line");
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {0, 0, 0, 1, 0, 0, 0, -2, 0}}), "at one third");
@@ -229,7 +231,7 @@ TEST(Schemes, linear_of_opposite_ends_is_the_start_where_it_vanishes) {
 }
 
 TEST(Schemes, no_input_makes_nan) {
-  // Coordinates of every size, many of them equal: every kind of degeneracy at once.
+  // Coordinates have every size, and many are equal: this makes every kind of degeneracy at once.
   const float values[] = {0, 0, 0, 1, -1, 1, 0.5f, 1e-38f, 1e-20f, -1e-7f, 1e7f, 1e18f, -3e38f, 1.0000001f};
   std::mt19937 random(7);
   for (int i = 0; i < 3000; ++i) {
@@ -279,7 +281,8 @@ TEST(Schemes, planes_and_packed_results_are_the_same_bits) {
 }
 
 TEST(Schemes, operations_are_those_of_the_formulas) {
-  // Weighted sums of K + 1 vectors and a normalisation (2 + 0 additions, 3 + 3 products, root, quotient).
+  // The counts are weighted sums of K + 1 vectors and a normalisation (2 + 0 additions, 3 + 3 products, root,
+  // quotient).
   const std::map<std::string, OperationCounts> expected = {
       {"linear", {5, 12, 1, 1, 0}},
       {"quadratic", {8, 15, 1, 1, 0}},
@@ -302,7 +305,7 @@ TEST(Schemes, operations_are_those_of_the_formulas) {
 }
 
 TEST(Schemes, operations_of_a_step_are_those_of_differences_and_rotations) {
-  // K additions of vectors and a normalisation; a rotation in the plane and a point on the arc.
+  // The counts are K additions of vectors and a normalisation, or a rotation in the plane and a point on the arc.
   const std::map<std::string, OperationCounts> expected = {
       {"linear", {5, 6, 1, 1, 0}}, {"quadratic", {8, 6, 1, 1, 0}}, {"cubic", {11, 6, 1, 1, 0}},
       {"slerp", {5, 10, 0, 0, 0}}, {"circle", {8, 10, 0, 0, 0}},

@@ -1,6 +1,6 @@
-// Certificates of every scheme against whole numbers of any size: at 64 exact times each, nothing is above the upper
-// bound, and at the time that is named the error is not below the lower one. 600 elements from fixed seeds, and as many
-// as CHRONORMAL_FULL_CASES asks for, 200,000 at most (./test --full exact).
+// Compares certificates of every scheme with whole numbers of any size: at 64 exact times each, no error exceeds the
+// upper bound, and at the named time the error is not below the lower one. There are 600 elements from fixed seeds, or
+// as many as CHRONORMAL_FULL_CASES asks for, 200,000 at most (./test --full exact).
 
 #include "chronormal/analysis/certify.h"
 #include "chronormal/core/polynomial.h"
@@ -77,7 +77,7 @@ double error_of(const Vec3f& shown, const IntegerVector& exact) {
   return test::angle_between(shown, test::direction_of(exact));
 }
 
-// What was found of one scheme.
+// The findings about one scheme.
 struct Tally {
   std::size_t elements = 0, over = 0, under = 0, crossed = 0, unknown = 0;
   double largest_share = 0;  // of an upper bound that a sample came to
@@ -162,7 +162,7 @@ TEST(ExactCertificates, are_never_violated_by_soups) {
        {fixtures::moderate_soup(each), fixtures::large_soup(each), fixtures::needle_soup(each),
         fixtures::far_soup(each), fixtures::soup({.face_count = each, .seed = 9, .motion = 1e-6})}) {
     for (std::size_t first = 0; first < each; first += 400) {
-      // In parts, so that the times differ.
+      // The motion is certified in parts, so that the times differ.
       Motion part = motion;
       part.topology = fixtures::make_soup(std::min<std::size_t>(400, each - first));
       for (Motion::Keyframe& keyframe : part.keyframes) {
@@ -180,7 +180,7 @@ TEST(ExactCertificates, are_never_violated_by_soups) {
               << tallies[s].gap / static_cast<double>(tallies[s].elements - tallies[s].unknown) << " rad\n";
 }
 
-// Where hardly anything moves, what is shown is off by rounding alone, and that adds up from slerp to slerp.
+// If hardly anything moves, the only error is rounding, which adds up from slerp to slerp.
 TEST(ExactCertificates, include_the_rounding_of_many_slerps) {
   const Motion motion = fixtures::soup({.face_count = 150, .seed = 9, .motion = 1e-6});
   const Segment segment = motion.segment(0);
@@ -212,8 +212,8 @@ constexpr std::array<fixtures::Point, 3> kFlat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}
 constexpr std::array<fixtures::Point, 3> kUpright{{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
 
 TEST(Certificates, meet_an_error_that_is_known_by_hand) {
-  // n(t) = (0, -3t, 1-t), and linear shows (0, -t, 1-t): tan of the difference is 2 t (1-t) / ((1-t)^2 + 3 t^2), which
-  // is largest at t = 1 / (1 + sqrt 3), where it is 1 / sqrt 3: 30 degrees.
+  // n(t) = (0, -3t, 1-t), and linear shows (0, -t, 1-t): the tangent of the difference is 2 t (1-t) / ((1-t)^2 + 3
+  // t^2). It is largest at t = 1 / (1 + sqrt 3), where it is 1 / sqrt 3: 30 degrees.
   std::array<fixtures::Point, 3> long_upright = kUpright;
   long_upright[2][2] = 3;
   const ErrorBounds linear = bounds_of("linear", moving(kFlat, long_upright));
@@ -224,7 +224,7 @@ TEST(Certificates, meet_an_error_that_is_known_by_hand) {
   EXPECT_NEAR(linear.at, 1 / (1 + std::sqrt(3)), 0.05);
   EXPECT_LE(linear.from, 1 / (1 + std::sqrt(3)) + 0.05);
   EXPECT_GE(linear.to, 1 / (1 + std::sqrt(3)) - 0.05);
-  // With the best length of one end nothing is left but rounding.
+  // With the best length of one end only rounding is left.
   EXPECT_LT(bounds_of("linear:scaled", moving(kFlat, long_upright)).upper, 1e-5);
 }
 
@@ -235,13 +235,13 @@ TEST(Certificates, are_half_a_turn_where_the_normal_vanishes_and_say_when) {
     if (scheme == "recompute") continue;
     EXPECT_EQ(bounds_of(scheme, moving(kFlat, turned)).upper, std::numbers::pi) << scheme;
   }
-  // Opposite ends are passed at t = 1/2 by sums of them, which is another such place.
+  // Sums of opposite ends pass zero at t = 1/2, which is another such place.
   for (const char* const scheme : {"polynomial", "rational", "slerp", "quaternion:optimal", "circle"}) {
     const ErrorBounds bounds = bounds_of(scheme, moving(kFlat, turned));
     EXPECT_NEAR(bounds.from, 0.25, 1e-6) << scheme;
     EXPECT_NEAR(bounds.to, 0.25, 1e-6) << scheme;
   }
-  // Made anew from positions the direction is known up to that instant.
+  // If it is recomputed from positions, the direction is known up to that instant.
   EXPECT_EQ(bounds_of("recompute", moving(kFlat, turned)).upper, 1e-6);
 }
 
@@ -335,8 +335,8 @@ TEST(Certificates, give_the_same_bits_on_any_number_of_threads) {
 
 // ---- sums that cancel ----------------------------------------------------------------------------------------------
 
-// What double makes of faces that cancel is rounding; the certificate must know that, or the normals must be made
-// in another way.
+// In double, a sum of faces that cancel is rounding. The certificate must account for that, or the normals must be
+// computed in another way.
 TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
   std::size_t judged = 0, known = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -390,9 +390,10 @@ TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
   EXPECT_GT(known, 500u) << "control normals that were made of integers have small bounds";
 }
 
-// ---- schemes that somebody adds -------------------------------------------------------------------------------------
+// ---- schemes that somebody may add
+// ------------------------------------------------------------------------------------
 
-// Takes its time at both ends: 3 t^2 - 2 t^3 in place of t.
+// Eases t at both ends: returns 3 t^2 - 2 t^3.
 double eased(double t) { return t * t * (3 - 2 * t); }
 
 class EasedLine {
@@ -414,7 +415,7 @@ class KnownEasedLine : public EasedLine {
   [[nodiscard]] WeightBasis basis() const { return {3, {{1, 1, 0, 0}, {0, 0, 1, 1}}}; }
 };
 
-// Five weights of degree 9, which nobody else has: powers of the eased time.
+// A scheme with five weights of degree 9, which no other scheme has: powers of the eased time.
 class LongSum {
  public:
   [[nodiscard]] std::size_t plane_count() const { return 12; }
@@ -443,7 +444,7 @@ class LongSum {
   }
 };
 
-// An arc in eased time, which no formula knows.
+// A scheme of an arc in eased time, which no formula knows.
 class EasedArc {
  public:
   [[nodiscard]] std::size_t plane_count() const { return 7; }
@@ -457,7 +458,7 @@ class EasedArc {
   void shared(double t, float* values) const { values[0] = static_cast<float>(eased(t)); }
 };
 
-// What is not of the frame, and says nothing of itself.
+// A scheme outside the framework, which tells nothing about itself.
 class Silent final : public Scheme {
  public:
   void prepare(const ElementBlock& block) override { count_ = block.elements.count; }
@@ -473,7 +474,8 @@ class Silent final : public Scheme {
   std::size_t count_ = 0;
 };
 
-// The largest error at 400 times, of all that are bounded below half a turn; fails where a bound is passed.
+// Returns the largest error at 400 times, over all elements with a bound below half a turn; fails if a bound is
+// exceeded.
 double held_against_samples(Scheme& scheme, std::size_t& known) {
   double largest = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -527,7 +529,7 @@ TEST(Certificates, hold_for_a_scheme_that_brings_its_own_weights) {
   }
 }
 
-// A weight is what its polynomial says, in every scheme that is a sum.
+// In every scheme that is a sum, each weight equals its polynomial.
 TEST(Certificates, know_the_weights_of_all_sums) {
   const auto weight_at = [](const WeightBasis& basis, std::size_t k, double t) {
     double value = 0;

@@ -1,6 +1,6 @@
-// Bounds of the meshlets that meshoptimizer builds, while the mesh deforms: its tests must never reject one of which a
-// face is front-facing at an instant of the interval, which integers decide. Bounds of one instant do. A sheet of 512
-// faces, and built-in morphs under ./test --full exact.
+// Tests bounds of meshlets, built by meshoptimizer, while the mesh deforms: its tests must never reject a meshlet with
+// a face that is front-facing at an instant of the interval, which integers decide. Bounds of a single instant do. Uses
+// a sheet of 512 faces, and built-in morphs under ./test --full exact.
 
 #include "chronormal/analysis/cones.h"
 
@@ -48,8 +48,8 @@ meshopt_Bounds as_meshopt(const ClusterBounds& bounds) {
   return result;
 }
 
-// The tests as meshoptimizer.h has them, in float32. Only squares are summed in double: those of lengths below 1e-19
-// underflow float32, and then any test that divides by a length, or adds one, is wrong, whatever the bounds are.
+// These are the tests of meshoptimizer.h, in float32. Only squares are summed in double: squares of lengths below 1e-19
+// underflow float32, which spoils any test that divides by a length, or adds one, whatever the bounds are.
 Vec3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 float length_of(const Vec3f& v) { return static_cast<float>(std::sqrt(dot(to_double(v), to_double(v)))); }
 Vec3f normalized_of(const Vec3f& v) { return (1 / length_of(v)) * v; }
@@ -85,7 +85,7 @@ struct Meshlets {
   }
 };
 
-// Meshlets of the first keyframe.
+// Builds the meshlets of the first keyframe.
 Meshlets meshlets_of(Motion motion, std::size_t segment) {
   constexpr std::size_t kVertices = 32, kTriangles = 32;
   const auto corners = motion.topology.corners();
@@ -151,7 +151,8 @@ struct Count {
 };
 using Rejects = std::function<bool(const meshopt_Bounds&, const Vec3f&)>;
 
-// How many (meshlet, camera) pairs a test rejects, and how many of these have a front-facing face at some instant.
+// Counts the pairs of a meshlet and a camera that a test rejects, and those among them with a front-facing face at some
+// instant.
 Count judged(const Meshlets& meshlets, const std::vector<meshopt_Bounds>& bounds, const std::vector<Instant>& instants,
              const std::vector<Vec3f>& cameras, const Rejects& rejects, bool is_view) {
   Count result;
@@ -215,7 +216,7 @@ TEST(ExactClusterBounds, never_reject_a_meshlet_that_is_seen_at_any_instant) {
         const fixtures::Point p = random.in_cube(i % 3 == 0 ? 1 : 4);
         cameras.push_back(to_float({p[0], p[1], p[2]}));
       }
-      // And just behind the apexes, where the test is sharp.
+      // Some cameras stand just behind the apexes, where the test is sharp.
       for (std::size_t m = 0; m < bounds.size(); m += 5)
         cameras.push_back(vector_of(bounds[m].cone_apex) - 0.01F * vector_of(bounds[m].cone_axis));
       const auto add = [&](Count& to, const Rejects& rejects, bool is_view, const std::vector<meshopt_Bounds>& of) {
@@ -246,7 +247,7 @@ TEST(ExactClusterBounds, never_reject_a_meshlet_that_is_seen_at_any_instant) {
   EXPECT_GT(rival.wrong, 20u);  // the judge sees what is wrong
 }
 
-// Of faces of any family, one or a few of them, from cameras all around.
+// Tests one or a few faces of any family, from cameras all around.
 TEST(ExactClusterBounds, never_reject_hard_faces_that_are_seen) {
   fixtures::Random random(912);
   std::size_t rejected = 0;
@@ -331,12 +332,12 @@ Powers dot_of(const std::array<Powers, 3>& a, const std::array<Powers, 3>& b) {
   return result;
 }
 
-// The Bernstein coefficients of the same cubic: sums of its powers by the quotients of binomials.
+// Returns the Bernstein coefficients of the same cubic: sums of its powers by the quotients of binomials.
 std::array<Rational, 4> bernstein_of(const Powers& p) {
   return {p[0], p[0] + p[1] / 3, p[0] + p[1] * 2 / 3 + p[2] / 3, p[0] + p[1] + p[2] + p[3]};
 }
 
-// The normal of a triangle and its first corner over [t0, t1], as cubics in how far through the interval it is.
+// The normal of a triangle and its first corner over [t0, t1], as cubics of the share of the interval.
 struct MovingPlane {
   std::array<Powers, 3> normal, corner;
 
@@ -371,8 +372,8 @@ std::array<Powers, 3> constant(const float (&v)[3]) {
   return result;
 }
 
-// The apex goes back from the center as far as some Bernstein coefficient of some face asks, and no further; each of the
-// four decides some cases.
+// The apex goes back from the center as far as some Bernstein coefficient of some face requires, and no further; each
+// of the four coefficients decides some cases.
 TEST(ClusterBounds, have_the_nearest_apex_that_bernstein_coefficients_put_behind_all_faces) {
   constexpr std::uint64_t kSeed = 914;
   fixtures::Random random(kSeed);

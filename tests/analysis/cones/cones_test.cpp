@@ -1,5 +1,5 @@
-// Normal cones against whole numbers of any size: no exact normal of the interval may lie outside. One element for
-// every 50 cases, at 64 instants each: 2,000 of them, and 200,000 under ./test --full exact.
+// Compares normal cones with whole numbers of any size: no exact normal of the interval may lie outside. There is one
+// element for every 50 cases, at 64 instants each: 2,000 elements, or 200,000 under ./test --full exact.
 
 #include "chronormal/analysis/cones.h"
 
@@ -62,7 +62,7 @@ std::vector<NormalCone> cones_of_faces(const Segment& segment, const Interval& p
   return cones;
 }
 
-// What ends and a straight line between them say.
+// Returns cones of the ends and of a straight line between them.
 std::vector<NormalCone> cones_of_ends(const Segment& segment, const Interval& part) {
   std::vector<ControlNormals> ends = all_face_control_normals(segment);
   for (ControlNormals& c : ends) {
@@ -160,7 +160,7 @@ TEST(ExactCones, of_control_normals_contain_every_exact_normal_of_the_interval) 
   EXPECT_EQ(outside_of(cones_of, false), 0u);
 }
 
-// The same judge finds what is wrong with a shortcut.
+// The same judge finds the errors of a shortcut.
 TEST(ExactCones, of_the_two_ends_alone_do_not) { EXPECT_GT(outside_of(cones_of_ends, false), 1000u); }
 
 TEST(Cones, have_the_same_bits_on_every_instruction_set_and_in_any_number) {
@@ -238,7 +238,7 @@ TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   }
 }
 
-// Two edges and a corner of a cube, and the smallest cones around them.
+// These are two edges and a corner of a cube, with the smallest cones around them.
 TEST(Cones, are_the_smallest_around_three_directions) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   const std::vector<ControlNormals> normals{{x, 3 * y, z}, {x, x + y, y}, {1e-140 * x, 1e140 * y, z}};
@@ -252,7 +252,7 @@ TEST(Cones, are_the_smallest_around_three_directions) {
   }
 }
 
-// A face that opens out of a line at t = 1/2, exactly, and so turns over there: each half has one direction.
+// A face opens out of a line at exactly t = 1/2, where it turns over, so each half has one direction.
 TEST(Cones, of_faces_are_sharp_up_to_the_very_instant_of_a_collapse) {
   const fixtures::Point o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, minus_y{0, -1, 0};
   const Motion motion = test::soup_of({{{o, x, minus_y}, {o, x, y}}});
@@ -265,7 +265,7 @@ TEST(Cones, of_faces_are_sharp_up_to_the_very_instant_of_a_collapse) {
   EXPECT_EQ(cones_of_faces(segment, {0.5 + 0x1p-52, 1})[0].axis, (Vec3f{0, 0, 1}));
 }
 
-// Against half of the widest angle between any two of 21 normals, below which no cone can be.
+// Compares with half of the widest angle between any two of 21 normals, which no cone can be narrower than.
 TEST(Cones, are_tight) {
   for (const BuiltinMorph& morph : builtin_morphs()) {
     const Motion motion = make_builtin_morph(morph.name).value();
@@ -307,7 +307,7 @@ TEST(EnclosingCone, of_a_hierarchy_contains_the_normals_of_all_faces_below) {
     const Motion motion = fixtures::soup({.face_count = 256, .seed = 5, .motion = motion_size});
     Segment segment = motion.segment(0);
     std::vector<NormalCone> level = cones_of_faces(segment, {0.1, 0.8});
-    // Faces in the order of their axes, so that clusters are not the whole sphere at once.
+    // Faces are sorted by their axes, so that clusters are not the whole sphere at once.
     std::vector<std::size_t> order(level.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

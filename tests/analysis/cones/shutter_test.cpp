@@ -1,5 +1,5 @@
-// Means over an open shutter against oracles that share nothing with them: closed forms where n(t) is a line, however
-// near to zero it passes, and dense Gaussian quadrature in long double, from positions, elsewhere.
+// Compares means over an open shutter with oracles that share no code with them: closed forms where n(t) is a line,
+// however near to zero it passes, and otherwise dense Gaussian quadrature in long double, from positions.
 
 #include "chronormal/analysis/cones.h"
 
@@ -28,7 +28,7 @@ using Vector = std::array<Real, 3>;
 Real length_of(const Vector& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 Real distance(const Vec3d& a, const Vector& b) { return length_of({a.x - b[0], a.y - b[1], a.z - b[2]}); }
 
-// n(t) by the cross product of corners.
+// Returns n(t) by the cross product of corners.
 Vector normal_of(const Segment& segment, std::size_t f, Real t) {
   const auto face = segment.topology->face(f);
   const auto at = [&](std::size_t c) {
@@ -44,7 +44,7 @@ struct Means {
   Vector mean{}, unit{};
 };
 
-// By Gauss's rule with three nodes in each of `pieces`.
+// Integrates by Gauss's rule with three nodes in each of `pieces`.
 Means dense_means(const Segment& segment, std::size_t f, double t0, double t1, int pieces) {
   const Real node = std::sqrt(Real{0.6});
   Means means;
@@ -62,7 +62,8 @@ Means dense_means(const Segment& segment, std::size_t f, double t0, double t1, i
   return means;
 }
 
-// The mean of (a + t b) / |a + t b| over [0, 1], with a + t b = h + (s0 + t |b|) b / |b| and h perpendicular to b.
+// Returns the mean of (a + t b) / |a + t b| over [0, 1], where a + t b = h + (s0 + t |b|) b / |b| and h is
+// perpendicular to b.
 Vector mean_of_line(const Vec3d& from, const Vec3d& to) {
   const Vector a{from.x, from.y, from.z}, b{Real{to.x} - from.x, Real{to.y} - from.y, Real{to.z} - from.z};
   const Real size = length_of(b);
@@ -84,7 +85,7 @@ TEST(ExactShutter, of_lines_that_pass_near_zero_is_within_its_bound_of_the_close
   for (std::size_t i = 0; i < wanted; ++i) {
     const fixtures::Point d = random.in_cube(1), g = random.in_cube(1);
     const double when = random.uniform(-0.2, 1.2), gap = std::ldexp(1, -static_cast<int>(random.below(40)));
-    // The control normals are floats, so that their ends are what they are, and the middle is exact.
+    // The control normals are floats, so that their ends are known and the middle is exact.
     const auto end = [&](double t) {
       return to_double(
           to_float({(t - when) * d[0] + gap * g[0], (t - when) * d[1] + gap * g[1], (t - when) * d[2] + gap * g[2]}));
@@ -100,7 +101,7 @@ TEST(ExactShutter, of_lines_that_pass_near_zero_is_within_its_bound_of_the_close
   EXPECT_LT(largest_bound, 2e-6);
 }
 
-// Each control normal is off by almost 2^-26 of its length, all of them the same way.
+// Each control normal has an error of almost 2^-26 of its length, all in the same direction.
 TEST(Shutter, has_a_bound_that_covers_the_rounding_of_control_normals) {
   fixtures::Random random(503);
   double smallest_bound = 1;
@@ -149,7 +150,7 @@ TEST(Shutter, of_faces_is_within_its_bound_of_dense_quadrature) {
 }
 
 TEST(Shutter, of_a_face_that_turns_over_is_what_is_left_of_both_sides) {
-  // Exactly z before the collapse at t = 1/4, and -z after it: the mean is z/4 - 3 z/4.
+  // The normal is exactly z before the collapse at t = 1/4, and -z after it: the mean is z/4 - 3 z/4.
   const fixtures::Point o{0, 0, 0}, x{1, 0, 0};
   const Motion motion = test::soup_of({{{o, x, {0, 1, 0}}, {o, x, {0, -3, 0}}}});
   ShutterNormal s;

@@ -1,5 +1,6 @@
-// Containment and crossings against winding numbers in whole numbers and roots in rationals: 100,000 cases from a fixed
-// seed, and as many as the variable CHRONORMAL_FULL_CASES asks for. A case is one point that moves through one mesh.
+// Compares containment and crossings with winding numbers in whole numbers and roots in rationals: 100,000 cases from a
+// fixed seed, or as many as the variable CHRONORMAL_FULL_CASES asks for. A case is one point that moves through one
+// mesh.
 
 #include "chronormal/analysis/containment.h"
 
@@ -29,7 +30,7 @@ using fixtures::Random;
 
 constexpr std::uint64_t kSeed = 20230;
 
-// The outsides of a tetrahedron, a double pyramid and a cube, whatever their vertices make of them.
+// The outward faces of a tetrahedron, a double pyramid and a cube, for any places of their vertices.
 const std::array<std::vector<Corners>, 3> kMeshes{{
     {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
     {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}},
@@ -59,7 +60,7 @@ std::vector<float> flat(const std::vector<Vec3f>& points) {
 }
 VectorView<const float> view(const std::vector<float>& xyz) { return VectorView<const float>::packed(xyz); }
 
-// A closed mesh, in one segment, and points in it.
+// A closed mesh in one segment, and moving points.
 struct Scene {
   std::vector<Corners> faces;
   Topology topology;
@@ -90,7 +91,7 @@ struct Scene {
   }
 };
 
-// The winding number behind all crossings before t; the crossings are of one point.
+// Returns the winding number after all crossings before t; the crossings belong to one point.
 int winding_before(int start, std::span<const Crossing> crossings, double t) {
   for (const Crossing& crossing : crossings) start += crossing.t < t ? (crossing.inward ? 1 : -1) : 0;
   return start;
@@ -110,7 +111,7 @@ Vec3f lattice_point(Random& random, std::size_t half) {
   return {x, y, coordinate()};
 }
 
-// Vertices on a lattice, many of them where they have been, or moved alike.
+// Moves vertices on a lattice. Many stay where they were, or move alike.
 std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& random) {
   const std::size_t kind = random.below(4);
   const Vec3f shift = lattice_point(random, 4);
@@ -123,7 +124,7 @@ std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& ra
   return result;
 }
 
-// A place at t = 1/2, in halves, that is often on a vertex, an edge or a face; as twice itself.
+// Returns twice a place at t = 1/2, in halves, that is often on a vertex, an edge or a face.
 Vec3f twice_a_place(const Scene& scene, Random& random) {
   const auto twice = [&](std::uint32_t v) { return scene.segment().from[v] + scene.segment().to[v]; };
   const Corners& face = scene.faces[random.below(scene.faces.size())];
@@ -162,14 +163,14 @@ void add_lattice_points(Scene& scene, std::size_t count, Random& random) {
   }
 }
 
-// Whether a point has the same winding number right before t and right after, but another one at t, as it is at the
-// moment in which it touches an edge.
+// Tells whether a point has this winding number right before t and right after, but another one at t, when it touches
+// an edge.
 bool is_touch(const Scene& scene, std::size_t p, double t, int winding) {
   constexpr double kBeside = 0x1p-44;
   return scene.expected_winding(p, t - kBeside) == winding && scene.expected_winding(p, t + kBeside) == winding;
 }
 
-// Compares the winding numbers at both ends and at a time between, and what crossings say of them, with the oracle.
+// Compares the winding numbers at both ends and at a time between, and the sums of crossings, with the oracle.
 void judge_windings(const Scene& scene, Random& random, const std::string& what) {
   const std::vector<Crossing> all = scene.crossings();
   const double t = static_cast<double>(random.below(15) * 2 + 1) / 32;
@@ -205,7 +206,7 @@ TEST(ExactContainment, windings_between_crossings_are_those_of_whole_numbers) {
   std::cout << "seed " << kSeed << ": " << cases << " cases\n";
 }
 
-// Any floats, of which some faces are needles, and points that come within any distance of an edge.
+// Makes a scene of arbitrary floats, in which some faces are needles, and points come close to an edge at any distance.
 Scene hard_scene(Random& random, std::size_t shape) {
   const double size = std::ldexp(1, static_cast<int>(random.below(60)) - 30);
   const auto any = [&](double scale) {
@@ -264,7 +265,7 @@ TEST(ExactContainment, crossings_are_the_roots_in_rationals) {
             << " touch something\n";
 }
 
-// A cube from (0, 0, 0) to (1, 1, 1) that rests, with its faces outwards.
+// Makes a cube from (0, 0, 0) to (1, 1, 1) that rests, with its faces outwards.
 Scene resting_cube() {
   std::vector<Vec3f> corners = kShapes[2];
   for (Vec3f& p : corners) p = 0.0625F * (p + Vec3f{8, 8, 8});
@@ -303,7 +304,7 @@ TEST(Containment, a_path_through_an_edge_or_a_vertex_crosses_once_each_way) {
 }
 
 TEST(Containment, the_surface_may_pass_points_that_rest) {
-  // A cube that becomes twice as large, and one that moves on: the normal is that of the face at the time.
+  // The cube becomes twice as large: the normal is that of the face at the time.
   Scene scene = resting_cube();
   for (float& x : scene.mesh_to) x = 2 * x;
   scene.from = scene.to = {{1.5F, 0.25F, 0.125F}, {0.5F, 0.75F, 0.25F}, {2.5F, 1, 1}};
@@ -347,7 +348,7 @@ TEST(Containment, winding_numbers_of_a_cube_that_is_turned_inside_out_are_negati
 }
 
 TEST(Containment, faces_of_any_number_of_corners_and_seams_are_closed) {
-  // A cube of quads, of which each has four vertices of its own.
+  // The cube is made of quads, each with four vertices of its own.
   const Scene cube = resting_cube();
   constexpr std::array<std::array<std::size_t, 4>, 6> kQuads{
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};

@@ -1,4 +1,4 @@
-// The best scale of one end, against brute force in long double over a fine grid of scales and times.
+// Compares the best scale of one end with brute force in long double over a fine grid of scales and times.
 
 #include "analysis/fits/end_delta.h"
 
@@ -32,7 +32,7 @@ Vec3d vector(Random& random, double size = 1) {
   return {p[0], p[1], p[2]};
 }
 
-// The control normals of a triangle of which every corner moves by `motion`, about.
+// Returns the control normals of a triangle each corner of which moves by about `motion`.
 ControlNormals triangle(Random& random, double motion) {
   const Vec3d e0 = vector(random), f0 = vector(random);
   const Vec3d e1 = e0 + vector(random, motion), f1 = f0 + vector(random, motion);
@@ -45,7 +45,8 @@ Vector exact(const ControlNormals& n, Real w) {
   return add(add(scaled(v * v, real(n.n0)), scaled(2 * v * w, real(n.m))), scaled(w * w, real(n.n1)));
 }
 
-// Largest angle over a grid of w that is dense near both ends too: to some 1e-3 of itself from below.
+// Returns the largest angle over a grid of w that is dense near both ends too, which is too small by at most about 1e-3
+// of itself.
 Real brute_error(const ControlNormals& normals, const Vector& from, const Vector& to, int steps) {
   using reference::add, reference::scaled;
   Real worst = 0;
@@ -81,7 +82,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
         triangle(random, std::array{0.05, 0.3, 1.0, 3.0}[static_cast<std::size_t>(round % 4)]);
     const Vector u0 = reference::normalised(real(normals.n0)), u1 = reference::normalised(real(normals.n1));
     const EndDelta found = best_end_delta(normals);
-    // A coarse grid, and a fine one around its best.
+    // The search uses a coarse grid, and a fine one around its best.
     Brute brute = brute_best(normals, u0, u1, 6, 60, 100);
     for (int i = -20; i <= 20; ++i) {
       const Real s = brute.scale * std::exp(Real(i) / 100);
@@ -89,7 +90,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
     }
     const bool collapses = found.error > 90 * kDegree;  // where the largest angle is a matter of a fine grid too
     EXPECT_LE(found.error, (collapses ? 1.02L : 1.002L) * brute.best + 1e-12L) << round;
-    // And what it claims is true.
+    // The claimed result is true.
     const Vector to = reference::add(u0, real(found.delta));
     EXPECT_NEAR(static_cast<double>(reference::angle(to, u1)), 0, 1e-11) << round;
     EXPECT_NEAR(static_cast<double>(reference::length(to)), found.scale, 1e-10 * found.scale) << round;
@@ -130,7 +131,7 @@ TEST(EndDelta, does_not_depend_on_rotation_or_size) {
   for (int round = 0; round < 500; ++round) {
     const ControlNormals n = triangle(random, 1);
     const EndDelta found = best_end_delta(n);
-    // A permutation of the axes is a rotation without rounding, and a power of two a scale without.
+    // A permutation of the axes is a rotation without rounding, and a power of two is a scale without rounding.
     const auto turned = [](const Vec3d& v) { return Vec3d{0x1p-40 * v.y, 0x1p-40 * v.z, 0x1p-40 * v.x}; };
     const EndDelta other = best_end_delta({turned(n.n0), turned(n.m), turned(n.n1)});
     EXPECT_NEAR(other.error, found.error, 2e-3 * found.error + 1e-12) << round;
@@ -151,7 +152,7 @@ TEST(EndDelta, time_reversal_inverts_the_scale) {
 
 TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0};
-  // n(w) = 2 w (1-w) x + w^2 y: along the line from 2 x to y.
+  // n(w) = 2 w (1-w) x + w^2 y runs along the line from 2 x to y.
   const EndDelta from_zero = best_end_delta({{}, x, y});
   EXPECT_NEAR(from_zero.scale, 0.5, 1e-9);
   EXPECT_LT(from_zero.error, 1e-9);
@@ -160,11 +161,11 @@ TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const EndDelta to_zero = best_end_delta({x, y, {}});
   EXPECT_NEAR(to_zero.scale, 2, 1e-9);
   EXPECT_LT(to_zero.error, 1e-9);
-  // Nothing but a middle: one direction.
+  // With only a middle, there is one direction.
   const EndDelta middle = best_end_delta({{}, y, {}});
   EXPECT_EQ(middle.delta, Vec3d{});
   EXPECT_EQ(middle.error, 0);
-  // Nothing at all.
+  // All control normals may be zero.
   const EndDelta nothing = best_end_delta({});
   EXPECT_EQ(nothing.delta, Vec3d{});
   EXPECT_EQ(nothing.scale, 1);
@@ -177,7 +178,7 @@ TEST(EndDelta, equal_and_antipodal_ends_keep_their_size) {
   const EndDelta equal = best_end_delta({x, y, 3.0 * x});
   EXPECT_EQ(equal.scale, 1);
   EXPECT_EQ(equal.delta, Vec3d{});
-  // n(w) = ((1-w)^2 + 3 w^2, 2 w (1-w), 0): atan of 2 w v / (v^2 + 3 w^2), at most atan(1 / sqrt(3)).
+  // n(w) = ((1-w)^2 + 3 w^2, 2 w (1-w), 0): the error is the atan of 2 w v / (v^2 + 3 w^2), at most atan(1 / sqrt(3)).
   EXPECT_NEAR(equal.error, 30 * kDegree, 0.03 * kDegree);
 
   const EndDelta antipodal = best_end_delta({x, y, -x});
@@ -187,7 +188,7 @@ TEST(EndDelta, equal_and_antipodal_ends_keep_their_size) {
 }
 
 TEST(EndDelta, a_normal_that_turns_to_its_antipode_is_off_by_90_degrees_or_more) {
-  // n(w) = (1 - 2 w) (1, w, 0): zero at w = 1/2, the two sides opposite.
+  // n(w) = (1 - 2 w) (1, w, 0) is zero at w = 1/2, with opposite directions on both sides.
   const EndDelta found = best_end_delta({{1, 0, 0}, {0, 0.5, 0}, {-1, -1, 0}});
   EXPECT_GE(found.error, 89 * kDegree);
   EXPECT_TRUE(std::isfinite(found.scale));
@@ -196,7 +197,7 @@ TEST(EndDelta, a_normal_that_turns_to_its_antipode_is_off_by_90_degrees_or_more)
 TEST(EndDelta, errors_of_lines_are_found_wherever_they_are) {
   Random random(6);
   for (int round = 0; round < 2000; ++round) {
-    // Strong motion, whose normals turn fast somewhere, and lines that turn fast near an end.
+    // Strong motion has normals that turn fast somewhere, and lines that turn fast near an end.
     const ControlNormals normals = triangle(random, random.uniform(0, 30));
     const Vec3d from = unit(normals.n0), to = std::exp(random.uniform(-9, 9)) * unit(normals.n1);
     const auto expected = static_cast<double>(brute_error(normals, real(from), real(to), 1000));
@@ -213,7 +214,7 @@ TEST(EndDelta, a_line_that_turns_fast_near_an_end_is_seen_there) {
   EXPECT_NEAR(largest_line_error(normals, normals.n0, to), expected, 2e-3 * expected);
 }
 
-// The means of the table in docs/theory.md, section 4.8.
+// Checks the averages of the table in docs/theory.md, section 4.8.
 TEST(EndDelta, it_helps_where_areas_change) {
   struct Row {
     const char* morph;

@@ -1,4 +1,4 @@
-// Leading eigenvectors, held against what defines them: matrices that are made of known ones.
+// Compares leading eigenvectors with their definition, on matrices that are made from known ones.
 #include "analysis/fits/leading_vectors.h"
 
 #include <gtest/gtest.h>

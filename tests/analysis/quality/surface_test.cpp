@@ -76,12 +76,12 @@ TEST(Surface, a_sheet_that_is_there_twice_is_doubled_and_not_wound_against_itsel
   const Surface surface = survey_triangles(4, {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3});
   EXPECT_EQ(surface.doubled_faces, (Found{2, 2}));
   EXPECT_EQ(surface.turned_edges.count, 0U);
-  // A face that meets another one the wrong way is, though one of them is there twice.
+  // A face that meets another one with the wrong winding counts, though one of them occurs twice.
   EXPECT_EQ(survey_triangles(4, {0, 1, 2, 0, 1, 3}).turned_edges.count, 1U);
 }
 
 TEST(Surface, doubled_faces_are_told_from_those_back_to_back) {
-  // 1 and 3 are face 0 again, 2 is its other side; 4 repeats a vertex and takes no part.
+  // Faces 1 and 3 repeat face 0, and 2 is its other side; 4 repeats a vertex and takes no part.
   const Surface surface = survey_triangles(4, {0, 1, 2, 1, 2, 0, 0, 2, 1, 2, 0, 1, 0, 0, 1, 1, 2, 3});
   EXPECT_EQ(surface.doubled_faces, (Found{2, 1}));
   EXPECT_EQ(surface.back_to_back, (Found{1, 0}));
@@ -100,7 +100,7 @@ TEST(Surface, polygons_lie_on_each_other_only_with_the_same_outline) {
   };
   EXPECT_EQ(pair({3, 2, 0, 1}).doubled_faces, (Found{1, 1}));
   EXPECT_EQ(pair({3, 1, 0, 2}).back_to_back, (Found{1, 0}));
-  // The same four points, crossed: neither.
+  // The same four points with crossed edges are neither.
   for (const Corners& crossed : {Corners{0, 3, 1, 2}, Corners{0, 1, 2, 3}, Corners{2, 1, 0, 3}, Corners{3, 0, 2, 1}}) {
     EXPECT_EQ(pair(crossed).back_to_back, Found{});
     EXPECT_EQ(pair(crossed).doubled_faces, Found{});
@@ -125,7 +125,7 @@ TEST(Surface, faces_that_share_a_vertex_are_one_piece) {
   EXPECT_EQ(survey_triangles(9, {0, 1, 2, 3, 4, 5, 5, 7, 2}).pieces, 1U);
 }
 
-// Every corner of a closed mesh gets a vertex of its own: torn for vertices, whole for points.
+// Every corner of a closed mesh gets a vertex of its own: the mesh is torn for vertices, and whole for points.
 TEST(Surface, copies_of_vertices_are_seams_and_not_holes) {
   for (const auto& mesh : {fixtures::icosphere(2), fixtures::box_grid(4)}) {
     std::vector<fixtures::Point> points;
@@ -152,7 +152,7 @@ TEST(Surface, copies_of_vertices_are_seams_and_not_holes) {
 }
 
 TEST(Surface, one_end_of_an_edge_that_is_kept_apart_makes_it_a_seam) {
-  // The edge of the points 0 and 1, of which 4 copies one.
+  // The edge joins the points 0 and 1, one of which vertex 4 copies.
   const Topology low = fixtures::make_triangles(5, {0, 1, 2, 1, 4, 3}),
                  high = fixtures::make_triangles(5, {0, 1, 2, 4, 0, 3});
   EXPECT_EQ(survey(low, {{0, 1, 2, 3, 0}, 4}).seam_edges, (Found{1, 0}));
@@ -166,7 +166,7 @@ TEST(Surface, copies_are_the_vertices_that_welding_removes) {
   EXPECT_EQ(find_copies(separate_points(5)), Found{});
 }
 
-// The same numbers from maps and sets, one edge and one face after the other.
+// Finds the same numbers with maps and sets, one edge and one face after the other.
 TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
   const bool holds = rc::check("any mesh", [] {
     const MeshFrame mesh = test::random_mesh();
@@ -228,7 +228,7 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
     RC_ASSERT(surface.unreferenced.count == topology.vertex_count() - used.size());
     RC_ASSERT(surface.repeating_faces.count == repeating);
     RC_ASSERT(surface.pieces == pieces.size());
-    // Each face after the first on the same points is a copy, or else the first that is wound the other way.
+    // Each face after the first on the same points is a copy, or else the first with the other winding.
     RC_ASSERT(surface.doubled_faces.count <= pairs);
     RC_ASSERT(surface.doubled_faces.count + surface.back_to_back.count >= pairs);
   });

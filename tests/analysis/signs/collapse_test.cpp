@@ -1,4 +1,4 @@
-// When faces collapse, against polynomials in whole numbers of any size.
+// Compares the times at which faces collapse with polynomials in whole numbers of any size.
 
 #include "chronormal/analysis/signs.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 using test::WholePolynomial;
 
-// The components of n(t), from positions alone.
+// Returns the components of n(t), from positions alone.
 std::array<WholePolynomial, 3> normal_polynomials(const Segment& segment, std::size_t face) {
   const auto vertices = segment.topology->face(face);
   std::array<test::WholeVector, 4> values;
@@ -33,7 +33,7 @@ std::array<WholePolynomial, 3> normal_polynomials(const Segment& segment, std::s
 
 bool is_unit(const Vec3d& v) { return std::fabs(length(v) - 1) < 1e-14; }
 
-// Whether no component of a direction has another sign than n at t, where that is not next to nothing.
+// Tells whether no component of a direction has another sign than n at t, unless it is almost zero.
 bool points_along(const Vec3d& direction, const std::array<WholePolynomial, 3>& n, double t) {
   const std::array<double, 3> components{direction.x, direction.y, direction.z};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -74,7 +74,8 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
       if (length(one.turns_over ? one.before + one.after : one.before - one.after) > 1e-13) return "no opposites";
     }
     if ((starts || ends) && one.turns_over) return "turns over at an end";
-    // Where all components are multiples of one, n has the same direction beside its zero; else its limit is its slope.
+    // If all components are multiples of one, n has the same direction on both sides of its zero; otherwise its limit
+    // is its slope.
     const std::array<int, 3> slopes =
         common.is_linear()
             ? std::array<int, 3>{common.slope_at_root(n[0]), common.slope_at_root(n[1]), common.slope_at_root(n[2])}
@@ -87,7 +88,7 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
     if (!starts && before != 0 && !points_along(one.before, n, low)) return "direction before";
     if (!ends && after != 0 && !points_along(one.after, n, high)) return "direction after";
   }
-  // Two that no double lies between count as one.
+  // Two zeros without a double between them count as one.
   return inside == roots ? "" : std::to_string(roots) + " zeros, found " + std::to_string(inside);
 }
 
@@ -132,7 +133,7 @@ Collapses collapses_of(const std::vector<fixtures::Point>& from, const std::vect
 }
 
 TEST(Collapse, a_vertex_that_crosses_the_opposite_edge_turns_the_face_over_at_a_rational_instant) {
-  // n(t) . z = 1 - 3 t, beside nothing.
+  // n(t) . z = 1 - 3 t, and the other components are zero.
   const Collapses found = collapses_of({{0, 0, 2}, {1, 0, 2}, {0, 1, 2}}, {{0, 0, 2}, {1, 0, 2}, {0, -2, 2}});
   ASSERT_EQ(found.count, 1U);
   const Collapse& one = found.at[0];
@@ -156,7 +157,7 @@ TEST(Collapse, a_face_that_shrinks_to_a_point_and_comes_back_does_not_turn_over)
 TEST(Collapse, one_unit_in_the_last_place_beside_the_line_is_no_collapse) {
   const std::vector<fixtures::Point> from{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}};
   EXPECT_EQ(collapses_of(from, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0}}).count, 1U);
-  // Out of the plane by 2^-149 at both ends, the smallest float.
+  // The corner is out of the plane by 2^-149 at both ends, the smallest float.
   const std::vector<fixtures::Point> beside{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0x1p-149}};
   EXPECT_EQ(collapses_of(beside, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0x1p-149}}).count, 0U);
 }

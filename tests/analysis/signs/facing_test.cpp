@@ -1,4 +1,4 @@
-// Sides of faces over time, against polynomials in whole numbers of any size.
+// Compares sides of faces over time with polynomials in whole numbers of any size.
 
 #include "chronormal/analysis/signs.h"
 
@@ -25,7 +25,7 @@ namespace {
 
 using test::WholePolynomial;
 
-// A vector of doubles times 2^1074, and one of floats in the same unit.
+// Returns a vector of doubles times 2^1074, and one of floats in the same unit.
 test::WholeVector whole(const Vec3d& v) {
   const auto one = [](double x) {
     int exponent = 0;
@@ -38,13 +38,13 @@ test::WholeVector whole(const Vec3d& v) {
 }
 test::WholeVector whole(const Vec3f& v) { return whole(to_double(v)); }
 
-// n(t) . w(t) from positions alone: at t = -1, 0, 1 and 2 the corners are whole.
+// Returns n(t) . w(t) from positions alone: at t = -1, 0, 1 and 2 the corners are whole.
 WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, const View& view) {
   const auto vertices = segment.topology->face(face);
   std::array<test::Whole, 4> values;
   for (const long t : {-1L, 0L, 1L, 2L}) {
     const test::WholeVector a = test::on_line(whole(segment.from[vertices[0]]), whole(segment.to[vertices[0]]), t);
-    // Times both wholes.
+    // Times are scaled by both whole durations.
     const auto time = [](double difference) { return test::Whole(std::ldexp(difference, 60)); };
     const test::WholeVector n = test::whole_normal(segment, vertices, t), from = whole(view.from), to = whole(view.to);
     const test::Whole first = time(view.start.end - view.start.start), second = time(view.end.end - view.end.start);
@@ -62,7 +62,7 @@ WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, cons
 
 int sign_of(Side side) { return static_cast<int>(side); }
 
-// What is wrong with the changes of sides of one face; empty if nothing is.
+// Describes the fault of the changes of sides of one face, or returns "".
 std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Random& random) {
   if (f.is_zero()) return facing.count == 0 && facing.side == Side::kNone ? "" : "zero throughout";
   const std::size_t roots = f.count_roots();
@@ -92,7 +92,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
     last = change.upper;
   }
   if (inside != roots) return std::to_string(roots) + " roots, found " + std::to_string(inside);
-  // Exact signs at many instants, close to the brackets too.
+  // Signs are checked exactly at many instants, close to the brackets too.
   const std::size_t times = test::wanted_times(random);
   for (std::size_t i = 0; i < times; ++i) {
     double t = random.uniform(0, 1);
@@ -112,7 +112,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   return "";
 }
 
-// A viewer somewhere, mostly at no float, or so placed that the face is edge-on at a simple t.
+// Makes a viewer at some place, mostly not a float, or such that the face is edge-on at a simple t.
 View some_view(const Segment& segment, std::size_t face, test::Random& random) {
   const auto vertices = segment.topology->face(face);
   const Vec3d a = to_double(segment.from[vertices[0]]), b = to_double(segment.to[vertices[1]]),
@@ -193,7 +193,7 @@ TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
         }
         if (is_front && side == ShutterSide::kBack) return std::string("culled, and shows its front");
         if (is_back && side == ShutterSide::kFront) return std::string("said to show its front alone");
-        // The other way round it must be right too.
+        // The decision must not be too cautious either.
         if (side == ShutterSide::kBoth && f.count_roots() == 0) return std::string("undecided without a root");
         return std::string();
       },
@@ -241,7 +241,7 @@ TEST(Facing, a_face_among_others_has_the_bits_of_the_face_alone_on_every_instruc
   for (const std::size_t count : {0U, 1U, 2U}) EXPECT_GT(faces_by_changes[count], 30U) << count;
 }
 
-// The value of a polynomial in Bernstein form, exactly.
+// Returns the exact value of a polynomial in Bernstein form.
 exact::Rational exact_value(const std::vector<double>& p, double at) {
   std::vector<exact::Rational> row(p.begin(), p.end());
   const exact::Rational t(at), s = 1 - t;
@@ -252,7 +252,7 @@ exact::Rational exact_value(const std::vector<double>& p, double at) {
 }
 
 TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
-  // Nothing but the rounding of the search itself is left to go wrong.
+  // Only the rounding of the search itself can go wrong here.
   constexpr std::size_t kBlocks = 200;
   fixtures::Random random(4711);
   std::size_t found = 0;
@@ -261,7 +261,7 @@ TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
       SingleRoots roots{};
       for (std::size_t lane = 0; lane < kFacingBlock; ++lane) {
         for (std::size_t k = 0; k <= degree; ++k) roots.p[k][lane] = random.uniform(-1, 1);
-        // Some ends that are hardly on their side.
+        // Some ends are barely on their side.
         if (lane % 4 == 0)
           roots.p[lane % 8 == 0 ? 0 : degree][lane] *= std::ldexp(1, -static_cast<int>(random.below(50)));
       }
@@ -281,13 +281,13 @@ TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
   EXPECT_GT(found, kBlocks * kFacingBlock / 2);
 }
 
-// A triangle in the plane z = 0 of which the corner c moves as given.
+// Makes a triangle in the plane z = 0 whose corner c moves as given.
 Motion moving_corner(const fixtures::Point& from, const fixtures::Point& to) {
   return fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, from}, {{0, 0, 0}, {1, 0, 0}, to});
 }
 
 TEST(Facing, a_face_that_is_hidden_at_both_ends_may_be_seen_between) {
-  // n(t) . z = (1 - 4 t)(3 - 4 t): front, back, front for a viewer above.
+  // n(t) . z = (1 - 4 t)(3 - 4 t): the face shows front, back, front to a viewer above.
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 3, 0}},
                                               {{0, 0, 0}, {-3, 0, 0}, {0, -1, 0}});
   const Facing below = find_facing(motion.segment(0), 0, View::of_direction({0, 0, -1}));
@@ -317,7 +317,7 @@ TEST(Facing, a_face_that_is_hidden_at_both_ends_may_be_seen_between) {
 }
 
 TEST(Facing, a_face_that_only_touches_edge_on_keeps_its_side) {
-  // n(t) . z = (1 - 2 t)^2.
+  // n(t) . z = (1 - 2 t)^2 touches zero at t = 1/2.
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                                               {{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}});
   const Facing facing = find_facing(motion.segment(0), 0, View::of_direction({0, 0, 1}));
@@ -329,7 +329,7 @@ TEST(Facing, a_face_that_only_touches_edge_on_keeps_its_side) {
 }
 
 TEST(Facing, an_eye_may_pass_the_plane_of_a_face_three_times) {
-  // The face turns twice about the x axis seen from an eye that falls through its plane: f is a cubic of three roots.
+  // The face turns over twice while the eye falls through its plane, so that f is a cubic with three roots.
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 3, 0}},
                                               {{0, 0, 0}, {-3, 0, 0}, {0, -1, 0}});
   const Facing facing = find_facing(motion.segment(0), 0, View::of_moving_eye({0.25F, 0.25F, 1}, {0.25F, 0.25F, -1}));
@@ -371,7 +371,7 @@ TEST(Facing, time_that_runs_back_mirrors_the_changes) {
   EXPECT_GT(changes, 500U);
 }
 
-// Triangles over a grid, of which every vertex goes up or down on its own.
+// Makes triangles over a grid, each vertex of which goes up or down on its own.
 Motion crumpling_grid(std::uint32_t size) {
   test::Random random(11);
   std::vector<fixtures::Point> from, to;
@@ -389,7 +389,7 @@ Motion crumpling_grid(std::uint32_t size) {
   return fixtures::make_motion(fixtures::make_triangles(count, std::move(corners)), from, to);
 }
 
-// The faces at every edge, at instants outside of all brackets.
+// Looks at the faces of every edge, at instants outside of all brackets.
 TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
   const Motion motion = crumpling_grid(40);
   const Segment segment = motion.segment(0);
@@ -412,7 +412,7 @@ TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
       ++open;
       EXPECT_LT(signs[one.faces[0]] * signs[one.faces[1]], 0);
     }
-    // As many edges differ, counted by the faces of each.
+    // The number of edges whose faces differ is the same, counted by the faces of each edge.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<int>> edges;
     for (std::size_t f = 0; f < faces; ++f) {
       const auto face = motion.topology.face(f);

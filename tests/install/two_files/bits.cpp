@@ -1,5 +1,5 @@
-// Prints a hash of all that chronormal_core.h computes of some meshes: compiled with the two files and with the library,
-// it prints the same. Whole numbers and powers of two are what the meshes are made of.
+// Prints a hash of all that chronormal_core.h computes for some meshes. It must print the same when it is compiled with
+// the two files and with the library. The meshes are made of whole numbers and powers of two.
 #include "chronormal_core.h"
 
 #include <cstdint>
@@ -35,8 +35,8 @@ struct Mesh {
   std::vector<float> from, to;
 };
 
-// A grid whose bands of rows rest, move along, turn, shrink to a point, turn inside out, or move as they like; the vertices
-// of its last column stand where those of the first do, so that they weld.
+// Makes a grid whose bands of rows rest, move along, turn, shrink to a point, turn inside out, or move freely. The
+// vertices of its last column coincide with those of the first, so that they weld.
 Mesh grid(std::uint32_t cells, std::mt19937_64& random) {
   const auto noise = [&random](unsigned bits) {
     return static_cast<float>(static_cast<std::int64_t>(random() & ((1u << bits) - 1)) - (1 << bits) / 2) * 0x1p-12f;

@@ -1,4 +1,4 @@
-// Checksums have the values that everybody knows, and tell what was changed.
+// Checks that checksums have their published values, and reveal changes.
 #include "io/bytes/checksum.h"
 
 #include <gtest/gtest.h>

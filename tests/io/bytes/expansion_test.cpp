@@ -1,4 +1,5 @@
-// What a small file may make us hold or write. Every file here declares far more than it has; --max-expansion reads it.
+// Tests the limit of what a small file may make us hold or write. Every file here declares far more than it stores;
+// --max-expansion reads it.
 
 #include "io/bytes/expansion.h"
 
@@ -73,7 +74,7 @@ TEST(Expansion, of_deflated_arrays_is_asked_for_before_they_are_unpacked) {
   expect_refused(error_of(read_npz(bomb, "bomb.npz")));
   EXPECT_TRUE(read_npz(bomb, "bomb.npz", 1, kEnough).ok());
   EXPECT_TRUE(read_npz(zeros(2, 1000000, false), "stored.npz").ok()) << "what is stored is there";
-  // Keyframes of one vertex take more than their positions.
+  // Keyframes of one vertex take more memory than their positions.
   expect_refused(error_of(read_npz(zeros(400000, 3, true), "frames.npz")));
 }
 
@@ -91,7 +92,7 @@ TEST(Expansion, of_many_targets_of_one_line_is_asked_for_one_by_one) {
   expect_refused(error_of(test::read_motion(options)));
 }
 
-// A base of zeros without bytes, and so many targets that are the same.
+// Makes a base of zeros without bytes, and many targets that are all the same.
 GltfBuilder zero_targets(std::size_t vertices, std::size_t targets) {
   GltfBuilder builder;
   const auto zeros = builder.add_accessor_over(std::nullopt, "VEC3", 5126, vertices);
@@ -140,7 +141,8 @@ TEST(Expansion, of_compressed_views_is_asked_for_before_they_are_decompressed) {
   EXPECT_NE(error.find("EXT_meshopt_compression"), std::string::npos) << error;
 }
 
-// "DRACO" 2.2, a mesh without metadata: sequential has its counts at once, edgebreaker after one byte and its vertices.
+// The files are "DRACO" 2.2, a mesh without metadata: sequential has its counts at once, edgebreaker after one byte and
+// its vertices.
 TEST(Expansion, of_faces_that_a_draco_mesh_declares_is_asked_for_before_it_is_decoded) {
   const std::string many("\xFF\xFF\xFF\x7F", 4), few("\x03", 1), head("DRACO\x02\x02\x01", 8), no_flags("\0\0", 2);
   for (const std::string& coded :
@@ -170,7 +172,7 @@ TEST(Expansion, counts_the_files_of_buffers_each_once) {
   EXPECT_EQ(document.expansion().most(), 100 * (text.size() + 1000000));
 }
 
-// A spline that turns so fast that its product with itself needs keys without end.
+// Makes a spline that turns so fast that its product with itself needs very many keys.
 std::string steep_spline(std::size_t keys) {
   GltfBuilder builder = test::quad_document();
   std::vector<float> times, values;

@@ -46,7 +46,7 @@ mode_t permissions_of(const std::string& path) {
   return status.st_mode & 07777;
 }
 
-// Bytes that no pipe takes at once.
+// Makes more bytes than a pipe takes at once.
 std::string many_bytes() {
   std::string bytes(3000001, ' ');
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7 + i / 251);
@@ -89,7 +89,7 @@ TEST(FileBytes, pipe_and_standard_input_are_read_to_the_end) {
   const std::string pipe = folder / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   for (const bool as_stdin : {false, true}) {
-    // The writer goes through write_output, which must not rename over the pipe.
+    // The writer uses write_output, which must not rename over the pipe.
     std::thread writer([&] { EXPECT_TRUE(write_output(pipe, bytes, false).ok()); });
     if (as_stdin) {
       const int opened = ::open(pipe.c_str(), O_RDONLY);
@@ -265,11 +265,11 @@ TEST(WriteOutput, full_device_is_an_error_and_null_device_is_written_directly) {
   EXPECT_EQ(error, "<stdout>: No space left on device");
 }
 
-// Nobody listens at such a socket, so that it cannot be opened; and nothing is put in its place.
+// Nobody listens at such a socket, so that it cannot be opened, and no file may replace it.
 TEST(WriteOutput, a_socket_is_no_place_for_a_file) {
   const TemporaryFolder folder;
   const std::string path = folder / "socket";
-  // The name of a socket may have 107 bytes, which the path of a folder may be longer than.
+  // The name of a socket has at most 107 bytes, and the path of a folder may be longer.
   const int descriptor = ::open(folder.path().c_str(), O_PATH | O_DIRECTORY);
   const std::string name = "/proc/self/fd/" + std::to_string(descriptor) + "/socket";
   sockaddr_un address{};

@@ -1,4 +1,4 @@
-// Journals give back the records that were written whole, whatever happened to the end of the file.
+// Checks that journals give back the records that were written whole, whatever happened to the end of the file.
 #include "io/bytes/journal.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Whatever is handed over by mistake under the name of a format that is read: the message says what it is.
+// Checks that a file of a known kind under the name of another format gets a message that says what it is.
 #include "io/bytes/known_kinds.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::string_literals;
 
-// How files of these kinds begin, as their specifications say it, and words of the message.
+// The first bytes of files of these kinds by their specifications, and words of the message.
 struct Sample {
   std::string bytes, kind;
 };
@@ -54,7 +54,7 @@ const std::vector<Sample> kSamples = {
 
 class KnownKinds : public ::testing::Test {
  protected:
-  // What is said of a file of this name with these bytes, beside a mesh where the name is that of a cache.
+  // Returns the message about a file with this name and these bytes, beside a mesh if the name is a cache's.
   std::string said(const std::string& name, const std::string& bytes) {
     folder_.write(name, bytes);
     folder_.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -106,13 +106,13 @@ TEST(KnownKindsOfBytes, are_no_files_of_ours_and_no_noise) {
   for (int round = 0; round < 20000; ++round) {
     std::string bytes(random() % 40, '\0');
     for (char& c : bytes) c = static_cast<char>(random() % 256);
-    // Text as the formats have it: numbers, words and brackets.
+    // The text consists of the elements of text formats: numbers, words and brackets.
     std::string text;
     for (int word = 0; word < 6; ++word)
       text += std::vector<std::string>{"v ",  "f ",       "# ", "{\"asset\":", "1.5 ",   "\n",
                                        "-2 ", "o solid ", " <", "[",           "mtllib "}[random() % 11];
     EXPECT_EQ(known_kind(text), "") << text;
-    // Kinds that begin with two bytes or three are not so rare.
+    // Kinds that begin with two or three bytes are not so rare.
     const bool may_be_one =
         std::any_of(kShort.begin(), kShort.end(), [&](const std::string& begin) { return bytes.starts_with(begin); });
     EXPECT_TRUE(may_be_one || known_kind(bytes).empty()) << known_kind(bytes);

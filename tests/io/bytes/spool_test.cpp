@@ -1,4 +1,4 @@
-// Spool: what is put aside comes back, wherever it lies, and nothing of it is ever seen in a folder.
+// Checks that a spool gives everything back, wherever it is stored, and that no folder ever shows its file.
 #include "io/bytes/spool.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ std::string all_of(const Spool& spool, std::uint64_t at, std::uint64_t size) {
   return bytes;
 }
 
-// Parts of all lengths, of which one is longer than what a file is read by.
+// Makes parts of all lengths, one of which is longer than the buffer by which a file is read.
 std::vector<std::string> parts() {
   std::vector<std::string> result = {"a", "", "bc", "def", std::string(1, '\0'), ""};
   std::string large;
@@ -148,7 +148,7 @@ TEST(Spool, in_a_folder_that_is_not_there_says_so) {
   EXPECT_EQ(spool.error().text(), "none/out.glb: can not write in its folder: No such file or directory");
 }
 
-// The name that the system has for the file of a spool in a folder, which has none of its own.
+// Returns the system's name for the file of a spool in a folder, where the file itself has no name.
 std::string file_of_spool(const TemporaryFolder& folder) {
   std::string found;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {

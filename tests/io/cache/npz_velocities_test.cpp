@@ -1,5 +1,5 @@
-// The array `velocities` of .npz comes back as it was written, and is refused where it has not one velocity for each
-// vertex.
+// Checks that the array `velocities` of .npz comes back as it was written, and is refused unless it has one velocity
+// for each vertex.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// PC2 files come back as they were written, and bad ones are refused with their place.
+// Checks that PC2 files come back as they were written, and that bad ones are refused with their place.
 #include "io/cache/pc2.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Caches and models by other people; only where the environment variable CHRONORMAL_DATA says where they are.
+// Reads caches and models by other people. Needs the environment variable CHRONORMAL_DATA, which says where they are.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -29,7 +29,7 @@ class RealCaches : public ::testing::Test {
     data_ = folder;
   }
 
-  // Reads a cache, as a motion over a mesh of one triangle and the points that it needs.
+  // Reads a cache as a motion over a mesh of one triangle and the points that it needs.
   void expect_maya(const std::string& folder, std::size_t samples, double first, double last) const {
     SCOPED_TRACE(folder);
     std::string obj;
@@ -59,7 +59,7 @@ TEST_F(RealCaches, maya_caches_of_every_kind_are_read) {
   expect_maya("sine_mxmd_oversample", 34, 10, 19.9);
 }
 
-// Four caches of one animation: where they have a sample at the same time, they agree.
+// Four caches of one animation agree where they have a sample at the same time.
 TEST_F(RealCaches, maya_caches_of_one_animation_agree) {
   const auto at_frame_11 = [&](const std::string& folder) -> std::vector<float> {
     const auto cache = read_maya_cache((data_ / "caches" / folder / "cache.xml").string(), {1, 0, "pCubeShape1"});
@@ -93,7 +93,7 @@ TEST_F(RealCaches, maya_description_full_of_entities_is_read_and_its_missing_fra
   EXPECT_TRUE(read_maya_points(points.value().bytes(), "cacheFrame1.mc", {1, 36, "pCubeShape2"}).ok());
 }
 
-// Sample 4 is the mesh, but for the order of its vertices and a translation.
+// Sample 4 is the mesh but for the order of its vertices and a translation.
 TEST_F(RealCaches, pc2_of_3ds_max_is_read_and_fits_its_mesh_through_the_permutation) {
   const fs::path folder = data_ / "caches/max_cache_box";
   const Result<FileBytes> file = FileBytes::open((folder / "max_cache_box.pc2").string());

@@ -1,4 +1,4 @@
-// The container of GLB files: its header and its chunks.
+// Tests the container of GLB files: its header and its chunks.
 #include "io/gltf/glb/glb.h"
 
 #include <gtest/gtest.h>

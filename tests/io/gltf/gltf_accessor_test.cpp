@@ -1,4 +1,4 @@
-// How the bytes of buffers become numbers: strides, sparse accessors, and quantised components.
+// Tests how the bytes of buffers become numbers: strides, sparse accessors, and quantised components.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ TEST(GltfAccessors, elements_may_stand_apart) {
 }
 
 TEST(GltfAccessors, positions_and_normals_may_be_interleaved) {
-  // Position, normal, position, normal, ...; the last element ends with the view.
+  // The order is position, normal, position, normal, ...; the last element ends with the view.
   std::vector<float> mixed;
   const std::vector<float> normals = {0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -55,7 +55,7 @@ TEST(GltfAccessors, positions_and_normals_may_be_interleaved) {
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
   EXPECT_EQ(geometry_of(builder).normals, normals);
 
-  // A view that ends with the last element, before the last stride is full.
+  // This view ends with the last element, before the last stride is full.
   builder.json["bufferViews"][view]["byteLength"] = 24 * 3 + 12;
   builder.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
@@ -92,7 +92,7 @@ void expect_sparse() {
   over.make_sparse<Index>(replaced, {1, 3}, kReplacing);
   EXPECT_EQ(geometry_of(over).positions, kReplaced);
 
-  // Without a view the rest is zero: a target that moves few vertices is written so.
+  // Without a view the other elements are zero, which suits a target that moves few vertices.
   GltfBuilder alone;
   const std::size_t base = alone.add_positions(test::kQuad);
   const std::size_t target = alone.add_accessor_over(std::nullopt, "VEC3", 5126, 4);
@@ -138,7 +138,7 @@ TEST(GltfSparse, indices_of_corners_may_be_sparse) {
   EXPECT_EQ(geometry_of(builder).corners, (std::vector<std::uint32_t>{3, 1, 2, 0, 2, 1}));
 }
 
-// The formulas of the specification, section 3.6.2.2, in long double; the result must be the nearest float.
+// Repeats the formulas of the specification, section 3.6.2.2, in long double; the result must be the nearest float.
 template <class T>
 float as_float(T c, bool normalized) {
   if (!normalized) return static_cast<float>(c);
@@ -146,7 +146,7 @@ float as_float(T c, bool normalized) {
   return static_cast<float>(std::max(f, -1.0L));
 }
 
-// Twelve components with the ends of the range among them; every element is padded to a multiple of four bytes.
+// Tests twelve components with the ends of the range among them; every element is padded to a multiple of four bytes.
 template <class T>
 void expect_quantised() {
   constexpr T kMin = std::numeric_limits<T>::min(), kMax = std::numeric_limits<T>::max();
@@ -161,7 +161,7 @@ void expect_quantised() {
     const std::size_t base = builder.add_strided("VEC3", values, (3 * sizeof(T) + 3) / 4 * 4, normalized);
     builder.add_mesh(GltfBuilder::primitive(base, builder.add_indices(test::kQuadCorners), {{{"POSITION", base}}}));
     builder.json["extensionsUsed"] = builder.json["extensionsRequired"] = {"KHR_mesh_quantization"};
-    // Targets may not be unsigned.
+    // Targets must be signed.
     const bool is_target = std::is_signed_v<T>;
     if (!is_target) builder.json["meshes"][0]["primitives"][0].erase("targets");
     const GltfGeometry geometry = geometry_of(builder);

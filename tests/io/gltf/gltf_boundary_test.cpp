@@ -1,4 +1,5 @@
-// Files that are wrong in one number, one byte or their length: each is an error with a place, or a valid result.
+// Reads files that are wrong in one number, one byte or their length: each must give an error with a place, or a valid
+// result.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,10 +26,10 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostGrowth = std::size_t{256} << 20;
 
-// Reads files that may be anything; keeps what is against the rules.
+// Reads arbitrary files, and keeps every breach of the rules.
 class Batch {
  public:
-  // Sanitizers are slow: under them every seventh file is enough.
+  // Reads a file, or only every seventh under a sanitizer, which is slow.
   void read(const std::string& label, const std::string& bytes) {
     last_refused_ = true;
     if (++count_ % 7 != 0 && test::is_sanitized()) return;
@@ -44,7 +45,7 @@ class Batch {
   void complain(const std::string& label) { complaints_ += label + "\n"; }
   [[nodiscard]] bool last_was_refused() const { return last_refused_; }
 
-  // "files refused complaints"
+  // Returns "files refused complaints".
   [[nodiscard]] std::string summary() const {
     return std::to_string(count_) + " " + std::to_string(refused_) + " " + complaints_;
   }
@@ -134,7 +135,7 @@ TEST(GltfBoundary, every_value_of_a_document_of_another_type_or_missing) {
     for (const auto& [name, builder] : test::all_documents()) {
       const Json whole = Json::parse(builder.gltf()), flat = whole.flatten();
       for (const auto& [key, unused] : flat.items()) {
-        // The value itself and all that it lies in.
+        // Both the value itself and everything that contains it are replaced.
         for (Json::json_pointer at(key); !at.empty(); at.pop_back()) {
           for (const Json& value : values) {
             Json broken = whole;
@@ -220,7 +221,7 @@ TEST(GltfBoundary, every_bit_and_count_of_compressed_bytes) {
       for (std::size_t at = 0; at < builder.buffer.size(); ++at) {
         for (int bit = 0; bit < 8; ++bit)
           read_with(at, std::string(1, static_cast<char>(builder.buffer[at] ^ (1 << bit))));
-        // Counts of 7, 14, 21, 28 and 32 bits, as Draco writes them, and of 32 bits as they are.
+        // The counts have 7, 14, 21, 28 and 32 bits in Draco's encoding, and 32 plain bits.
         for (const char* const count : {"\x7F", "\xFF\x7F", "\xFF\xFF\x7F", "\xFF\xFF\xFF\x7F", "\xFF\xFF\xFF\xFF\x0F",
                                         "\xFF\xFF\xFF\xFF", "\xAA\xAA\xAA\x0A", "\x80\x80\x80\x80\x08"}) {
           if (at + std::strlen(count) <= builder.buffer.size()) read_with(at, count);

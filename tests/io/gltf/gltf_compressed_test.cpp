@@ -1,4 +1,4 @@
-// EXT_meshopt_compression and KHR_draco_mesh_compression, coded here by the encoders of their makers.
+// Tests EXT_meshopt_compression and KHR_draco_mesh_compression, with data from the encoders of their makers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -108,7 +108,7 @@ TEST(GltfMeshopt, triangles_of_two_bytes_come_back) {
   EXPECT_EQ(geometry_of(GltfFixture(builder)).corners, kCorners);
 }
 
-// The specification of the extension, appendix B, by the letter: x, y and the one in z as integers.
+// Decodes by the letter of the extension's specification, appendix B: x, y and the one in z as integers.
 std::array<double, 3> octahedral(const std::array<int, 3>& coded, int largest) {
   const double one = coded[2];
   double x = coded[0] / one, y = coded[1] / one;
@@ -151,7 +151,7 @@ void expect_octahedral(int bits) {
   for (std::size_t i = 0; i < vertices; ++i) {
     const auto expected = octahedral({filtered[4 * i], filtered[4 * i + 1], filtered[4 * i + 2]}, largest);
     for (std::size_t k = 0; k < 3; ++k) {
-      // A last digit may fall either way in float arithmetic.
+      // The last digit may fall either way in float arithmetic.
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), expected[k], 1.001 / largest) << i;
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), static_cast<double>(four[4 * i + k]),
                   4.0 / (1 << (bits - 1)))
@@ -219,7 +219,7 @@ TEST(GltfMeshopt, stride_of_a_view_must_be_that_of_its_compressed_elements) {
 }
 
 TEST(GltfMeshopt, elements_wider_than_what_is_read_of_them_need_the_stride_of_the_view) {
-  // Positions and something else of four bytes in one stream.
+  // The stream has positions and another four bytes in each element.
   std::vector<float> wide;
   for (std::size_t i = 0; i < 12; ++i) {
     wide.push_back(test::kQuad[i]);
@@ -236,7 +236,7 @@ TEST(GltfMeshopt, elements_wider_than_what_is_read_of_them_need_the_stride_of_th
     if (has_stride) {
       EXPECT_EQ(geometry_of(file).positions, test::kQuad);
     } else if (file.ok()) {
-      // Then elements are packed, as the core specification has it.
+      // Then elements are packed, as the core specification says.
       const std::vector<float> packed(wide.begin(), wide.begin() + 12);
       EXPECT_EQ(geometry_of(file).positions, packed);
     }
@@ -314,7 +314,7 @@ TEST(GltfDraco, sequential_mesh_comes_back_bit_for_bit_with_its_targets) {
   }
 }
 
-// Triangles by the coordinates of their corners, turned so that the least comes first, in order.
+// Returns triangles by the coordinates of their corners, rotated so that the least comes first, and sorted.
 std::vector<std::array<float, 9>> sorted_triangles(const std::vector<float>& positions, const Corners& corners) {
   std::vector<std::array<float, 9>> triangles;
   for (std::size_t f = 0; f + 3 <= corners.size(); f += 3) {
@@ -438,7 +438,7 @@ TEST(GltfDraco, vertices_that_no_face_names_are_counted) {
   }
 }
 
-// The extension names some of the attributes of the primitive; the others are in accessors as ever.
+// The extension names some of the attributes of the primitive; the others are in ordinary accessors.
 TEST(GltfDraco, attributes_that_are_not_compressed_are_read_from_their_accessors) {
   const std::vector<float> normals = {0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1};
   const auto read = [&](auto edit) {

@@ -1,4 +1,4 @@
-// The structure of documents: containers, meshes, nodes, animations, and how primitives become triangles.
+// Tests the structure of documents: containers, meshes, nodes, animations, and how primitives become triangles.
 #include "chronormal/io/gltf_document.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(GltfContainer, glb_and_gltf_hold_the_same) {
 }
 
 TEST(GltfContainer, bin_chunk_has_at_most_3_bytes_more_than_its_buffer) {
-  // As the specification has it: what pads the chunk, and nothing else.
+  // The specification allows only the bytes that pad the chunk.
   GltfBuilder builder = test::quad_document();
   builder.buffer.resize((builder.buffer.size() + 3) / 4 * 4);
   for (const std::size_t surplus : {std::size_t{0}, std::size_t{1}, std::size_t{3}, std::size_t{4}, std::size_t{5}}) {
@@ -217,7 +217,7 @@ TEST(GltfStructure, target_names_count_only_when_there_is_one_for_each) {
   }
 }
 
-// Programs that rewrite a file keep the extras of nodes alone, and gltfpack hangs the mesh into a new node below.
+// Programs that rewrite a file keep only the extras of nodes, and gltfpack hangs the mesh into a new node below.
 TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
   using Json = nlohmann::json;
   const auto mark = [](double factor) -> Json {
@@ -226,7 +226,7 @@ TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
             {"sequence", false},
             {"extras", {{{"target", 1}, {"linear", Json::array()}, {"quadratic", {{0, 0, factor}}}}}}};
   };
-  // The factor of the mark that the mesh has; 0 for none.
+  // Returns the factor of the mark that the mesh has, or 0 if it has none.
   const auto factor_of = [](const GltfBuilder& builder) {
     const GltfFixture file(builder);
     EXPECT_TRUE(file.ok()) << file.error();
@@ -250,7 +250,7 @@ TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
   ASSERT_TRUE(broken->meshes()[0].mark_fault);
   EXPECT_EQ(broken->meshes()[0].mark_fault->place, "a.gltf, /nodes/1/extras/chronormal/version");
 
-  // A node with a mesh of its own speaks of that alone.
+  // The mark of a node with a mesh of its own belongs to that mesh alone.
   builder.json["meshes"].push_back(builder.json["meshes"][0]);
   builder.json["nodes"][0]["mesh"] = 1;
   builder.json["nodes"][1].erase("extras");
@@ -307,14 +307,14 @@ TEST(GltfStructure, harmless_required_extensions_are_accepted_and_others_are_ref
   }
 }
 
-// Triangles with their smallest corner first: turned round, but never over.
+// Returns triangles with their smallest corner first: rotated, but never reversed.
 Corners turned(Corners corners) {
   for (auto face = corners.begin(); face != corners.end(); face += 3)
     std::rotate(face, std::min_element(face, face + 3), face + 3);
   return corners;
 }
 
-// A fan of five vertices round the first one serves every mode.
+// Makes a fan of five vertices around the first one, which serves every mode.
 GltfGeometry five_vertices(int mode, std::optional<std::vector<std::uint8_t>> indices) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0});
@@ -330,7 +330,7 @@ TEST(GltfPrimitiveModes, strips_alternate_their_winding) {
 }
 
 TEST(GltfPrimitiveModes, fans_turn_round_their_first_vertex) {
-  // As the specification writes them: p_i = {v_(i+1), v_(i+2), v_0}.
+  // The specification writes p_i = {v_(i+1), v_(i+2), v_0}.
   EXPECT_EQ(turned(five_vertices(6, std::nullopt).corners), turned(Corners{1, 2, 0, 2, 3, 0, 3, 4, 0}));
   EXPECT_EQ(turned(five_vertices(6, std::vector<std::uint8_t>{3, 1, 0, 2}).corners), turned(Corners{1, 0, 3, 0, 2, 3}));
 }

@@ -1,4 +1,4 @@
-// Where an edited file goes: containers, folders, streams, and writes that fail.
+// Tests the destinations of an edited file: containers, folders, streams, and writes that fail.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ using test::take_apart;
 using test::TemporaryFolder;
 using Json = nlohmann::json;
 
-// Two triangles in two buffers, the second of which is also compressed away; views of both.
+// Makes two triangles in two buffers with a view of each, which leaves some bytes of the second buffer unused.
 GltfBuilder two_buffers(const std::string& first, const std::string& second) {
   GltfBuilder builder;
   builder.json["buffers"] = {{{"byteLength", 36}, {"name", "one"}, {"extras", "\xC3\xA9"}}, {{"byteLength", 41}}};
@@ -49,7 +49,7 @@ std::string first_bytes() { return bytes_of(kFirst); }
 std::string second_bytes() { return "skip" + bytes_of(kSecond) + "x"; }
 std::string as_data(const std::string& bytes) { return "data:application/octet-stream;base64," + base64(bytes); }
 
-// Opens a file that was written, and compares its arrays with those of two_buffers() and a third that was added.
+// Opens a written file, and compares its arrays with those of two_buffers() and an added third.
 void expect_arrays(const std::string& path, bool with_third) {
   const Result<GltfDocument> document = GltfDocument::open(path);
   ASSERT_TRUE(document.ok()) << document.error().text();

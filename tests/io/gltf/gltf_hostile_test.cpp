@@ -1,4 +1,4 @@
-// Files made to hurt: huge structures, and the broken files of other projects where CHRONORMAL_DATA has them.
+// Reads files made to do harm: huge structures, and the broken files of other projects where CHRONORMAL_DATA has them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostGrowth = std::size_t{256} << 20;
 
-// How a file of any size is read in a process of its own: "" for a result, else the first error. Fails where it takes
-// more memory beside the file itself than allowed, or breaks an invariant.
+// Reads a file of any size in a process of its own, and returns "" for a result, else the first error. Fails if this
+// takes more memory than allowed beside the file itself, or breaks an invariant.
 std::string read_apart(const std::string& label, const std::string& bytes) {
   const test::ChildRun run = test::run_in_child(120, [&]() -> std::string {
     const Result<GltfDocument> document = GltfDocument::read(bytes, "a.gltf");
@@ -53,7 +53,7 @@ constexpr const char* kSlow = "under a sanitizer memory is not measured, and thi
 
 constexpr const char* kHead = R"({"asset": {"version": "2.0"}, )";
 
-// A chain of nodes 0 -> 1 -> 2 ..., the last of which has the child `back`, if any.
+// Makes a chain of nodes 0 -> 1 -> 2 ..., the last of which has the child `back`, if any.
 std::string chain(std::size_t count, const std::string& back) {
   std::string text = std::string(kHead) + R"("nodes": [)";
   for (std::size_t i = 0; i + 1 < count; ++i) text += std::string(R"({"children":[)") + std::to_string(i + 1) + "]},";
@@ -75,7 +75,7 @@ TEST(GltfHuge, nested_arrays_are_refused_at_the_level_that_is_too_deep) {
   std::string objects = head;
   for (int i = 0; i < 200000; ++i) objects += R"({"a":)";
   EXPECT_TRUE(read_apart("objects", objects).starts_with("a.gltf, byte "));
-  // Brackets in a text are no levels.
+  // Brackets in a string are not levels.
   EXPECT_TRUE(read_apart("text", head + "\"\\\"" + std::string(200000, '[') + "\"}").starts_with("a.gltf: "));
 }
 
@@ -107,12 +107,12 @@ TEST(GltfHuge, numbers_and_texts_of_a_million_digits) {
   EXPECT_TRUE(read_apart("exponent", std::string(kHead) + "\"extras\": 1e-" + digits + "}").starts_with("a.gltf"));
   EXPECT_TRUE(read_apart("version", std::string(R"({"asset": {"version": ")") + digits + "\"}}")
                   .starts_with("a.gltf, /asset/version: "));
-  // An extension that nothing uses is a note; what is an error is that the file is empty.
+  // An extension that nothing uses is a note; the error is that the file is empty.
   EXPECT_TRUE(read_apart("extension", std::string(kHead) + R"("extensionsRequired": [")" + digits + "\"]}")
                   .starts_with("a.gltf: no mesh"));
 }
 
-// Few bytes that ask for much: the same deltas in many targets, zeros that no view backs.
+// Makes few bytes that demand much: the same deltas in many targets, or zeros that no view backs.
 std::string many_targets(std::size_t vertex_count, std::size_t target_count, bool has_view) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(std::vector<float>(3 * vertex_count, 1.0F));
@@ -150,7 +150,7 @@ TEST(GltfHuge, keys_that_nothing_backs_are_refused_before_they_are_made) {
   EXPECT_TRUE(read_apart("keys", builder.glb()).starts_with("a.gltf, /"));
 }
 
-// Many things that share what they are made from: a little file, and a lot of memory.
+// Many tracks share the arrays that they are made from: a little file, and a lot of memory.
 TEST(GltfHuge, tracks_that_share_their_keys_are_refused_before_these_are_copied) {
   if (test::is_sanitized()) GTEST_SKIP() << kSlow;
   GltfBuilder builder = test::quad_document();
@@ -205,7 +205,7 @@ TEST(GltfHuge, hundred_thousand_channels_are_read_in_a_breath) {
   }
 }
 
-// What the files of other projects hold.
+// Gives the tests the files of other projects.
 class HostileData : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -216,7 +216,7 @@ class HostileData : public ::testing::Test {
   fs::path data_;
 };
 
-// Reads a file strictly, so that what is a note otherwise is an error; or as users do.
+// Reads a file strictly, so that a note becomes an error, or in the same way as users.
 fuzz::GltfReading read_file(const fs::path& path, bool strict = true) {
   const Result<GltfDocument> document = GltfDocument::open(path.string(), {.strict = strict});
   return fuzz::read_all_of(document, path.filename().string(), GltfMotionOptions().most_bytes);
@@ -266,7 +266,7 @@ const std::set<std::string_view> kRead = {
     "VALUE_NOT_IN_RANGE",
 };
 
-// Those that concern what is not read, or only where it is used: why.
+// The errors about parts that are not read, or only where they are used, with the reason.
 const std::map<std::string_view, const char*> kNotRead = {
     {"ACCESSOR_INVALID_SIGN", "the sign of tangents does not touch geometry"},
     {"ACCESSOR_JOINTS_INDEX_DUPLICATE", "skins are not read"},
@@ -302,10 +302,11 @@ const std::map<std::string_view, const char*> kNotRead = {
     {"MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", "the file has it in colours, which are not read"},
 };
 
-// The validator lets types of later versions pass with a warning.
+// The validator only warns of types of later versions.
 const std::set<std::string_view> kOnlyWarned = {"unknown_type.gltf"};
 
-// Messages of codes in both worlds are about what is read where their pointer ends in one of our attributes.
+// Tells whether a message is about something that we read. If a code occurs both in parts that we read and in others,
+// the end of its pointer decides.
 bool is_about_what_is_read(const std::string& code, const std::string& pointer) {
   if (kRead.contains(code)) {
     // These lists are not read at all.

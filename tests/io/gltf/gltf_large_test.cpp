@@ -1,4 +1,4 @@
-// A large file costs what is asked of it, not what it holds.
+// Checks that a large file costs what is requested from it, and not what it stores.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -20,8 +20,8 @@ void append_word(std::string& text, std::uint32_t value) {
   for (int shift = 0; shift < 32; shift += 8) text += static_cast<char>((value >> shift) & 0xFF);
 }
 
-// A GLB of 180 MB in which a grid of 64 x 64 vertices morphs; before it stands a mesh of 15 million vertices, a hole in
-// the file, which does not.
+// Writes a GLB of 180 MB in which a grid of 64 x 64 vertices morphs. Before it stands a mesh of 15 million vertices, a
+// hole in the file, which does not morph.
 std::string write_large_glb(const TemporaryFolder& folder) {
   constexpr std::uint32_t kStill = 15'000'000, kSide = 64, kMoving = kSide * kSide;
   constexpr std::uint64_t kStillBytes = std::uint64_t{12} * kStill;

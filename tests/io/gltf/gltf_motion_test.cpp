@@ -1,4 +1,4 @@
-// Targets and animations as motions.
+// Tests targets and animations as motions.
 #include "io/gltf/gltf_motion.h"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ TEST(GltfTargets, sums_are_rounded_once_to_the_nearest_float) {
   }
 }
 
-// Two meshes that morph and one that does not, of several primitives, with nodes in another order:
+// The document has two meshes that morph and one that does not, of several primitives, with nodes in another order:
 //   mesh 0: primitive 0 a triangle, primitive 1 the quad, primitive 2 points; one target
 //   mesh 1: nothing to morph
 //   mesh 2: a triangle; two targets, of which the first has normals only
@@ -235,14 +235,14 @@ TEST(GltfLinear, normalised_integers_are_weights) {
   check(std::uint16_t{}, {0, 1, 1 / 65535.0, 0.2}, 0, 65535, 1, 13107);
 }
 
-// Two nodes that carry the same mesh, and one with another mesh and other times.
+// A track of a node. Two nodes carry the same mesh, and one has another mesh and other times.
 struct Track {
   std::size_t node;
   GltfInterpolation interpolation;
   std::vector<float> times, values;
 };
 
-// The true positions of a part: the weights of its node at a time, by the formulas of the specification.
+// Returns the true positions of a part: the weights of its node at a time, by the formulas of the specification.
 std::vector<double> true_positions(const Track& track, const std::vector<float>& base,
                                    const std::vector<std::vector<float>>& targets, double time) {
   return test::morphed(base, targets,
@@ -262,7 +262,7 @@ TEST(GltfLinear, nodes_with_different_keys_are_exact_at_every_time) {
   const std::vector<Track> tracks = {{3, GltfInterpolation::kLinear, {0, 1, 4}, {0, 0, 1, 2, -1, 0.5F}},
                                      {2, GltfInterpolation::kLinear, {0.25F, 1, 2, 5}, {0, 1, 0.5F, 3}}};
   const GltfMotion result = motion_of(two_nodes(tracks), "two");
-  // Parts in the order of nodes: node 2 (mesh 0: a triangle and the quad), node 3 (mesh 2).
+  // The parts are in the order of nodes: node 2 (mesh 0: a triangle and the quad), node 3 (mesh 2).
   ASSERT_EQ(result.parts.size(), 3U);
   ASSERT_EQ(result.parts[0].node, 2U);
   EXPECT_EQ(result.parts[1].node, 2U);
@@ -356,7 +356,7 @@ TEST(GltfStep, holds_still_between_keys_and_jumps_at_them) {
     EXPECT_EQ(from.positions, held[s]);
     EXPECT_EQ(to.positions, held[s]);
   }
-  // Two keyframes at the key between them: just before, and just after.
+  // There are two keyframes at the key between them: just before, and just after.
   EXPECT_EQ(std::count_if(motion.keyframes.begin(), motion.keyframes.end(), [](const auto& k) { return k.time == 1; }),
             2);
 }
@@ -378,7 +378,7 @@ TEST(GltfStep, beside_a_linear_track_each_keeps_its_own_way) {
   }
 }
 
-// A triangle whose third vertex rises by 1, on two nodes; the keys are 0 and 1, at 0 s and 1 s.
+// Makes a triangle whose third vertex rises by 1, on two nodes; the keys are 0 and 1, at 0 s and 1 s.
 GltfBuilder two_nodes() {
   GltfBuilder builder;
   const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -398,7 +398,7 @@ TEST(GltfSharedKeys, mean_different_weights_by_another_interpolation) {
   samplers[1]["input"] = samplers[0]["input"];
   samplers[1]["output"] = samplers[0]["output"];
   const GltfMotion result = motion_of(builder, "both");
-  // The second node stands until 1 s and jumps there: halfway only the first has moved.
+  // The second node stands still until 1 s and jumps there, so that halfway only the first has moved.
   const Motion& motion = result.motion;
   ASSERT_EQ(motion.keyframes.size(), 4U);
   EXPECT_EQ(motion.keyframes[1].positions[3 * 2 + 2], 1);
@@ -407,7 +407,7 @@ TEST(GltfSharedKeys, mean_different_weights_by_another_interpolation) {
 }
 
 TEST(GltfSharedKeys, mean_different_weights_for_another_number_of_targets) {
-  // Three targets, LINEAR, on the first node; one target, CUBICSPLINE, on the second; both of the same six numbers.
+  // The first node has three targets, LINEAR; the second one target, CUBICSPLINE. Both use the same six numbers.
   GltfBuilder builder = two_nodes();
   const auto& target = builder.json["meshes"][0]["primitives"][0]["targets"][0];
   auto three = builder.json["meshes"][0]["primitives"][0];

@@ -1,5 +1,4 @@
-// Parts of a file that the others do not need are passed over with a note where they are wrong, and refused by a strict
-// reader.
+// Checks that wrong parts of a file that no other part needs are skipped with a note, and refused by a strict reader.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -27,7 +26,7 @@ struct Case {
   const char* pointer;  // the place of the only note begins with it
 };
 
-// A quad with two targets, and an animation of them.
+// Makes a quad with two targets, and an animation of them.
 GltfBuilder animated() {
   GltfBuilder builder = test::quad_document();
   builder.add_track<float>(builder.add_animation("a"), 0, {0, 1, 2}, {0, 0, 1, 0, 0, 1});
@@ -168,7 +167,7 @@ TEST(GltfNotes, a_part_that_nobody_needs_is_passed_over_with_a_note_and_refused_
     }
     const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);
     EXPECT_EQ(reading.broken, "");
-    // An animation of which nothing is left stays in its place, and is an error for those who ask for it.
+    // An animation of which nothing is left stays in its place, and is an error for whoever asks for it.
     for (const Error& error : reading.errors)
       EXPECT_NE(error.message.find("gives no weights"), std::string::npos) << error.text();
     // The targets move as before.
@@ -192,7 +191,7 @@ TEST(GltfNotes, what_the_geometry_needs_is_an_error) {
               f.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
             }).find("/nodes/0/rotation"),
             std::string::npos);
-  // An extension of what is read may change it.
+  // An extension of a part that is read may change its meaning.
   for (const char* const pointer : {"/meshes/0/primitives/0", "/meshes/0", "/accessors/0", "/bufferViews/0",
                                     "/buffers/0", "/animations/0/samplers/0"}) {
     GltfBuilder builder = animated();
@@ -218,7 +217,7 @@ TEST(GltfNotes, khr_meshopt_compression_is_decoded_where_it_can_be_and_named_whe
   const GltfFixture file(builder.gltf());
   ASSERT_TRUE(file.ok()) << file.error();
   EXPECT_EQ(file->geometry(0, 0, {}).value().positions, test::kQuad);
-  // The first byte of a compressed array has the version of the codec.
+  // The first byte of a compressed array holds the version of the codec.
   for (char& byte : builder.buffer)
     if (byte == '\xA0') byte = '\xA1';
   const GltfFixture later(builder.gltf());
@@ -228,8 +227,8 @@ TEST(GltfNotes, khr_meshopt_compression_is_decoded_where_it_can_be_and_named_whe
   EXPECT_NE(error.find("gltfpack -c"), std::string::npos) << error;
 }
 
-// Whatever a strict reader takes, a lenient one takes in the same way and without a note; and what only a lenient one
-// takes, it has a note for.
+// A lenient reader takes everything that a strict reader takes, in the same way and without a note; for everything that
+// only a lenient reader takes there is a note.
 TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
   constexpr std::uint32_t kSeed = 5404;
   std::cout << "seed " << kSeed << '\n';

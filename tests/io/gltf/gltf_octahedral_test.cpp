@@ -1,5 +1,5 @@
-// Octahedral normals of EXT_meshopt_compression: by the formula of its specification in double, and bit for bit as
-// npm meshoptimizer decodes them in browsers.
+// Tests octahedral normals of EXT_meshopt_compression, by the formula of its specification in double, and bit for bit
+// against npm meshoptimizer in browsers.
 #include "io/gltf/decode/gltf_octahedral.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@
 namespace chronormal::gltf_octahedral_test {
 namespace {
 
-// Every (x, y) of so many steps along each side of the square, for each number of bits; all there are where the steps
-// are as many. w is a number that must stay. tests/viewers/filters.test.mjs has the same loop.
+// Returns every (x, y) of up to most_steps steps along each side of the square, for each number of bits; with few bits
+// these are all values. w is a number that must stay. tests/viewers/filters.test.mjs has the same loop.
 template <class T>
 std::vector<T> lattice(int least_bits, int most_bits, int most_steps) {
   std::vector<T> elements;
@@ -45,7 +45,7 @@ std::vector<T> decoded(const std::vector<T>& elements) {
   return result;
 }
 
-// Where the normal would be, unrounded: on the octahedron |x| + |y| + |z| = one, and pushed out to the sphere.
+// Returns the unrounded normal: on the octahedron |x| + |y| + |z| = one, and pushed out to the sphere.
 std::array<double, 3> normal_of(int x, int y, int one, double length) {
   const int z = one - std::abs(x) - std::abs(y);
   const auto fold = [&](int a, int b) { return z < 0 ? (a < 0 ? -1 : 1) * (one - std::abs(b)) : a; };
@@ -55,7 +55,7 @@ std::array<double, 3> normal_of(int x, int y, int one, double length) {
   return {place[0] * scale, place[1] * scale, place[2] * scale};
 }
 
-// The largest distance of a number from where it would be unrounded.
+// Returns the largest distance of a number from its unrounded value.
 template <class T>
 double worst_rounding(const std::vector<T>& elements) {
   const std::vector<T> result = decoded(elements);
@@ -68,7 +68,7 @@ double worst_rounding(const std::vector<T>& elements) {
   return worst;
 }
 
-// FNV-1a over bytes.
+// Hashes bytes by FNV-1a.
 template <class T>
 std::uint32_t hash(const std::vector<T>& elements) {
   std::uint32_t value = 0x811C9DC5U;
@@ -85,7 +85,7 @@ TEST(GltfOctahedral, normals_of_16_bits_are_the_nearest_but_for_float) {
   EXPECT_LE(worst_rounding(kManyOf16Bits), 0.5 + 0.004);
 }
 
-// The constants are what npm meshoptimizer 1.3.0 decodes; tests/viewers/filters.test.mjs computes them.
+// npm meshoptimizer 1.3.0 decodes to these constants; tests/viewers/filters.test.mjs computes them.
 TEST(GltfOctahedral, normals_are_bit_for_bit_those_of_browsers) {
   EXPECT_EQ(hash(decoded(kEveryOf8Bits)), 4083453700U);
   EXPECT_EQ(hash(decoded(kManyOf16Bits)), 995496109U);

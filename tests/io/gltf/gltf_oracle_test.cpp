@@ -1,4 +1,4 @@
-// What tinygltf and Assimp make of the files of other people; only where CHRONORMAL_DATA says where they are.
+// Compares with tinygltf and Assimp on files by other people. Needs CHRONORMAL_DATA, which says where they are.
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>
@@ -48,7 +48,7 @@ double component(int type, const unsigned char* at, bool normalized) {
   }
 }
 
-// All components of an accessor, from the raw buffers that tinygltf has read.
+// Returns all components of an accessor, from the raw buffers that tinygltf has read.
 std::vector<double> numbers(const tinygltf::Model& model, int index) {
   const tinygltf::Accessor& accessor = model.accessors.at(static_cast<std::size_t>(index));
   const auto width =

@@ -1,4 +1,5 @@
-// KHR_animation_pointer to single weights: the channels of one node are one track, as a channel of all weights is.
+// Tests KHR_animation_pointer to single weights: the channels of one node form one track, like a channel of all
+// weights.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -95,7 +96,7 @@ TEST(GltfPointers, a_weight_of_a_mesh_is_that_of_each_node_without_weights_of_it
   EXPECT_EQ(tracks[1].same_keys_as, 0U);
 }
 
-// The weight that a channel gives at a time, by the formulas of appendix C of the specification.
+// Returns the weight that a channel gives at a time, by the formulas of appendix C of the specification.
 double weight_at(const std::vector<float>& times, const std::vector<float>& values, const std::string& interpolation,
                  double time) {
   const bool is_cubic = interpolation == "CUBICSPLINE";
@@ -169,7 +170,7 @@ TEST(GltfPointers, equal_times_in_arrays_of_their_own_are_counted_once) {
 }
 
 TEST(GltfPointers, keys_of_many_channels_count_against_the_expansion_that_is_allowed) {
-  // Every key of every channel is a row of all weights.
+  // Every key of every channel makes a row of all weights.
   GltfBuilder builder = document();
   std::vector<float> times(40000);
   for (std::size_t k = 0; k < times.size(); ++k) times[k] = static_cast<float>(k);

@@ -1,4 +1,5 @@
-// What the specification forbids is refused, with a JSON pointer to what is wrong. One line a case.
+// Checks that files that the specification forbids are refused, with a JSON pointer to the fault. Each case is one
+// line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +18,9 @@ namespace {
 using test::GltfBuilder, test::GltfFixture;
 using Json = nlohmann::json;
 
-// A document in which everything that is checked occurs. Accessors: 0 positions, 1 indices, 2 and 3 targets, 4 and 5
-// keys, 6 a sparse target in place of 3, 7 normals; views in the order of their making.
+// Makes a document in which everything that is checked occurs. The accessors are 0 positions, 1 indices, 2 and 3
+// targets, 4 and 5 keys, 6 a sparse target in place of 3, 7 normals; the views are in the order in which they were
+// made.
 GltfBuilder rich_document() {
   GltfBuilder builder = test::quad_document();
   builder.add_track<float>(builder.add_animation("a"), 0, {0, 1, 2}, {0, 0, 1, 0, 0, 1});
@@ -38,7 +40,7 @@ struct Case {
   const char* pointer;  // the place begins with it
 };
 
-// The error that reading all of a file meets first; "" where there is none.
+// Returns the first error in reading all of a file, or "".
 std::string first_error(const GltfBuilder& builder) {
   const GltfFixture file(builder.gltf());
   const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);

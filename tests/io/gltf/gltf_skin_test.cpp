@@ -38,7 +38,7 @@ struct Skinned {
     builder.json["skins"][0]["inverseBindMatrices"] =
         builder.add_accessor_over(builder.add_view(test::bytes_of(numbers)), "MAT4", 5126, count);
   }
-  // A channel of node 1 with keys at 0 and 1.
+  // Adds a channel of node 1 with keys at 0 and 1.
   void animate(const char* path, const std::vector<float>& values, const char* type) {
     if (!builder.json.contains("animations")) builder.add_animation("");
     const std::size_t input = builder.add_accessor("SCALAR", std::vector<float>{0, 1});
@@ -50,7 +50,7 @@ struct Skinned {
   }
 };
 
-// Reads everything, as an audit does: the shares of the vertices, or the error.
+// Reads everything, as an audit does, and returns the shares of the vertices, or the error.
 Result<std::vector<JointShare>> read(const GltfFixture& fixture, std::vector<std::size_t>* first = nullptr,
                                      std::optional<std::size_t> animation = std::nullopt) {
   EXPECT_TRUE(fixture.ok()) << fixture.error();
@@ -63,7 +63,7 @@ Result<std::vector<JointShare>> read(const GltfFixture& fixture, std::vector<std
   return shares;
 }
 
-// The shares of every vertex as text: "0 1; 0 0.75, 1 0.25; ...".
+// Returns the shares of every vertex as text: "0 1; 0 0.75, 1 0.25; ...".
 std::string shares_of(const Skinned& skinned) {
   const GltfFixture fixture(skinned.builder);
   std::vector<std::size_t> first;
@@ -88,7 +88,7 @@ std::string error_of(const Skinned& skinned, std::optional<std::size_t> animatio
   return shares ? "" : shares.error().text();
 }
 
-// ---- what may stand in a file
+// ---- possible contents of a file
 
 constexpr const char* kExpected = "0 100; 0 75, 1 25; 0 50, 1 50; 0 25, 1 75";
 
@@ -111,7 +111,7 @@ TEST(GltfSkin, joints_and_weights_may_be_of_every_type_that_the_format_has) {
   strided.weights(
       strided.builder.add_strided("VEC4", std::vector<float>{1, 0, 0, 0, 3, 1, 0, 0, 2, 2, 0, 0, 1, 3, 0, 0}, 20));
   EXPECT_EQ(shares_of(strided), kExpected);  // they need not add up to 1
-  // Nothing but what a sparse accessor puts in.
+  // A sparse accessor may be the only source of values.
   Skinned sparse;
   sparse.weights(sparse.builder.add_accessor_over(std::nullopt, "VEC4", 5126, 4));
   sparse.builder.make_sparse(sparse.builder.json["accessors"].size() - 1, std::vector<std::uint8_t>{0, 1, 2, 3},
@@ -155,7 +155,7 @@ TEST(GltfSkin, a_rotation_that_has_no_length_turns_nothing) {
     EXPECT_EQ(skin.value().pose(time, false)[0](Vec3d{1, 0, 0}), (Vec3d{2, 2, 3}));
 }
 
-// ---- what is wrong with a file: told to those who look through the skin, and to nobody else
+// ---- faults of a file, which are reported only to those who look through the skin
 
 struct Case {
   std::string error;
@@ -223,7 +223,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
     Skinned skinned;
     spoilt.spoil(skinned);
     EXPECT_EQ(error_of(skinned), spoilt.error);
-    // Its shape can be read all the same.
+    // The shape can be read all the same.
     const GltfFixture fixture(skinned.builder);
     ASSERT_TRUE(fixture.ok()) << spoilt.error;
     EXPECT_TRUE(fixture->geometry(0, 0, {true, true}).ok()) << spoilt.error;
@@ -306,13 +306,12 @@ TEST(GltfSkin, channels_that_move_no_joint_or_point_elsewhere_are_passed_over) {
   }
 }
 
-// ---- what KHR_draco_mesh_compression holds
+// ---- skins in KHR_draco_mesh_compression
 
 const std::vector<std::uint8_t> kDracoJoints = {0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0};
 const std::vector<float> kDracoWeights = {1, 0, 0, 0, 0.75F, 0.25F, 0, 0, 0.5F, 0.5F, 0, 0, 0.25F, 0.25F, 0, 0};
 
-// A quad whose places, joints and weights are held by a compressed mesh. The places say which vertex is which in any
-// order.
+// A quad whose places, joints and weights are in a compressed mesh. The places identify the vertices in any order.
 struct Compressed {
   Skinned skinned;
 
@@ -339,7 +338,7 @@ struct Compressed {
   }
 };
 
-// By vertex, what its weights add up to for joint 0 and joint 1, as the file has them: no loop of src/ sees it.
+// Adds up the weights of a vertex for joint 0 and joint 1, as the file has them, without any loop of src/.
 std::pair<double, double> expected_shares(std::size_t vertex) {
   std::pair<double, double> of_joints;
   double sum = 0;
@@ -407,7 +406,7 @@ TEST(GltfSkin, faults_of_a_compressed_mesh_have_their_place) {
   EXPECT_TRUE(error_of(no_mesh).starts_with(extension + ": the compressed mesh is broken: ")) << error_of(no_mesh);
 }
 
-// Sets that are all of one accessor take no bytes of the file, and much memory.
+// Sets that all use one accessor take no bytes of the file, but much memory.
 TEST(GltfSkin, many_sets_are_held_to_the_limit_of_expansion) {
   Skinned skinned;
   constexpr std::size_t kVertices = 4096, kSets = 120;

@@ -1,5 +1,5 @@
-// Bytes that an edit leaves without a use are left out of every buffer that the result holds, and every other array keeps
-// its numbers: a reader of accessors of the test's own compares them.
+// Checks that every buffer of a result omits the bytes that an edit leaves unused, and that every other array keeps its
+// numbers. The test compares them with its own reader of accessors.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct Parts {
   Json json;
   std::string bin;
 
-  // The bytes of the elements of an accessor, and of its sparse arrays, one after the other.
+  // Returns the bytes of the elements of an accessor, and of its sparse arrays, one after the other.
   [[nodiscard]] std::string elements(std::size_t index) const {
     const Json& accessor = json.at("accessors").at(index);
     const std::string type = accessor.at("type");
@@ -62,7 +62,7 @@ struct Parts {
   }
 };
 
-// A mesh without triangles to speak of, whose base normals are its positions.
+// Adds a mesh that needs no triangles, whose base normals are its positions.
 void add_mesh(GltfBuilder& builder, std::size_t base, const std::vector<Json>& targets) {
   Json primitive = GltfBuilder::primitive(base, std::nullopt, targets);
   primitive["attributes"]["NORMAL"] = base;
@@ -112,7 +112,7 @@ TEST(UnusedArrays, nothing_is_left_out_unless_it_is_asked_for) {
   EXPECT_EQ(Parts(bytes_or_error(edit)).bin.size(), 48U);
 }
 
-// What an accessor shares with others stays, and so does what only an unknown extension may know of.
+// Bytes that an accessor shares with others stay, and so do bytes that only an unknown extension may use.
 TEST(UnusedArrays, bytes_that_something_else_needs_stay) {
   const auto sharing = [] {
     GltfBuilder builder;
@@ -150,7 +150,8 @@ TEST(UnusedArrays, bytes_that_something_else_needs_stay) {
   EXPECT_EQ(left_out(skin), 32U) << "of 48 bytes the first 16 are those of a skin";
 }
 
-// A bake packs the sparse arrays of all targets into one view: what is behind an unused one is found by its offsets.
+// A bake packs the sparse arrays of all targets into one view, so arrays behind an unused one are found by their
+// offsets.
 TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_moved) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(kBase);
@@ -175,7 +176,8 @@ TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_mov
   EXPECT_EQ(after.json["accessors"][3]["sparse"]["values"]["byteOffset"], 2 * pair.size() + indices.size() - left_out);
 }
 
-// A file in three buffers: one that only its base needs, one of base and old deltas, and one of nothing but old deltas.
+// Makes a file in three buffers: one that only its base needs, one of base and old deltas, and one of nothing but old
+// deltas.
 GltfBuilder in_three_buffers(const std::vector<std::string>& uris) {
   GltfBuilder builder;
   const std::string one = bytes_of(kBase),
@@ -206,7 +208,7 @@ TEST(UnusedArrays, unused_arrays_are_left_out_of_files_and_data_uris_wherever_th
     std::vector<std::string> uris;
     std::size_t beside, moved;  // bytes left out of a .gltf beside the source, and of one elsewhere
   };
-  // All of the 48 bytes in the middle, and of the last buffer all but four, which its views need.
+  // All 48 bytes in the middle are unused, and all but four of the last buffer, which its views need.
   for (const Case& of : {Case{"files.gltf", {"one.bin", "two.bin", "old.bin"}, 0, 92},
                          Case{"mixed.gltf", {"one.bin", as_data(two), "old.bin"}, 48, 92},
                          Case{"data.gltf", {as_data(one), as_data(two), as_data(one)}, 92, 92}}) {
@@ -243,7 +245,7 @@ TEST(UnusedArrays, unused_arrays_are_left_out_of_files_and_data_uris_wherever_th
   EXPECT_EQ(test::read_whole(folder / "two.bin"), two) << "files beside a source stay as they are";
 }
 
-// Random documents: views of one array and of many, strided ones, sparse arrays, and arrays that share bytes.
+// Random documents have views of one array and of many, strided ones, sparse arrays, and arrays that share bytes.
 TEST(UnusedArrays, all_other_arrays_keep_their_numbers) {
   constexpr unsigned kSeed = 20261123;
   SCOPED_TRACE("seed " + std::to_string(kSeed));

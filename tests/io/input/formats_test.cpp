@@ -1,4 +1,4 @@
-// Walks the readers of meshes in the table of formats: one that has no fixtures here, and no fuzz target, fails.
+// Walks the readers of meshes in the table of formats. Fails for one that has no fixtures here, or no fuzz target.
 #include "io/input/formats.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  // Every file cut off before this byte must be an error; 0 where the format can not tell.
+  // Every file cut off before this byte must be an error; 0 if the format cannot tell.
   std::size_t declared_end = 0;
 };
 
@@ -66,7 +66,7 @@ class Readers : public ::testing::TestWithParam<std::string> {
     return found == fixture_table().end() ? none : found->second;
   }
 
-  // Reads bytes that may be anything, and checks what must hold for every result. Returns whether it was a mesh.
+  // Reads arbitrary bytes, and checks every result. Returns whether it was a mesh.
   bool read_anything(const std::string& bytes) {
     ++case_count_;
     const test::CpuClock clock;
@@ -120,7 +120,7 @@ TEST_P(Readers, truncated_file_is_an_error_or_a_mesh) {
   }
 }
 
-// Where the numbers of a text are: {position, size} of each run of characters of a number.
+// Returns the places of the numbers in a text: {position, size} of each run of characters of a number.
 std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& text) {
   constexpr std::string_view kOfNumbers = "0123456789+-.eE";
   std::vector<std::pair<std::size_t, std::size_t>> numbers;

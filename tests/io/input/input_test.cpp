@@ -164,7 +164,7 @@ TEST_F(OpenInput, nothing_is_overwritten_without_force_or_left_after_an_error) {
   EXPECT_EQ(folder_.entry_count(), entries);
 }
 
-// A pipe gives its bytes once: whoever opened it twice would wait for ever, or find nothing.
+// Writes inputs into pipes. A pipe gives its bytes once: a second reader would wait for ever, or find nothing.
 class Pipes {
  public:
   explicit Pipes(const test::TemporaryFolder& folder) : folder_(folder) {}
@@ -306,7 +306,7 @@ TEST_F(OpenInput, motions_say_what_they_are_and_npz_keeps_it) {
   EXPECT_EQ(read({"quad.glb"}).value().kind, MotionKind::kTargets);
   folder_.write("body2.obj", kShaded);
 
-  // One target is no sequence of two keyframes.
+  // One target is not a sequence of two keyframes.
   const Motion one = test::read_motion(test::targets_over(folder_ / "body.obj", {folder_ / "body2.obj"})).value();
   EXPECT_EQ(one.kind, MotionKind::kTargets);
   ASSERT_TRUE(write_motion(one, folder_ / "one.npz", false).ok());

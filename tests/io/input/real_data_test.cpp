@@ -1,4 +1,4 @@
-// Files by other people; only where the environment variable CHRONORMAL_DATA says where they are.
+// Reads files by other people. Needs the environment variable CHRONORMAL_DATA, which says where they are.
 #include <gtest/gtest.h>
 
 #include <cstdio>

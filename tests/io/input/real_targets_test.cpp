@@ -1,4 +1,5 @@
-// The face of MPFB and its 102 targets by other people; only where the environment variable CHRONORMAL_DATA says where.
+// Reads the face of MPFB and its 102 targets by other people. Needs the environment variable CHRONORMAL_DATA, which
+// says where they are.
 #include <gtest/gtest.h>
 #include <zlib.h>
 

@@ -1,4 +1,4 @@
-// Inputs whose keyframes stay in files give the same results as the same inputs when they are read whole.
+// Checks that inputs whose keyframes stay in files give the same results as the same inputs read whole.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,7 +31,7 @@ using test::TemporaryFolder;
 
 constexpr std::uint32_t kSide = 8;
 
-// A sheet that waves, with a seam: two columns of vertices lie at the same places, and part in the last keyframe.
+// Makes a sheet that waves, with a seam: two columns of vertices lie at the same places, and part in the last keyframe.
 Motion wave(std::size_t keyframes) {
   Motion motion;
   std::vector<std::uint32_t> corners;
@@ -58,7 +58,7 @@ Motion wave(std::size_t keyframes) {
   return motion;
 }
 
-// The same motion in every form that can be read one keyframe at a time.
+// Writes the motion in every form that can be read one keyframe at a time.
 std::vector<std::vector<std::string>> write_all(const TemporaryFolder& folder, const Motion& motion) {
   for (const char* const name : {"walk.npz", "walk.pc2", "walk.mdd", "walk_%02d.ply", "walk_%02d.obj"})
     EXPECT_TRUE(write_motion(motion, folder / name, false).ok()) << name;

@@ -1,4 +1,4 @@
-// Morph targets over a base, through the one door.
+// Tests morph targets over a base, read by open_input().
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -31,7 +31,7 @@ Error error_of(const Result<Motion>& result) {
   return result.error();
 }
 
-// The names of the keyframes, or the error.
+// Returns the names of the keyframes, or the error.
 Names names_of(const Result<Motion>& motion) {
   if (!motion) return {motion.error().text()};
   Names names;
@@ -124,7 +124,7 @@ TEST_F(Targets, base_may_lie_among_its_targets) {
   const Error alone = error_of(read({base_}));
   EXPECT_EQ(alone.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(alone.text(), base_ + ": there is no target besides the base itself");
-  // An OBJ base beside MakeHuman targets is not a folder of two formats.
+  // An OBJ base beside MakeHuman targets does not make a folder of two formats.
   make_folder("mh");
   const std::string base = folder_.write("mh/base.obj", kSquareObj);
   folder_.write("mh/lift.target", kLiftTarget);

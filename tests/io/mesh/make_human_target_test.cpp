@@ -45,7 +45,7 @@ std::string error_text(const std::string& bytes, const std::vector<float>& base 
   return target.error().text();
 }
 
-// What must hold for any bytes at all; returns whether they were read.
+// Checks what must hold for any bytes at all; returns whether they were read.
 bool check(const std::string& bytes, const std::vector<float>& base = kSquare) {
   const test::CpuClock clock;
   const Result<MakeHumanTarget> target = read(bytes, base);
@@ -156,7 +156,7 @@ TEST(MakeHumanTarget, gzip_cut_off_anywhere_is_an_error_with_its_byte) {
     EXPECT_EQ(error_text(bytes.substr(0, size)),
               "a.target, byte " + std::to_string(size) + ": the gzip data end early");
   EXPECT_FALSE(check(bytes.substr(0, 1)));
-  // Inside the second member, too.
+  // The cut may be inside the second member, too.
   for (std::size_t size = 1; size < bytes.size(); ++size)
     EXPECT_FALSE(check(gzip("# first\n") + bytes.substr(0, size)));
 }
@@ -173,7 +173,8 @@ TEST(MakeHumanTarget, damaged_gzip_is_an_error_with_a_byte_or_damaged_where_nobo
         EXPECT_TRUE(error_text(damaged).starts_with("a.target, byte ")) << error_text(damaged);
         continue;
       }
-      // The date and the system in the header, and the bits between the deflated data and the checksum.
+      // Damage is harmless in the date and the system in the header, and in the bits between the deflated data and the
+      // checksum.
       expect_lift(damaged);
       EXPECT_TRUE(at < 10 || at == bytes.size() - 9);
       ++harmless;
@@ -197,7 +198,7 @@ TEST(MakeHumanTarget, gzip_may_unpack_to_a_stated_size_and_not_a_byte_more) {
   expect_lift(padded(most_target_bytes(4) + 1));
   EXPECT_TRUE(error_text(padded(most_target_bytes(4) + 2)).find("unpacks to more than 66560 bytes") !=
               std::string::npos);
-  // Many members of nothing, and members that are large together.
+  // There are many empty members, and then members that are large together.
   std::string members;
   for (int i = 0; i < 1000; ++i) members += gzip("");
   expect_lift(members + gzip(kLiftTarget));

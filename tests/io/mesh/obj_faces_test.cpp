@@ -1,4 +1,5 @@
-// Positions of files that repeat the faces of another file are those of the reader of whole files.
+// Checks that the positions of files that repeat the faces of another file equal the result of the reader of whole
+// files.
 #include "io/mesh/obj_faces.h"
 
 #include <gtest/gtest.h>

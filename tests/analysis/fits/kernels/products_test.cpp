@@ -1,4 +1,4 @@
-// Sums of products, on every instruction set, held bit by bit against three loops.
+// Compares sums of products on every instruction set, bit by bit, with three loops.
 #include "analysis/fits/kernels/products.h"
 
 #include <gtest/gtest.h>

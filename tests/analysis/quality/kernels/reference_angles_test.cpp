@@ -1,5 +1,5 @@
-// Angles and reference normals in lanes have the bits of their scalar forms on every instruction set, and angles are
-// those of long double.
+// Checks that angles and reference normals in lanes have the bits of their scalar forms on every instruction set, and
+// that angles agree with long double.
 #include "analysis/quality/kernels/reference_angles.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What an audit computes in lanes has the bits of core/vec3.h on every instruction set.
+// Checks that the angles that an audit computes in lanes have the bits of core/vec3.h on every instruction set.
 #include "analysis/quality/kernels/shown_angles.h"
 
 #include <gtest/gtest.h>

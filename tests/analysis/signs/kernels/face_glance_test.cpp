@@ -1,4 +1,5 @@
-// Compares what a glance says of faces with long double, and with the search for collapses, on every instruction set.
+// Compares what a glance finds about faces with long double, and with the search for collapses, on every instruction
+// set.
 
 #include "analysis/signs/kernels/face_glance.h"
 
@@ -51,7 +52,7 @@ long double angle_of(const Vec3d& a, const Vec3d& b) {
   return std::atan2(std::sqrt(x * x + y * y + z * z), along);
 }
 
-// Checks all that is said of the faces that are not unusual. Returns how many these are.
+// Checks every claim about the faces that are not unusual. Returns the number of these faces.
 std::size_t check_usual(const Segment& segment, const GlanceLimits& limits, const char* name) {
   std::size_t usual = 0;
   const std::vector<EdgedTile> tiles = tiles_of(segment);
