@@ -1,8 +1,8 @@
 /// The oracle that every benchmark is compared with before it is timed: eq. 1 on interpolated vertices, in double.
 ///
-/// Nothing here calls the library: not its vectors, nor its control normals. Edges of float32 positions are exact in
-/// double but for a last bit, so that directions are right to 1e-15 times the length of the edges over the height of
-/// the triangle.
+/// The oracle never calls the library: neither its vectors, nor its control normals. Edges of float32 positions are
+/// exact in double but for a last bit, so that directions are right to 1e-15 times the length of the edges over the
+/// height of the triangle.
 #ifndef BENCH_MEASURE_ORACLE_H_
 #define BENCH_MEASURE_ORACLE_H_
 
@@ -21,7 +21,7 @@ namespace chronormal::bench {
 
 using Vector = std::array<double, 3>;
 
-/// How the faces of a vertex are added up: weighted by area, or all equally.
+/// The rule by which the faces of a vertex are added up: weighted by area, or all equally.
 enum class Rule { kArea, kUniform };
 
 /// Returns the angle between two vectors in radians, or pi if one of them is zero or NaN.

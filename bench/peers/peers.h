@@ -48,7 +48,7 @@ class LibraryMesh {
   virtual ~LibraryMesh() = default;
 };
 
-/// How a library adds up the faces of a vertex.
+/// The rule by which a library adds up the faces of a vertex.
 enum class Rule { kArea, kUniform, kOther };
 
 /// One function of a library. compute and normal take meshes of their own library only.

@@ -240,7 +240,7 @@ TEST(Layers, public_headers_include_only_public_headers) {
 }
 
 // Only the library chronormal uses Highway: chronormal_io and the program are built without its headers, in wasm too.
-// The library includes it through one header, without which it does not need Highway.
+// Only src/simd/ includes its headers.
 TEST(Layers, kernels_stand_in_the_library_that_has_highway) {
   std::size_t kernels = 0;
   for (const fs::path& file : product_files()) {

@@ -467,7 +467,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
     const ProcessResult result = run_shell(std::string(kProgram) + " bake " + arguments, folder_.path(), "");
     ASSERT_EQ(result.exit_code, 0) << result.err;
   };
-  // Nothing drives the target of a still file, so one delta is all it can have, before and after.
+  // A still file has nothing that drives its target, so one delta is all it can have, before and after.
   test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
   sheet.targets[0].normals.clear();
   test::GltfBuilder builder = sheet.file();

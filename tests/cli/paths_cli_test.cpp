@@ -119,7 +119,7 @@ TEST_F(Paths, all_warn_of_velocities_that_are_not_those_of_the_motion) {
           << command << factor << result.err;
     }
   }
-  // These are the velocities of a motion at 24 frames a second, while frames count as seconds.
+  // The velocities belong to a motion at 24 frames a second, while frames count as seconds.
   write_turn_with_velocities(0.3, 24);
   EXPECT_NE(run("compare 'v*.ply' --path hermite").err.find("vertices would go 24.1 times"), std::string::npos);
   EXPECT_EQ(run("compare 'v*.ply' --fps 24 --path hermite").err.find("vertices would go"), std::string::npos);

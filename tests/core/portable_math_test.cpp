@@ -83,8 +83,7 @@ TEST(PortableMath, special_arguments_give_what_the_standard_library_gives) {
   EXPECT_EQ(portable::atan(-kInfinity), -std::numbers::pi / 2);
 }
 
-// Checks the same bits on every machine and from every compiler: js/test compares the wasm module with the same
-// constant.
+// Checks for the same bits on every machine and from every compiler.
 TEST(PortableMath, the_bits_are_these) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> among(-20, 20);

@@ -186,7 +186,7 @@ Tally judged(const Motion& motion, const std::vector<double>& times) {
   return tally;
 }
 
-// These small meshes were once rendered with errors of up to half a turn.
+// Normals of these small meshes once had errors of up to half a turn.
 TEST(ExactDirections, are_right_where_an_attack_found_them_wrong) {
   struct Found {
     const char* name;

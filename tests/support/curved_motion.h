@@ -60,7 +60,7 @@ namespace chronormal::test {
     const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, keys.size()), first = k == 0   ? 0
                                                                                          : is_end ? keys.size() - used
                                                                                                   : k - 1;
-    // These are Newton's divided differences, differentiated at the time of k.
+    // Newton's divided differences are differentiated at the time of k.
     std::vector<long double> x, f;
     for (std::size_t i = 0; i < used; ++i) {
       x.push_back(keys[first + i].time);

@@ -274,8 +274,7 @@ template <std::size_t N>
                                    1 + 2 * r[2][2] - trace};
   const auto largest = static_cast<std::size_t>(
       std::distance(four_squares.begin(), std::max_element(four_squares.begin(), four_squares.end())));
-  // These are products of two components, four times each: w x, w y, w z from the odd part, the others from the even
-  // part.
+  // Products of two components follow, four times each: w x, w y, w z from the odd part, the others from the even part.
   const Real wx = r[2][1] - r[1][2], wy = r[0][2] - r[2][0], wz = r[1][0] - r[0][1];
   const Real xy = r[0][1] + r[1][0], xz = r[0][2] + r[2][0], yz = r[1][2] + r[2][1];
   Quaternion q{};

@@ -130,8 +130,8 @@ struct Skin {
   }
 };
 
-/// How viewers carry a normal: through the blended matrix, through its inverse transpose, or through the cofactors of
-/// each joint.
+/// The ways in which viewers carry a normal: through the blended matrix, through its inverse transpose, or through the
+/// cofactors of each joint.
 enum class Carry { kBlended, kInverseTranspose, kByJoint };
 
 [[nodiscard]] inline Vector by_cofactors(const Rows& matrix, const Vector& n) {

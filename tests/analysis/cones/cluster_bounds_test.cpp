@@ -48,7 +48,7 @@ meshopt_Bounds as_meshopt(const ClusterBounds& bounds) {
   return result;
 }
 
-// These are the tests of meshoptimizer.h, in float32. Only squares are summed in double: squares of lengths below 1e-19
+// The tests repeat meshoptimizer.h, in float32. Only squares are summed in double: squares of lengths below 1e-19
 // underflow float32, which spoils any test that divides by a length, or adds one, whatever the bounds are.
 Vec3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 float length_of(const Vec3f& v) { return static_cast<float>(std::sqrt(dot(to_double(v), to_double(v)))); }

@@ -160,7 +160,7 @@ TEST(ExactCones, of_control_normals_contain_every_exact_normal_of_the_interval) 
   EXPECT_EQ(outside_of(cones_of, false), 0u);
 }
 
-// The same judge finds the errors of a shortcut.
+// The judge also finds the errors of a shortcut.
 TEST(ExactCones, of_the_two_ends_alone_do_not) { EXPECT_GT(outside_of(cones_of_ends, false), 1000u); }
 
 TEST(Cones, have_the_same_bits_on_every_instruction_set_and_in_any_number) {
@@ -238,7 +238,7 @@ TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   }
 }
 
-// These are two edges and a corner of a cube, with the smallest cones around them.
+// The directions are two edges and a corner of a cube, with the smallest cones around them.
 TEST(Cones, are_the_smallest_around_three_directions) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   const std::vector<ControlNormals> normals{{x, 3 * y, z}, {x, x + y, y}, {1e-140 * x, 1e140 * y, z}};

@@ -66,7 +66,7 @@ TEST(DeltaFit, what_no_row_tells_stays_as_it_was) {
   EXPECT_LT(largest_difference(fit.deltas(), wanted, 0), 1e-5);
   EXPECT_EQ(fit.deltas().deltas[1].deltas, start.deltas[1].deltas);
   EXPECT_EQ(fit.deltas().deltas[2].deltas, start.deltas[2].deltas);
-  // These rows leave nothing for the next solve().
+  // The solved rows leave nothing for the next solve().
   fit.solve();
   EXPECT_LT(largest_difference(fit.deltas(), wanted, 0), 1e-5);
 }

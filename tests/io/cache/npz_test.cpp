@@ -188,7 +188,7 @@ TEST(ReadNpz, damaged_array_headers_are_errors) {
             std::string::npos);
   EXPECT_NE(error_with("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (2, 3, 3)}").find("are records"),
             std::string::npos);
-  // These products overflow, the first one to exactly the number of bytes in the file.
+  // The products overflow, the first one to exactly the number of bytes in the file.
   for (const char* const shape :
        {"(4611686018427387906, 3, 3)", "(6148914691236517206, 3, 3)", "(4611686018427387904, 1, 1)",
         "(4294967296, 4294967296, 3)", "(2, 3, 4)", "(2, 3, 2)", "(18446744073709551615, 3, 3)"})

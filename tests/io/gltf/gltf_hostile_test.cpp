@@ -309,7 +309,7 @@ const std::set<std::string_view> kOnlyWarned = {"unknown_type.gltf"};
 // the end of its pointer decides.
 bool is_about_what_is_read(const std::string& code, const std::string& pointer) {
   if (kRead.contains(code)) {
-    // These lists are not read at all.
+    // Items of these lists are not read at all.
     for (const char* const list : {"/materials", "/textures", "/images", "/samplers", "/skins", "/cameras", "/scenes"})
       if (pointer.starts_with(list)) return false;
     return !pointer.ends_with("/material");

@@ -106,7 +106,7 @@ TEST(ReadObj, numbers_of_any_length_are_those_of_strtof) {
     std::string number = random() % 2 == 0 ? "-" : "";
     number += digits(random() % 12) + "." + digits(1 + random() % 12);
     if (random() % 3 == 0) number += (random() % 2 == 0 ? "e-" : "e") + std::to_string(random() % 20);
-    // These numbers are the middle between two floats, or slightly beside it.
+    // Some numbers are the middle between two floats, or slightly beside it.
     if (i % 5 == 0) {
       const auto odd = static_cast<double>((random() % (1U << 24U)) * 2 + 1);
       number = std::to_string(static_cast<long long>(odd)) + (i % 10 == 0 ? "" : ".00000000001");

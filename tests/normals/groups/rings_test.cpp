@@ -87,7 +87,7 @@ TEST(Rings, with_too_many_points_are_left_out) {
 }
 
 TEST(Rings, of_few_triangles_are_those_of_any_polygons) {
-  // The same faces stand beside a square far away, which makes it a mesh of polygons.
+  // A square far away makes this a mesh of polygons with the same faces.
   fixtures::Random random(17);
   for (int i = 0; i < 200; ++i) {
     std::vector<std::uint32_t> corners;

@@ -180,7 +180,7 @@ TEST(FloatRecompute, corners_across_creases_and_seams_are_as_right) {
   ASSERT_EQ(welded.size(), smooth.topology.vertex_count());
   check_groups(torn, welded, "seams");
 
-  // These points consist of vertices at different places.
+  // Each of these points consists of vertices at different places.
   const Motion tangled = tangle(60, 200);
   Points points{std::vector<std::uint32_t>(60), 20};
   for (std::uint32_t v = 0; v < 60; ++v) points.point_of_vertex[v] = v / 3;

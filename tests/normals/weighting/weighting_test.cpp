@@ -76,7 +76,7 @@ TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
 }
 
 TEST(Weighting, max_is_exact_on_a_sphere) {
-  // By Max's theorem, this holds for any fan of triangles around a point of a sphere, however irregular.
+  // Max's theorem holds for any fan of triangles around a point of a sphere, however irregular.
   fixtures::Random random(5);
   for (int round = 0; round < 100; ++round) {
     std::vector<Point> points = {{0, 0, 1}};

@@ -524,7 +524,7 @@ TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_
     for (std::size_t v = 0; v < mesh.vertices(); ++v) mesh.normals.insert(mesh.normals.end(), {0.6F, 0, 0.8F});
     mesh.targets.push_back({hinges.floats(true), {}, {}});
     const Audit of_file = audit_of(mesh.file(), {.samples = 3, .viewers = {kViewers[0]}});
-    // The same mesh as a sequence is measured in blocks if it has no normals, and output by output with a slerp.
+    // As a sequence, the mesh is measured in blocks if it has no normals, and output by output with a slerp.
     std::vector<float> moved = mesh.positions;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += mesh.targets[0].positions[i];
     Motion motion;

@@ -304,7 +304,8 @@ TEST(Compare, every_weighting_agrees_with_the_oracle) {
         for (std::size_t i = 0; i < kSamples; ++i) {
           const Real t = static_cast<Real>(i) / (kSamples - 1);
           const auto exact = reference::exact_unit_normal(element, t);
-          // By definition polynomial is the quadratic through three normals, whose lengths only the library knows.
+          // The scheme polynomial is defined as the quadratic through three normals, whose lengths only the library
+          // knows.
           const auto found = scheme == "polynomial" ? exact : reference::unit_normal(scheme, element, t);
           sum += reference::angle(exact.value(), found.value());
         }

@@ -233,7 +233,7 @@ TEST(Report, numbers_of_a_baked_file_follow_from_its_extra_targets) {
   how.encoding = BakeEncoding::kExact;
   const test::Baked baked = test::bake_bytes(sheet_file(13, 0.2).glb(), how);
   ASSERT_TRUE(baked.ok()) << baked.error;
-  // By the weighting that it was baked for, no error is left.
+  // The weighting that it was baked for leaves no error.
   ReportOptions by_angle = without_plan();
   by_angle.weighting = Weighting::kAngle;
   const Result<Report> found = report_of_glb(baked.bytes, by_angle);
