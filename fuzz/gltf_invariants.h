@@ -22,9 +22,9 @@ namespace chronormal::fuzz {
 class GltfReading {
  public:
   std::vector<Error> errors;    ///< in the order in which they came
-  std::size_t motions = 0;      ///< that could be read: of the targets, of each animation
-  bool has_mesh = false;        ///< whether read_gltf_mesh() had a result
-  std::vector<Error> no_moves;  ///< where all was right, but nothing moves, or there is no face
+  std::size_t motions = 0;      ///< motions read: of the targets, of each animation
+  bool has_mesh = false;        ///< read_gltf_mesh() had a result
+  std::vector<Error> no_moves;  ///< valid files without motion or faces
   std::string broken;           ///< the first invariant that does not hold; empty if all do
 
   void require(bool condition, const char* what) {

@@ -148,7 +148,7 @@ Json measure_input(const std::string& program, const std::string& title, const s
   InputOptions input;
   input.files = files;
   const auto open = [&input] { return open_input(input) ? 0 : 1; };
-  time_child("reading", open);  // so that the files are in the memory of the system
+  time_child("reading", open);  // brings the files into the memory of the system
   const Times cat = time_child("cat", [&] {
     std::vector<char> buffer(1 << 17);
     for (const std::string& file : files) {
@@ -235,7 +235,7 @@ Json measure_obj(const std::string& file) {
                        Assimp::Importer importer;
                        const aiScene* const scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, "obj");
                        if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
-                       std::vector<float> positions;  // of corners, since the library has no others
+                       std::vector<float> positions;  // one for each corner, as the library stores them
                        for (unsigned m = 0; m < scene->mNumMeshes; ++m)
                          positions.resize(positions.size() + 3 * std::size_t{scene->mMeshes[m]->mNumVertices});
                        return positions;

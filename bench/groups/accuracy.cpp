@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kSamples = 20, kQuickSamples = 3;  // steps of t
 constexpr std::size_t kGridFaces = 20000;
-constexpr float kFar = 1000;  // how far from the origin, in radii of the ring
+constexpr float kFar = 1000;  // distance from the origin, in radii of the ring
 
 // The bounds of normals/normal_curves.h.
 constexpr double kOctahedralBound = 7e-5, kRgb10A2Bound = 1.7e-3;

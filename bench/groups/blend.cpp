@@ -19,8 +19,8 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kTargets = 100, kDenseTargets = 5;
-constexpr double kMoved = 0.025;       // of the vertices, by each target: as the 102 of a face of 19,158 vertices
-constexpr double kDisplacement = 0.1;  // of the radius of the ring
+constexpr double kMoved = 0.025;       // share of vertices per target, as in a face with 102 targets
+constexpr double kDisplacement = 0.1;  // relative to the radius of the ring
 constexpr double kExactError = 1e-6, kFloatError = 1e-3;
 // The linear sum is wrong by its nature, so this limit reveals gross mistakes only.
 constexpr double kLinearError = 3.2;

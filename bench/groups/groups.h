@@ -46,9 +46,9 @@ struct SchemeQuality {
 /// The error of a path over all elements and many t.
 struct Accuracy {
   std::string path, mesh, elements;
-  double bound = 0;  ///< what is promised, radians
+  double bound = 0;  ///< promised, radians
   double mean = 0, share_9999 = 0, max = 0;
-  std::size_t samples = 0;  ///< (element, t) pairs
+  std::size_t samples = 0;  ///< each an element at a t
   double bytes = 0;         ///< an element; 0: none are kept
 };
 /// Throws std::runtime_error where a path breaks its promise.

@@ -60,7 +60,7 @@ std::vector<Vector> along_great_circle(const Oracle& oracle, double t) {
 }
 
 struct Expectation {
-  std::function<std::vector<Vector>(const Oracle&)> expected;  // nothing: the exact normals
+  std::function<std::vector<Vector>(const Oracle&)> expected;  // empty: the exact normals
   double limit = kApproximationError;
   std::string note;
 };

@@ -25,7 +25,7 @@ struct Question {
   Segment segment;
   std::vector<ControlNormals> normals;
   std::vector<ShutterSide> sides;
-  std::vector<Facing> facings;  // of a part of the faces at a time
+  std::vector<Facing> facings;  // for a part of the faces at a time
 
   explicit Question(const Segment& of)
       : segment(of), normals(of.topology->face_count()), sides(of.topology->face_count()), facings(1024) {

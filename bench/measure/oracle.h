@@ -58,8 +58,8 @@ class Oracle {
   Segment segment_;
   Elements kind_;
   std::vector<std::uint32_t> elements_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> terms_;  // of sums: which of elements_, face
-  std::vector<double> areas_;                                   // that each is made of, at both ends
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> terms_;  // terms of sums: index into elements_, and face
+  std::vector<double> areas_;                                   // sum of the areas of each, at both ends
 };
 
 }  // namespace chronormal::bench

@@ -18,7 +18,7 @@
 namespace chronormal::bench {
 
 struct Size {
-  std::string name;  ///< as on the command line: 15k, 1M
+  std::string name;  ///< written as on the command line: 15k, 1M
   std::size_t elements = 0;
   bool shuffled = false;
 
@@ -36,9 +36,9 @@ struct Check {
 struct Case {
   std::string name;
   std::string library = {};  ///< with its version; empty: ours
-  std::string note = {};     ///< what is timed or held against what, where it is not plain
+  std::string note = {};     ///< explains what is timed, or compared, if needed
   std::size_t threads = 1;
-  std::size_t evaluations = 1;  ///< of each element in a run
+  std::size_t evaluations = 1;  ///< evaluations of each element in a run
   std::function<void()> run = {};
   std::vector<Check> checks = {};
   double limit = 0;  ///< radians
@@ -53,7 +53,7 @@ struct Row {
   double median_ns = 0, least_ns = 0, spread = 0;  ///< per element and evaluation; spread: quartiles / median
   std::size_t repetitions = 0;
   double bytes_read = 0, bytes_written = 0;  ///< per element and evaluation
-  double share_of_bandwidth = 0;             ///< what the memory would take / least_ns; 0: not known
+  double share_of_bandwidth = 0;             ///< time of the memory / least_ns; 0: unknown
   double verified_error = 0, limit = 0;      ///< radians
   std::size_t verified_elements = 0;
 };

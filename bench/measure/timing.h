@@ -22,8 +22,8 @@ inline constexpr Effort kQuickEffort{0.001, 0.01, 5, 3};
 
 struct Timed {
   std::function<void()> run;
-  double seconds = 0;                    ///< of a call that was seen; 0: none was
-  std::vector<double> nanoseconds = {};  ///< of a call, one value for each repetition
+  double seconds = 0;                    ///< of an observed call; 0 if there was none
+  std::vector<double> nanoseconds = {};  ///< per call, one value for each repetition
 };
 
 /// Estimates the seconds of a call from a few calls.

@@ -41,7 +41,7 @@ class BandwidthMeter {
 
  private:
   AlignedBytes arena_;
-  std::map<std::size_t, Bandwidth> measured_;  // by rounded working set; without a value: wanted
+  std::map<std::size_t, Bandwidth> measured_;  // keyed by rounded working set; no value: requested
 };
 
 }  // namespace chronormal::bench

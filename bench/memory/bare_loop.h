@@ -23,7 +23,7 @@ class BareLoop {
 
  private:
   Reads reads_;
-  std::size_t blocks_;  // of 16 elements
+  std::size_t blocks_;  // each of 16 elements
   Threads threads_;
   int way_ = 0;
   AlignedArray<float> from_;

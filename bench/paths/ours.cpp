@@ -89,7 +89,7 @@ Case prepare_case(const SharedPointer& shared, double tolerance, Threads threads
   auto made = std::make_shared<NormalCurves>();
   Case one;
   one.run = [shared, made, tolerance, threads] {
-    *made = shared->prepared(tolerance, threads, made.get());  // as a program does that goes through many segments
+    *made = shared->prepared(tolerance, threads, made.get());  // reuses memory, as over many segments
   };
   auto evaluated = std::make_shared<std::vector<float>>();
   const auto normal_of = [shared, made, evaluated](std::size_t element) {

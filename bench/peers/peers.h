@@ -54,12 +54,12 @@ enum class Rule { kArea, kUniform, kOther };
 /// One function of a library. compute and normal take meshes of their own library only.
 struct Call {
   std::string name;
-  bool of_vertices = false;  ///< else of faces
+  bool of_vertices = false;  ///< false: it computes normals of faces
   Rule rule = Rule::kArea;
-  std::string note = {};              ///< what it is given, where it is not positions alone
+  std::string note = {};              ///< the input, if it is not only positions
   bool slow_in_random_order = false;  ///< minutes for 10 M elements
   void (*compute)(LibraryMesh&) = nullptr;
-  Vec3d (*normal)(const LibraryMesh&, std::size_t element) = nullptr;  ///< of the last compute(), length 1
+  Vec3d (*normal)(const LibraryMesh&, std::size_t element) = nullptr;  ///< returns a unit normal of the last compute()
 };
 
 struct Library {

@@ -349,7 +349,7 @@ TEST_F(AuditCli, gate_judges_small_normals_whose_direction_is_certain) {
   };
   folder_.write("big.obj", big);
   folder_.write("small.obj", small(".009", "0"));
-  folder_.write("far.obj", small(".009", "100000"));  // of which float32 keeps no more than a point or a line
+  folder_.write("far.obj", small(".009", "100000"));  // float32 keeps only a point or a line
   for (const std::string rule : {"--rule step", "--rule slerp --samples 2", "--rule nlerp --samples 2"}) {
     const std::string arguments = "big.obj small.obj " + rule;
     const Json json = json_of(arguments);

@@ -296,7 +296,7 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
       EXPECT_EQ(test::read_whole(folder_ / inputs[i]), before[i]) << arguments;
   }
   EXPECT_EQ(run("bake moving.glb -o ./moving.glb --force -q").exit_code, 0);         // it has all that was there
-  EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);  // by its extension alone
+  EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);  // refused for its extension
   EXPECT_EQ(run("audit a.obj b.obj --errors sub/new.npz -o new.npz").exit_code, 0);
 }
 

@@ -48,7 +48,7 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   EXPECT_EQ(merged.exit_code, 4);
   EXPECT_NE(merged.err.find("the tolerance that the parts were made with is exceeded"), std::string::npos);
   ASSERT_EQ(run(sample + "-o one.npy").exit_code, 0);
-  std::filesystem::rename(folder_ / "sample2.npy", folder_ / "sample2.part");  // what it is, its bytes say
+  std::filesystem::rename(folder_ / "sample2.npy", folder_ / "sample2.part");  // the bytes tell the format
   ASSERT_EQ(run("merge sample3.npy sample1.npy sample2.part -o merged.npy").exit_code, 0);
   EXPECT_TRUE(file("merged.npy") == file("one.npy"));
   ASSERT_EQ(run(sample + "-o one_%02d.ply").exit_code, 0);

@@ -210,7 +210,7 @@ TEST(ParallelFor, in_a_child_of_fork_has_one_thread_and_does_all_pieces) {
   const ThreadLimit limit(4);
   std::atomic<bool> is_over = false;
   parallel_for(4, [](std::size_t) {});
-  std::thread busy([&] {  // whose loops go on while the others fork
+  std::thread busy([&] {  // its loops go on while the others fork
     const ThreadLimit others(3);
     while (!is_over) parallel_for(8, [](std::size_t) {});
   });

@@ -83,7 +83,7 @@ TEST(PortableMath, special_arguments_give_what_the_standard_library_gives) {
   EXPECT_EQ(portable::atan(-kInfinity), -std::numbers::pi / 2);
 }
 
-// Checks for the same bits on every machine and from every compiler.
+// Checks for the same bits on every machine and from every compiler; wasm_bits runs this in the wasm module, too.
 TEST(PortableMath, the_bits_are_these) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> among(-20, 20);

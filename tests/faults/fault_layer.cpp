@@ -12,8 +12,8 @@
 //                                          "start" how many times memory was requested before the first other call
 //
 // Calls count from main() on, since earlier calls belong to the libraries. close() closes before it fails, as Linux
-// does, and unlink() removes. fsync() only counts, since no power will be cut. Nothing here allocates, and everything
-// goes to the kernel directly.
+// does, and unlink() removes. fsync() only counts, since no power will be cut. The layer never allocates, and calls the
+// kernel directly.
 
 #include <dlfcn.h>
 #include <fcntl.h>

@@ -37,16 +37,16 @@ namespace chronormal::faults_test {
 namespace {
 
 namespace fs = std::filesystem;
-using Files = std::map<std::string, std::string>;  // by name: bytes
+using Files = std::map<std::string, std::string>;  // bytes by name
 
 constexpr const char* kOld = "what was there before\n";
 constexpr std::size_t kStepInTable = 20, kMostPlaces = 3000;  // see above
 
 struct Command {
-  std::string name;                    // of the test
+  std::string name;                    // names the test
   std::string arguments;               // without blanks in any
-  std::vector<std::string> old = {};   // outputs that are there before, and are replaced
-  std::vector<std::string> kept = {};  // what a run that fails may leave, so that the next one goes on
+  std::vector<std::string> old = {};   // outputs that exist before, and are replaced
+  std::vector<std::string> kept = {};  // files that a failed run may leave for the next one
 
   friend void PrintTo(const Command& command, std::ostream* out) { *out << command.arguments; }
 };
@@ -274,7 +274,7 @@ TEST_P(Faults, calls_that_fail_end_in_exit_1_and_no_trace) {
     for (const char* const kind : {"open", "stat"}) check_each(kind, code(error), 3);
   check_each("read", code(EIO), 2);
   check_each("mmap", code(ENOMEM), 2);
-  check_each("lock", code(ENOLCK), 1, true);  // where the file system has no locks
+  check_each("lock", code(ENOLCK), 1, true);  // some file systems have no locks
   check_each("lock", code(EWOULDBLOCK), 1);
 }
 
@@ -289,7 +289,7 @@ TEST_P(Faults, every_output_and_its_folder_are_flushed) {
   EXPECT_EQ(file.exit_code, 1) << file.err;
   check(folder, "the folder");
   EXPECT_EQ(folder.exit_code, expected_.exit_code) << folder.err;
-  for (const int error : {EINVAL, EROFS}) {  // of pipes, and what has no such call
+  for (const int error : {EINVAL, EROFS}) {  // pipes, and file systems without this call
     const Outcome none = run("fsync:1:" + code(error), {});
     EXPECT_EQ(none.exit_code, expected_.exit_code) << none.err;
   }

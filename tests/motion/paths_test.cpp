@@ -130,7 +130,7 @@ TEST(Pieces, have_the_normals_of_the_curve_within_the_tolerance) {
       EXPECT_EQ(cut.cut.beyond, 0U);
       EXPECT_GT(cut.cut.pieces, before) << "a smaller tolerance takes more";
       before = cut.cut.pieces;
-      const double rounding = 2e-4;  // of positions, with edges of 0.1
+      const double rounding = 2e-4;  // effect of rounding positions, with edges of 0.1
       const double of_faces = largest_error(motion, cut.motion, false, given);
       EXPECT_LE(of_faces, tolerance + rounding);
       EXPECT_GT(of_faces, tolerance / 40) << "not many more pieces than it takes";

@@ -56,7 +56,7 @@ struct NamedWay {
 struct Elements {
   chronormal_elements kind;
   const NormalGroups* groups;  // nullptr for faces
-  double crease_angle;         // of corners
+  double crease_angle;         // for corners
 };
 
 // Ways that must agree with each other to the last bit, and with the truth to this angle.
@@ -196,7 +196,7 @@ MeshNormals mesh_normals(const Motion& motion, const Elements& elements, double 
 // Adds the ways of the C interface, to the curves of C++ if both have the same elements, one for one.
 void add_ways_of_outputs(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
                          std::vector<Kin>& all) {
-  Kin own{std::numeric_limits<double>::infinity(), {}};  // that of corners has a normal for each of them
+  Kin own{std::numeric_limits<double>::infinity(), {}};  // the C interface has a normal for each corner
   Kin& kin = elements.kind == CHRONORMAL_CORNERS ? own : curves;
   for (const bool in_slices : {false, true})
     kin.ways.push_back({"the normals of a mesh", [=, &motion] {

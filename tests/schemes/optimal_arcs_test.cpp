@@ -88,7 +88,7 @@ TEST(OptimalArcs, leave_what_is_not_mild_to_others) {
       {x, x, -x},                      // opposite ends
       {x, x + y, y},                   // more than a radian
       {x, -0.98 * x, x + 0.1 * y},     // a fast turn on the way
-      {{}, x, y},                      // nothing at the start
+      {{}, x, y},                      // zero at the start
       {x, 0.5 * x + z, x + 1e-3 * y},  // far out and back
   };
   std::vector<double> phis(normals.size());

@@ -123,7 +123,7 @@ TEST(Playback, one_anchor_per_step_is_random_access) {
 TEST(Playback, is_anchored_at_every_nth_step_and_at_no_other) {
   // Its bits must equal a playback without anchors that began at the last anchor.
   constexpr std::size_t kInterval = 8;
-  constexpr double kStep = 0x1p-6;  // so that all times are exact
+  constexpr double kStep = 0x1p-6;  // makes all times exact
   const Prepared twist("twist");
   for (const char* name : {"circle", "polynomial"}) {
     const auto scheme = make_scheme(name).value();
@@ -166,7 +166,7 @@ TEST(Playback, mixed_degrees_and_degenerate_elements_are_played_too) {
   add({{0, 0, 2}, {0, 0, 2}, {0, 0, 2}}, 11);      // constant
   add({{0, 0, 2}, {0, 0.5, 1.5}, {0, 1, 1}}, 13);  // linear
   add({{0, 0, 1}, {0.5, 0, 1}, {1, 0, 0.2}}, 9);   // quadratic
-  add({}, 2);                                      // nothing
+  add({}, 2);                                      // zero
   add({{0, 0, 1}, {0, 0, 0}, {0, 0, -1}}, 1);      // through zero at 1/2
   add({{0, 0, 1e300}, {0, 1e299, 1e300}, {0, 1e300, 1e300}}, 1);
   const Segment segment;

@@ -157,7 +157,7 @@ class AuthoredMesh {
   std::size_t n_;
   double flat_;
   std::vector<Polygon> polygons_;
-  std::vector<std::vector<Vector>> keys_, normals_;  // of points: the base, and each target at weight 1
+  std::vector<std::vector<Vector>> keys_, normals_;  // at points: the base, and each target at weight 1
   ShadedMesh mesh_;
 };
 

@@ -20,7 +20,7 @@ namespace chronormal::test {
 /// A document, the bake of it, and viewers of both.
 struct Baked {
   std::unique_ptr<GltfFixture> source;
-  std::string bytes;  ///< of the result; empty where there is none
+  std::string bytes;  ///< the result; empty if there is none
   std::string error;
   GltfBake report;
   std::unique_ptr<GltfPlayer> before, after;

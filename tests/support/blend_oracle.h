@@ -23,10 +23,10 @@ namespace chronormal::test {
 struct BlendShapeOptions {
   std::size_t cells = 6;  ///< a bumpy sheet of cells x cells quads, of which some are cut into triangles
   std::size_t targets = 5;
-  double reach = 0.35;  ///< of each target, around a random point, in edges of the sheet; the sheet is 2 wide
-  double size = 0.3;    ///< of deltas
-  double scale = 1;     ///< of everything
-  double offset = 0;    ///< of the base, before it is scaled
+  double reach = 0.35;  ///< radius of each target around a random point, in edges of the sheet, which is 2 wide
+  double size = 0.3;    ///< size of the deltas
+  double scale = 1;     ///< scale of everything
+  double offset = 0;    ///< offset of the base, before scaling
 };
 
 /// Makes a sheet whose targets each move the vertices around a point; some move none at all.

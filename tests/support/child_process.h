@@ -10,9 +10,9 @@
 namespace chronormal::test {
 
 struct ChildRun {
-  bool finished = false;        ///< false where it crashed, was killed, or threw
-  std::string text;             ///< what the work returned, or why it did not finish
-  double seconds = 0;           ///< of processors
+  bool finished = false;        ///< false if it crashed, was killed, or threw
+  std::string text;             ///< result of the work, or why it did not finish
+  double seconds = 0;           ///< processor time
   std::size_t peak_growth = 0;  ///< bytes of resident memory at the peak, above those at the start
 };
 

@@ -43,11 +43,11 @@ namespace chronormal::test {
 /// Collects the findings of some elements; `fault` describes the last fault, or is "".
 struct FloatTileFaults {
   std::size_t elements = 0;
-  std::size_t bending = 0;           ///< elements whose degree is said to be 2
-  std::size_t straight = 0;          ///< those whose degree is said to be less
-  double largest_share = 0;          ///< of an error in its bound
-  double largest_share_of_line = 0;  ///< the same of the lines that stand for curves
-  double largest_bound = 0;          ///< as a share of the absolute products
+  std::size_t bending = 0;           ///< elements with a stated degree of 2
+  std::size_t straight = 0;          ///< elements with a lower stated degree
+  double largest_share = 0;          ///< largest error divided by its bound
+  double largest_share_of_line = 0;  ///< likewise for lines that stand for curves
+  double largest_bound = 0;          ///< relative to the absolute products
   std::string fault;
 
   /// Checks one element. `right` are its control normals, `products` is at least the sum of the absolute products in

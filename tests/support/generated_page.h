@@ -18,8 +18,8 @@ inline const std::filesystem::path kDocs = std::filesystem::path(kSourceFolder) 
 /// A page without the text in the blocks of one name, <!-- NAME --> to <!-- end of NAME -->.
 struct WithoutBlocks {
   std::string page;
-  std::size_t count = 0;  ///< of blocks
-  std::string inside;     ///< what stood in the last of them
+  std::size_t count = 0;  ///< number of blocks
+  std::string inside;     ///< text of the last block
 };
 
 [[nodiscard]] inline WithoutBlocks without_blocks(std::string page, const std::string& name) {

@@ -15,7 +15,7 @@
 namespace chronormal::test {
 
 struct GlbParts {
-  std::string json, bin, rest;  ///< of the chunks; rest: further ones, with their headers
+  std::string json, bin, rest;  ///< contents of chunks; rest: further chunks with their headers
 };
 
 [[nodiscard]] inline GlbParts take_apart(const std::string& bytes) {

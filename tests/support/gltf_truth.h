@@ -134,7 +134,7 @@ class GltfTruth {
     for (std::size_t a = 0; a < here.size(); ++a) group_[here[a]] = here[root[a]];
   }
 
-  std::vector<std::vector<Vector>> positions_;  // of each vertex: the base, and the delta of each target
+  std::vector<std::vector<Vector>> positions_;  // for each vertex: the base, and the delta of each target
   std::vector<std::array<std::size_t, 3>> faces_;
   std::vector<std::size_t> group_;
 };

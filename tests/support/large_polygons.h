@@ -18,7 +18,7 @@ namespace chronormal::test {
 enum class LargePolygons {
   kAlone,   ///< a polygon
   kPillow,  ///< two of them against each other: normals of vertices are exact, and those of double next to nothing
-  kPrism,   ///< the same, with a band of quadrilaterals between them
+  kPrism,   ///< two polygons with a band of quadrilaterals between them
 };
 
 /// Makes a wavy polygon, or two, through a few keyframes.

@@ -6,7 +6,7 @@
 namespace chronormal {
 
 extern const char* const kProgram;       ///< path of the program
-extern const char* const kVersion;       ///< what the program calls its version
+extern const char* const kVersion;       ///< the version that the program states
 extern const char* const kSourceFolder;  ///< root of the repository
 extern const char* const kBuildFolder;   ///< root of the build
 extern const char* const kFaultLayer;    ///< path of the library of tests/faults/fault_layer.cpp

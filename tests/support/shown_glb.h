@@ -85,7 +85,7 @@ class ShownGlb {
   nlohmann::json json;
   std::vector<float> positions, normals, times;
   std::vector<std::vector<float>> position_deltas, normal_deltas;
-  std::vector<std::uint32_t> corners;  ///< of triangles
+  std::vector<std::uint32_t> corners;  ///< three for each triangle
 
  private:
   [[nodiscard]] double track(std::size_t row, std::size_t target) const { return track_.at(row * targets() + target); }

@@ -82,8 +82,8 @@ struct Trs {
 /// A skin: the joints and weights of each vertex, four a set, and inverse bind matrices.
 struct Skin {
   std::vector<std::array<float, 16>> inverse_binds;  ///< column by column; empty: the file has none
-  std::vector<std::vector<std::uint8_t>> joints;     ///< of each set, four for each vertex
-  std::vector<std::vector<float>> weights;           ///< likewise
+  std::vector<std::vector<std::uint8_t>> joints;     ///< for each set, four for each vertex
+  std::vector<std::vector<float>> weights;           ///< laid out like joints
 
   /// Appends the skin, whose joints are these nodes, and gives it to node 0 and the first primitive of mesh 0.
   void add_to(GltfBuilder& builder, const std::vector<std::size_t>& nodes) const {

@@ -204,7 +204,7 @@ class WholePolynomial {
     return count_in(before) + (sgn(after[0]) == 0 ? 1U : 0U) + count_in(after);
   }
 
-  std::vector<Whole> a_;  // of rising powers; the last is not zero
+  std::vector<Whole> a_;  // coefficients of rising powers; the last is not zero
 };
 
 struct WholePolynomial::Division {

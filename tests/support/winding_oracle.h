@@ -38,7 +38,7 @@ using Corners = std::array<std::uint32_t, 3>;
 
 /// A double from 0 to 1, with at most 53 binary places after the point.
 struct Fraction {
-  std::int64_t numerator;  // of 2^53
+  std::int64_t numerator;  // the denominator is 2^53
 
   explicit Fraction(double t) : numerator(static_cast<std::int64_t>(std::ldexp(t, 53))) {
     if (std::ldexp(static_cast<double>(numerator), -53) != t) throw std::logic_error("t has too many places");

@@ -15,7 +15,7 @@ import '@babylonjs/loaders/glTF/2.0/index.js';
 import { driveBabylon } from '../../examples/drive.mjs';
 import * as live from '../../js/src/babylon.js';
 
-const FRAMES_PER_SECOND = 60;  // what the loader multiplies seconds by
+const FRAMES_PER_SECOND = 60;  // the loader multiplies seconds by this
 const SHADED_NORMALS = 5;      // PBRMaterial.debugMode
 
 let engine;

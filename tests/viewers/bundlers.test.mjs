@@ -1,5 +1,5 @@
 // Tests the npm package as its users bundle it: an application of a few lines, built from the packed package by Vite,
-// webpack, esbuild and rollup as js/README.md says, or not bundled, audits a GLB in Chromium, with and without a worker.
+// webpack, esbuild and rollup as js/README.md says, or not bundled, audits a GLB in Chromium, with a worker and without.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test tests/viewers/bundlers.test.mjs
 import assert from 'node:assert/strict';

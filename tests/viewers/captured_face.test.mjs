@@ -24,7 +24,7 @@ describe('a captured face', { skip: NO_DATA }, () => {
   const expected = () => {
     if (!made) {
       const { status, stderr } = native(['bake', 'face.glb', '--for', 'three', '--max-targets', '112', '-o', 'made.glb']);
-      assert.ok(status === 0 || status === 4, stderr); // whether so few targets are within the tolerance is not the question
+      assert.ok(status === 0 || status === 4, stderr); // so few targets may miss the tolerance
       made = readFileSync(join(folder, 'made.glb'));
     }
     return made;

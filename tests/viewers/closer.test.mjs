@@ -94,7 +94,7 @@ describe('what is baked is closer to the truth', () => {
   async function assertPicture() {
     const input = join(DATA, 'rigs', 'blender_suzanne_two_keys.glb');
     const output = join(folder, 'head.glb');
-    chronormal('bake', input, '-o', output);  // as the caption says, and by nothing else
+    chronormal('bake', input, '-o', output);  // exactly the command of the caption
     const items = [
       [['not baked', 'as Blender wrote it'], input],
       [['baked', 'chronormal bake face.glb'], output],

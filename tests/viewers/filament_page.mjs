@@ -8,7 +8,7 @@ const NORMALS = [0.5, 0.5, 0.5, 0, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0];  // spherical 
 const WHITE_MATERIAL = { metallicFactor: 0, roughnessFactor: 1 };
 const WHITE = [1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 const EXPOSURE = [16, 1 / 125, 100];  // aperture, shutter and sensitivity
-const INTENSITY = 38_400;  // of light, so that white is shown as 1 at that exposure
+const INTENSITY = 38_400;  // this light shows white as 1 at that exposure
 const JSON_AT = 20;
 
 let viewer;

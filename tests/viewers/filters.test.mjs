@@ -1,5 +1,5 @@
 // Compares the filters of EXT_meshopt_compression, as the program decodes them, with npm meshoptimizer as it runs in
-// browsers, bit for bit where normals are. Each filter is tried on positions: `chronormal convert` writes them as decoded.
+// browsers, bit for bit where normals are. Each filter is tried on positions, which `chronormal convert` writes.
 //
 //   CHRONORMAL_PROGRAM        the program
 import assert from 'node:assert/strict';
@@ -144,7 +144,7 @@ describe('the program decodes as browsers do', () => {
     ['many floats with exponents', exponents(100_000), 3, FLOAT, 'EXPONENTIAL', 0],
   ]) {
     test(name, () => {
-      const count = Math.floor(elements.length / width / 3) * 3; // whole triangles
+      const count = Math.floor(elements.length / width / 3) * 3; // complete triangles
       const some = elements.slice(0, count * width);
       const numbers = decoded(some, count, filter);
       const expected = filter === 'EXPONENTIAL' ? new Float32Array(numbers.buffer) : numbers;

@@ -47,7 +47,7 @@ export async function bakeByFormula(inputPath, outputPath) {
       w.forEach((weight, k) => {
         const before = k > 0 ? (weight - w[k - 1]) / (times[k] - times[k - 1]) : 0;
         const after = k + 1 < w.length ? (w[k + 1] - weight) / (times[k + 1] - times[k]) : 0;
-        const slope = 1 - 2 * weight;  // of w (1 - w)
+        const slope = 1 - 2 * weight;  // the slope of w (1 - w)
         values.push(before, slope * before, ...withExtra(weight), after, slope * after);
       });
       sampler.setInterpolation('CUBICSPLINE').setOutput(accessor(Accessor.Type.SCALAR, values));

@@ -280,7 +280,7 @@ Use import { bake } from 'chronormal' in a module, or const { bake } = await imp
 
 test('where WebAssembly has no vectors, a sentence says so', (t) => {
   const script = "import('chronormal').then(({ inspect }) => inspect(new Uint8Array(9))).catch(({ message }) => console.log(message));";
-  const without = ['--no-enable-sse4-1']; // of processors for x86: V8 has no vectors then
+  const without = ['--no-enable-sse4-1']; // on x86 V8 then has no vectors
   const { stdout, status } = node([...without, '-e', script]);
   if (status !== 0 || /glTF/.test(stdout)) return t.skip('this processor has vectors whatever V8 is told');
   assert.match(stdout, /^WebAssembly with vectors \(SIMD\) .*Safari 16\.4, Node\.js 18/s);

@@ -35,7 +35,7 @@ export function writeBoard(path, patches, rows) {
   return writeFile(path, { primitives, tracks: [linear(rows, 0, rows.map((_, k) => k))] });
 }
 
-const REACH = 4;  // how far the last target moves the square to the right at a weight of 1
+const REACH = 4;  // the last target moves the square this far to the right at a weight of 1
 
 export const MOVER_VIEW = viewOf(4 * REACH);
 

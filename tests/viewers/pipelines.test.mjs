@@ -114,7 +114,7 @@ async function assertExactLast(name, lines) {
   for (const [line] of lines) {
     const { path } = await measure(line, name, 'exported');
     const output = join(folder, 'exact_last.glb');
-    const how = ['--encode', 'exact', '--weighting', 'area'];  // by another weighting n(w) is fitted
+    const how = ['--encode', 'exact', '--weighting', 'area'];  // other weightings fit n(w)
     chronormal('bake', path, '-o', output, ...how, '--force', '--no-audit', '--quiet');
     assert.deepEqual(await newComplaints(output, path), []);
     const { worst } = audited(output, '--weighting', 'area');

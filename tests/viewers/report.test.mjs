@@ -1,4 +1,5 @@
-// Tests the page of `chronormal report`: its numbers equal the program's, its right half is right, and it makes no requests.
+// Tests the page of `chronormal report`: its numbers equal the program's, its right half is right, and it requests
+// nothing.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place

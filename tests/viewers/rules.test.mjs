@@ -1,5 +1,5 @@
-// Tests how real viewers make a normal from stored numbers, and a weight from a track: compares their pictures with rules
-// that are written down here in double. docs/viewers.md has the findings. Run by ctest as `in_viewers`.
+// Tests how real viewers make a normal from stored numbers, and a weight from a track: compares their pictures with
+// rules that are written down here in double. docs/viewers.md has the findings. Run by ctest as `in_viewers`.
 //
 //   CHRONORMAL_FULL=1  all viewers, and all that they do; otherwise the normals of Filament and PlayCanvas
 import assert from 'node:assert/strict';

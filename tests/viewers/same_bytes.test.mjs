@@ -1,5 +1,5 @@
-// Checks that the package and the native program make the same bytes and print the same about every file of the real data:
-// a few in ./test --full npm, all with CHRONORMAL_FULL=1.
+// Checks that the package and the native program make the same bytes and print the same about every file of the real
+// data: a few in ./test --full npm, all with CHRONORMAL_FULL=1.
 //
 //   CHRONORMAL_DATA   the folder of the real data
 import assert from 'node:assert/strict';

@@ -1,6 +1,6 @@
-// Tests morphs that are lit through a normal map, whose tangents `chronormal bake` recomputes, in Babylon.js, which adds
-// up tangents of targets. Compares with a mesh that stands still, whose tangents follow from the formula of its surface.
-// Run by ctest as `viewers`.
+// Tests morphs that are lit through a normal map, whose tangents `chronormal bake` recomputes, in Babylon.js, which
+// adds up tangents of targets. Compares with a mesh that stands still, whose tangents follow from the formula of its
+// surface. Run by ctest as `viewers`.
 //
 //   CHRONORMAL_PROGRAM   the program
 //   CHRONORMAL_CHROMIUM  the browser, where it is not in its usual place

@@ -34,11 +34,11 @@ using chronormal::vtk::steps_near;
 
 // The request of one execution.
 struct vtkChronormalInterpolator::Request {
-  std::vector<double> times;  // of the steps
+  std::vector<double> times;  // times of the steps
   std::size_t from = 0;       // the earlier of the two steps around the time
   double t = 0;               // from that step, 0, to the next one, 1
-  int ghosts = -1;            // how many levels of ghost cells to keep, or -1 where a whole is asked for
-  std::string place;          // where the data are in composite data, for messages
+  int ghosts = -1;            // levels of ghost cells to keep, or -1 for a whole
+  std::string place;          // place in composite data, for messages
 };
 
 namespace {

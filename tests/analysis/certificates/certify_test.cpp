@@ -80,7 +80,7 @@ double error_of(const Vec3f& shown, const IntegerVector& exact) {
 // The findings about one scheme.
 struct Tally {
   std::size_t elements = 0, over = 0, under = 0, crossed = 0, unknown = 0;
-  double largest_share = 0;  // of an upper bound that a sample came to
+  double largest_share = 0;  // largest share of an upper bound that a sample reached
   double gap = 0;            // summed, of those that are known
   std::string first;
 };

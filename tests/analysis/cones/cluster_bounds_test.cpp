@@ -118,7 +118,7 @@ Meshlets meshlets_of(Motion motion, std::size_t segment) {
 // Faces and their first corners at one instant, in integers of one scale each.
 struct Instant {
   std::vector<IntegerVector> normals, corners;
-  mpz_class unit;  // of the corners: times that of a float
+  mpz_class unit;  // the unit of corners, times that of a float
 
   Instant(const Segment& segment, double t) {
     const IntegerTime time = IntegerTime::of(t);

@@ -88,7 +88,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
       const Real s = brute.scale * std::exp(Real(i) / 100);
       brute.best = std::min(brute.best, brute_error(normals, u0, reference::scaled(s, u1), 100));
     }
-    const bool collapses = found.error > 90 * kDegree;  // where the largest angle is a matter of a fine grid too
+    const bool collapses = found.error > 90 * kDegree;  // the largest angle needs a fine grid, too
     EXPECT_LE(found.error, (collapses ? 1.02L : 1.002L) * brute.best + 1e-12L) << round;
     // The claimed result is true.
     const Vector to = reference::add(u0, real(found.delta));
@@ -98,7 +98,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
     EXPECT_NEAR(found.error, claimed, 2e-3 * claimed) << round;
     right_angles += collapses ? 1 : 0;
   }
-  EXPECT_GE(right_angles, 3);  // where one valley is not promised
+  EXPECT_GE(right_angles, 3);  // one valley is not promised there
   EXPECT_LT(right_angles, 100);
 }
 

@@ -180,7 +180,7 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
       points.count += is_new ? 1U : 0U;
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<std::size_t>> edges;
-    std::map<Corners, std::vector<std::size_t>> faces;  // by the first of all turned and reversed outlines
+    std::map<Corners, std::vector<std::size_t>> faces;  // keyed by the first of all rotated and reversed outlines
     std::set<std::uint32_t> used;
     std::size_t repeating = 0, pairs = 0;
     std::vector<std::set<std::uint32_t>> pieces;

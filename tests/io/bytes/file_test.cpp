@@ -57,7 +57,7 @@ std::string many_bytes() {
 class Redirect {
  public:
   Redirect(int from, int to) : from_(from), saved_(::dup(from)) {
-    std::fflush(stdout);  // what the test program said so far
+    std::fflush(stdout);  // writes the earlier output of the test program
     ::dup2(to, from);
   }
   Redirect(const Redirect&) = delete;

@@ -75,7 +75,7 @@ TEST_F(KnownKinds, are_named_whatever_the_name_of_the_file_says) {
   for (const std::string name : {"a.glb", "a.gltf", "a.vrm", "a.obj", "a.ply", "a.npz", "a.md2", "a.pc2", "a.mdd",
                                  "a.npy", "a.target", "a.png", "a"}) {
     for (const auto& [bytes, kind] : kSamples) {
-      if (name == "a.target" && kind == "gzip data") continue;  // which a target may be
+      if (name == "a.target" && kind == "gzip data") continue;  // a target may be gzipped
       EXPECT_NE(said(name, bytes).find(kind), std::string::npos) << name << ' ' << kind << ": " << said(name, bytes);
     }
   }

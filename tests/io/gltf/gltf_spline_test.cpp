@@ -62,7 +62,7 @@ double rounding(const Motion& motion) {
   return largest * 0x1p-23;
 }
 
-double diagonal() { return std::sqrt(1 + 1 + 0.25); }  // of kQuad
+double diagonal() { return std::sqrt(1 + 1 + 0.25); }  // the diagonal of kQuad
 
 TEST(GltfSpline, that_overshoots_is_within_the_stated_error) {
   const Spline spline = {{0, 1, 3}, {0, 0, 0, 0, 4, -2, /**/ -1, 3, 1, 0.5F, 6, 0, /**/ 2, 2, 0, 1, 0, 0}};

@@ -257,7 +257,7 @@ TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
 // steps of 1 + 127 eps that lose 127 eps each, and all the way back.
 TEST(BlendNormals, rounding_of_every_target_counts) {
   constexpr double kEps = 0x1p-52;
-  constexpr float kSize = 4e-6F;  // of the triangle, which the loss of 7e-12 turns by 1.8e-6 rad
+  constexpr float kSize = 4e-6F;  // the loss of 7e-12 turns such a triangle by 1.8e-6 rad
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
   set.base = {0, 0, 0, kSize, 0, 0, 0, kSize, 0};
@@ -278,7 +278,7 @@ TEST(BlendNormals, rounding_of_every_target_counts) {
 // rounding, and its edges are zero, so that only the square of the rounding of positions shows this. With its many
 // corners that outweighs the triangle beside it, which alone has a direction.
 TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
-  constexpr float kFar = 1.5F * 0x1p52F;  // where an ulp is 1
+  constexpr float kFar = 1.5F * 0x1p52F;  // an ulp is 1 there
   for (const int turns : {0, 10}) {
     BlendSet set;
     set.base = {0, 0, 0, 150, 0, 0, 0, 150, 0, -0.49F, -0.49F, 0, 0, 0.49F, 0, 0.49F, -0.49F, 0};

@@ -43,7 +43,7 @@ TEST(LocalTime, is_moved_into_the_segment) {
 // A time between two keys, all doubles: time - start and end - time are multiples of two small integers.
 struct Times {
   double start, time, end;
-  double before, after;  // what comes before and after the time, in one unit, as few bits
+  double before, after;  // time - start and end - time, in one unit, few bits
 };
 
 Times random_times(fixtures::Random& random) {

@@ -45,7 +45,7 @@ Motion patterned(std::size_t faces, const Pattern& kind_of) {
 
 struct Elements {
   std::size_t count = 0;
-  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // as two ways have them, which bound errors differently
+  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // two ways, which bound errors differently
 };
 
 // Returns control normals in double, or without any rounding if double is hardly more than noise.

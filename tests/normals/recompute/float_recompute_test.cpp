@@ -71,7 +71,7 @@ void expect_close(const Normals& normals, const std::vector<Expected>& expected,
   std::size_t compared = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const double limit = expected[i].error / length(expected[i].n);
-    if (!(limit < 0.1)) continue;  // nothing is promised there
+    if (!(limit < 0.1)) continue;  // there is no promise
     ++compared;
     const Vec3d u = to_double(normals[i]);
     EXPECT_NEAR(length(u), 1, 4e-7) << what << ", " << i;

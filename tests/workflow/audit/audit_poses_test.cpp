@@ -50,7 +50,7 @@ TEST(AuditPoses, the_weights_of_every_node_are_a_subject_each_and_shut_the_gate)
   GltfBuilder builder = two_targets().file();
   builder.json["meshes"][0]["weights"] = {0.25, 0.0};
   builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 1.0}}});
-  builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 1.0}}});  // the same once more
+  builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 1.0}}});  // another node with the mesh
   builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {0.0, 0.0}}});
   const Audit audit = audited(builder).value();
   const std::vector<AuditSubject> opening = subjects_of(audit, Kind::kOpening);

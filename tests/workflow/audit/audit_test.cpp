@@ -663,7 +663,7 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-4);
   EXPECT_GT(result.error.worst, 1);
   mesh.targets[0].normals[11] = 0;                                             // vertex 3 shows (-1, 0, 1) at weight 1
-  const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});  // which asks no author
+  const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});  // ignores the author
   ASSERT_EQ(kinds_of(wrong), (std::vector<Kind>{Kind::kWrongAtKeys}));
   EXPECT_NEAR(wrong.findings[0].degrees, 45, 1e-4);
   EXPECT_EQ(wrong.findings[0].worst_at->vertex, 3U);
@@ -914,7 +914,7 @@ TEST(Audit, normals_of_keyframe_0_alone_say_which_edges_are_hard) {
   const StoredNormals hard{{{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 0, 0, 1, 0}}};
   const Audit result = audit_of(motion, hard);
   EXPECT_FALSE(result.stored);
-  EXPECT_EQ(result.subjects[0].vertices, 3U);  // of the folding face alone
+  EXPECT_EQ(result.subjects[0].vertices, 3U);  // only vertices of the folding face
   const Audit flat = audit_of(motion, hard, {.rule = AuditRule::kFlat});
   EXPECT_LT(flat.error.worst, 1e-9);
 }

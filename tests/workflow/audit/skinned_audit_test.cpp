@@ -279,7 +279,7 @@ TEST(SkinnedAudit, tracks_are_seen_in_the_pose_of_their_animation_at_that_time) 
     turn.add_to(builder, animation, 1, false);
     grow.add_to(builder, animation, 2, seed % 2 == 0);
     move.add_to(builder, animation, 2, false);
-    other.add_to(builder, animation, 0, false);  // that of the mesh turns nothing
+    other.add_to(builder, animation, 0, false);  // the node of the mesh turns nothing
     // Another animation must not matter.
     other.add_to(builder, builder.add_animation("walk"), 2, false);
     const Audit result = audit_of(builder, {.animation = "talk"});

@@ -39,7 +39,7 @@ using reference::VectorD;
 using test::ShownGlb;
 
 constexpr double kDegree = std::numbers::pi / 180;
-const std::vector<Viewer> kAddingUp = {kViewers[0]};  // of others a bake warns
+const std::vector<Viewer> kAddingUp = {kViewers[0]};  // a bake warns of other viewers
 
 // The vertices of each face of a file, and for each vertex the group that shows the same normal.
 struct Surface {
@@ -92,7 +92,7 @@ std::vector<VectorD> exact_normals(const ShownGlb& glb, const Surface& surface, 
 
 struct Judged {
   double mean = 0, max = 0;           // degrees
-  std::size_t count = 0, nearly = 0;  // pairs of vertex and time; those where n is nearly zero are not judged
+  std::size_t count = 0, nearly = 0;  // samples; if n is nearly zero, they are not judged
 };
 
 Judged judge(const ShownGlb& glb, const Surface& surface, int times = 101) {

@@ -127,7 +127,7 @@ TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
     float weight;
     double tolerance, height;
   };
-  std::size_t would_not_do = 0;  // what is chosen without a skin
+  std::size_t would_not_do = 0;  // choices without a skin that miss the tolerance
   // In the last four cases, no candidate that meets the tolerance before skinning meets it behind the joint.
   for (const Case& c : {Case{2, 0.2F, 1, 0.25},
                         {3, 0.2F, 1, 0.25},
@@ -289,7 +289,7 @@ TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
   const std::vector<ViewerChange> both = viewers_of(0.25, {kThree, kBevy});
   const ViewerChange raised = viewers_of(4, {kThree}).at(0), even = viewers_of(1, {kThree}).at(0);
   ASSERT_EQ(both.size(), 2U);
-  for (std::size_t kind = 0; kind < 2; ++kind) {  // of the file, and at random
+  for (std::size_t kind = 0; kind < 2; ++kind) {  // deltas of the file, and random ones
     const ShownErrors &lowered = both[0].poses[kind].before, &bevy = both[1].poses[kind].before;
     EXPECT_GT(even.poses[kind].before.judged, 0U);
     EXPECT_GT(lowered.mean, 1.2 * even.poses[kind].before.mean);

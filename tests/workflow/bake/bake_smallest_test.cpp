@@ -367,7 +367,7 @@ TEST(BakeSmallest, a_result_is_not_worse_because_fewer_normals_are_judged) {
   EXPECT_FALSE(is_worse(after, before));
   after.sum = 52;
   EXPECT_TRUE(is_worse(after, before));
-  after.judged = 4000;  // of a track that got keys
+  after.judged = 4000;  // the track got more keys
   after.sum = 200;
   EXPECT_FALSE(is_worse(after, before));
 }

@@ -248,7 +248,7 @@ TEST(BakeStream, a_keyframe_that_cannot_be_read_ends_it_in_whatever_pass) {
           },
           0);
       const Result<SequenceBake> baked = bake_sequence(stream, way.options, folder / "out.glb", false);
-      if (baked.ok()) {  // what failed was read ahead and not needed
+      if (baked.ok()) {  // the failed data were read ahead and not needed
         EXPECT_TRUE(test::read_whole(folder / "out.glb") == glb) << way.name << failing;
         std::filesystem::remove(folder / "out.glb");
         continue;

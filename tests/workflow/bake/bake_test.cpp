@@ -248,7 +248,7 @@ TEST(Bake, targets_that_nothing_drives_get_the_best_single_delta) {
 
 TEST(Bake, a_baked_file_is_left_as_it_is) {
   for (const auto& [encoding, name] : kBakeEncodings) {
-    if (encoding == BakeEncoding::kKeys) continue;  // of sequences alone
+    if (encoding == BakeEncoding::kKeys) continue;  // only for sequences
     SCOPED_TRACE(name);
     GltfBuilder builder = test::hills_document(2);
     builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
@@ -526,7 +526,7 @@ TEST(Bake, errors_say_what_and_where) {
 }
 
 TEST(Bake, more_pairs_of_targets_than_a_file_can_carry_are_refused) {
-  constexpr std::size_t kTargets = 141;  // of 10,011 pairs
+  constexpr std::size_t kTargets = 141;  // this gives 10,011 pairs
   GltfBuilder builder = test::hills_document(kTargets);
   std::vector<float> weights(2 * kTargets);
   for (std::size_t k = 0; k < kTargets; ++k) weights[kTargets + k] = 1;

@@ -94,7 +94,7 @@ TEST(BakeUndriven, shows_the_deltas_of_its_own_targets_alone_where_nobody_drives
 
 TEST(BakeUndriven, quadratics_of_many_terms_bring_a_rig_of_many_pairs_nearer) {
   BakeOptions options = smallest();
-  options.most_targets = 10 + 32;  // of 55 products
+  options.most_targets = 10 + 32;  // 32 out of 55 products
   const Baked baked = test::bake_document(rig(5, 10), options), without = without_extras(5, 10);
   ASSERT_TRUE(baked.ok() && without.ok()) << baked.error << without.error;
   ASSERT_GT(baked.report.added_targets, 0U);

@@ -43,7 +43,7 @@ TEST(ResultJson, passes_only_within_the_tolerance) {
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {2}))["passed"], true);
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], false);
   EXPECT_TRUE(nlohmann::json::parse(audit_json("a", found, {}))["passed"].is_null());
-  found.viewers.resize(2);  // what counts is then what each of them shows
+  found.viewers.resize(2);  // the errors of each viewer count then
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], true);
   found.viewers[1].beyond = 1;
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], false);

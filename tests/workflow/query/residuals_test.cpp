@@ -49,7 +49,7 @@ Twins random_twins(Random& random, bool is_soup) {
   for (Motion::Keyframe& keyframe : twins.near.keyframes) {
     for (float& x : keyframe.positions) {
       // A coarse lattice has many faces without area and corners on one line.
-      constexpr double kOdd = 349525;  // so that no point of the lattice is a float far away
+      constexpr double kOdd = 349525;  // no point of the lattice is a float far away
       const double units = is_lattice ? kOdd * std::round(2 * double{x}) : std::round(double{x} / 4 * (kSize / kUnit));
       x = static_cast<float>(kUnit * units);
     }

@@ -45,8 +45,8 @@ struct File {
   std::vector<float> base;
   std::vector<std::uint32_t> corners;
   std::vector<std::vector<float>> targets;
-  std::vector<Track> tracks;                     // of each node
-  std::vector<std::array<double, 16>> matrices;  // of each node, column after column
+  std::vector<Track> tracks;                     // one for each node
+  std::vector<std::array<double, 16>> matrices;  // one for each node, column after column
 
   [[nodiscard]] std::size_t vertices() const { return base.size() / 3; }
 
@@ -113,7 +113,7 @@ File random_file(Random& random, std::size_t nodes) {
   File file;
   std::vector<std::size_t> fan_of_vertex;
   std::vector<double> sizes;
-  std::vector<fixtures::Point> lines;  // of slivers
+  std::vector<fixtures::Point> lines;  // directions of slivers
   const auto number = [](double x) { return static_cast<float>(x); };
   for (std::size_t fan = 0; fan < 8; ++fan) {
     const auto first = static_cast<std::uint32_t>(file.vertices());

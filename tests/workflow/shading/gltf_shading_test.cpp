@@ -77,7 +77,7 @@ TEST(GltfShading, vertices_at_one_point_share_an_element_across_primitives) {
 
 TEST(GltfShading, other_base_normals_or_other_deltas_keep_vertices_apart) {
   ShadedMesh second = half(1);
-  second.normals = {1, 0, 0, 0, 0, 1, 0, 0, 1};  // of vertex 3, which is at vertex 2
+  second.normals = {1, 0, 0, 0, 0, 1, 0, 0, 1};  // vertex 3 lies at vertex 2
   GltfShading shading = read(halves(half(0), second));
   EXPECT_NE(shading.element_of_vertex[2], shading.element_of_vertex[3]);
   EXPECT_EQ(shading.element_of_vertex[1], shading.element_of_vertex[4]);
@@ -126,7 +126,7 @@ TEST(GltfShading, faces_of_flat_primitives_count_for_no_element) {
   const std::vector<double> folded = {1};
   const std::vector<Vec3d> normals = normals_from_positions(shading, folded);
   for (std::size_t v = 0; v < 3; ++v) {
-    EXPECT_EQ(normals[shading.element_of_vertex[v]], (Vec3d{0, 0, 4})) << v;  // of the face that stays
+    EXPECT_EQ(normals[shading.element_of_vertex[v]], (Vec3d{0, 0, 4})) << v;  // from the face that stays
     EXPECT_EQ(shading.groups.faces(shading.element_of_vertex[v]).size(), 1U);
   }
 }

@@ -419,7 +419,7 @@ std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, 
     std::vector<BoundedTile> tiles((groups.size() + kTile - 1) / kTile);
     for (std::size_t e = 0; e < groups.size(); e += kTile) {
       BoundedTile& tile = tiles[e / kTile];
-      tile.left_out = 0xFFFF;  // of another tile
+      tile.left_out = 0xFFFF;  // bits of another tile
       ControlTile rounded;
       writer.write({e, std::min(kTile, groups.size() - e)}, std::span(&rounded, 1), std::span(&tile, 1));
       const std::uint32_t unknown = tile.left_out;
