@@ -1,4 +1,4 @@
-/// The bits of a value as another type: std::bit_cast, also where the standard library has none yet (libc++ 13).
+/// Reads the bits of a value as another type: std::bit_cast, also where the standard library has none yet (libc++ 13).
 /// Private.
 #ifndef CHRONORMAL_CORE_BITS_H_
 #define CHRONORMAL_CORE_BITS_H_

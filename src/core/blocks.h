@@ -1,4 +1,4 @@
-/// A loop in blocks, one after the other or on all cores: the same blocks on any number of threads.
+/// Loops in blocks, one after the other or on all cores. The blocks are the same on any number of threads.
 #ifndef CHRONORMAL_CORE_BLOCKS_H_
 #define CHRONORMAL_CORE_BLOCKS_H_
 
@@ -23,7 +23,8 @@ void parallel_blocks(std::size_t count, std::size_t block, Body body) {
   });
 }
 
-/// Calls body(i, first, last) for the ranges [first, last), numbered by i. One alone is not worth a task.
+/// Calls body(i, first, last) for the ranges [first, last), numbered by i. A single range runs on this thread, since it
+/// is not worth a task.
 template <class Body>
 void numbered_blocks(std::size_t count, std::size_t block, const Body& body) {
   if (count == 0) return;
@@ -31,7 +32,7 @@ void numbered_blocks(std::size_t count, std::size_t block, const Body& body) {
   parallel_for(block_count(count, block), [&](std::size_t i) { body(i, i * block, std::min(count, (i + 1) * block)); });
 }
 
-/// Calls body(i) for every i in [0, count), blocks of them on all cores.
+/// Calls body(i) for every i in [0, count), in blocks on all cores.
 template <class Body>
 void parallel_each(std::size_t count, std::size_t block, const Body& body) {
   numbered_blocks(count, block, [&](std::size_t, std::size_t first, std::size_t last) {
@@ -39,8 +40,8 @@ void parallel_each(std::size_t count, std::size_t block, const Body& body) {
   });
 }
 
-/// Calls body(i, result) for every i in [0, count), blocks of them on all cores, with a result of its own for each
-/// block; then merge(all, result) in the order of the blocks. Returns all.
+/// Calls body(i, result) for every i in [0, count), in blocks on all cores, with a separate result for each block; then
+/// calls merge(all, result) in the order of the blocks. Returns all.
 template <class T, class Body, class Merge>
 [[nodiscard]] T parallel_fold(std::size_t count, std::size_t block, const Body& body, const Merge& merge) {
   std::vector<T> of_blocks(block_count(count, block));
@@ -52,7 +53,8 @@ template <class T, class Body, class Merge>
   return all;
 }
 
-/// parallel_blocks() on all cores, or body of the whole range on this one. One block alone is not worth a task.
+/// Calls parallel_blocks() on all cores, or body for the whole range on this thread. A single block is not worth a
+/// task.
 template <class Body>
 void blocks_on(Threads threads, std::size_t count, std::size_t block, Body body) {
   if (threads == Threads::kOne || (0 < count && count <= block)) {

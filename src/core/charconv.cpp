@@ -58,8 +58,8 @@ std::to_chars_result put(char* first, char* last, std::string_view text) {
   return {std::copy(text.begin(), text.end(), first), std::errc()};
 }
 
-// fmt finds the digits; where the point stands, and whether there is an exponent, is what the standard says of
-// to_chars(): the shorter, and fixed where both are as long.
+// Formats as the standard asks of to_chars(): the shorter notation, and fixed where both are as long. fmt finds only
+// the digits, so the point and the exponent are placed here.
 template <class Number>
 std::to_chars_result shortest(char* first, char* last, Number value) {
   const std::string found = fmt::format("{}", value);
@@ -72,7 +72,7 @@ std::to_chars_result shortest(char* first, char* last, Number value) {
   const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
   std::string digits(mantissa.substr(0, point));
   if (point < mantissa.size()) digits += mantissa.substr(point + 1);
-  // The number is 0.DIGITS times 10 to the power of this.
+  // The number is 0.DIGITS times 10 to the power of before_point.
   int before_point = static_cast<int>(point) + (e < number.size() ? std::atoi(number.data() + e + 1) : 0);
   const std::size_t zeros = digits.find_first_not_of('0');
   before_point -= static_cast<int>(zeros);
@@ -87,7 +87,7 @@ std::to_chars_result shortest(char* first, char* last, Number value) {
   if (before_point <= 0) {
     fixed = "0." + std::string(static_cast<std::size_t>(-before_point), '0') + digits;
   } else if (before_point >= count) {
-    // Beyond the digits that are needed, those of the number itself and not zeros.
+    // The number is an integer with more digits than it takes to tell it apart: print all of its own digits, not zeros.
     fixed = fmt::format("{:.0f}", value).substr(sign.size());
   } else {
     fixed = digits.substr(0, static_cast<std::size_t>(before_point)) + '.' +

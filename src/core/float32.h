@@ -1,8 +1,7 @@
-/// A double as a float32 keeps it: what a file holds of it. Private.
+/// Rounds a double to the float32 that a file stores. Private.
 ///
-/// Casting to float and back is not enough: GCC 12 makes nothing of two such casts side by side (the vectorizer of
-/// straight code takes a narrowing and a widening of a pair for no operation), so that a vector stays as precise as it
-/// was.
+/// Casting to float and back is not enough: the vectorizer of GCC 12 takes a narrowing and a widening of two values
+/// side by side for no operation, so that a vector would stay as precise as it was.
 #ifndef CHRONORMAL_CORE_FLOAT32_H_
 #define CHRONORMAL_CORE_FLOAT32_H_
 

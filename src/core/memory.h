@@ -1,4 +1,4 @@
-/// Memory for arrays that are streamed: aligned to cache lines, and in huge pages where it is large.
+/// Memory for arrays that are streamed. It is aligned to cache lines, and in huge pages where it is large.
 #ifndef CHRONORMAL_CORE_MEMORY_H_
 #define CHRONORMAL_CORE_MEMORY_H_
 
@@ -9,13 +9,13 @@
 
 namespace chronormal::inline internal {
 
-/// Where one pass reads and writes more bytes than this, results go past the caches if all their arrays are aligned to
-/// 64 bytes (those of recompute and of the schemes: if they are packed as well). In a shared cache of 32 MiB they would
-/// push out what is read next, and be pushed out before anybody reads them. Measured there, with and without a reader
-/// after it, that is better from 20 to 30 MiB on.
+/// Holds the number of bytes read and written by one pass from which on results go past the caches. All arrays of
+/// results must be aligned to 64 bytes for it (in recompute and the schemes, packed as well). In a shared cache of 32
+/// MiB such results would push out what is read next, and be pushed out before anybody reads them. Measured there, with
+/// and without a reader after it, bypassing is faster from 20 to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
-/// Memory for so many bytes, aligned as that of AlignedBytes. Throws std::bad_alloc.
+/// Allocates `size` bytes, aligned as AlignedBytes are. Throws std::bad_alloc.
 [[nodiscard]] std::byte* allocate_aligned(std::size_t size);
 void free_aligned(void* memory) noexcept;
 
@@ -36,13 +36,13 @@ class AlignedBytes {
 
   /// Sets the size, without touching the bytes or moving them. size must not be larger than capacity()
   void resize(std::size_t size) noexcept;
-  /// Gives the memory behind size() back to the system where it comes in huge pages; it remains available.
+  /// Gives the memory behind size() back to the system if it is in huge pages; it can still be used.
   void release_rest() noexcept;
 
   [[nodiscard]] std::byte* data() noexcept { return data_.get(); }
   [[nodiscard]] const std::byte* data() const noexcept { return data_.get(); }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  /// The largest size that there is memory for: the one that the object was made with.
+  /// Returns the largest size that there is memory for, which is the size that the object was made with.
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 
  private:
@@ -53,14 +53,14 @@ class AlignedBytes {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// An array of `count` uninitialised values of a trivial type.
+/// An array of uninitialised values of a trivial type.
 template <class T>
 class AlignedArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
   AlignedArray() = default;
-  /// Throws std::bad_alloc, also where count * sizeof(T) is beyond the range of std::size_t.
+  /// Allocates `count` values. Throws std::bad_alloc, also where count * sizeof(T) is beyond the range of std::size_t.
   explicit AlignedArray(std::size_t count);
 
   [[nodiscard]] T* data() noexcept { return reinterpret_cast<T*>(bytes_.data()); }
@@ -73,7 +73,7 @@ class AlignedArray {
   AlignedBytes bytes_;
 };
 
-/// For a std::vector that is streamed, in memory as that of AlignedBytes.
+/// Gives a std::vector that is streamed memory as AlignedBytes has it.
 template <class T>
 struct AlignedAllocator {
   using value_type = T;

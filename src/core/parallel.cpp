@@ -1,13 +1,14 @@
-// A pool of threads for the whole process. A loop is a Job on the stack of its caller, in the pool's list while pieces
-// of it may be left. The caller takes pieces from the first to the last, and so do those workers that find a seat.
+// Runs loops on a pool of threads for the whole process. A loop is a Job on the stack of its caller, and is in the
+// pool's list while pieces of it may be left. The caller takes pieces from the first to the last, and so do the workers
+// that find a seat.
 //
 //     a loop in a piece   is a job whose parent is the job of that piece. It shares the seats of the outermost job, so
 //                         that a ThreadLimit holds for all that goes on inside. Loops inside get workers as they find
 //                         pieces; there is no queue that a thread could wait in.
-//     waiting             A caller that has no piece left waits for the helpers that work on its last ones, and helps
-//                         with the jobs inside its own meanwhile, and with no others: whatever it waits for is on the
-//                         stack of a thread that goes on, so that nothing can lock up.
-//     fork()              The child has the thread that called fork(), and makes no others where its parent had some.
+//     waiting             A caller that has no piece left waits for the helpers that work on its last ones.
+//                         Meanwhile it helps with the jobs inside its own, and with no others: whatever it waits for is
+//                         on the stack of a thread that goes on, so that nothing can lock up.
+//     fork()              The child has only the thread that called fork(). It makes no others if its parent had some.
 #include "chronormal/core/parallel.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ thread_local Interruption* interruption = nullptr;  // of the computation that t
 
 constexpr std::chrono::milliseconds kBetweenQuestions(50);
 
-// While it lives, this thread works for the computation of an Interruption, or for one that nobody ends.
+// Makes this thread work for the computation of an Interruption while it lives, or for one that nobody ends.
 class InterruptionScope {
  public:
   explicit InterruptionScope(Interruption* of) : before_(std::exchange(interruption, of)) {}
@@ -87,7 +88,7 @@ namespace {
 struct Job;
 thread_local Job* current_job = nullptr;  // whose piece this thread runs
 
-// A loop that runs. The pool's mutex guards what is not constant or atomic.
+// Holds a loop that runs. The pool's mutex guards all members that are not constant or atomic.
 struct Job {
   const std::function<void(std::size_t)>& body;
   const std::size_t count;
@@ -111,7 +112,7 @@ struct Job {
   }
 };
 
-// The number of processors that this process may run on.
+// Returns the number of processors that this process may run on.
 std::size_t processor_count() noexcept {
 #ifdef __linux__
   cpu_set_t allowed;
@@ -127,14 +128,14 @@ std::size_t thread_count_without_limit() noexcept {
 
 class Pool {
  public:
-  // Makes the threads that are missing beside the caller's; returns how many there are with it, at most `wanted`.
+  // Makes the threads that are missing beside the caller's. Returns how many there are with it, at most `wanted`.
   std::size_t provide(std::size_t wanted) noexcept {
     if (wanted <= 1 || is_forked_) return 1;
     if (worker_count_ + 1 < wanted) {
       const std::lock_guard lock(mutex_);
       try {
         while (!has_all_ && workers_.size() + 1 < wanted) workers_.emplace_back([this] { work(); });
-      } catch (const std::exception&) {  // no thread, or no memory for one: it stays at those that there are
+      } catch (const std::exception&) {  // no thread, or no memory for one: it stays at the ones that there are
         has_all_ = true;
       }
       worker_count_ = workers_.size();
@@ -157,7 +158,7 @@ class Pool {
     mutex_.unlock();
   }
 
-  // Ends all workers when the process ends, or the library is unloaded. Where loops still run, no thread is waited for.
+  // Ends all workers when the process ends or the library is unloaded. If loops still run, it waits for no thread.
   void end() noexcept {
     if (is_forked_) return;
     {
@@ -214,7 +215,7 @@ class Pool {
     if (--job.helpers == 0 && waiting_ > 0) changed_.notify_all();
   }
 
-  // Waits until no other thread works on the job, and helps with those inside it.
+  // Waits until no other thread works on the job, and meanwhile helps with the jobs inside it.
   void finish(Job& job) noexcept {
     std::unique_lock lock(mutex_);
     Job** place = &jobs_;

@@ -1,6 +1,6 @@
-// Sine, cosine, arc sine, arc tangent, exponential and logarithm by the polynomials of Google Highway's math-inl.h, on one
-// number, with every operation rounded: the same bits from every compiler, and those that the library has had from the
-// beginning.
+// Computes sine, cosine, arc sine, arc tangent, exponential and logarithm of one number by the polynomials of Google
+// Highway's math-inl.h. Every operation is rounded by itself, so that all compilers give the same bits, which are also
+// the bits of all earlier versions of the library.
 #include "core/portable_math.h"
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace chronormal::inline internal::portable {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// From here on exp() is infinite, or 0.
+// From these arguments on, exp() is infinite or 0.
 constexpr double kLargestExponent = 709.8, kSmallestExponent = -746;
-// The reduction of exp() is for less than this.
+// Holds the bound of |x| below which the reduction of exp() is valid.
 constexpr double kFarExponent = 700;
 
 constexpr double kSine[] = {
@@ -50,8 +50,8 @@ constexpr double kExp[] = {+0.5,
                            +2.51112930892876518610661e-8,
                            +2.08860621107283687536341e-9};
 
-// The sum of coefficients[i] x^i by Estrin's scheme: the coefficients from the largest power of two on, times that power
-// of x, and those before it.
+// Returns the sum of coefficients[i] x^i by Estrin's scheme: it splits the sum at the largest power of two, and
+// multiplies the upper half by that power of x.
 template <std::size_t kCount>
 double polynomial(double x, const double* coefficients) noexcept {
   if constexpr (kCount == 1) {
@@ -68,13 +68,13 @@ double polynomial(double x, const double (&coefficients)[kCount]) noexcept {
   return polynomial<kCount>(x, static_cast<const double*>(coefficients));
 }
 
-// The sine of r, with its sign changed where `half_turns` is odd; |r| <= pi / 2.
+// Returns the sine of r, with its sign changed if `half_turns` is odd. |r| must be at most pi / 2
 double sine_of_reduced(double r, std::uint32_t half_turns) noexcept {
   const double x = (half_turns & 1) != 0 ? -r : r, y = x * x;
   return polynomial(y, kSine) * (y * x) + x;
 }
 
-// x - q pi in extended precision.
+// Returns x - q pi in extended precision.
 double reduced(double x, double q) noexcept {
   x = x + q * -3.1415926218032836914;
   x = x + q * -3.1786509424591713469e-8;
@@ -82,7 +82,8 @@ double reduced(double x, double q) noexcept {
   return x + q * -1.2736634327021899816e-24;
 }
 
-// The whole part of x >= 0, or the largest number of 31 bits where it is larger, or NaN.
+// Returns the whole part of x >= 0. Where x is larger than any number of 31 bits, or NaN, returns the largest of these
+// numbers.
 std::uint32_t whole_part(double x) noexcept { return x < 0x7FFFFFFF ? static_cast<std::uint32_t>(x) : 0x7FFFFFFF; }
 
 double power_of_two(std::int32_t exponent) noexcept {
@@ -154,7 +155,8 @@ double exp2(double x) noexcept {
 double log(double x) noexcept {
   if (x == 0) return -kInfinity;
   if (!(x > 0) || std::isinf(x)) return x > 0 ? x : std::numeric_limits<double>::quiet_NaN();
-  // x = 2^exponent y with y in [sqrt(1/2), sqrt(2)), by the upper half of its bits; subnormal numbers are made larger first.
+  // Write x as 2^exponent y with y in [sqrt(1/2), sqrt(2)), by the upper half of its bits; make subnormal numbers
+  // larger first.
   constexpr std::uint64_t kOne = 0x3FF0000000000000, kRootOfHalf = 0x3FE6A09E00000000;
   const bool is_subnormal = x < std::numeric_limits<double>::min();
   const auto bits = bit_cast<std::uint64_t>(is_subnormal ? x * 0x1p54 : x);

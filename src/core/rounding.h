@@ -1,9 +1,9 @@
-/// What of a computed vector is nothing but rounding error, and is set to zero.
+/// Finds what in a computed vector is nothing but rounding error, and sets it to zero.
 ///
-/// Terms that cancel leave their rounding errors behind, and those have a length but no direction that means anything:
-/// three collinear corners would get a random normal. Each error is at most a multiple of the unit roundoff u times the
-/// sum of the absolute values that were added (Higham, Accuracy and Stability of Numerical Algorithms, sections 2 to
-/// 4), so that sum is kept beside the value, and what is not above the error counts as zero.
+/// Terms that cancel leave rounding errors behind, which have a length but a meaningless direction: three collinear
+/// corners would get a random normal. Each error is at most a multiple of the unit roundoff u times the sum of the
+/// absolute values that were added (Higham, Accuracy and Stability of Numerical Algorithms, sections 2 to 4). So that
+/// sum is kept beside the value, and a value that is not above the error counts as zero.
 #ifndef CHRONORMAL_CORE_ROUNDING_H_
 #define CHRONORMAL_CORE_ROUNDING_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::inline internal {
 
-/// u: one operation of double, or of float, is within this of its exact value, relative to that.
+/// Unit roundoffs u: one operation of double, or of float, has a relative error of at most u.
 inline constexpr double kUnitRoundoff = 0x1p-53;
 inline constexpr double kFloatUnitRoundoff = 0x1p-24;
 
@@ -25,18 +25,18 @@ inline constexpr double kFloatUnitRoundoff = 0x1p-24;
   return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
 }
 
-/// v, or zero where no component is above an error that all of them share.
+/// Returns v, or zero if no component is above an error that all of them share.
 [[nodiscard]] inline Vec3d without_rounding(const Vec3d& v, double error) noexcept {
   return max_abs(v) > error ? v : Vec3d{};
 }
 
-/// v with zero for each component that is not above its own error.
+/// Returns v with zero for each component that is not above its own error.
 [[nodiscard]] inline Vec3d without_rounding(const Vec3d& v, const Vec3d& error) noexcept {
   const auto keep = [](double value, double e) { return std::fabs(value) <= e ? 0.0 : value; };
   return {keep(v.x, error.x), keep(v.y, error.y), keep(v.z, error.z)};
 }
 
-/// A sum of vectors. The error is 4 u of all terms for each term: the addition has one u, and the rest is for the
+/// Adds up vectors. The error is 4 u of all terms for each term: the addition has one u, and the rest is for the
 /// rounding of the term itself.
 class VectorSum {
  public:
@@ -50,9 +50,9 @@ class VectorSum {
     return chronormal::without_rounding(value_, 4 * kUnitRoundoff * static_cast<double>(terms_) * magnitude_);
   }
 
-  /// The largest sum of absolute values in any component.
+  /// Returns the largest sum of absolute values in any component.
   [[nodiscard]] double size() const noexcept { return max_abs(magnitude_); }
-  /// How far any component of without_rounding() may be from the sum of the terms as they are.
+  /// Returns a bound of the distance of any component of without_rounding() from the exact sum of the terms.
   [[nodiscard]] double error() const noexcept {
     return 8 * kUnitRoundoff * static_cast<double>(terms_) * max_abs(magnitude_);
   }
@@ -62,7 +62,7 @@ class VectorSum {
   std::size_t terms_ = 0;
 };
 
-/// A sum of cross products of rounded edges. The error of each stays below 4 u of the absolute products in it; twice
+/// Adds up cross products of rounded edges. The error of each stays below 4 u of the absolute products in it; twice
 /// that is taken for safety.
 class CrossSum {
  public:
@@ -73,15 +73,15 @@ class CrossSum {
     ++terms_;
   }
 
-  /// The sums of the absolute products in each component.
+  /// Returns the sums of the absolute products in each component.
   [[nodiscard]] const Vec3d& magnitude() const noexcept { return magnitude_; }
 
   [[nodiscard]] Vec3d without_rounding() const noexcept {
     return chronormal::without_rounding(value_, 8 * kUnitRoundoff * static_cast<double>(terms_) * magnitude_);
   }
 
-  /// How far any component of without_rounding() may be from the exact sum: 4 u of rounding, and 8 u where that set it
-  /// to zero.
+  /// Returns a bound of the distance of any component of without_rounding() from the exact sum: 4 u of rounding, and 8
+  /// u if that set it to zero.
   [[nodiscard]] double error() const noexcept {
     return 12 * kUnitRoundoff * static_cast<double>(terms_) * max_abs(magnitude_);
   }

@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// How many bytes the character at the beginning takes: 0 for what is no UTF-8 (RFC 3629).
+// Returns the number of bytes of the first character, or 0 if the text does not begin with valid UTF-8 (RFC 3629).
 std::size_t length_of_character(std::string_view text, std::uint32_t& character) {
   const auto byte = [text](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
   const std::uint32_t first = byte(0);
@@ -55,7 +55,7 @@ std::string hexadecimal(std::uint32_t value, std::size_t digits) {
   return text;
 }
 
-// How many characters a text of UTF-8 has.
+// Returns the number of characters of a text in UTF-8.
 std::size_t characters_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));

@@ -1,4 +1,4 @@
-/// Text for people and programs: words with counts in them, and names from files, made safe to print. Private.
+/// Texts for people and programs: words with counts in them, and names from files, made safe to print. Private.
 #ifndef CHRONORMAL_CORE_TEXT_H_
 #define CHRONORMAL_CORE_TEXT_H_
 
@@ -9,26 +9,26 @@
 
 namespace chronormal::inline internal {
 
-/// Names in files are anyone's words. Control characters, characters that turn the direction of writing, and bytes that
-/// are not UTF-8 come out as \xNN; what is longer than `most` characters ends in "...".
-/// 4 <= most
+/// Makes a name from a file safe to print, since a file may hold anything. Control characters, characters that turn the
+/// direction of writing, and bytes that are not UTF-8 become \xNN. A text longer than `most` characters is cut and ends
+/// in "...". 4 <= most
 [[nodiscard]] std::string printable(std::string_view text, std::size_t most = static_cast<std::size_t>(-1));
 
-/// The text of a JSON document, in UTF-8, with the same characters as \uNNNN inside its strings; line ends stay.
+/// Returns the text of a JSON document, in UTF-8, with unsafe characters as \uNNNN inside its strings. Line ends stay.
 [[nodiscard]] std::string escaped_for_json(std::string_view document);
 
-/// 1234567 as "1,234,567".
+/// Returns 1234567 as "1,234,567".
 [[nodiscard]] std::string grouped(std::size_t value);
 
-/// "1 face", "1,234 faces".
+/// Returns a count with its noun: "1 face", "1,234 faces".
 [[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
 
-/// A number as people write it, for messages: 0.3 for 0.30000000000000004. It has six significant digits, or as many
-/// more as tell it from others in the same message; a number of up to eight characters stands as it is.
+/// Returns a number as people write it, for messages: 0.3 for 0.30000000000000004. It has six significant digits, or as
+/// many more as tell it from others in the same message. A number of up to eight characters stands as it is.
 [[nodiscard]] std::string rounded_text(double value, std::initializer_list<double> others = {});
 
-/// A number with so many decimals, or with so many significant digits and no zeros at the end; "-" where it is infinite
-/// or no number.
+/// Print a number. with_decimals: fixed point. with_digits: significant digits, trailing zeros removed. Both print "-"
+/// for infinity and NaN.
 [[nodiscard]] std::string with_decimals(double value, int decimals);
 [[nodiscard]] std::string with_digits(double value, int digits);
 

@@ -5,7 +5,7 @@
 namespace chronormal {
 
 double angle_between(const Vec3d& a, const Vec3d& b) noexcept {
-  // 0.0 turns -0, which a zero vector gives beside one whose components are all negative, into 0.
+  // Adding 0.0 turns -0 into 0. The product is -0 for a zero vector beside one whose components are all negative.
   return portable::atan2(length(cross(a, b)), dot(a, b) + 0.0);
 }
 

@@ -1,15 +1,16 @@
 /// The vector area of a polygon: its normal, whose length is twice the area.
 ///
-/// The edges from the first corner cut a polygon p0 ... pn into a fan of triangles, and the normal is the sum of
-/// theirs,
+/// The edges from the first corner cut a polygon p0 ... pn into a fan of triangles, and the normal is the sum of the
+/// normals of the triangles,
 ///
 ///     n = sum over c = 2 ... n of (p[c-1] - p0) x (p[c] - p0)
 ///
-/// which is the same for every way to cut it, convex or not, flat or not. Edges from one corner, and not the products
-/// of positions as in Newell's form, since a small polygon far from the origin would lose its digits in those.
+/// which does not depend on how the polygon is cut, convex or not, flat or not. The formula takes edges from one
+/// corner, not the products of positions of Newell's form, which would lose the digits of a small polygon far from the
+/// origin.
 ///
 /// The edges need not be vectors: intervals, pairs for both ends of a segment and polynomials in t go through the same
-/// fan, and whoever bounds the error of n adds up what the bound needs beside it.
+/// fan. A caller that bounds the error of n adds up what its bound needs beside the sum.
 #ifndef CHRONORMAL_CORE_VECTOR_AREA_H_
 #define CHRONORMAL_CORE_VECTOR_AREA_H_
 
@@ -32,7 +33,7 @@ constexpr void for_fan(std::size_t corners, const EdgeTo& edge_to, const Body& b
   }
 }
 
-/// The normal of a polygon with the positions vertex(0) ... vertex(corners - 1), without a look at rounding.
+/// Returns the normal of a polygon with the positions vertex(0) ... vertex(corners - 1). Rounding errors stay in it.
 template <class VertexAt>
 [[nodiscard]] constexpr auto twice_vector_area(std::size_t corners, const VertexAt& vertex) {
   const auto origin = vertex(std::size_t{0});

@@ -1,14 +1,14 @@
-/// Integers as wide as it takes, for sums of products of floats that must not round.
+/// Integers as wide as needed, for sums of products of floats that must not round.
 ///
 /// Every finite float is an integer times 2^-149, so a product of two is an integer times 2^-298, and so is every sum
-/// of such products. Kept whole, it has no rounding error, whatever cancels, and asks for nothing from the floating
+/// of such products. Kept whole, it has no rounding error, whatever cancels. It also needs nothing from the floating
 /// point unit: the result is the same in every rounding mode, and with subnormal numbers flushed to zero.
 ///
 ///     value = sum of digit(k) 2^(24 k),   24 bits each and signed
 ///
-/// so that the product of two digits has 48 bits, and thousands of them add up in 64 before a digit must carry. After
-/// settle() all digits lie in [-2^23, 2^23); the highest that is not zero then has the sign of the value, which is zero
-/// only where all digits are.
+/// The product of two digits has 48 bits, so thousands of them add up in 64 bits before a digit must carry. After
+/// settle() all digits lie in [-2^23, 2^23). The highest digit that is not zero then has the sign of the value, and the
+/// value is zero only if all digits are.
 ///
 /// Source: Kulisch, Computer Arithmetic and Validity (2008): an accumulator as long as the range of its products.
 #ifndef CHRONORMAL_CORE_WIDE_INTEGER_H_
@@ -29,7 +29,7 @@ namespace chronormal::inline internal {
 inline constexpr int kDigitBits = 24;
 inline constexpr std::int64_t kDigitBase = std::int64_t{1} << kDigitBits;
 
-/// A finite float as mantissa * 2^(shift - 149): a signed integer of 24 bits, and 0 <= shift <= 253.
+/// Holds a finite float as mantissa * 2^(shift - 149): a signed integer of 24 bits, and 0 <= shift <= 253.
 struct FloatParts {
   std::int64_t mantissa = 0;
   unsigned shift = 0;
@@ -42,7 +42,7 @@ struct FloatParts {
   }
 };
 
-/// A finite double as mantissa * 2^(shift - 1074): a signed integer of 53 bits, and 0 <= shift <= 2045.
+/// Holds a finite double as mantissa * 2^(shift - 1074): a signed integer of 53 bits, and 0 <= shift <= 2045.
 struct DoubleParts {
   std::int64_t mantissa = 0;
   unsigned shift = 0;
@@ -55,7 +55,7 @@ struct DoubleParts {
   }
 };
 
-/// A double t in [2^-200, 1], or 0, as an integer of 53 bits times 2^-scale; scale is as small as can be.
+/// Holds a double t in [2^-200, 1], or 0, as an integer of 53 bits times 2^-scale. The scale is as small as possible.
 struct UnitFraction {
   std::array<std::int64_t, 3> digits{};
   unsigned scale = 0;
@@ -74,7 +74,7 @@ struct UnitFraction {
   }
 };
 
-/// At most kMost digits; as many as it takes are in use.
+/// An integer of up to kMost digits, of which only the needed ones are in use.
 template <std::size_t kMost>
 class WideInteger {
  public:
@@ -92,8 +92,8 @@ class WideInteger {
     digits_[k + 2] += high >> kDigitBits;
   }
 
-  /// Adds sign * a / 2^(shift - 1074); a must have no smaller shift unless it is 0. Up to 2^9 of them may be added
-  /// before settle().
+  /// Adds sign * a / 2^(shift - 1074). a.shift must be at least `shift` unless a is 0. Up to 2^9 such terms may be
+  /// added before settle().
   void add(const DoubleParts& a, unsigned shift, std::int64_t sign = 1) noexcept {
     if (a.mantissa == 0) return;
     const std::int64_t mantissa = sign * a.mantissa;
@@ -140,7 +140,7 @@ class WideInteger {
     for (std::size_t k = 0; k < other.size(); ++k) digits_[k + by] += power * other.digit(k);
   }
 
-  /// Brings every digit into [-2^23, 2^23), and forgets leading zeros.
+  /// Brings every digit into [-2^23, 2^23), and drops leading zeros.
   void settle() noexcept {
     std::int64_t carry = 0;
     for (std::size_t k = 0; k < size_ || carry != 0; ++k) {
@@ -152,7 +152,7 @@ class WideInteger {
     while (size_ > 0 && digits_[size_ - 1] == 0) --size_;
   }
 
-  /// -1, 0 or 1. Must be settled.
+  /// Returns the sign, -1, 0 or 1. The digits must be settled.
   [[nodiscard]] int sign() const noexcept { return size_ == 0 ? 0 : digits_[size_ - 1] < 0 ? -1 : 1; }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -162,9 +162,11 @@ class WideInteger {
     digits_[k] = value;
   }
 
-  /// value * 2^exponent, within 2^-51 of itself, where that is in the range of normal doubles. Must be settled.
+  /// Returns value * 2^exponent with a relative error of at most 2^-51, if it is in the range of normal doubles. The
+  /// digits must be settled.
   [[nodiscard]] double to_double(int exponent) const noexcept {
-    // Four digits have at least 71 bits from the highest on, and what is below them is less than their last.
+    // Four digits have at least 71 bits from the highest on, and the digits below them are less than one unit of the
+    // last.
     constexpr std::size_t kTaken = 4;
     const std::size_t end = size_ < kTaken ? 0 : size_ - kTaken;
     double value = 0;

@@ -1,4 +1,4 @@
-/// How the order of vertices and faces suits the caches, from a sample of a mesh at a fixed stride.
+/// Measures how well the order of vertices and faces suits the caches, from a sample of a mesh at a fixed stride.
 #ifndef CHRONORMAL_MOTION_COHERENCE_H_
 #define CHRONORMAL_MOTION_COHERENCE_H_
 
@@ -16,7 +16,7 @@ class SmallSet {
  public:
   SmallSet() { slots_.fill(kEmpty); }
 
-  /// Adds a number. Returns whether it was not in the set before. There must be room: a set holds up to kMost numbers.
+  /// Adds a number. Returns whether the set did not have it before. The set must hold fewer than kMost numbers
   bool add(std::uint32_t number) {
     for (std::size_t slot = number * 2654435761U >> 22;; slot = (slot + 1) % slots_.size()) {
       if (slots_[slot] == number) return false;
@@ -33,14 +33,14 @@ class SmallSet {
   std::array<std::uint32_t, 2 * kMost> slots_;
 };
 
-/// Positions that fit here may be read in any order: a cache near the core holds them.
+/// Positions of at most this many bytes may be read in any order, since a cache near the core holds them.
 inline constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 
-/// Up to this many lines per face, caches and their prefetchers keep up by themselves.
+/// The number of lines per face up to which caches and their prefetchers keep up by themselves.
 inline constexpr double kMostLinesPerFace = 1;
 
-/// How many cache lines of packed positions a face brings in that the faces just before it did not: about 0.2 on a mesh
-/// in grid order, 3 where vertices lie in no order. A pure function of the topology; less than 0.02 ms.
+/// Returns how many cache lines of packed positions a face reads that the faces just before it did not: about 0.2 on a
+/// mesh in grid order, 3 if vertices lie in no order. A pure function of the topology; takes less than 0.02 ms.
 [[nodiscard]] inline double lines_per_face(const Topology& topology) {
   constexpr std::size_t kSamples = 16, kRun = 64, kVerticesOfLine = 5;
   const std::size_t count = topology.face_count();
@@ -59,8 +59,8 @@ inline constexpr double kMostLinesPerFace = 1;
   return static_cast<double>(lines) / static_cast<double>(faces);
 }
 
-/// Above this many lines for each face, neighbours in the mesh are not neighbours in memory; curves are prepared from a
-/// copy of both ends then, of so many bytes for each vertex.
+/// Above this many lines per face, neighbours in the mesh are not neighbours in memory. Curves are then prepared from a
+/// copy of both ends, which takes kScatteredBytes per vertex.
 inline constexpr double kScatteredLines = 1;
 inline constexpr std::size_t kScatteredBytes = 8 * sizeof(float);
 

@@ -16,7 +16,7 @@
 namespace chronormal {
 namespace {
 
-// A keyframe that is read while the caller computes. Where there are no threads, nothing is read ahead.
+// Reads a keyframe while the caller computes. Without threads, nothing is read ahead.
 class ReadAhead {
  public:
 #ifndef __EMSCRIPTEN__
@@ -28,7 +28,7 @@ class ReadAhead {
   [[nodiscard]] bool is_of(std::size_t keyframe) const noexcept { return keyframe_ == keyframe; }
   [[nodiscard]] bool is_under_way() const noexcept { return keyframe_.has_value(); }
 
-  // `read` takes the keyframe and its positions, and must stay there.
+  // Starts to read. `read` takes the keyframe and its positions, and must live until finish().
   template <class Read>
   void start([[maybe_unused]] const Read& read, [[maybe_unused]] std::size_t keyframe, std::vector<float> room) {
     positions_ = std::move(room);
@@ -83,13 +83,13 @@ struct MotionStream::State {
     return positions;
   }
 
-  // Reads a keyframe, and tells the watcher of it.
+  // Reads a keyframe, and shows it to the watcher.
   [[nodiscard]] Status read_keyframe(std::size_t keyframe, std::span<float> positions) const {
     const Status status = read(outline, keyframe, positions);
     return status && watcher ? watcher(keyframe, positions) : status;
   }
 
-  // Ends what is read ahead, and forgets it.
+  // Waits for the keyframe that is read ahead, and drops it.
   void drop_ahead() {
     if (!ahead.is_under_way()) return;
     std::vector<float> read_positions;

@@ -1,4 +1,4 @@
-/// The two halves of validate(): one checks a motion without its positions, the other the positions of one keyframe.
+/// The two halves of validate(). One checks a motion without its positions, the other the positions of one keyframe.
 /// Private.
 #ifndef CHRONORMAL_MOTION_OUTLINE_H_
 #define CHRONORMAL_MOTION_OUTLINE_H_
@@ -14,7 +14,7 @@ namespace chronormal::inline internal {
 /// Checks everything that validate() checks, except positions.
 [[nodiscard]] Status validate_outline(const Motion& motion);
 
-/// Checks the positions that keyframe k is to have.
+/// Checks positions that keyframe k is to get.
 [[nodiscard]] Status validate_positions(const Motion& motion, std::size_t k, std::span<const float> positions);
 
 }  // namespace chronormal::inline internal

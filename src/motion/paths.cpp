@@ -1,9 +1,9 @@
 // Draws cubics through keyframes, and cuts them into straight pieces.
 //
-// Let e and f be edges of a face over one piece, as chords, and s (1 - s) p and s (1 - s) q what the cubics have beside
-// them. p is linear, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, where the derivatives are by s: both
+// Let e and f be edges of a face over one piece, as chords, and let the cubics differ from them by s (1 - s) p and s (1
+// - s) q. p is linear, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, where the derivatives are by s: both
 // sides are cubics that vanish at s = 0 and 1, with the same second derivatives. So the normal of the curve differs
-// from that of the chords, n, by
+// from the normal n of the chords by
 //
 //     d = s (1 - s) (e x q + p x f) + s^2 (1 - s)^2 p x q                                                           (1)
 //
@@ -14,7 +14,7 @@
 // vertices and corners.
 //
 // Rounding a keyframe to float32 moves each coordinate by up to 2^-24 of it, which changes (1) in the same way: up to
-// |e| |dq| + |dp| |f| + |dp| |dq|. A piece whose r is below that gains nothing by being cut.
+// |e| |dq| + |dp| |f| + |dp| |dq|. Cutting a piece whose r is below that gains nothing.
 #include "chronormal/motion/paths.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ VectorView<const float> packed(const std::vector<float>& numbers) {
   return VectorView<const float>::packed(std::span(numbers));
 }
 
-// The velocities that a path takes from a keyframe itself. Empty: they follow from positions.
+// Returns the velocities that a path takes from a keyframe itself. They are empty if velocities follow from positions.
 const std::vector<float>& given_velocities(const Motion::Keyframe& keyframe, PathKind kind) noexcept {
   static const std::vector<float> kNone;
   if (kind == PathKind::kLinear) return kNone;
@@ -69,8 +69,8 @@ std::vector<const Motion::Keyframe*> pointers_to(const std::vector<Motion::Keyfr
   return keys;
 }
 
-// Holds the keyframes that the cubics of a segment follow from: its ends, and one more on each side; in the first and
-// the last segment two on the one side that there is.
+// Holds the keyframes that determine the cubics of a segment: its ends, and one more on each side. The first and the
+// last segment take two from the one side that there is.
 Status hold_cubics(MotionStream& stream, std::size_t segment) {
   const std::size_t end = stream.motion().keyframes.size() - 1;
   const std::size_t before = segment - std::min<std::size_t>(segment, 1);
@@ -86,30 +86,30 @@ struct BendSums {
 void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums& sums) {
   const Motion::Keyframe &from = motion.keyframes[at - every], &middle = motion.keyframes[at],
                          &to = motion.keyframes[at + every];
-  // Times may be uneven, so the middle keyframe is compared with the place on the straight line at its time.
+  // Times may be uneven, so compare the middle keyframe with the point of the straight line at its time.
   const double part = (middle.time - from.time) / (to.time - from.time);
   const auto before = packed(from.positions), here = packed(middle.positions), after = packed(to.positions);
   for (std::size_t v = 0; v < here.count; ++v) {
     const Vec3d p = to_double(before[v]), q = to_double(here[v]), r = to_double(after[v]);
-    // With even times, the second difference is twice the distance from the middle.
+    // If times are even, the second difference is twice the distance from the middle.
     sums.bent += 2 * length(q - ((1 - part) * p + part * r));
     sums.way += length(q - p) + length(r - q);
   }
 }
 
-// A vector that is linear or quadratic over a piece, by its values at both ends.
+// Holds a vector that is linear or quadratic over a piece, by its values at both ends.
 struct Ends {
   Vec3d from, to;
 };
 
-// The edge from the first corner of a face over a piece: its chord, what the cubic has beside it, and how far rounding
-// may move either end.
+// Holds the edge from the first corner of a face over a piece: its chord, the difference of the cubic from it, and a
+// bound of how far rounding may move either end.
 struct PieceEdge {
   Ends chord, beside;
   double rounding = 0;
 };
 
-// Adds up a product of edges as a quadratic.
+// Adds up products of edges as a quadratic.
 class Products {
  public:
   void add(const Ends& e, const Ends& f) noexcept {
@@ -127,13 +127,13 @@ class Products {
   Vec3d from_, middle_, to_;
 };
 
-// Decides for faces of one segment whether so many pieces are enough.
+// Decides for faces of one segment whether a number of pieces is enough.
 class PieceBounds {
  public:
   PieceBounds(const Topology& topology, const CubicSegment& cubics, double sine)
       : topology_(topology), cubics_(cubics), sine_(sine) {}
 
-  // Returns those of the faces for which they are not, in their order. Empty faces are all faces.
+  // Returns the faces for which the pieces are not enough, in their order. nullptr stands for all faces.
   [[nodiscard]] std::vector<std::uint32_t> not_within(const std::vector<std::uint32_t>* faces,
                                                       std::size_t pieces) const {
     const std::size_t count = faces != nullptr ? faces->size() : topology_.face_count();
@@ -202,7 +202,8 @@ struct Pieces {
   std::size_t count = 1, beyond = 0;
 };
 
-// The fewest pieces that are enough for all faces that some number of pieces is enough for; or as many as there may be.
+// Returns the fewest pieces that suffice for all faces for which some number of pieces suffices, or `most` if that is
+// fewer.
 Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
   const std::size_t tried = std::max(most, kMostPieces);
   std::vector<std::size_t> ladder, left;  // and how many faces each rung leaves
@@ -217,7 +218,7 @@ Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
     left.push_back(never.size());
   }
   auto rung = static_cast<std::size_t>(std::find(left.begin(), left.end(), never.size()) - left.begin());
-  // Smaller pieces keep what larger ones kept; it is looked at once more, for it is the result that is promised.
+  // Smaller pieces should keep every face that larger ones kept. Check once more, since the result is what is promised.
   for (; rung > 0 && rung + 1 < ladder.size(); ++rung) {
     const std::vector<std::uint32_t> now = bounds.not_within(nullptr, ladder[rung]);
     if (std::includes(never.begin(), never.end(), now.begin(), now.end())) break;
@@ -227,7 +228,7 @@ Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
   return {ladder[rung], bounds.not_within(nullptr, ladder[rung]).size()};
 }
 
-// The keyframes of pieces, made of the stream that they cut.
+// Makes the keyframes of pieces from the stream that they cut.
 struct Cutter {
   MotionStream source;
   PathKind kind;
@@ -258,7 +259,7 @@ struct Cutter {
   }
 };
 
-// Appends the keyframes of a segment but the last, without positions. Takes fewer pieces where their times would not
+// Appends the keyframes of a segment except the last, without positions. Takes fewer pieces if their times would not
 // ascend.
 std::size_t append_pieces(const Motion::Keyframe& from, const Motion::Keyframe& to, std::size_t count, Motion& result) {
   const auto time = [&](std::size_t i) {
@@ -325,7 +326,7 @@ std::vector<float> VelocityShares::velocities(std::span<const std::span<const fl
   return result;
 }
 
-// The derivative at a key of the polynomial through it and its neighbours, in Lagrange form.
+// Returns the shares for the derivative at a key of the polynomial through it and its neighbours, in Lagrange form.
 VelocityShares velocity_shares(std::span<const double> times, std::size_t at) {
   const bool is_end = at == 0 || at + 1 == times.size();
   const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, times.size());

@@ -1,6 +1,6 @@
-/// One end of a segment in as many digits as it has: float32 positions, and the residuals of their rounding where the
-/// motion was computed (motion/motion.h). All that makes normals in double or in integers reads positions here; what
-/// loads float32 positions by itself asks fits_lanes() first. Private.
+/// One end of a segment in full precision: float32 positions, and the residuals of their rounding if the motion was
+/// computed (motion/motion.h). Everything that makes normals in double or in integers reads positions here. Code that
+/// loads float32 positions by itself must ask fits_lanes() first. Private.
 #ifndef CHRONORMAL_MOTION_SEGMENT_END_H_
 #define CHRONORMAL_MOTION_SEGMENT_END_H_
 
@@ -20,7 +20,7 @@ class SegmentEnd {
   }
   [[nodiscard]] static SegmentEnd to(const Segment& segment) noexcept { return {segment.to, segment.to_residuals}; }
 
-  /// Returns where a vertex is, rounded to double.
+  /// Returns the position of a vertex, rounded to double.
   [[nodiscard]] Vec3d operator[](std::size_t vertex) const noexcept {
     const Vec3d position = to_double(positions_[vertex]);
     return has_residuals() ? position + residuals_[vertex] : position;
@@ -29,8 +29,8 @@ class SegmentEnd {
   /// Returns the position of a vertex without its residual.
   [[nodiscard]] Vec3f position(std::size_t vertex) const noexcept { return positions_[vertex]; }
 
-  /// Returns the way from vertex a to vertex b, or from a vertex to a point. Each component is rounded once,
-  /// however far from the origin both are (but for a share of a rounding: core/twofold.h).
+  /// Returns the vector from vertex a to vertex b, or from a vertex to a point. Each component is rounded once, however
+  /// far from the origin both are (but for a share of a rounding: core/twofold.h).
   [[nodiscard]] Vec3d edge(std::size_t a, std::size_t b) const noexcept {
     const Vec3d p = to_double(positions_[a]), q = to_double(positions_[b]);
     return has_residuals() ? difference(q, residuals_[b], p, residuals_[a]) : q - p;
@@ -39,14 +39,14 @@ class SegmentEnd {
     const Vec3d p = to_double(positions_[vertex]);
     return has_residuals() ? difference(point, {}, p, residuals_[vertex]) : point - p;
   }
-  /// Returns the way from a vertex at another end of the segment to vertex b at this one.
+  /// Returns the vector from vertex a at another end of the segment to vertex b at this one.
   [[nodiscard]] Vec3d way_from(const SegmentEnd& other, std::size_t a, std::size_t b) const noexcept {
     const Vec3d p = to_double(other.positions_[a]), q = to_double(positions_[b]);
     if (!has_residuals() && !other.has_residuals()) return q - p;
     return difference(q, residual(b), p, other.residual(a));
   }
 
-  /// Calls body(part) for vectors of floats that add up to the place of a vertex.
+  /// Calls body(part) for vectors of floats that add up to the position of a vertex.
   template <class Body>
   void for_parts(std::size_t vertex, const Body& body) const {
     body(positions_[vertex]);

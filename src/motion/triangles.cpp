@@ -1,5 +1,5 @@
-// Ear clipping in the coordinate plane in which the polygon is seen largest. A product of two float32 is exact in
-// double, so the area of a triangle is a sum of six doubles, whose sign is found exactly.
+// Clips ears in the coordinate plane in which the polygon looks largest. A product of two float32 is exact in double,
+// so the area of a triangle is a sum of six doubles, whose sign can be found exactly.
 #include "motion/triangles.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-// The sign of a sum of doubles of which none overflows: added up one by one as a sum of numbers that do not overlap
-// (Shewchuk 1997, Grow-Expansion), of which the largest has the sign.
+// Returns the sign of a sum of doubles that does not overflow. It adds them up one by one as a sum of numbers that do
+// not overlap (Shewchuk 1997, Grow-Expansion); the largest of them has the sign.
 int sign_of_sum(const std::array<double, 6>& terms) {
   std::array<double, 6> parts{};
   std::size_t count = 0;
@@ -32,7 +32,7 @@ int sign_of_sum(const std::array<double, 6>& terms) {
   return 0;
 }
 
-// 1 where a, b, c turn left, -1 where they turn right, 0 on a line.
+// Returns 1 if a, b, c turn left, -1 if they turn right, 0 if they are on a line.
 int turn(const Point& a, const Point& b, const Point& c) {
   const auto product = [](float x, float y) { return double{x} * double{y}; };
   const std::array<double, 6> terms = {product(a.x, b.y),  -product(a.y, b.x), product(b.x, c.y),
@@ -46,7 +46,7 @@ int turn(const Point& a, const Point& b, const Point& c) {
   return sign_of_sum(terms);
 }
 
-// The polygon in a coordinate plane, running to the left.
+// Returns the polygon in a coordinate plane, in which it turns left.
 std::vector<Point> flattened(std::span<const std::uint32_t> face, std::span<const float> positions) {
   std::array<double, 3> area = {};
   const auto at = [&](std::size_t c, std::size_t axis) { return positions[3 * std::size_t{face[c]} + axis]; };
@@ -72,7 +72,7 @@ std::vector<Point> flattened(std::span<const std::uint32_t> face, std::span<cons
   return points;
 }
 
-// Tells whether no triangle of the fan turns right: then they cover a polygon that does not cross itself once.
+// Tells whether no triangle of the fan turns right. If so, they cover a polygon that does not cross itself once.
 bool is_fan_of(const std::vector<Point>& points) {
   for (std::size_t c = 2; c < points.size(); ++c)
     if (turn(points[0], points[c - 1], points[c]) < 0) return false;
@@ -95,7 +95,7 @@ std::vector<std::array<std::uint32_t, 3>> clipped(const std::vector<Point>& poin
   std::vector<std::uint32_t> rest(points.size());
   for (std::uint32_t c = 0; c < rest.size(); ++c) rest[c] = c;
   const auto corner = [&](std::size_t i) { return rest[i % rest.size()]; };
-  // Tells whether the corner i is one that can be cut off: it turns left, and no other point is in its triangle.
+  // Tells whether corner i can be cut off: it turns left, and no other point is in its triangle.
   const auto is_ear = [&](std::size_t i) {
     const Point &a = points[corner(i + rest.size() - 1)], &b = points[corner(i)], &c = points[corner(i + 1)];
     if (turn(a, b, c) <= 0) return false;
@@ -109,7 +109,7 @@ std::vector<std::array<std::uint32_t, 3>> clipped(const std::vector<Point>& poin
   };
   std::size_t at = 1;
   while (rest.size() > 3) {
-    // Ears in turn, so that triangles do not all meet in one corner. Then corners on a line, which cost no area. A
+    // Cut ears in turn, so that triangles do not all meet in one corner; then corners on a line, which cost no area. A
     // polygon that crosses itself may have neither.
     std::size_t found = rest.size();
     for (std::size_t i = 0; i < rest.size() && found == rest.size(); ++i)

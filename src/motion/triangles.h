@@ -1,12 +1,13 @@
-/// Cuts polygons into triangles: what files that hold only triangles get, and what is asked where a surface is.
+/// Cuts polygons into triangles, for files that hold only triangles, and where a point of a surface is asked for.
 /// Private.
 ///
-/// A polygon that a fan around its first corner covers, as every convex one, becomes that fan, which is what most
-/// programs make of it. Another one is cut by ear clipping in the plane of its vector area at one keyframe: the
-/// triangles cover the polygon once there. All signs are exact. A polygon that crosses itself has no such triangles,
-/// and gets as many others.
+/// A polygon that is covered by a fan around its first corner, as every convex one is, becomes that fan, which is what
+/// most programs make of it. Any other polygon is cut by ear clipping in the plane of its vector area at one keyframe:
+/// the triangles cover it once there. All signs are exact. A polygon that crosses itself has no such triangles, and
+/// gets as many others.
 ///
 /// Libraries that cut polygons (mapbox earcut, CGAL) leave out corners on straight edges, so that vertices would have
+/// no triangle, or decide by rounded numbers; this is why we have our own.
 /// no triangle, or decide by rounded numbers; so this is our own.
 #ifndef CHRONORMAL_MOTION_TRIANGLES_H_
 #define CHRONORMAL_MOTION_TRIANGLES_H_
@@ -21,14 +22,14 @@
 
 namespace chronormal::inline internal {
 
-/// The corners of one polygon, counted from 0 in it, of each of its n - 2 triangles. positions are those of the mesh.
-/// O(n) for convex ones, else O(n^2); one of more corners than kMostClipped becomes a fan.
+/// Returns the corners of each of the n - 2 triangles of one polygon, counted from 0 in it. positions are the positions
+/// of the mesh. O(n) for convex polygons, else O(n^2). A polygon of more corners than kMostClipped becomes a fan.
 [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles_of_face(std::span<const std::uint32_t> face,
                                                                           std::span<const float> positions);
 inline constexpr std::size_t kMostClipped = 1U << 11;
 
-/// The triangles of all faces, by the vertex of each corner: (triangles, 3). positions are those of the topology's
-/// vertices; vertex_of_corner may name other vertices, and has as many entries as the topology has corners.
+/// Returns the triangles of all faces, by the vertex of each corner: (triangles, 3). positions belong to the topology's
+/// vertices. vertex_of_corner may name other vertices, and has as many entries as the topology has corners.
 [[nodiscard]] std::vector<std::uint32_t> cut_polygons(const Topology& topology, std::span<const float> positions,
                                                       std::span<const std::uint32_t> vertex_of_corner);
 
