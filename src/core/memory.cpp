@@ -25,7 +25,7 @@ std::byte* allocate_aligned(std::size_t size) {
   void* const memory = std::aligned_alloc(alignment, whole);
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef __linux__
-  if (alignment == kHugePage) (void)madvise(memory, whole, MADV_HUGEPAGE);  // where it is refused: small pages
+  if (alignment == kHugePage) (void)madvise(memory, whole, MADV_HUGEPAGE);  // the system may refuse: small pages then
 #endif
   return static_cast<std::byte*>(memory);
 }

@@ -92,14 +92,14 @@ thread_local Job* current_job = nullptr;  // whose piece this thread runs
 struct Job {
   const std::function<void(std::size_t)>& body;
   const std::size_t count;
-  const std::size_t threads;  // that the outermost job and those inside it may have
+  const std::size_t threads;  // limit of the outermost job and the jobs inside it
   Job* const parent;          // nullptr for an outermost job
   Job* const outermost = parent != nullptr ? parent->outermost : this;
   Interruption* const asked = interruption;
   std::fenv_t rounding = {};
 
-  std::atomic<std::size_t> next = 0;  // the piece that is taken next
-  std::size_t seated = 1;             // threads that the outermost job and those inside it have
+  std::atomic<std::size_t> next = 0;  // threads of the outermost job and the jobs inside it
+  std::size_t seated = 1;             // threads of the outermost job and the jobs inside it
   std::size_t helpers = 0;            // threads that run pieces of this job, beside its caller
   std::exception_ptr failure = nullptr;
   Job* after = nullptr;  // in the pool's list
@@ -135,7 +135,7 @@ class Pool {
       const std::lock_guard lock(mutex_);
       try {
         while (!has_all_ && workers_.size() + 1 < wanted) workers_.emplace_back([this] { work(); });
-      } catch (const std::exception&) {  // no thread, or no memory for one: it stays at the ones that there are
+      } catch (const std::exception&) {  // no thread, or no memory for one: go on with the others
         has_all_ = true;
       }
       worker_count_ = workers_.size();

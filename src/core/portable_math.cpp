@@ -102,7 +102,7 @@ double sin(double x) noexcept {
 double cos(double x) noexcept {
   if (x == 0) return 1;
   const double size = std::fabs(x);
-  const std::uint32_t q = 2 * whole_part(size * 0.31830988618379067153) + 1;  // of quarter turns
+  const std::uint32_t q = 2 * whole_part(size * 0.31830988618379067153) + 1;  // an odd number of quarter turns
   return sine_of_reduced(reduced(size, 0.5 * static_cast<std::int32_t>(q)), (q & 2) == 0 ? 1 : 0);
 }
 
@@ -125,7 +125,7 @@ double atan(double x) noexcept {
 double atan2(double y, double x) noexcept {
   const double ax = std::fabs(x), ay = std::fabs(y);
   if (std::isnan(ax) || std::isnan(ay)) return std::numeric_limits<double>::quiet_NaN();
-  double angle = 0;  // of (|x|, |y|), in the first quadrant
+  double angle = 0;  // the angle of (|x|, |y|), in the first quadrant
   if (ay > ax) {
     angle = std::numbers::pi / 2 - (std::isinf(ay) ? (std::isinf(ax) ? std::numbers::pi / 4 : 0) : atan(ax / ay));
   } else if (ay > 0) {
@@ -148,7 +148,7 @@ double exp(double x) noexcept {
 }
 
 double exp2(double x) noexcept {
-  const double whole = std::nearbyint(x);  // of which the power is exact
+  const double whole = std::nearbyint(x);  // its power of two is exact
   return std::ldexp(exp((x - whole) * std::numbers::ln2), static_cast<int>(std::clamp(whole, -3000.0, 3000.0)));
 }
 

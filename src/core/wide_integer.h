@@ -182,7 +182,7 @@ class WideInteger {
   }
 
   std::array<std::int64_t, kMost> digits_{};
-  std::size_t size_ = 0;  // from there on all digits are zero
+  std::size_t size_ = 0;  // all digits from there on are zero
 };
 
 }  // namespace chronormal::inline internal

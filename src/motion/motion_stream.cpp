@@ -37,7 +37,7 @@ class ReadAhead {
       done_ = std::async(std::launch::async, [read, keyframe, this] { return read(keyframe, positions_); });
       keyframe_ = keyframe;
     } catch (const std::system_error&) {
-      keyframe_.reset();  // without a thread, it is read when it is asked for
+      keyframe_.reset();  // without a thread, it is read when it is needed
     }
 #endif
   }
@@ -70,8 +70,8 @@ struct MotionStream::State {
   Watcher watcher = {};
   bool keeps_all = false;
   std::size_t first = 0, end = 0;              // the window
-  std::vector<std::vector<float>> spare = {};  // memory of keyframes that left it
-  ReadAhead ahead = {};                        // last, so that reading ends before what it needs is gone
+  std::vector<std::vector<float>> spare = {};  // memory of keyframes that left the window
+  ReadAhead ahead = {};                        // last member: reading must end before what it needs is destroyed
 
   [[nodiscard]] std::vector<float> room() {
     std::vector<float> positions;

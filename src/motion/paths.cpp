@@ -234,7 +234,7 @@ struct Cutter {
   PathKind kind;
   std::vector<std::size_t> first;  // keyframe of each segment, and of the end
   std::size_t segment = static_cast<std::size_t>(-1);
-  CubicSegment cubics = {};  // of it
+  CubicSegment cubics = {};  // the cubics of `segment`
 
   Status enter(std::size_t s) {
     if (segment == s) return Success{};
@@ -455,7 +455,7 @@ Result<CutStream> cut_into_segments(MotionStream stream, const Path& path, std::
     if (!fit) return fit.error();
     cut.velocities = fit.value();
   }
-  cutter->segment = static_cast<std::size_t>(-1);  // its keyframes are held no longer
+  cutter->segment = static_cast<std::size_t>(-1);  // the keyframes of the segment are no longer held
   const auto read = [cutter](const Motion&, std::size_t keyframe, std::span<float> positions) {
     return cutter->write(keyframe, positions);
   };

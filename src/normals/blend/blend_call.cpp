@@ -23,24 +23,24 @@ constexpr std::size_t kMostRows = kMostRingPoints + 2;
 constexpr std::size_t kNearVertices = 4096;  // 128 KiB of points in double
 
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
-constexpr double kLargestAngle = 8e-7;  // of double, before the rounding of the result
+constexpr double kLargestAngle = 8e-7;  // error of double, before the rounding of the result
 constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLargestAngle};
-// Float32 terms promise 1e-6 rad where their bound is at most so many times |n(w)|: 14 x 2^-24, and what the rounding
-// of the result adds.
+// Float32 terms promise 1e-6 rad if their bound is at most this multiple of 2^-24 |n(w)|: 14 roundings, and what the
+// rounding of the result adds.
 constexpr UnitLimits kLimitsOfTerms = {kSmallestSquare, kLargestSquare, 14};
 
-// Nanoseconds, fitted to a grid of 15,000 vertices with up to 100 targets, on one core of epyc-zen3-2cores of
+// Costs in nanoseconds, fitted to a grid of 15,000 vertices with up to 100 targets, on one core of epyc-zen3-2cores of
 // docs/benchmarks.md. Only their ratios matter.
-constexpr double kCopiedElement = 0.35;   // of the base normals
-constexpr double kTargetElement = 3;      // the terms of a target
-constexpr double kPairElement = 1.4;      // the term of a pair
-constexpr double kFinishedElement = 5.5;  // from the base to length 1
-constexpr double kMovedVertex = 1.7;      // of a target, and back again
-constexpr double kPathPoint = 1.8;        // of the path around an element
-constexpr double kWrittenElement = 5;     // from the sum over its path
-constexpr double kWholeInFloat32 = 0.4;   // of the time that the whole mesh takes in double
+constexpr double kCopiedElement = 0.35;   // copying the base normals
+constexpr double kTargetElement = 3;      // adding the terms of a target
+constexpr double kPairElement = 1.4;      // adding the term of a pair
+constexpr double kFinishedElement = 5.5;  // making a result of length 1 from the base and the terms
+constexpr double kMovedVertex = 1.7;      // moving it by a target, and back again
+constexpr double kPathPoint = 1.8;        // a point of the path around an element
+constexpr double kWrittenElement = 5;     // writing the result from the sum over its path
+constexpr double kWholeInFloat32 = 0.4;   // the share of the time that the whole mesh takes in double
 
-// What of an ascending list lies inside a range of indices.
+// Returns which part of an ascending list lies inside a range of indices.
 IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   if (list.empty() || list.back() < range.first || list.front() >= range.end()) return {};
   const auto place = [list](std::size_t index) {
@@ -51,8 +51,8 @@ IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   return {first, end - first};
 }
 
-// How many elements are made from points where they are made four at a time, as if every machine did so: those that
-// nobody asked for are included.
+// Returns how many elements are made from points, if points are taken four elements at a time as on every machine.
+// Elements that nobody asked for but that share such a group are counted too.
 std::size_t lanes_of(const IndexBits& elements) {
   std::size_t count = 0;
   for (const std::uint64_t word : elements.words()) {
@@ -66,10 +66,10 @@ std::span<const std::uint32_t> in(IndexRange part, std::span<const std::uint32_t
   return list.subspan(part.first, part.count);
 }
 
-// The weights of the four lanes of a coefficient, of which the last is a bound.
+// Returns the weights of the four lanes of a coefficient, of which the last is a bound.
 RowWeights row_weights(double weight) { return {weight, weight, weight, std::fabs(weight)}; }
 
-// Calls body for vertices whose points stay in a cache near the core while all targets move them.
+// Calls body for ranges of vertices whose points stay in a cache near the core while all targets move them.
 template <class Body>
 void for_near(IndexRange vertices, const Body& body) {
   for (std::size_t first = vertices.first; first < vertices.end(); first += kNearVertices)
@@ -110,7 +110,7 @@ void blend_points(const BlendInput& source, BlendPose& pose, Threads threads) {
   pose.has_points = true;
 }
 
-// Puts the points back to the base. Those that many targets moved are put back faster in order.
+// Puts the points back to the base. If many targets moved them, going through all in order is faster.
 void restore_points(const BlendInput& source, BlendPose& pose, Threads threads) {
   blocks_on(threads, source.set.topology.vertex_count(), kBlockOfVertices, [&](IndexRange vertices) {
     std::size_t moved = 0;
@@ -127,12 +127,13 @@ void restore_points(const BlendInput& source, BlendPose& pose, Threads threads) 
   pose.has_points = false;
 }
 
-// The normals of a range of elements at the weights of a pose. Reads, and writes nothing but results.
+// Makes the normals of a range of elements at the weights of a pose. It only writes results, so that threads can share
+// a pose.
 class Call {
  public:
   Call(const BlendInput& source, const BlendPose& pose) : source_(source), pose_(pose) {}
 
-  // The first element must be that of a word. result begins with it.
+  // Writes the normals of the range to result. The first element must be the first of a word.
   BlendEvaluation run(IndexRange elements, VectorView<float> result) {
     if (pose_.choice.path == BlendPath::kWhole && source_.in_float32) {
       const IndexRange slices{elements.first / kRingLanes, (elements.count + kRingLanes - 1) / kRingLanes};
@@ -150,7 +151,7 @@ class Call {
     return done_;
   }
 
-  // Each corner of a large face asks for it.
+  // Returns the normal of a large face, which each of its corners asks for.
   [[nodiscard]] BlendedFace make_face(std::size_t f) const {
     const auto face = source_.set.topology.face(f);
     struct Edge {
@@ -162,8 +163,8 @@ class Call {
       const Vec3d edge = point(face[c]) - a;
       return Edge{edge, sum_abs(edge)};
     };
-    // The vector area over a fan. Edges and both products of a component are within 10 u of the absolute products,
-    // each triangle adds a rounding, and points bring their own.
+    // The vector area is a sum over a fan. Edges and both products of a component are within 10 u of the absolute
+    // products, each triangle adds a rounding, and points bring their own error.
     BlendedFace result;
     double products = 0, edges = edge_to(1).size;
     for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& g) {
@@ -202,7 +203,8 @@ class Call {
     }
   }
 
-  // Everything but what is to be made again: adds to that what float32 terms promise nothing of.
+  // Writes the elements that are not to be made again. Adds to `again` the elements whose float32 terms promise
+  // nothing.
   void add_terms(IndexRange elements, IndexRange words, std::span<const std::uint64_t> touched, std::uint64_t* again,
                  const VectorView<float>& result) {
     copy_base(elements, result);
@@ -224,7 +226,7 @@ class Call {
       const double weight = pose_.weights[i];
       const double linear = weight * target.term.scale, square = weight * weight * target.term.scale;
       IndexRange part = part_of(target.term.elements, elements);
-      // Who shares a face with the target is one of its elements, too.
+      // An element that shares a face with the target is in its list too.
       if (part.count == 0) continue;
       add_target_rows(in(part, target.term.elements), target.term.lanes.data() + 2 * kBlendLanes * part.first,
                       row_weights(linear), row_weights(square), first, sums);
@@ -253,8 +255,8 @@ class Call {
     for (std::size_t i = 0; i < elements.count; ++i) result.set(i, {units[3 * i], units[3 * i + 1], units[3 * i + 2]});
   }
 
-  // unit_normals_of_rings() for a few elements whose points nobody has blended: blends those of their paths, four
-  // elements at a time, as the kernel takes them.
+  // Does what unit_normals_of_rings() does for a few elements whose points nobody has blended. It blends the points of
+  // their paths, four elements at a time, as the kernel takes them.
   std::uint64_t make_rings(std::uint64_t elements, std::size_t first_word, std::size_t word,
                            const VectorView<float>& result) const {
     constexpr std::size_t kLanes = 4;
@@ -280,7 +282,7 @@ class Call {
           row[0] = p.x, row[1] = p.y, row[2] = p.z, row[3] = 0;
         }
       }
-      // One slice, at the place of this one among those of the tile.
+      // Describe one slice, in the place of this one among the slices of the tile.
       std::size_t first_row[kTileElements / kRingLanes + 1] = {};
       std::fill(std::begin(first_row) + static_cast<std::ptrdiff_t>(word * kSlicesOfWord + slice) + 1,
                 std::end(first_row), row_count);
@@ -294,7 +296,7 @@ class Call {
     const double* const p = pose_.points.data() + kBlendLanes * std::size_t{v};
     Vec3d result{p[0], p[1], p[2]};
     if (pose_.has_points) return result;
-    for (const std::uint32_t i : pose_.active) {  // as move_points() does
+    for (const std::uint32_t i : pose_.active) {  // in the order of move_points()
       const BlendTarget& target = source_.set.targets[i];
       const auto at = std::lower_bound(target.vertices.begin(), target.vertices.end(), v);
       if (at == target.vertices.end() || *at != v) continue;
@@ -316,7 +318,7 @@ class Call {
     for (const std::uint32_t f : source_.groups->faces(e)) body(f);
   }
 
-  // An element that lanes promise nothing of, with a bound of its own for each face.
+  // Makes an element for which lanes promise nothing, with a separate bound for each face.
   void make_element(std::size_t e, std::size_t place, const VectorView<float>& result) {
     Vec3d n;
     double noise = 0, count = 0;
@@ -326,8 +328,8 @@ class Call {
       noise += face.noise;
       ++count;
     });
-    // Each addition is within u of the sum of absolute normals, which are at most twice the products that
-    // make_face() counts 13 times.
+    // Each addition is within u of the sum of absolute normals. They are at most twice the products that make_face()
+    // counts 13 times.
     noise *= 1 + count / 6;
     const double square = dot(n, n);
     if (square >= kSmallestSquare && square <= kLargestSquare && square > noise * noise) {
@@ -335,7 +337,7 @@ class Call {
       if (noise * noise > kLargestAngle * kLargestAngle * square) ++done_.uncertain_elements;
       return;
     }
-    // Very small, very large, nothing but rounding, or not finite.
+    // The normal is very small, very large, nothing but rounding, or not finite.
     const double largest = max_abs(n);
     if (sum_abs(n) <= std::numeric_limits<double>::max() && largest > noise) {
       result.set(place, to_float(unit(n)));
@@ -389,7 +391,7 @@ BlendChoice choose_path(const BlendInput& source, std::span<const double> weight
   const Rings& rings = source.storage.rings();
   const std::size_t elements = source.storage.terms().size();
   const double whole = kPathPoint * of(kRingLanes * rings.row_count()) + kWrittenElement * of(elements);
-  const double anew = elements > 0 ? whole / of(elements) : 0;  // an element from points
+  const double anew = elements > 0 ? whole / of(elements) : 0;  // cost of an element from points
   const double copied = kCopiedElement * of(elements), moved = kMovedVertex * of(moved_vertices);
   choice.terms_ns = copied + kTargetElement * of(target_elements) + kPairElement * of(pair_elements) +
                     kFinishedElement * of(choice.touched_elements - choice.unstored_elements);

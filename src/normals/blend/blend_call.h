@@ -1,4 +1,4 @@
-/// Evaluation of BlendNormals: what is done once for some weights, and what is done for each range of elements.
+/// Evaluation of BlendNormals: one part is done once for some weights, the other for each range of elements.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 
@@ -14,25 +14,25 @@
 
 namespace chronormal::inline internal {
 
-/// What an evaluation reads.
+/// Holds what an evaluation reads.
 struct BlendInput {
   const BlendSet& set;
-  const NormalGroups* groups;  ///< nothing: faces
+  const NormalGroups* groups;  ///< nullptr: the elements are faces
   const BlendStorage& storage;
   const BlendBase& base;
   std::optional<BlendPath> forced;
-  bool in_float32;  ///< whether the path kWhole is one in float32
+  bool in_float32;  ///< whether the path kWhole works in float32
 };
 
-/// Chooses the path of some weights. Leaves the active targets, the touched elements, and those without their terms in
-/// the pose, and nothing else.
+/// Chooses the path for some weights. Leaves in the pose only the active targets, the touched elements, and the
+/// elements without terms.
 BlendChoice choose_path(const BlendInput& input, std::span<const double> weights, BlendPose& pose) noexcept;
 
 /// Makes everything that all elements need at these weights.
 BlendChoice set_weights(const BlendInput& input, std::span<const double> weights, BlendPose& pose, Threads threads);
 
-/// Writes the normals of a range of elements; what the evaluation counts is that of the range. Any thread may do this.
-/// elements.first must be a multiple of 64, result must have as many as the range
+/// Writes the normals of a range of elements, and returns the counts of this range. Any thread may call it.
+/// elements.first must be a multiple of 64, result must have as many elements as the range
 BlendEvaluation evaluate(const BlendInput& input, const BlendPose& pose, IndexRange elements,
                          VectorView<float> result) noexcept;
 

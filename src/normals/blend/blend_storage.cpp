@@ -1,4 +1,4 @@
-// Lists the terms that a set of targets has, decides which of them are worth their memory, and makes these.
+// Lists the terms of a set of targets, decides which of them are worth their memory, and makes them.
 #include "normals/blend/blend_storage.h"
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The share of all terms that threads work on at once while they are made, unless one term alone takes more.
+// Threads work on at most 1 / kShareOfWork of all terms at once while they make them, unless one term takes more.
 constexpr std::size_t kShareOfWork = 8;
 
-constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);  // of an element
+constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);  // bytes of an element
 constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kBlendLanes * sizeof(float);
 
-// A little more than enough, so that the rounding of a bound to float32, and values near the end of its range, are in
-// it.
+// Bounds are a little larger than needed, so that they hold in spite of their rounding to float32, and for values near
+// the end of its range.
 constexpr double kMargin = 1 + 0x1p-20, kSmallestBound = 0x1p-120;
 
 std::size_t bytes_of(const StoredTerm& term) {
@@ -32,7 +32,7 @@ std::size_t bytes_of_lists(const StoredTarget& target) {
   return target.elements.bytes() + target.pairs.capacity() * sizeof(StoredPair);
 }
 
-// A power of two that takes the largest value below 1.
+// Returns a power of two that brings the largest value below 1.
 double scale_of(double largest) {
   int exponent = 0;
   std::frexp(largest, &exponent);
@@ -53,7 +53,8 @@ void put(const Vec3d& value, double noise, double scale, float* lanes) {
   lanes[3] = static_cast<float>(bound);
 }
 
-// Puts the values of a term into the lanes from `first` on, `stride` for each of the elements, which have all of its.
+// Puts the values of a term into the lanes from `first` on, `stride` for each element. All elements of the term must be
+// among the stored ones.
 void put_all(const BlendTerm& term, std::size_t first, std::size_t stride, StoredTerm& stored) {
   std::size_t e = 0;
   for (std::size_t i = 0; i < term.elements.size(); ++i) {
@@ -68,7 +69,7 @@ void put_all(const BlendTerm& term, std::size_t first, std::size_t stride, Store
 struct BlendStorage::Candidate {
   std::size_t bytes;
   std::size_t target;
-  std::size_t pair;  // which of those of the target; kNone: its own
+  std::size_t pair;  // index into the target's pairs; kNone for its own term
 
   static constexpr std::size_t kNone = ~std::size_t{0};
 };
@@ -76,7 +77,7 @@ struct BlendStorage::Candidate {
 // A term that is to be made.
 struct BlendStorage::ListedTerm {
   std::size_t target;
-  StoredPair* pair;  // nullptr: the target's own
+  StoredPair* pair;  // nullptr for the target's own term
   std::size_t work;  // bytes
 };
 
@@ -120,7 +121,7 @@ StoredTarget BlendStorage::listed(std::size_t i) const {
   return target;
 }
 
-// Small ones first: targets, and then pairs of those that are stored.
+// Chooses small terms first: targets, and then pairs of stored targets.
 void BlendStorage::choose(std::vector<Candidate> candidates) {
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     const bool a_is_pair = a.pair != Candidate::kNone, b_is_pair = b.pair != Candidate::kNone;
@@ -143,8 +144,8 @@ void BlendStorage::choose(std::vector<Candidate> candidates) {
   update_cost();
 }
 
-// Terms of few elements do not occupy several threads, so that many of them are made side by side, as many as work on no
-// more memory together than work_together_.
+// Makes many terms side by side, since terms of few elements do not occupy several threads. Together they take no more
+// memory than work_together_.
 void BlendStorage::fill() {
   std::vector<ListedTerm> terms;
   terms.reserve(cost_.stored_targets + cost_.stored_pairs);
@@ -167,7 +168,7 @@ void BlendStorage::fill() {
   }
 }
 
-// The linear term is kept while the square one is made.
+// The linear term stays in memory while the square one is made, so the work counts twice.
 std::size_t BlendStorage::work_of(const StoredTarget& target) const {
   return 2 * terms_.term_bytes(target.moved_faces, target.moved_corners);
 }

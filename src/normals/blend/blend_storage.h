@@ -1,4 +1,4 @@
-/// The terms of a quadratic form in the weights, as BlendNormals keeps them: float32, sparse, as many as may be.
+/// The terms of a quadratic form in the weights, as BlendNormals keeps them: float32, sparse, and as many as fit.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
 
@@ -19,24 +19,24 @@ namespace chronormal::inline internal {
 /// The most points of a path around an element.
 inline constexpr std::size_t kMostRingPoints = 64;
 
-/// Coefficients at some elements, `scale` times what stands there: for a target A and C_ii, for a pair C_ij. A
-/// coefficient has four lanes, x y z and a bound: the length of the error of x y z is at most kFloatUnitRoundoff of it. All bounds are kept in this
-/// unit.
+/// Holds coefficients at some elements: A and C_ii for a target, C_ij for a pair. A coefficient is `scale` times the
+/// four lanes that are stored, x y z and a bound: the length of the error of x y z is at most kFloatUnitRoundoff times
+/// the bound. All bounds are in this unit.
 struct StoredTerm {
   bool is_stored = false;
   double scale = 1;
   std::vector<std::uint32_t> elements;  ///< ascending
-  std::vector<float> lanes;             ///< four for each coefficient of each element
+  std::vector<float> lanes;             ///< four numbers for each coefficient of each element
 };
 
 struct StoredPair {
   std::uint32_t other = 0;     ///< the later target
-  std::uint32_t elements = 0;  ///< of the faces that both move: those of the term are among them
+  std::uint32_t elements = 0;  ///< number of elements of the faces that both move; the term has at most these
   StoredTerm term;
 };
 
 struct StoredTarget {
-  SparseBits elements;  ///< that the target touches
+  SparseBits elements;  ///< elements that the target touches
   std::size_t element_count = 0;
   std::size_t moved_faces = 0, moved_corners = 0;
   double reach = 0;  ///< the largest absolute component of its deltas
@@ -46,19 +46,21 @@ struct StoredTarget {
 
 class BlendStorage {
  public:
-  /// Counts, and decides which terms to store; makes none. No groups: of faces. The set and the groups must outlive it.
+  /// Counts the terms, and decides which to store, but makes none. Without groups, the elements are faces. The set and
+  /// the groups must outlive it.
   BlendStorage(const BlendSet& set, const NormalGroups* groups, std::size_t max_bytes);
 
   /// Makes the terms that are to be stored.
   void fill();
-  /// Takes notice of a target that was appended to the set, and makes its terms.
+  /// Must be called after a target was appended to the set. Makes its terms.
   void target_added();
 
   [[nodiscard]] std::span<const StoredTarget> targets() const noexcept { return targets_; }
   [[nodiscard]] const BlendTerms& terms() const noexcept { return terms_; }
-  /// The paths around all elements but those of more than kMostRingPoints points, which have one that adds nothing.
+  /// Returns the paths around all elements. An element of more than kMostRingPoints points has a path that adds
+  /// nothing.
   [[nodiscard]] const Rings& rings() const noexcept { return rings_; }
-  /// The faces of more than kMostRingPoints corners, ascending: none of their elements has a path.
+  /// Returns the faces of more than kMostRingPoints corners, ascending. None of their elements has a path.
   [[nodiscard]] std::span<const std::uint32_t> large_faces() const noexcept { return large_faces_; }
   [[nodiscard]] const BlendCost& cost() const noexcept { return cost_; }
   [[nodiscard]] std::size_t bytes() const noexcept;

@@ -1,5 +1,5 @@
-/// Vectors at the corners of faces, and the sums of their products that terms of blend shapes are made of. Private to
-/// normals.
+/// Vectors at the corners of faces, and the sums of their products of which the terms of blend shapes consist. Private
+/// to normals.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_
 
@@ -16,10 +16,10 @@
 
 namespace chronormal::inline internal {
 
-/// Faces of so many corners cost no memory of their own.
+/// Faces of at most this many corners need no memory on the heap.
 inline constexpr std::size_t kSmallFace = 4;
 
-/// Vectors at the corners of a face.
+/// Holds vectors at the corners of a face.
 class CornerVectors {
  public:
   explicit CornerVectors(std::size_t count) : count_(count) {
@@ -46,12 +46,12 @@ class CornerVectors {
   return positions;
 }
 
-/// A sum of products of edges.
+/// Adds up products of edges.
 class ProductSum {
  public:
-  /// Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times those of q.
-  /// Edges and both products of a component are within 10 u of the absolute products; each triangle adds a rounding,
-  /// and four for what counts as one.
+  /// Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times the edges of q.
+  /// Edges and both products of a component are within 10 u of the absolute products. Each triangle adds a rounding,
+  /// and four more are counted for setting noise to zero.
   void add(const CornerVectors& p, const CornerVectors& q) {
     struct Edge {
       Vec3d p, q;
@@ -72,7 +72,7 @@ class ProductSum {
   double products_ = 0, roundings_ = 0;
 };
 
-/// The sum of faces around an element: each adds a rounding, and four for what counts as one.
+/// Adds up the faces around an element. Each adds a rounding, and four more are counted for setting noise to zero.
 class ElementSum {
  public:
   void add(const Vec3d& face, double noise) {

@@ -17,7 +17,7 @@ using Indices = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
 constexpr std::size_t kTermsTogether = 1024;
-constexpr std::size_t kFewFaces = 100000;  // of which it takes little memory to keep what each adds
+constexpr std::size_t kFewFaces = 100000;  // so few faces that keeping what each adds takes little memory
 constexpr std::size_t kFarApart = 16;      // faces lie so far apart on average that a table of all between is too large
 
 Indices common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
@@ -31,14 +31,14 @@ void make_set(Indices& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-// Which faces lie around each vertex.
+// Finds which faces lie around each vertex.
 class FacesOfVertices {
  public:
   explicit FacesOfVertices(const Topology& topology) : topology_(topology) {}
 
-  // The faces around all of these vertices, ascending.
+  // Returns the faces around any of these vertices, ascending.
   [[nodiscard]] Indices around(std::span<const std::uint32_t> vertices) {
-    // Where there are many of them the whole mesh is looked through: that takes less memory than sorting.
+    // If there are many vertices, look through the whole mesh, which takes less memory than sorting.
     constexpr std::size_t kFew = 16;
     if (vertices.size() > topology_.vertex_count() / kFew) return among_all(vertices);
     if (offsets_.empty()) list();
@@ -87,7 +87,7 @@ class FacesOfVertices {
 
 }  // namespace
 
-// Counts the elements that targets have in common, from which targets move each face.
+// Counts the elements that targets have in common, from the targets that move each face.
 class BlendTerms::PairCounter {
  public:
   explicit PairCounter(const BlendTerms& terms)
@@ -105,7 +105,7 @@ class BlendTerms::PairCounter {
       for (const std::uint32_t f : terms.faces_of_target_[i]) targets_[next[f]++] = static_cast<std::uint32_t>(i);
   }
 
-  // With the targets from `first` on, but for i itself.
+  // Counts the elements shared with each target from `first` on, except i.
   [[nodiscard]] std::vector<PairCount> count(std::size_t i, std::size_t first) {
     std::fill(last_element_.begin(), last_element_.end(), kNone);
     std::fill(counts_.begin(), counts_.end(), 0);
@@ -171,7 +171,7 @@ void BlendTerms::for_faces_of(std::uint32_t element, const Body& body) const {
 
 Indices BlendTerms::elements_of(std::span<const std::uint32_t> faces) const {
   Indices elements;
-  // Marks take a bit for each element, and sorting 32 for each corner.
+  // Marks take a bit for each element, sorting takes 32 bits for each corner.
   if (faces.size() > size() / 64) {
     std::vector<bool> is_one(size());
     std::size_t count = 0;
@@ -251,7 +251,7 @@ BlendTerms::Term::Places::Places(const BlendTarget& listed) : target(&listed) {
 
 const float* BlendTerms::Term::Places::find(std::uint32_t vertex) const noexcept {
   if (!of_vertices.empty()) {
-    const std::size_t place = vertex - std::size_t{first};  // large where the vertex is before the first
+    const std::size_t place = vertex - std::size_t{first};  // large if the vertex is before the first
     const std::uint32_t n = place < of_vertices.size() ? of_vertices[place] : kNoPlace;
     return n == kNoPlace ? nullptr : target->deltas.data() + 3 * std::size_t{n};
   }
@@ -326,7 +326,7 @@ bool BlendTerms::Term::of_face(std::uint32_t face, Rounded& result) const {
 
 bool BlendTerms::Term::find_face(std::uint32_t face, Rounded& result) const {
   if (!of_all_faces_.empty()) {
-    const std::size_t place = face - std::size_t{first_face_};  // large where the face is before the first
+    const std::size_t place = face - std::size_t{first_face_};  // large if the face is before the first
     const std::uint32_t n = place < face_places_.size() ? face_places_[place] : kNoPlace;
     if (n != kNoPlace) result = of_all_faces_[n];
     return n != kNoPlace;

@@ -18,7 +18,7 @@ inline constexpr std::size_t kBitsOfWord = 64;
   return (count + kBitsOfWord - 1) / kBitsOfWord;
 }
 
-/// The words of a set that are not zero.
+/// Holds the words of a set that are not zero.
 struct SparseBits {
   std::vector<std::uint32_t> places;  ///< ascending
   std::vector<std::uint64_t> masks;
@@ -55,7 +55,7 @@ class IndexBits {
   void add(const SparseBits& bits) noexcept {
     for (std::size_t i = 0; i < bits.places.size(); ++i) words_[bits.places[i]] |= bits.masks[i];
   }
-  /// Adds what is in both.
+  /// Adds the indices that are in both sets.
   void add_common(const SparseBits& a, const SparseBits& b) noexcept {
     for (std::size_t i = 0, j = 0; i < a.places.size() && j < b.places.size();) {
       if (a.places[i] == b.places[j]) words_[a.places[i]] |= a.masks[i] & b.masks[j];
@@ -98,7 +98,7 @@ void for_bits(std::uint64_t word, std::size_t place, const Body& body) {
   for (; word != 0; word &= word - 1) body(place * kBitsOfWord + static_cast<std::size_t>(std::countr_zero(word)));
 }
 
-/// The same of a range of words.
+/// Calls body(index) for each bit of a range of words, ascending.
 template <class Body>
 void for_bits(std::span<const std::uint64_t> words, IndexRange places, const Body& body) {
   for (std::size_t i = places.first; i < places.end(); ++i) for_bits(words[i], i, body);

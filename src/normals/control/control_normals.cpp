@@ -1,4 +1,4 @@
-// Computes the control normals of faces, and evaluates them in double and, where that is not enough, in integers.
+// Computes the control normals of faces, and evaluates them in double or, if that is not enough, in integers.
 #include "chronormal/normals/control_normals.h"
 
 #include <cassert>
@@ -19,12 +19,13 @@ namespace {
 // The error of eq. 5 in double: see "n(t) counts as zero" in the header.
 constexpr double kEvaluationError = 16 * kUnitRoundoff;
 
-// The edge from the first corner of a face at both ends of the segment.
+// Holds the edge from the first corner of a face at both ends of the segment.
 struct Edge {
   Vec3d from, to;
 };
 
-// At an end of the segment, where nothing is rounded: the first control normal from there that is not zero.
+// Returns the direction at an end of the segment, where nothing is rounded: the first control normal from there that is
+// not zero.
 UnitNormal first_direction(const Vec3d& at_end, const Vec3d& middle, const Vec3d& other) noexcept {
   if (at_end != Vec3d{}) return {unit(at_end), Direction::kRegular};
   if (middle != Vec3d{}) return {unit(middle), Direction::kLimit};
@@ -57,7 +58,7 @@ PolygonNormals polygon_control_normals(const Segment& segment, std::span<const s
 
 void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept {
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
-  // A kernel starts with a block of faces; for one alone it does not pay.
+  // A kernel starts with a block of faces, which does not pay for a single face.
   constexpr std::size_t kFewest = 4;
   if (fits_lanes(segment) && faces.count >= kFewest) {
     triangle_control_normals(segment, faces, result);
@@ -92,7 +93,7 @@ UnitNormal unit_normal_at(const ControlNormals& normals, double time) noexcept {
   const double size = s * s * max_abs(n0) + 2 * t * s * max_abs(m) + t * t * max_abs(n1);
   if (max_abs(n) > kEvaluationError * size) return {unit(n), Direction::kRegular};
 
-  // n(t) = 0: near t the curve is (x - t) n'(t) + (x - t)^2 c2.
+  // Where n(t) = 0, the curve near t is (x - t) n'(t) + (x - t)^2 c2.
   const double largest = maximum_number(max_abs(n0), maximum_number(max_abs(m), max_abs(n1)));
   const Vec3d half_derivative = s * (m - n0) + t * (n1 - m);
   if (max_abs(half_derivative) > kEvaluationError * largest) {

@@ -19,7 +19,7 @@ struct PointParts {
   }
 };
 
-// The place of a vertex as integers that add up to it.
+// Holds the position of a vertex as integers that add up to it.
 struct PlaceParts {
   std::array<PointParts, SegmentEnd::kMostParts> parts;
   std::size_t count = 0;
@@ -31,7 +31,7 @@ struct PlaceParts {
   }
 };
 
-// The smallest shift of a coordinate that is not zero.
+// Returns the smallest shift of a coordinate that is not zero.
 unsigned lowest_shift(const Vec3f& p, unsigned lowest) noexcept {
   for (const float x : {p.x, p.y, p.z}) {
     const FloatParts parts = FloatParts::of(x);
@@ -72,7 +72,8 @@ WideInteger<kMost> product(const WideInteger<kA>& a, const WideInteger<kB>& b) n
   return result;
 }
 
-// Integers of one unit as doubles of one unit, which is chosen so that the largest is neither infinite nor subnormal.
+// Holds integers of one unit as doubles of one unit, which is chosen so that the largest is neither infinite nor
+// subnormal.
 struct ScaledVector {
   Vec3d vector;
   int exponent = 0;
@@ -89,7 +90,7 @@ struct ScaledVector {
   }
 };
 
-// n(t) times the square of the whole.
+// Returns n(t) times the square of t.whole.
 ScaledVector value_at(const std::array<ExactCurve::CoefficientVector, 3>& c, const TimeFraction& t) noexcept {
   constexpr std::size_t kInner = ExactCurve::kDigits + kTimeDigits + 1, kOuter = kInner + kTimeDigits + 1;
   const auto square = product<2 * kTimeDigits>(t.whole, t.whole);
@@ -105,7 +106,7 @@ ScaledVector value_at(const std::array<ExactCurve::CoefficientVector, 3>& c, con
   return ScaledVector::of(value);
 }
 
-// n'(t) times the whole.
+// Returns n'(t) times t.whole.
 ScaledVector slope_at(const std::array<ExactCurve::CoefficientVector, 3>& c, const TimeFraction& t) noexcept {
   std::array<WideInteger<ExactCurve::kDigits + kTimeDigits + 1>, 3> slope;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -253,7 +254,7 @@ Vec3d ExactCurve::normal_at(const LocalTime& t) const noexcept {
 
 UnitNormal ExactCurve::unit_normal_at(const LocalTime& t) const noexcept {
   if (t.is_double()) return unit_normal_at_double(t.t);
-  // Inside the segment, as below.
+  // This goes as below for a t inside the segment.
   const TimeFraction fraction = TimeFraction::of(t);
   auto c = in_powers();
   if (const Vec3d n = value_at(c, fraction).vector; n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
@@ -283,7 +284,8 @@ Vec3d ExactCurve::normal_at_double(double t) const noexcept {
   return to_doubles(integers_at(fraction), unit() - 2 * static_cast<int>(fraction.scale));
 }
 
-// Twice n0 + (s + t) / 2 linear + s t bend, as the sum of two products of Horner's rule: one begins with s, one with t.
+// Returns twice n0 + (s + t) / 2 linear + s t bend, as the sum of two products of Horner's rule: one begins with s, one
+// with t.
 Vec3d ExactCurve::blossom_at(double s, double t) const noexcept {
   const UnitFraction a = UnitFraction::of(s), b = UnitFraction::of(t);
   const CoefficientVector c1 = linear(), c2 = bend();
@@ -306,7 +308,7 @@ UnitNormal ExactCurve::unit_normal_at_double(double t) const noexcept {
   const Vec3d n = normal_at_double(t);
   if (n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
 
-  // n(t) = 0: near t the curve is (x - t) n'(t) + (x - t)^2 bend.
+  // Where n(t) = 0, the curve near t is (x - t) n'(t) + (x - t)^2 bend.
   const UnitFraction fraction = UnitFraction::of(t);
   const CoefficientVector c1 = linear();
   CoefficientVector c2 = bend();

@@ -1,15 +1,15 @@
-/// n(t) of one element without any rounding: what decides where double cannot.
+/// n(t) of one element without any rounding, to decide cases in which double cannot.
 ///
 /// The control normals of a face are sums of products of its coordinates, which are floats or sums of a few
-/// (motion/segment_end.h), and those of a group are sums of them, so all are integers times 2^-298
+/// (motion/segment_end.h). The control normals of a group are sums of these, so all are integers times 2^-298
 /// (core/wide_integer.h). A double t is an integer times a power of two as well, and by Horner's rule
 ///
 ///     n(t) = n0 + t (2m - 2 n0 + t (n0 - 2m + n1))                             (eq. 5 in powers of t)
 ///
-/// is one more such integer; where t is a quotient of differences of doubles (LocalTime), it is one over the square of
-/// the divisor. Whether it is zero, and which way it points, is therefore known and not estimated. This
-/// takes about a microsecond for each t, hundreds of times as long as in double, so it stands behind a filter: where a
-/// bound on the rounding error is small against |n(t)|, double has decided already.
+/// is one more such integer. Where t is a quotient of differences of doubles (LocalTime), n(t) is such an integer over
+/// the square of the divisor. So it is known, and not estimated, whether n(t) is zero and which way it points. This
+/// takes about a microsecond for each t, hundreds of times as long as in double, so it stands behind a filter: double
+/// decides wherever a bound on the rounding error is small against |n(t)|.
 ///
 /// No edges are formed: the products of neighbouring corners add up to the vector area (the shoelace formula), and the
 /// distance from the origin does not matter to integers.
@@ -31,7 +31,7 @@
 
 namespace chronormal::inline internal {
 
-/// t = part / whole, of integers. Doubles and their differences are integers times 2^-1074, of 2099 bits.
+/// Holds t = part / whole, of integers. Doubles and their differences are integers times 2^-1074, of 2099 bits.
 struct TimeFraction {
   static constexpr std::size_t kDigits = 89;
 
@@ -64,30 +64,30 @@ class ExactCurve {
   [[nodiscard]] static ExactCurve of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
   [[nodiscard]] static ExactCurve of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept;
 
-  /// Adds another curve, with the bits of what of_faces() makes of both at once.
+  /// Adds another curve. The bits are the ones that of_faces() gives for both at once.
   void add(const ExactCurve& other) noexcept;
 
   /// Reads what append_to() has written.
   [[nodiscard]] static ExactCurve of_kept(const std::int32_t* kept) noexcept;
-  /// Appends what this curve is made of, as few numbers as hold it: some 40 for coordinates of one size.
+  /// Appends the numbers that make up this curve, as few as hold it: some 40 for coordinates of one size.
   void append_to(std::vector<std::int32_t>& kept) const;
 
-  /// The control normals, each component rounded once or twice.
+  /// Returns the control normals, each component rounded once or twice.
   [[nodiscard]] ControlNormals rounded() const noexcept;
-  /// n(t), each component rounded a few times. t is a local_time()
+  /// Returns n(t), each component rounded a few times. t is a local_time()
   [[nodiscard]] Vec3d normal_at(const LocalTime& t) const noexcept;
-  /// The middle control normal of the part [s, t] of the curve, rounded in the same way: the blossom of n at (s, t), of
-  /// which n(t) is the case s = t. Both are doubles, and are local_time()s
+  /// Returns the middle control normal of the part [s, t] of the curve, rounded in the same way. It is the blossom of n
+  /// at (s, t), which is n(t) for s = t. Both are doubles, and are local_time()s
   [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
-  /// n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
+  /// Returns n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
   [[nodiscard]] UnitNormal unit_normal_at(const LocalTime& t) const noexcept;
-  /// n(t) without any rounding: an integer of the unit 2^(2 base() - 298 - 2 t.scale), settled.
+  /// Returns n(t) without any rounding: an integer of the unit 2^(2 base() - 298 - 2 t.scale), settled.
   static constexpr std::size_t kValueDigits = 50;  // both factors t together have 2 (53 + 200) bits
   using Value = std::array<WideInteger<kValueDigits>, 3>;
   [[nodiscard]] Value integers_at(const UnitFraction& t) const noexcept;
-  /// All coordinates are multiples of 2^(base - 149).
+  /// Returns base, where all coordinates are multiples of 2^(base - 149).
   [[nodiscard]] unsigned base() const noexcept { return base_; }
-  /// The coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, settled: integers of one unit, a power of two.
+  /// Returns the coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, settled: integers of one unit, a power of two.
   [[nodiscard]] std::array<CoefficientVector, 3> in_powers() const noexcept;
 
  private:
@@ -95,7 +95,7 @@ class ExactCurve {
   [[nodiscard]] static ExactCurve of(const Segment& segment, const Body& for_polygons) noexcept;
   void add_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
 
-  // All control normals in the order of ControlNormals, x y z of each.
+  // Calls body for all control normals in the order of ControlNormals, x y z of each.
   template <class Body>
   void for_components(const Body& body);
   template <class Body>

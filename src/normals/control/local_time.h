@@ -1,4 +1,4 @@
-/// The one rule of which local t a call stands for.
+/// The one rule for which local t a call gets.
 #ifndef CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 #define CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 
@@ -8,16 +8,16 @@
 
 namespace chronormal::inline internal {
 
-/// Below this t counts as 0. So t^2 times the smallest product of two floats is far above the smallest double.
+/// A smaller t counts as 0, so that t^2 times the smallest product of two floats is far above the smallest double.
 inline constexpr double kSmallestTime = 0x1p-200;
 
-/// t in [0, 1]: what lies outside is moved to the nearer end. NaN stays NaN, and stands for no time at all.
+/// Returns t in [0, 1]: a t outside is moved to the nearer end. NaN stays NaN, which stands for no time at all.
 [[nodiscard]] inline double local_time(double t) noexcept {
   if (std::isnan(t)) return t;
   return t < kSmallestTime ? 0 : t > 1 ? 1 : t;
 }
 
-/// Handles a time that may be no double in this way, too: a time closer than that to either end is taken as that end.
+/// Does this for a time that may be no double: a time closer than kSmallestTime to either end becomes that end.
 [[nodiscard]] inline LocalTime local_time(const LocalTime& time) noexcept {
   if (time.is_double()) return local_time(time.t);
   if (time.t < kSmallestTime) return 0.0;

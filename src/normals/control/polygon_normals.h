@@ -1,4 +1,4 @@
-/// Control normals of one polygon, without vectors of lanes: what the kernels fall back to.
+/// Control normals of one polygon, without vectors of lanes, for cases that the kernels leave out.
 #ifndef CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 #define CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 
@@ -12,26 +12,26 @@
 
 namespace chronormal::inline internal {
 
-/// Of the largest control normal: coefficients below it count as zero in degree(). Direction errors of 2^-28 stay far
-/// below those of float32 evaluation.
+/// Coefficients below this share of the largest control normal count as zero in degree(). Direction errors of 2^-28
+/// stay far below the errors of float32 evaluation.
 inline constexpr double kDegreeTolerance = 0x1p-28;
 
-/// The largest share of a control normal that the rounding of double may be; else it is made of integers.
+/// If rounding of double may be a larger share of a control normal, the control normal is made of integers.
 inline constexpr double kLargestRounding = 0x1p-26;
 
-/// Control normals in double, and how far any component of each may be from the exact one.
+/// Holds control normals in double, and a bound of the error of any component of each.
 struct BoundedNormals {
   ControlNormals normals;
   std::array<double, 3> errors{};  ///< of n0, m, n1
 
-  /// The largest error against its own control normal.
+  /// Returns the largest error relative to its own control normal.
   [[nodiscard]] double largest_share() const noexcept {
     const auto share = [](double error, const Vec3d& v) { return error == 0 ? 0 : error / max_abs(v); };
     return maximum_number(share(errors[0], normals.n0),
                           maximum_number(share(errors[1], normals.m), share(errors[2], normals.n1)));
   }
 
-  /// Takes those from integers, rounded, whose rounding may be more than kLargestRounding.
+  /// Takes a control normal from `exact`, rounded integers, if its rounding may be more than kLargestRounding.
   void settle(const ControlNormals& exact) noexcept {
     const auto take = [](const Vec3d& from, Vec3d& to, double& error) {
       constexpr double kExactError = 0x1p-50;
@@ -49,7 +49,7 @@ struct PolygonNormals : BoundedNormals {  ///< the normals as face_control_norma
   double magnitude = 0;  ///< the largest sum of absolute products of any component, of both products in m
 };
 
-/// face has the vertices of a polygon.
+/// Returns the control normals of a polygon. face has its vertices.
 [[nodiscard]] PolygonNormals polygon_control_normals(const Segment& segment,
                                                      std::span<const std::uint32_t> face) noexcept;
 

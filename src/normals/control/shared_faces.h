@@ -1,10 +1,10 @@
-/// The faces of a segment for elements that share them. A polygon of n corners is around n vertices: if each of these
+/// The faces of a segment for elements that share them. A polygon of n corners is around n vertices. If each of these
 /// added up its corners anew, time would grow with the square of n. So the results for faces of many corners are kept.
 ///
 ///     a polygon of 32,000 corners   computed once, and looked up by its 32,000 vertices
 ///     a triangle, a quadrilateral   computed by each of their corners, which costs less than looking them up
 ///
-/// The bits are those of computing each face where it is asked for. Private.
+/// The bits are the same as if each face were computed wherever it is asked for. Private.
 #ifndef CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_
 #define CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_
 
@@ -22,8 +22,8 @@
 
 namespace chronormal::inline internal {
 
-/// Values of faces, kept for faces of many corners. Several threads may ask at once. A value that finds no memory is
-/// not kept.
+/// Keeps values of faces of many corners. Several threads may ask at once. A value for which there is no memory is not
+/// kept.
 template <class Value>
 class LargeFaceValues {
  public:
@@ -42,19 +42,20 @@ class LargeFaceValues {
     try {
       const std::lock_guard lock(mutex_);
       values_.emplace(face, value);
-    } catch (const std::bad_alloc&) {  // the next one makes it anew
+    } catch (const std::bad_alloc&) {  // the next caller makes it anew
     }
     return value;
   }
 
  private:
-  static constexpr std::size_t kFewCorners = 64;  // for which looking up does not pay
+  static constexpr std::size_t kFewCorners = 64;  // looking up smaller faces does not pay
 
   mutable std::mutex mutex_;
   mutable std::map<std::uint32_t, Value> values_;
 };
 
-/// The control normals of faces, and exact sums of them. The positions of the segment must not change. Threads: pure.
+/// Gives the control normals of faces, and exact sums of them. The positions of the segment must not change. Threads:
+/// pure.
 class SharedFaces {
  public:
   explicit SharedFaces(const Segment& segment) noexcept : segment_(segment) {}

@@ -8,7 +8,7 @@
 namespace chronormal {
 namespace {
 
-// Below this angle slerp is lerp to the last bit of double, radians.
+// Below this angle in radians slerp equals lerp to the last bit of double.
 constexpr double kSmallAngle = 1e-8;
 
 using Quaternion = std::array<double, 4>;
@@ -27,7 +27,7 @@ Quaternion normalised(const Quaternion& q) { return weighted_sum(1 / std::sqrt(d
 
 Quaternion slerp(const Quaternion& from, Quaternion to, double t) {
   if (dot4(from, to) < 0) to = weighted_sum(-1, to, 0, to);
-  // The angle from chord and diagonal, which loses none that are small.
+  // Take the angle from chord and diagonal, so that small angles keep their digits.
   const Quaternion chord = weighted_sum(1, to, -1, from), diagonal = weighted_sum(1, to, 1, from);
   const double angle = 2 * portable::atan2(std::sqrt(dot4(chord, chord)), std::sqrt(dot4(diagonal, diagonal)));
   if (angle < kSmallAngle) return normalised(weighted_sum(1 - t, from, t, to));
@@ -88,7 +88,7 @@ Vec3d turned(const Vec3d& from, const Vec3d& to, const Vec3d& v) noexcept {
   const Vec3d sine = cross(from, to);
   const double cosine = dot(from, to);
   const Vec3d axis = unit(sine);
-  // Opposite up to rounding: any axis across will do.
+  // The vectors are opposite up to rounding, so any perpendicular axis will do.
   constexpr double kOpposite = 1e-12;
   if (cosine < 0 && max_abs(sine) < kOpposite) {
     const Vec3d across = any_perpendicular(from);

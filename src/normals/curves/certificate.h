@@ -1,5 +1,5 @@
-/// Proofs by Bernstein coefficients that n(t) stays long enough for float32, or for double (docs/theory.md, section 5):
-/// of one element. kernels/certify.h has those of sixteen, with the same operations.
+/// Proofs by Bernstein coefficients that n(t) of one element stays long enough for float32, or for double
+/// (docs/theory.md, section 5). kernels/certify.h does it for sixteen elements, with the same operations.
 #ifndef CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_
 #define CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_
 
@@ -19,7 +19,7 @@ namespace chronormal::inline internal {
 
 inline constexpr int kCertificateDepth = 4;
 
-/// Whether p >= 0 on [0, 1] can be shown by its Bernstein coefficients after a few subdivisions.
+/// Returns whether Bernstein coefficients show that p >= 0 on [0, 1] after a few subdivisions.
 template <std::size_t M>
 [[nodiscard]] bool certainly_not_negative(const std::array<double, M>& p, int depth = kCertificateDepth) {
   if (std::all_of(p.begin(), p.end(), [](double b) { return b >= 0; })) return true;
@@ -32,7 +32,7 @@ template <std::size_t M>
   return std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
 }
 
-/// Whether ratio |n(t)| >= limit(t) for all t, where limit is a quadratic with these Bernstein coefficients.
+/// Returns whether ratio |n(t)| >= limit(t) for all t, where limit is a quadratic with these Bernstein coefficients.
 [[nodiscard]] inline bool stays_above(const Bernstein<Vec3d, 2>& n, double ratio, const Bernstein<double, 2>& limit) {
   const Bernstein<double, 4> n_squared = multiply(n, n, dot<double>), limit_squared = multiply(limit, limit);
   Bernstein<double, 4> slack;
@@ -40,15 +40,15 @@ template <std::size_t M>
   return certainly_not_negative(slack);
 }
 
-/// The length of a vector that has been scaled, so that its square counts where the vector does.
+/// Returns the length of a vector that has been scaled, so that its square stays in range if the vector does.
 [[nodiscard]] inline double scaled_length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-/// Below this, the scale itself would leave the range of double.
+/// Below this size, the scale itself would leave the range of double.
 inline constexpr double kSmallestMesh = 0x1p-900;
-/// Where each control normal has an exponent of its own, this is added to its length, since exponents go no lower.
+/// This is added to a length if each control normal has its own exponent, since exponents go no lower.
 inline constexpr double kSmallestScale = 0x1p-30;
 
-/// The fewest bits that keep this element within the tolerance at every t; nothing where double is needed.
+/// Returns the fewest bits that keep this element within the tolerance at every t, or nothing if double is needed.
 [[nodiscard]] inline std::optional<Precision> precision_for(const ControlNormals& normals,
                                                             const PrecisionLimits& limits) {
   const double largest = largest_component(normals);
@@ -67,23 +67,24 @@ inline constexpr double kSmallestScale = 0x1p-30;
   return std::nullopt;
 }
 
-/// Control normals in double whose components are off by at most this share of each are good enough for float32.
+/// Control normals in double with a relative error of at most this in each component are good enough for float32.
 inline constexpr double kLargestShare = 0x1p-30;
 
-/// n(t) in double has a direction where its largest component is above this share of sum w_k max_abs(c_k): what the
-/// control normals are off by, and ten roundings of 2^-53, turn it by less than 6e-7 rad then.
+/// Returns the share of sum w_k max_abs(c_k) above which the largest component of n(t) in double must be for n(t) to
+/// have a direction. The errors of the control normals, and ten roundings of 2^-53, then turn n(t) by less than 6e-7
+/// rad.
 [[nodiscard]] inline double smallest_certain(double share) { return std::max(0x1p-26, 0x1p22 * share); }
 
 inline constexpr double kDeterminantRounding = 0x1p-44;
-inline constexpr double kSmallestLength = 0x1p-400;      ///< so that squares stay in range
-inline constexpr double kSmallestProvenShare = 0x1p-20;  ///< whose square is far above the rounding of the proof
+inline constexpr double kSmallestLength = 0x1p-400;      ///< squares of larger lengths stay in range
+inline constexpr double kSmallestProvenShare = 0x1p-20;  ///< its square is far above the rounding of the proof
 
-/// Whether n(t) stays above that share at every t, so that double suffices. Mostly one determinant knows: n(t) never
-/// leaves the plane of the three control normals, nor gets nearer to zero than that plane is.
+/// Returns whether n(t) stays above that share at every t, so that double suffices. Mostly one determinant shows it:
+/// n(t) never leaves the plane of the three control normals, nor gets nearer to zero than that plane is.
 [[nodiscard]] inline bool stays_certain(const ControlNormals& c, double certain) {
   const double largest = largest_component(c);
   if (largest == 0) return true;
-  const double scale = 1 / largest, share = 4 * certain;  // 2 between norms, and 2 to be safe
+  const double scale = 1 / largest, share = 4 * certain;  // 2 between norms, and 2 for safety
   const Bernstein<Vec3d, 2> n = {scale * c.n0, scale * c.m, scale * c.n1};
   const double height = std::fabs(dot(n[0], cross(n[1], n[2])));
   if (height >= share * scaled_length(cross(n[1] - n[0], n[2] - n[0])) + kDeterminantRounding) return true;

@@ -22,19 +22,20 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Elements that a thread makes at a time: few enough that their blocks stay in a cache until they are moved, and that
-// all threads are busy to the end. Of the size alone, and so the same for any number of threads.
+// Returns how many elements a thread makes at a time: few enough that their blocks stay in a cache until they are
+// moved, and that all threads are busy to the end. It depends on the size alone, and so is the same for any number of
+// threads.
 std::size_t part_size(std::size_t size) {
   constexpr std::size_t kParts = 16;
   const std::size_t chunks = (size / kParts + kChunk - 1) / kChunk;
   return std::clamp<std::size_t>(chunks, 4, 32) * kChunk;
 }
 
-// A copy of a segment in which both positions of a vertex share a cache line: 32 bytes a vertex. Half the misses where
-// every vertex is one.
+// A copy of a segment in which both positions of a vertex share a cache line, 32 bytes per vertex. If every vertex is a
+// cache miss, this halves the misses.
 class EndsSideBySide {
  public:
-  // Uses the memory that is there, where that is enough. Nothing is copied yet.
+  // Uses the given memory if it is large enough. Nothing is copied yet.
   EndsSideBySide(const Segment& segment, AlignedArray<float> memory)
       : ends_(std::move(memory)), from_(segment), segment_(segment) {
     const std::size_t count = segment.from.count;
@@ -64,7 +65,7 @@ class EndsSideBySide {
   Segment from_, segment_;
 };
 
-// Curves that are being made, either part after part on one thread, a chunk at a time, or many parts on all threads.
+// Builds curves, either part after part on one thread, a chunk at a time, or many parts on all threads.
 class Build {
  public:
   Build(std::size_t size, const CurveOptions& options, CurveData* reuse)
@@ -74,7 +75,7 @@ class Build {
     curves_.size = size;
     curves_.keeps_lengths = limits_.with_lengths;
     if (size == 0) return;
-    // There is room for the largest result; memory that is not written costs nothing.
+    // Reserve room for the largest result; memory that is not written costs nothing.
     if (curves_.blocks.capacity() < whole() * kWorst) {
       curves_.blocks = {};
       curves_.blocks = AlignedBytes(whole() * kWorst);
@@ -85,13 +86,13 @@ class Build {
 
   [[nodiscard]] std::size_t chunk_count() const { return block_count(curves_.size, kChunk); }
 
-  // Makes the next chunks.
+  // Makes the next `count` chunks.
   template <class Source>
   void make_chunks(Source& source, std::size_t count) {
     for (; count > 0; --count) {
       if (!builder_) {
         parts_[next_].begin = curves_.blocks.data() + bytes_;
-        std::swap(parts_[next_].flagged, curves_.flagged);  // so that these need not be moved
+        std::swap(parts_[next_].flagged, curves_.flagged);  // these then need not be moved
         builder_.emplace(parts_[next_], limits_);
       }
       if (builder_->make_chunk(source)) continue;
@@ -102,8 +103,8 @@ class Build {
     }
   }
 
-  // Makes all parts, each thread from a source of its own and into memory near it. The place of a part is known when
-  // all parts before it are made; then the thread that made the part copies it there.
+  // Makes all parts. Each thread has its own source, and memory near it. The place of a part is known when all parts
+  // before it are made; then the thread that made the part copies it there.
   template <class MakeSource>
   void make_parts(const MakeSource& make_source) {
     constexpr std::size_t kNotKnown = ~std::size_t{0};
@@ -124,7 +125,7 @@ class Build {
           while (builder.make_chunk(source)) {
           }
         } catch (...) {
-          end_at(0);  // so that no thread waits for a part that will not come
+          end_at(0);  // no thread may wait for a part that will not come
           throw;
         }
         // Every earlier part has been begun by some thread.
@@ -155,7 +156,7 @@ class Build {
     to.insert(to.end(), more.begin(), more.end());
   }
 
-  // Adds the next part, whose blocks are in their place.
+  // Adds the next part, whose blocks are already in place.
   void join(const CurvePart& made) {
     for (const CurveData::Run& run : made.runs) {
       if (!curves_.runs.empty() && curves_.runs.back().kind == run.kind) {
@@ -185,14 +186,14 @@ class Build {
   std::size_t part_;  // elements
   std::vector<CurvePart> parts_;
   std::size_t next_ = 0, bytes_ = 0;    // the next part to be added, and the bytes of the parts before
-  std::optional<PartBuilder> builder_;  // of that part, where parts are made one after the other
+  std::optional<PartBuilder> builder_;  // builds that part, if parts are made one after the other
 };
 
 template <class MakeSource>
 CurveData build(std::size_t size, const CurveOptions& options, Threads threads, CurveData* reuse,
                 MakeSource make_source) {
   Build build(size, options, reuse);
-  // Another thread takes as long to begin as a few hundred elements.
+  // Starting another thread takes as long as a few hundred elements.
   if (threads == Threads::kAll && size > 2 * part_size(size)) {
     build.make_parts(make_source);
   } else if (size > 0) {
@@ -202,21 +203,21 @@ CurveData build(std::size_t size, const CurveOptions& options, Threads threads, 
   return build.finish();
 }
 
-// The memory that earlier curves had for the ends of a mesh in no order.
+// Returns the memory that earlier curves used for the ends of a mesh in no order.
 AlignedArray<float> scratch_of(CurveData* reuse) {
   return reuse != nullptr ? std::exchange(reuse->scratch, {}) : AlignedArray<float>();
 }
 
 bool are_far_apart(const Segment& segment) { return lines_per_face(*segment.topology) > kScatteredLines; }
 
-// Whether both ends of each vertex must be copied side by side first.
+// Returns whether both ends of each vertex must be copied side by side first.
 bool needs_ends(const Segment& segment, const NormalGroups* groups) {
   const bool near = segment.from.count * 6 * sizeof(float) <= kNearBytes;
   return !near && !has_residuals(segment) && (groups != nullptr || segment.topology->all_triangles()) &&
          are_far_apart(segment);
 }
 
-// The same for both kinds of elements. Of groups that are scattered, points are asked for before they are needed.
+// Builds curves of either kind of elements. Prefetches points if groups are scattered.
 CurveData build_elements(const Segment& segment, const NormalGroups* groups, bool scattered,
                          const CurveOptions& options, Threads threads, CurveData* reuse) {
   if (groups == nullptr)
@@ -250,8 +251,8 @@ CurveData build_curves(const Segment& segment, const NormalGroups& groups, const
   return build_curves(segment, &groups, options, threads, reuse);
 }
 
-// There are two steps: copying both ends of each vertex side by side, which is for meshes in no order only, and making
-// the curves.
+// There are two steps: copying both ends of each vertex side by side, only for meshes in no order, and making the
+// curves.
 struct CurveSlices::State {
   State(const Segment& of_segment, const NormalGroups* of_groups, const CurveOptions& options, CurveData* reuse)
       : segment(of_segment),

@@ -2,9 +2,8 @@
 ///
 ///     source --tiles--> how precise each must be --> runs of blocks of one kind --> packed, one after the other
 ///
-/// Elements go by chunks of 32 tiles, which stay in cache from the first step to the last. Parts of 4 to
-/// 32 chunks may be made by several threads at once; where they end does not depend on the threads, and so neither do
-/// the bits.
+/// Elements go by chunks of 32 tiles, which stay in cache from the first step to the last. Several threads may make
+/// parts of 4 to 32 chunks at once. The ends of the parts do not depend on the threads, and so neither do the bits.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 
@@ -20,18 +19,18 @@
 
 namespace chronormal::inline internal {
 
-/// Makes the curves of elements whose control normals are there already.
+/// Makes the curves of elements whose control normals already exist.
 [[nodiscard]] CurveData build_curves(std::span<const ControlNormals> normals, const CurveOptions& options);
 
-/// Makes the curves of all faces of a segment, or of all elements of the groups. Where `reuse` names curves, they are
-/// emptied and their memory is used again.
+/// Makes the curves of all faces of a segment, or of all elements of the groups. If `reuse` is not nullptr, these
+/// curves are emptied and their memory is used again.
 [[nodiscard]] CurveData build_curves(const Segment& segment, const CurveOptions& options, Threads threads,
                                      CurveData* reuse);
 [[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, CurveData* reuse);
 
-/// Builds the same curves on one thread in slices, with the same bits, for MeshNormals::prepare(). The segment and the
-/// groups must outlive the object.
+/// Builds the same curves, bit for bit, on one thread in slices, for MeshNormals::prepare(). The segment and the groups
+/// must outlive the object.
 class CurveSlices {
  public:
   CurveSlices(const Segment& segment, const NormalGroups* groups, const CurveOptions& options, CurveData* reuse);
@@ -39,9 +38,9 @@ class CurveSlices {
   CurveSlices& operator=(const CurveSlices&) = delete;
   ~CurveSlices();
 
-  /// Does this share of the work, or what is left of it; returns whether all is done.
+  /// Does this share of the work, or what is left of it. Returns whether all is done.
   bool advance(double share);
-  /// Does what is left, and returns the curves. It may be called once.
+  /// Does the rest of the work, and returns the curves. It may be called once.
   [[nodiscard]] CurveData finish();
 
  private:

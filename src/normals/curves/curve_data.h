@@ -1,5 +1,5 @@
-/// What NormalCurves keeps: its elements in blocks of 16, in runs of neighbouring blocks of one kind, and beside them
-/// the elements that float32 cannot carry.
+/// The data of NormalCurves: elements in blocks of 16, in runs of neighbouring blocks of one kind, and beside them the
+/// elements that float32 cannot carry.
 ///
 ///     build_curves (curve_builder.h) --CurveData--> NormalCurves, MeshNormals
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_
@@ -19,14 +19,14 @@
 namespace chronormal::inline internal {
 
 struct CurveData {
-  /// Neighbouring blocks of one kind.
+  /// Holds neighbouring blocks of one kind.
   struct Run {
     std::size_t first_block = 0;
     std::size_t block_count = 0;
-    std::size_t offset = 0;  ///< of the first block, in blocks
+    std::size_t offset = 0;  ///< place of the first block, in bytes
     BlockKind kind = BlockKind::kUnit;
 
-    /// The elements of these blocks; of them, only the first `count` of the curves exist.
+    /// Returns the elements of these blocks. Only the first `count` elements of the curves exist.
     [[nodiscard]] IndexRange elements(std::size_t count) const noexcept {
       const std::size_t first = first_block * kTile, end = first + block_count * kTile;
       return {first, (end < count ? end : count) - first};
@@ -39,16 +39,16 @@ struct CurveData {
   AlignedBytes blocks;
   std::vector<Run> runs;
   std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty where all are 0
-  FlaggedElements flagged;              ///< what is evaluated in double
-  /// The flagged elements for which double does not suffice at every t, in ascending order. `digits` is the place in
-  /// exact_digits at which the ExactCurve of the element begins.
+  FlaggedElements flagged;              ///< the elements that are evaluated in double
+  /// Names a flagged element for which double does not suffice at every t; elements are in ascending order. `digits` is
+  /// the place in exact_digits at which the ExactCurve of the element begins.
   struct ExactElement {
     std::size_t element = 0;
     std::size_t digits = 0;
   };
   std::vector<ExactElement> exact;
   std::vector<std::int32_t> exact_digits;
-  AlignedArray<float> scratch;  ///< of preparing, kept for the next segment
+  AlignedArray<float> scratch;  ///< memory of preparing, kept for the next segment
 
   /// Becomes empty, and keeps its memory.
   void clear() noexcept {

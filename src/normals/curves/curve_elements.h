@@ -1,5 +1,5 @@
-/// One element of a curve of normals, over any scalar: what the kernels do to sixteen at a time, spelt out for a scalar
-/// that counts.
+/// One element of a curve of normals, over any scalar. It spells out, for a scalar that counts operations, what the
+/// kernels do to sixteen elements at a time.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
 
@@ -9,7 +9,8 @@
 
 namespace chronormal::inline internal {
 
-/// The weights of n0, m, n1 in eq. 5, shared by all elements at one t. Made in double: each is right to half a bit.
+/// Holds the weights of n0, m, n1 in eq. 5, which all elements share at one t. They are made in double and rounded to
+/// float32.
 template <class S>
 struct QuadraticWeights {
   S w0, w1, w2;
@@ -26,16 +27,16 @@ template <class S>
   return w.w0 * n0 + w.w1 * m + w.w2 * n1;
 }
 
-/// A quadratic at one of equidistant t, with its first and second forward difference.
+/// Holds a quadratic at one of equidistant t, with its first and second forward difference.
 template <class S>
 struct QuadraticState {
   Vec3<S> n, first, second;
 
-  /// To the next t: two additions per component.
+  /// Returns the state at the next t: two additions per component.
   [[nodiscard]] QuadraticState next() const { return {n + first, first + second, second}; }
 };
 
-/// v scaled to length 1. Precondition: v is not zero and |v|^2 neither overflows nor underflows.
+/// Returns v scaled to length 1. v must not be zero, and |v|^2 must neither overflow nor underflow
 template <class S>
 [[nodiscard]] Vec3<S> normalized(const Vec3<S>& v) {
   using std::sqrt;

@@ -1,6 +1,6 @@
-/// One evaluation of prepared curves, for whoever has CurveData: a pass over the runs of blocks (curve_data.h), each
-/// handed to the kernel as a whole, and then the flagged elements, which are written over it in double. Results leave
-/// in the forms of outputs.h. Nothing here allocates or throws.
+/// One evaluation of prepared curves, for anything that has CurveData. It passes over the runs of blocks
+/// (curve_data.h), hands each to the kernel as a whole, and then writes the flagged elements over the result in double.
+/// outputs.h lists the forms of results. Nothing here allocates or throws.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_EVALUATION_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_EVALUATION_H_
 
@@ -21,7 +21,7 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the digits of a flagged element for which double is not enough at every t, or nothing.
+/// Returns the digits of a flagged element for which double is not enough at every t, or nullptr.
 inline const std::int32_t* digits_of(const CurveData& curves, std::size_t element) {
   const auto at = std::lower_bound(curves.exact.begin(), curves.exact.end(), element,
                                    [](const CurveData::ExactElement& e, std::size_t i) { return e.element < i; });
@@ -37,8 +37,8 @@ inline std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t
   return count;
 }
 
-/// Calls write(element, xyz, count) for neighbouring flagged elements of a range, with what double makes of them at t,
-/// and then settle(index, element) for those that it cannot carry; `index` is that among the flagged.
+/// Calls write(element, xyz, count) for neighbouring flagged elements of a range, with their normals at t in double.
+/// Then calls settle(index, element) for the elements that double cannot carry; `index` counts flagged elements.
 template <class Write, class Settle>
 void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, const Write& write,
                  const Settle& settle) {
@@ -84,7 +84,7 @@ std::size_t write_flagged_range(const CurveData& curves, IndexRange range, const
   return without_direction;
 }
 
-/// Writes the elements of a range at one t, in one pass over their blocks; returns how many have no direction.
+/// Writes the elements of a range at one t, in one pass over their blocks. Returns how many have no direction.
 /// range.first must be a multiple of kTile
 template <class Output>
 std::size_t evaluate_range(const CurveData& curves, IndexRange range, const LocalTime& t, const CurveWeights& weights,

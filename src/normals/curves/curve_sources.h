@@ -1,12 +1,11 @@
-/// Where the control normals of curves come from: each source writes tiles for a glance, and what a closer look needs.
+/// The sources of control normals for curves. Each writes tiles for the quick test, and what a closer look needs.
 ///
 ///     write(elements, tiles)   sixteen by sixteen, in double, rounded to float32
-///     write(elements, tiles, bounded)   the same, and beside each tile what it is rounded from, and how far off that
-///                              may be
-///     write_in_float(elements, tiles)   the same in float32 throughout, with bounds on the errors, of a source for
-///                              which has_float() is true; not every source has these two
-///     in_double(i)             one element, and how far off that may be
-///     exact(i)                 the same without any rounding, where there are positions to make it from
+///     write(elements, tiles, bounded)   also writes the values before rounding, and bounds of their errors
+///     write_in_float(elements, tiles)   entirely in float32, with bounds on the errors, if has_float() is true; not
+///                              every source has these two
+///     in_double(i)             one element, and bounds of its errors
+///     exact(i)                 one element without any rounding, if there are positions to make it from
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
 
@@ -35,7 +34,7 @@ void put_each(const Source& source, IndexRange elements, std::span<BoundedTile> 
     put(bounded[i / kTile], i % kTile, source.in_double(elements.first + std::min(i, elements.count - 1)));
 }
 
-/// Control normals that are there already.
+/// Reads control normals that already exist.
 class GivenNormals {
  public:
   explicit GivenNormals(std::span<const ControlNormals> normals) : normals_(normals) {}
@@ -45,7 +44,7 @@ class GivenNormals {
       const ControlNormals& c = normals_[elements.first + std::min(i, elements.count - 1)];
       ControlTile& tile = tiles[i / kTile];
       put(tile, i % kTile, c);
-      // They are what they are: no products whose rounding would have to be feared.
+      // These values count as exact: there are no products whose rounding could matter.
       tile.magnitude[i % kTile] = static_cast<float>(largest_component(c));
       tile.degree[i % kTile] = degree(c);
     }
@@ -54,14 +53,14 @@ class GivenNormals {
     write(elements, tiles);
     put_each(*this, elements, bounded);
   }
-  // They are the truth, whatever they were made from.
+  // Given control normals are the truth, whatever they were made from.
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return {normals_[i], {}}; }
 
  private:
   std::span<const ControlNormals> normals_;
 };
 
-/// The faces of a segment.
+/// Makes the control normals of the faces of a segment.
 class FaceNormals {
  public:
   explicit FaceNormals(const Segment& segment) : segment_(segment) {}
@@ -91,7 +90,7 @@ class FaceNormals {
   const Segment& segment_;
 };
 
-/// The elements of groups.
+/// Makes the control normals of the elements of groups.
 class GroupNormals {
  public:
   GroupNormals(const Segment& segment, const NormalGroups& groups, bool fetch)

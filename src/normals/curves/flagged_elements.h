@@ -1,4 +1,5 @@
-/// The elements of curves that float32 cannot carry, in ascending order: their numbers, and sixteen of them side by side.
+/// The elements of curves that float32 cannot carry, in ascending order: their numbers, and their values in tiles of
+/// sixteen.
 #ifndef CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
 
@@ -18,11 +19,11 @@ namespace chronormal::inline internal {
 struct FlaggedElements {
   std::vector<std::size_t> numbers;
   std::vector<FlaggedTile, AlignedAllocator<FlaggedTile>> tiles;
-  std::vector<std::int16_t> exponents;  ///< an element is what its tile has times 2^exponent
+  std::vector<std::int16_t> exponents;  ///< an element is the value in its tile times 2^exponent
 
   [[nodiscard]] std::size_t size() const noexcept { return numbers.size(); }
 
-  /// The control normals of an element, scaled as in its tile.
+  /// Returns the control normals of an element, scaled as in its tile.
   [[nodiscard]] ControlNormals scaled_normals(std::size_t index) const noexcept {
     return element_of(tiles[index / kTile].normals, index % kTile);
   }
@@ -48,7 +49,7 @@ struct FlaggedElements {
     numbers.push_back(number);
   }
 
-  /// Adds elements that lie side by side in a tile already, from its lane `first`.
+  /// Adds elements that already lie side by side in a tile, from its lane `first` on.
   void append(std::span<const std::size_t> more, const FlaggedTile& from, std::size_t first,
               std::span<const std::int16_t> of_more) {
     const std::size_t lane = size() % kTile, fitting = std::min(more.size(), kTile - lane);

@@ -1,5 +1,5 @@
-// NormalCurves: an evaluation is one pass over the runs of blocks (curve_data.h), each handed to the kernel as a whole,
-// and then the flagged elements, which are written over it in double. How results leave is in outputs.h.
+// Evaluates NormalCurves in one pass over the runs of blocks (curve_data.h). Each run is handed to the kernel as a
+// whole; then the flagged elements are written over the result in double. outputs.h lists the forms of results.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -25,10 +25,10 @@
 namespace chronormal {
 namespace {
 
-// What one thread does at a time, and below which there is nothing to share out.
+// A thread takes this many elements at a time; fewer are not shared out.
 constexpr std::size_t kPiece = 8192;
-// Of how many elements many t are evaluated before the next ones: as many as stay in the nearest cache; and where
-// results go past the caches, as many as let each of these streams be long.
+// All of many t are evaluated for this many elements before the next ones: as many as stay in the nearest cache. If
+// results go past the caches, there are more, so that each of the streams is long.
 constexpr std::size_t kManyTimes = 1024, kManyTimesLarge = 8192;
 
 std::size_t many_times_step(MemoryAccess access) { return access.stream ? kManyTimesLarge : kManyTimes; }
@@ -40,21 +40,22 @@ float clamped_to_float(double value) {
 
 Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_to_float(v.y), clamped_to_float(v.z)}; }
 
-// Whether double is certain of the direction of n(t), or that there is none, if the control normals are exact.
+// Returns whether double is certain of the direction of n(t), or that there is none, if the control normals are exact.
 bool has_certain_direction(const ControlNormals& c, double t) {
   const double s = 1 - t;
   const double size = s * s * max_abs(c.n0) + 2 * t * s * max_abs(c.m) + t * t * max_abs(c.n1);
   return largest_component(c) == 0 || max_abs(normal_at(c, t)) > smallest_certain(0) * size;
 }
 
-// There is no normal at a time that is none.
+// Writes zeros, since NaN has no normal.
 template <class Output>
 std::size_t write_zeros(std::size_t size, const Output& output) {
   for (std::size_t i = 0; i < size; ++i) output.set(i, {});
   return size;
 }
 
-// Calls body(range) over all elements, on one thread as a whole or on all in pieces; returns the sum of the results.
+// Calls body(range) over all elements, on one thread as a whole or on all threads in pieces. Returns the sum of the
+// results.
 template <class Body>
 std::size_t over_pieces(std::size_t size, Threads threads, Body body) {
   const auto flushed = [&](IndexRange range) {
@@ -136,7 +137,7 @@ const CurveData& NormalCurves::data() const noexcept {
   return none;
 }
 
-// Curves of no elements have no data, but are a place for memory to be kept all the same.
+// Gives reused curves data if they have none: curves of no elements have none, but they can still hold memory.
 CurveData* NormalCurves::data_of(NormalCurves* reuse) {
   if (reuse == nullptr) return nullptr;
   if (!reuse->data_) reuse->data_ = std::make_unique<CurveData>();

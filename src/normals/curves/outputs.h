@@ -1,7 +1,7 @@
 /// The forms in which results leave NormalCurves, each behind the same two calls.
 ///
-///     write(span, weights, first)   the unit normals of a span of blocks, the first of which is element `first`
-///     set(i, v)                     that of one element
+///     write(span, weights, first)   writes the unit normals of a span of blocks, which begins with element `first`
+///     set(i, v)                     writes the normal of one element
 #ifndef CHRONORMAL_NORMALS_CURVES_OUTPUTS_H_
 #define CHRONORMAL_NORMALS_CURVES_OUTPUTS_H_
 
@@ -18,7 +18,7 @@ namespace chronormal::inline internal {
 
 [[nodiscard]] inline bool is_packed(const VectorView<float>& view) { return view.is_packed(); }
 
-/// The access of a pass to results in such arrays: none of them streams that does not begin at a cache line.
+/// Returns the access of a pass to results in these arrays. It streams only if each array begins at a cache line.
 template <class... Pointer>
 [[nodiscard]] MemoryAccess access_to(MemoryAccess of_pass, Pointer... arrays) {
   const bool aligned = ((reinterpret_cast<std::uintptr_t>(arrays) % 64 == 0) && ...);
@@ -79,7 +79,8 @@ struct Rgb10A2Output {
   MemoryAccess access;
 };
 
-/// Any other form, by a function of index and vector: through planes on the stack, a few blocks at a time.
+/// Writes any other form, by a function of index and vector. Results go through planes on the stack, a few blocks at a
+/// time.
 template <class Set>
 struct AnyOutput {
   WorkingSet working_set;
@@ -109,13 +110,13 @@ void set_run(const Output& output, std::size_t first, const float* xyz, std::siz
 
 inline void set_run(const PackedOutput& output, std::size_t first, const float* xyz, std::size_t count) {
   float* const to = output.result.x + 3 * first;
-  if (count == kTile)  // copied without a call
+  if (count == kTile)  // a constant size, which is copied without a call
     std::copy_n(xyz, 3 * kTile, to);
   else
     std::copy_n(xyz, 3 * count, to);
 }
 
-/// Calls body(output) with the form that a view has; returns what it returns.
+/// Calls body(output) with the form of a view, and returns its result.
 template <class Body>
 auto with_output(const VectorView<float>& result, MemoryAccess of_pass, Body body) {
   if (is_packed(result)) return body(PackedOutput(result, of_pass));

@@ -1,4 +1,4 @@
-/// Makes one part of some curves, chunk by chunk, from tiles of control normals to packed blocks; curve_builder.cpp
+/// Makes one part of some curves, chunk by chunk, from tiles of control normals to packed blocks. curve_builder.cpp
 /// puts the parts together.
 #ifndef CHRONORMAL_NORMALS_CURVES_PART_BUILDER_H_
 #define CHRONORMAL_NORMALS_CURVES_PART_BUILDER_H_
@@ -29,7 +29,7 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kChunkTiles = 32;
 inline constexpr std::size_t kChunk = kChunkTiles * kTile;
-inline constexpr std::size_t kWrittenTiles = 4;  // that one call of a source writes
+inline constexpr std::size_t kWrittenTiles = 4;  // written by one call of a source
 
 inline constexpr std::size_t kShortestRun = 4;  // blocks
 
@@ -41,10 +41,10 @@ inline ControlNormals scaled(double scale, const ControlNormals& c) {
   return {scale * c.n0, scale * c.m, scale * c.n1};
 }
 
-// The contents of a flagged element in its block, whatever the kind of the block.
+// A flagged element has these values in its block, whatever the kind of the block.
 inline constexpr ControlNormals kPlaceHolder{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
 
-// The precision that a block must be able to hold.
+// Holds the precision and the degree that a block must be able to hold.
 struct Need {
   Precision precision = Precision::k11;
   int degree = 0;
@@ -96,10 +96,10 @@ inline std::vector<NeedRun> runs_of(std::span<const Need> needs) {
   return runs;
 }
 
-// The part that one thread makes at a time.
+// Holds the part that one thread makes at a time.
 struct CurvePart {
   IndexRange elements;
-  std::byte* begin = nullptr;  // of its blocks; nullptr where they are counted and not made
+  std::byte* begin = nullptr;  // start of its blocks; nullptr if they are only counted
   std::size_t bytes = 0;
   std::vector<CurveData::Run> runs;  // offsets from begin
   FlaggedElements flagged;
@@ -108,7 +108,7 @@ struct CurvePart {
   std::vector<std::int16_t> exponents;  // empty, or one for each of its blocks
   std::array<std::size_t, 3> degree_counts{};
 
-  // Takes the memory of a part that is no longer needed; its flagged elements have been taken out of it.
+  // Takes the memory of a part that is no longer needed, and whose flagged elements have been taken.
   void take_memory(CurvePart& done) {
     const auto take = [](auto& to, auto& from) {
       to = std::move(from);
@@ -120,11 +120,11 @@ struct CurvePart {
   }
 };
 
-// The result of examining one element that the quick test in float32 did not settle.
+// Holds the result of examining one element that the quick test in float32 did not settle.
 struct Examined {
-  ControlNormals normals;              // in double, as right as its direction needs
-  std::optional<Precision> precision;  // nothing: it is flagged
-  double certain = 0;                  // where it is flagged: the share above which double has a direction
+  ControlNormals normals;              // in double, as precise as its direction needs
+  std::optional<Precision> precision;  // none if it is flagged
+  double certain = 0;                  // if it is flagged, the share above which double has a direction
   bool needs_exact = false;            // flagged, and n(t) is not above that share at every t
 };
 
@@ -149,8 +149,8 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   return result;
 }
 
-// Says what a tolerance asks of blocks: whether they keep lengths, and how precise elements have to be, in tiles that
-// are made in double and, where the tolerance allows it, in float32.
+// Holds what a tolerance asks of blocks: whether they keep lengths, and how precise elements must be, in tiles that are
+// made in double and, if the tolerance allows it, in float32.
 struct BuildLimits {
   explicit BuildLimits(double tolerance)
       : with_lengths(!(tolerance > kExactTolerance)),
@@ -168,8 +168,8 @@ concept WritesInFloat = requires(const Source& source, std::span<ControlTile> ti
   source.write_in_float(IndexRange{}, tiles);
 };
 
-// Decides whether float32 is tried for the next tiles. Where it was in vain it is left alone for a while, and for twice
-// as long where it is in vain once more.
+// Decides whether float32 is tried for the next tiles. After a vain try it is left alone for a while, and after another
+// one for twice as long.
 class FloatTrials {
  public:
   [[nodiscard]] bool is_tried() {
@@ -191,7 +191,7 @@ class PartBuilder {
  public:
   PartBuilder(CurvePart& part, const BuildLimits& limits) : part_(part), limits_(limits), tiles_(kChunkTiles) {}
 
-  // Makes the next chunk of the part; returns whether there are more.
+  // Makes the next chunk of the part. Returns whether there are more.
   template <class Source>
   bool make_chunk(Source& source) {
     const IndexRange elements{part_.elements.first + made_, std::min(kChunk, part_.elements.count - made_)};
@@ -201,7 +201,7 @@ class PartBuilder {
   }
 
  private:
-  // The first lanes of a tile, as bits.
+  // Returns the bits of the first lanes of a tile.
   static constexpr std::uint32_t lanes_of(std::size_t count) { return (std::uint32_t{1} << count) - 1; }
 
   template <class Source>
@@ -233,7 +233,7 @@ class PartBuilder {
     return {elements.first + first, std::min(count * kTile, elements.count - first)};
   }
 
-  // Makes a few tiles, and finds out what a block needs to hold each of them.
+  // Makes a few tiles, and finds what a block needs to hold each of them.
   template <class Source>
   void add_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles, Need* needs) {
     std::array<TileSummary, kWrittenTiles> summaries;
@@ -256,11 +256,12 @@ class PartBuilder {
     }
   }
 
-  // Writes a few tiles, and summarizes them: in float32 where that may do, and in double what it does not do for.
+  // Writes a few tiles, and summarizes them: in float32 if that may do, and in double what it does not do for.
   template <class Source>
   void write_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles,
                    std::span<TileSummary> summaries) {
-    // Where the last tiles had to be examined these are likely to be, which asks for bounds that cost little now.
+    // If the last tiles had to be examined, the next ones probably will be too, so ask for bounds now, when they are
+    // cheap.
     const bool with_bounds = std::exchange(is_examined_, false);
     has_bounds_ = 0;
     const auto in_double = [&](std::size_t first, std::size_t count) {
@@ -291,8 +292,8 @@ class PartBuilder {
     in_double(0, tiles.size());
   }
 
-  // Prefetches the memory that the blocks of some tiles will go to, as many bytes as those of the last chunk had. It
-  // arrives while tiles are computed. Only a little is prefetched at a time, since the core would wait where more is
+  // Prefetches the memory that the blocks of some tiles will go to, as many bytes as the blocks of the last chunk took.
+  // It arrives while tiles are computed. Only a little is prefetched at a time, since the core would wait if more were
   // requested than can be in flight.
   void fetch_destination(std::size_t tile, std::size_t count) const {
 #if defined(__GNUC__)
@@ -304,12 +305,12 @@ class PartBuilder {
 #endif
   }
 
-  // Examines in double the elements of tile k of a few that the quick test did not settle: sixteen at a time, and one by
-  // one what that leaves. Returns the flagged ones as bits, and corrects the degrees of those that come out otherwise.
+  // Examines in double the elements of tile k that the quick test did not settle: sixteen at a time, and then one by
+  // one what is left. Returns the bits of the flagged ones, and corrects degrees that come out differently.
   template <class Source>
   std::uint32_t examine(Source& source, IndexRange elements, std::size_t k, ControlTile& tile, Need& need,
                         TileSummary& summary) {
-    constexpr int kFewest = 3;  // for which sixteen at a time pay
+    constexpr int kFewest = 3;  // sixteen at a time pay from here on
     const std::uint32_t uncertain = summary.uncertain & lanes_of(elements.count);
     TileCertificates& known = certificates_;
     known.clear();
@@ -330,7 +331,8 @@ class PartBuilder {
     return examine_alone(source, elements, uncertain & ~known.known, tile, need, summary);
   }
 
-  // Examines one by one some elements of a tile, and adds all of its flagged ones, also those with certificates.
+  // Examines some elements of a tile one by one, and adds all of its flagged ones, including the ones with
+  // certificates.
   template <class Source>
   std::uint32_t examine_alone(Source& source, IndexRange elements, std::uint32_t asked, ControlTile& tile, Need& need,
                               TileSummary& summary) {
@@ -351,7 +353,7 @@ class PartBuilder {
       }
     });
     if (out_of_range) flagged |= rescale(source, elements, flagged, tile, alone);
-    // The block holds what was put now, which may move or bend where the sums before, mere rounding, did not.
+    // The block now holds the new values, which may move or bend where the earlier sums, mere rounding, did not.
     for (std::size_t lane = 0; lane < kTile; ++lane) {
       if (alone[lane]) summary.set_degree(lane, degree(alone[lane]->normals));
     }
@@ -375,7 +377,7 @@ class PartBuilder {
     return flagged;
   }
 
-  // Adds neighbours that are flagged as they lie beside their certificates.
+  // Adds neighbours that are flagged, as they lie beside their certificates.
   void add_known(std::size_t first, std::size_t lane, std::size_t count) {
     std::array<std::size_t, kTile> numbers;
     for (std::size_t i = 0; i < count; ++i) numbers[i] = first + lane + i;
@@ -400,8 +402,8 @@ class PartBuilder {
     for (; lanes != 0; lanes &= lanes - 1) body(static_cast<std::size_t>(std::countr_zero(lanes)));
   }
 
-  // Gives a tile an exponent of its own, which takes a look at all elements of it that are not flagged. Returns those
-  // that are too small for it beside the others.
+  // Gives a tile its own exponent, for which all its unflagged elements must be examined. Returns the elements that are
+  // too small for it beside the others.
   template <class Source>
   std::uint32_t rescale(const Source& source, IndexRange elements, std::uint32_t flagged, ControlTile& tile,
                         std::array<std::optional<Examined>, kTile>& alone) {
@@ -441,9 +443,9 @@ class PartBuilder {
   std::size_t made_ = 0;  // elements
   FloatTrials float_;
   std::array<BoundedTile, kWrittenTiles> bounded_;  // of the tiles that are being added
-  TileCertificates certificates_;                   // of the one that is being examined
-  std::uint32_t has_bounds_ = 0;                    // those of them that have one, as bits
-  bool is_examined_ = false;                        // one of them was, sixteen elements at a time
+  TileCertificates certificates_;                   // of the tile that is being examined
+  std::uint32_t has_bounds_ = 0;                    // bits of the tiles that have one
+  bool is_examined_ = false;                        // whether one of them was, sixteen elements at a time
   std::size_t chunk_bytes_ = 0;                     // of the last chunk
 };
 

@@ -1,8 +1,8 @@
-// MeshNormals: elements are what has a normal of its own, outputs what shows one. Where every output is the element of
-// its own number, kernels write straight to the caller's memory. Where outputs share elements, they are walked in
-// order, and the tiles of elements that they show are evaluated when they are first met, into slots on the stack that
-// hold the last thousand elements: neighbours in a mesh show neighbours, so that each tile is evaluated about once. A
-// range of outputs is the same walk over a part; it needs nothing but the stack, which is why any thread may do it.
+// Implements MeshNormals. An element has a normal of its own, an output shows one. If every output is the element with
+// its number, kernels write straight to the caller's memory. If outputs share elements, they are walked in order, and
+// the tiles of elements that they show are evaluated when they are first met, into slots on the stack that hold the
+// last thousand elements: neighbours in a mesh show neighbours, so each tile is evaluated about once. A range of
+// outputs is the same walk over a part. It needs only the stack, which is why any thread may do it.
 #include "chronormal/normals/mesh_normals.h"
 
 #include <algorithm>
@@ -54,7 +54,8 @@ std::vector<float> packed_copy(VectorView<const float> positions) {
   return result;
 }
 
-// The base, and the mesh at full weight of each target: keyframes that tell which vertices stay at one point.
+// Returns the base, and the mesh at full weight of each target, as keyframes that tell which vertices stay at one
+// point.
 Motion star_of(const BlendSet& set) {
   Motion star;
   star.topology = set.topology;
@@ -79,7 +80,7 @@ bool are_the_outputs(const NormalGroups& groups) {
 
 // ---- values in tiles on the stack ----------------------------------------------------------------------------------
 
-// Vectors as x y z.
+// Holds vectors as x y z.
 struct Vectors {
   template <std::size_t kCount>
   struct Array {
@@ -90,7 +91,7 @@ struct Vectors {
     [[nodiscard]] Vec3f operator[](std::size_t i) const { return {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}; }
   };
 };
-// Four bytes each.
+// Holds values of four bytes each.
 template <class Encoded>
 struct Words {
   template <std::size_t kCount>
@@ -101,7 +102,7 @@ struct Words {
   };
 };
 
-// What a form of results is made of.
+// Names the values of which a form of results consists.
 template <class Output>
 struct ValuesOf {
   using type = Vectors;
@@ -124,7 +125,7 @@ void put(const Rgb10A2Output& output, std::size_t i, Rgb10A2 value) { output.res
 
 // ---- the two sources of elements -----------------------------------------------------------------------------------
 
-// The elements from `first` on, in memory that begins with these.
+// Writes the elements from `first` on to memory that begins with the first of them.
 template <class Form>
 struct Shifted {
   Form form;
@@ -142,7 +143,7 @@ PackedOutput form_of(const VectorView<float>& view) { return {view, MemoryAccess
 OctahedralOutput form_of(std::span<Octahedral> view) { return {view, MemoryAccess{}}; }
 Rgb10A2Output form_of(std::span<Rgb10A2> view) { return {view, MemoryAccess{}}; }
 
-// A segment at one t.
+// Evaluates a segment at one t.
 struct AtTime {
   static constexpr std::size_t kTileElements = kTile;
   template <class Output>
@@ -153,12 +154,13 @@ struct AtTime {
 
   [[nodiscard]] std::size_t size() const noexcept { return curves.size; }
 
-  // Writes elements to their places among all; the first must be that of a tile. Returns how many have no direction.
+  // Writes elements to their places among all. The first must be the first of a tile. Returns how many have no
+  // direction.
   template <class Output>
   std::size_t write(IndexRange elements, const Output& output) const noexcept {
     return evaluate_range(curves, elements, t, weights, output);
   }
-  // The same to memory that begins with the first of them; returns the bits of those that have no direction.
+  // Writes elements to memory that begins with the first of them. Returns the bits of the ones that have no direction.
   template <class View>
   std::uint64_t write_tile(IndexRange elements, const View& view) const noexcept {
     const std::size_t zeros = evaluate_range(curves, elements, t, weights, Shifted{form_of(view), elements.first});
@@ -180,7 +182,7 @@ struct AtTime {
   CurveWeights weights;
 };
 
-// Blend shapes at the weights that are set.
+// Evaluates blend shapes at the weights that are set.
 struct AtWeights {
   static constexpr std::size_t kTileElements = 64;
   template <class Output>
@@ -218,14 +220,14 @@ struct AtWeights {
 
 // ---- from elements to outputs --------------------------------------------------------------------------------------
 
-// The elements of a tile.
+// Returns the elements of a tile.
 template <class Source>
 IndexRange tile_of(const Source& source, std::size_t tile) {
   const std::size_t first = tile * Source::kTileElements;
   return {first, std::min(Source::kTileElements, source.size() - first)};
 }
 
-// Outputs that are elements. Only a range that begins within a tile needs the stack.
+// Writes outputs that are elements. Only a range that begins within a tile needs the stack.
 template <class Source, class Output>
 std::size_t write_elements(const Source& source, IndexRange outputs, const Output& output) noexcept {
   constexpr std::size_t kElements = Source::kTileElements;
@@ -244,7 +246,7 @@ std::size_t write_elements(const Source& source, IndexRange outputs, const Outpu
   return zeros;
 }
 
-// Outputs that share elements.
+// Writes outputs that share elements.
 template <class Source, class Output>
 std::size_t write_shared(const Source& source, std::span<const std::uint32_t> element_of_output, IndexRange outputs,
                          const Output& output) noexcept {
@@ -271,7 +273,8 @@ std::size_t write_shared(const Source& source, std::span<const std::uint32_t> el
 
 // ---- vertex buffers ------------------------------------------------------------------------------------------------
 
-// The control normals of one element of exact curves. (Those of a constant or a straight one are as they were packed.)
+// Returns the control normals of one element of exact curves. (Constant and straight elements get them as they were
+// packed.)
 ControlNormals control_normals_of(const CurveData& curves, std::size_t element) {
   const auto& flagged = curves.flagged.numbers;
   const auto at = std::lower_bound(flagged.begin(), flagged.end(), element);
@@ -363,7 +366,7 @@ struct MeshNormals::Parts {
     return {first, std::min(outputs.count, size() - first)};
   }
 
-  // Decides who shares a normal, once.
+  // Decides, once, which outputs share a normal.
   Status share(const Motion& motion) {
     Result<NormalGroups> made = make_groups(motion, options.elements);
     if (!made) return made.error();
@@ -406,7 +409,7 @@ struct MeshNormals::Parts {
     return outputs.count;
   }
 
-  // At a time, where there is a segment; NaN is no time.
+  // Writes outputs at a time, which must not be NaN and needs a segment; otherwise writes zeros.
   template <class Output>
   std::size_t write(const LocalTime& t, IndexRange outputs, const Output& output) const noexcept {
     if (std::isnan(t.t) || curves.size == 0) return write_zeros(outputs, output);
@@ -419,15 +422,15 @@ struct MeshNormals::Parts {
 
   Topology topology;
   MeshNormalsOptions options;
-  std::vector<std::uint32_t> group_of_face;  // until it is decided who shares a normal
+  std::vector<std::uint32_t> group_of_face;  // kept until it is decided which outputs share a normal
   std::vector<float> normal_of_corner;       // likewise
-  std::optional<NormalGroups> groups;        // but for faces
-  bool shares = false;                       // an output is not the element of its own number
-  CurveData curves, spare;                   // of the present segment; memory for the next
+  std::optional<NormalGroups> groups;        // none for faces
+  bool shares = false;                       // whether an output is not the element with its number
+  CurveData curves, spare;                   // the present segment, and memory for the next
   double fit_bound = 0;
   Segment next;
   bool has_next = false;
-  std::optional<CurveSlices> slices;  // of the next segment; nothing for fits
+  std::optional<CurveSlices> slices;  // of the next segment; none for fits
   std::optional<BlendNormals> blend;
 };
 

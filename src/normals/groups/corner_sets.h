@@ -15,12 +15,12 @@
 
 namespace chronormal::inline internal {
 
-/// The first corner of a face, as an index into Topology::corners().
+/// Returns the first corner of a face, as an index into Topology::corners().
 [[nodiscard]] inline std::size_t first_corner(const Topology& topology, std::size_t f) noexcept {
   return static_cast<std::size_t>(topology.face(f).data() - topology.corners().data());
 }
 
-/// The face of each corner.
+/// Returns the face of each corner.
 [[nodiscard]] inline std::vector<std::uint32_t> face_of_each_corner(const Topology& topology) {
   std::vector<std::uint32_t> faces;
   faces.reserve(topology.corner_count());
@@ -29,8 +29,8 @@ namespace chronormal::inline internal {
   return faces;
 }
 
-/// Disjoint sets by union-find: path halving, and the smaller index becomes the root, so that the roots do not depend
-/// on the order in which sets were joined.
+/// Holds disjoint sets by union-find with path halving. The smaller index becomes the root, so that the roots do not
+/// depend on the order in which sets were joined.
 class CornerSets {
  public:
   explicit CornerSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -46,7 +46,7 @@ class CornerSets {
     parent_[std::max(a, b)] = std::min(a, b);
   }
 
-  /// The root of each corner.
+  /// Returns the root of each corner.
   [[nodiscard]] std::vector<std::uint32_t> roots() && {
     for (std::uint32_t c = 0; c < parent_.size(); ++c) parent_[c] = root(c);
     return std::move(parent_);
@@ -56,7 +56,7 @@ class CornerSets {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Items listed by what they belong to: offsets and items, as in Topology.
+/// Lists items by their owner: offsets and items, as in Topology.
 struct Listing {
   std::vector<std::uint32_t> offsets, items;
 
@@ -65,7 +65,7 @@ struct Listing {
   }
 };
 
-/// The corners around each point, ascending.
+/// Returns the corners around each point, ascending.
 [[nodiscard]] inline Listing corners_of_points(const Topology& topology, const Points& points) {
   Listing listing{std::vector<std::uint32_t>(points.count + 1), std::vector<std::uint32_t>(topology.corner_count())};
   for (const std::uint32_t vertex : topology.corners()) ++listing.offsets[points.point_of_vertex[vertex] + 1];

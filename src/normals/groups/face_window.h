@@ -6,8 +6,8 @@
 ///     faces        ... 40 41 42 [43 44 45 46 47 48 49 50] 51 52 ...      begin = 43, end = 51, capacity = 8
 ///     place in it                 3  4  5  6  7  0  1  2                 face f is at f & (capacity - 1)
 ///
-/// The window only says which faces are where. It grows at its end, and the oldest faces make room; where an element
-/// needs faces that are elsewhere, it starts again there. How far it pays to follow is for its owner to decide.
+/// The window only says which faces are where. It grows at its end, and the oldest faces make room. If an element needs
+/// faces that are elsewhere, the window starts again there. Its owner decides how far it pays to follow.
 #ifndef CHRONORMAL_NORMALS_GROUPS_FACE_WINDOW_H_
 #define CHRONORMAL_NORMALS_GROUPS_FACE_WINDOW_H_
 
@@ -20,7 +20,7 @@ namespace chronormal::inline internal {
 
 struct FaceWindow {
   std::size_t capacity = 0;        ///< a power of two
-  std::size_t begin = 0, end = 0;  ///< of the faces in it
+  std::size_t begin = 0, end = 0;  ///< range of the faces in it
 
   [[nodiscard]] std::size_t place(std::size_t face) const noexcept { return face & (capacity - 1); }
   [[nodiscard]] bool is_empty() const noexcept { return begin == end; }

@@ -1,5 +1,5 @@
-/// Sums of the control normals of faces, and what is done where their faces cancel so far that the sum is hardly more
-/// than rounding.
+/// Sums of the control normals of faces, and the way out if faces cancel so far that the sum is hardly more than
+/// rounding.
 #ifndef CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 #define CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 
@@ -17,7 +17,7 @@
 
 namespace chronormal::inline internal {
 
-/// A sum over faces, with zero for what is nothing but rounding.
+/// Adds up faces, with zero for what is nothing but rounding.
 class ControlNormalsSum {
  public:
   void add(const ControlNormals& face) noexcept {
@@ -51,14 +51,13 @@ class ControlNormalsSum {
   return result;
 }
 
-/// Returns the control normals of an element, each within 2^-24 of its length of the exact one, and zero only where
-/// that is: where faces cancel so far that the rounding of double could be more than 2^-26, they are made of integers.
-/// Pure.
-/// of_faces must have face_control_normals() of all faces
+/// Returns the control normals of an element. Each is within 2^-24 of its length of the exact one, and zero only if the
+/// exact one is. If faces cancel so far that the rounding of double could be more than 2^-26, they are made of
+/// integers. Pure. of_faces must have face_control_normals() of all faces
 [[nodiscard]] inline BoundedNormals settled_group_normals(const SharedFaces& faces, const NormalGroups& groups,
                                                           std::span<const ControlNormals> of_faces,
                                                           std::size_t element) noexcept {
-  // Each face is within 2^-26 of its length, and what adding them up rounds is far less.
+  // Each face is within 2^-26 of its length, and adding them up rounds far less.
   constexpr double kOfFace = kLargestRounding + 0x1p-40, kMostCancelled = 4;
   ControlNormalsSum sum;
   std::array<double, 3> sizes{};
@@ -75,8 +74,8 @@ class ControlNormalsSum {
   return result;
 }
 
-/// Writes those of a range of elements: group_control_normals() of normal_groups.h, for callers that ask for one range
-/// after the other.
+/// Writes group_control_normals() of normal_groups.h for a range of elements, for callers that ask for one range after
+/// the other.
 void group_control_normals(const SharedFaces& faces, const NormalGroups& groups,
                            std::span<const ControlNormals> of_faces, IndexRange elements,
                            std::span<ControlNormals> result) noexcept;

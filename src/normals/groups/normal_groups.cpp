@@ -19,14 +19,14 @@ namespace {
 
 constexpr double kRadiansPerDegree = 1 / kDegreesPerRadian;
 
-// What the rounding of positions to float32 may add to the angle of an edge, radians.
+// The error of an edge's angle from the rounding of positions to float32, radians.
 constexpr double kCreaseRounding = 1e-6;
 
-// Edges of more faces are hard: it bounds the number of pairs.
+// Edges with more faces are hard, which bounds the number of pairs.
 constexpr std::size_t kMostFacesAtSmoothEdge = 16;
 
-// The faces in an order that follows from their vertices alone. Faces with the same vertices in the same order stay in
-// any order: their normals have the same bits.
+// Returns the faces in an order that follows from their vertices alone. Faces with the same vertices in the same order
+// may be in any order, since their normals have the same bits.
 std::vector<std::uint32_t> faces_by_vertices(const Topology& topology) {
   std::vector<std::uint32_t> order(topology.face_count());
   std::iota(order.begin(), order.end(), 0U);
@@ -66,7 +66,8 @@ struct StoredNormal {
   }
 };
 
-// Joins the corners of all directions that are within `chord` of each other. Equal ones first: there may be many.
+// Joins the corners of all directions that are within `chord` of each other. It joins equal ones first, since there may
+// be many.
 void join_close_directions(std::vector<StoredNormal>& normals, double chord, CornerSets& sets) {
   std::sort(normals.begin(), normals.end());
   std::size_t distinct = 0;
@@ -79,7 +80,7 @@ void join_close_directions(std::vector<StoredNormal>& normals, double chord, Cor
   for (std::size_t i = 0; i < distinct; ++i) {
     for (std::size_t k = i + 1; k < distinct; ++k) {
       const Vec3d between = normals[k].direction - normals[i].direction;
-      if (between.x > chord) break;  // and so are all that follow
+      if (between.x > chord) break;  // all that follow are too
       if (dot(between, between) <= chord * chord) sets.join(normals[i].corner, normals[k].corner);
     }
   }
@@ -97,7 +98,7 @@ NormalGroups::NormalGroups(const Topology& topology, std::vector<std::uint32_t> 
   for (const std::uint32_t e : element_of_corner_) ++offsets_[e + 1];
   std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
 
-  // Deal the corners out, face by face, in the order that shuffling does not change.
+  // Deal the corners out, face by face, in an order that shuffling the mesh does not change.
   std::vector<std::uint32_t> next = offsets_;
   for (const std::uint32_t f : faces_by_vertices(topology)) {
     const std::size_t first = first_corner(topology, f);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMostSearched = 64;  // pieces of a path; in longer paths, nothing looks for the next piece
 using Path = std::vector<std::uint32_t>;   // the first point is the centre
 
-// The paths around elements, one after the other.
+// Makes the paths around elements, one after the other.
 class PathMaker {
  public:
   PathMaker(const Topology& topology, const NormalGroups& groups, std::size_t most_points)
@@ -46,7 +46,7 @@ class PathMaker {
     return path_;
   }
 
-  // Whether the last path that was made stands for one of more points than the limit.
+  // Returns whether the last path stands for one of more points than the limit.
   [[nodiscard]] bool is_left_out() const { return is_left_out_; }
 
  private:
@@ -56,7 +56,7 @@ class PathMaker {
     std::size_t first, last;  // of points_
   };
 
-  // A path that adds nothing, in place of one that is too long.
+  // Makes a path that adds nothing, in place of one that is too long.
   const Path& no_path() {
     is_left_out_ = true;
     path_.resize(1);
@@ -65,7 +65,7 @@ class PathMaker {
   }
 
   // Makes the path as next_piece() and append() would, for a few triangles around one vertex: each of them is a piece
-  // of two points. Returns false, with nothing but the centre in the path, for triangles around several vertices.
+  // of two points. Returns false, with only the centre in the path, for triangles around several vertices.
   bool make_of_triangles(std::span<const std::uint32_t> corners) {
     std::array<std::uint32_t, kMostTriangles> from, to;
     const std::uint32_t* const vertices = topology_.corners().data();
@@ -104,7 +104,7 @@ class PathMaker {
     return true;
   }
 
-  // The corners of a face that follow this one, or all of them back to it where this corner is not the centre.
+  // Adds the corners of a face that follow this one, or all of them back to it if this corner is not the centre.
   void add_piece(std::size_t corner, std::span<const std::uint32_t> face) {
     const std::size_t first = points_.size();
     const std::size_t at = corner - static_cast<std::size_t>(face.data() - topology_.corners().data());
@@ -114,7 +114,7 @@ class PathMaker {
     pieces_.push_back({first, points_.size() - 1});
   }
 
-  // Adds a piece to the path; it goes through the centre where the piece does not join the last one.
+  // Adds a piece to the path. The path goes through the centre if the piece does not join the last one.
   void append(const Piece& piece) {
     std::size_t from = piece.first;
     if (path_.size() > 1 && path_.back() == points_[from]) {
@@ -125,7 +125,7 @@ class PathMaker {
     for (; from <= piece.last; ++from) path_.push_back(points_[from]);
   }
 
-  // Takes a piece that joins the last one, or else a piece that no other leads to, or else any.
+  // Returns a piece that joins the last one, or else a piece that no other leads to, or else any.
   [[nodiscard]] std::size_t next_piece() const {
     const auto start = [this](std::size_t piece) { return points_[pieces_[piece].first]; };
     for (std::size_t i = 0; i < pieces_.size() && path_.size() > 1; ++i) {
@@ -149,8 +149,8 @@ class PathMaker {
 
 }  // namespace
 
-// path_of(element) gives the centre and the path of an element, twice: first its length is asked for, so that no memory
-// is taken that is not kept.
+// Asks path_of(element) for the centre and the path of each element twice: first for the length, so that no memory is
+// taken that is not kept.
 template <class PathOf>
 Rings::Rings(std::size_t count, const PathOf& path_of) {
   first_row_.reserve(1 + (count + kRingLanes - 1) / kRingLanes);

@@ -2,21 +2,21 @@
 ///
 /// A normal is a sum over a path of points p around a centre c: n = sum (p[i] - c) x (p[i + 1] - c). The centre of a
 /// polygon is its first corner, and its path consists of the other corners; the path of a vertex consists of its
-/// neighbours in turn. Every second point belongs to two of these products, which are one:
+/// neighbours in turn. Every second point belongs to two of these products, which can be joined into one:
 ///
 ///     (p[i - 1] - c) x (p[i] - c) + (p[i] - c) x (p[i + 1] - c) = (p[i] - c) x (p[i + 1] - p[i - 1])
 ///
-/// so that kernels need half as many products. Pieces of a path that do not join are connected through the centre, which
-/// adds nothing, and shorter paths are filled up to the longest of sixteen with the centre, which adds nothing either.
-/// Behind the last element, slices repeat it:
+/// so that kernels need half as many products. Pieces of a path that do not join are connected through the centre,
+/// which adds nothing. Shorter paths are filled up to the longest of sixteen with the centre, which adds nothing
+/// either. After the last element, slices repeat it:
 ///
 ///     slice    centres        of 16 elements, as indices of points
 ///              first points   of the paths
 ///              second ...     as many rows as the longest path has points
 ///
 /// Paths follow from the topology and the groups alone, and so does the order of every sum. Each corner of a large
-/// polygon has a path around it, so that their paths together grow with the square of its corners; who has another way
-/// to the normals of such elements gives a limit, and finds a path without any area there.
+/// polygon has a path around it, so the paths together grow with the square of its corners. A caller that has another
+/// way to the normals of such elements gives a limit, and gets a path without any area for them.
 #ifndef CHRONORMAL_NORMALS_GROUPS_RINGS_H_
 #define CHRONORMAL_NORMALS_GROUPS_RINGS_H_
 
@@ -33,8 +33,8 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kRingLanes = 16;  // elements of a slice
 
-/// Slices as kernels read them: rows of kRingLanes indices. Slice s has the rows first_row[s] to first_row[s + 1]; at
-/// least two.
+/// Shows slices as kernels read them: rows of kRingLanes indices. Slice s has the rows first_row[s] to first_row[s +
+/// 1]; there are at least two.
 struct RingSlices {
   const std::uint32_t* indices = nullptr;
   const std::size_t* first_row = nullptr;
@@ -45,10 +45,10 @@ class Rings {
  public:
   /// Creates the rings of no elements.
   Rings() = default;
-  /// Makes the paths of all faces, of up to so many points; a face with more gets one that adds nothing. O(corners).
+  /// Makes the paths of all faces. A face with more than most_points points gets a path that adds nothing. O(corners).
   [[nodiscard]] static Rings of_faces(const Topology& topology, std::size_t most_points = kUnlimited);
-  /// Makes those of the elements of groups, which must be groups of the topology that keep their corners. O(points of
-  /// all paths), and more by up to 64 times where faces around an element do not follow each other.
+  /// Makes the paths of the elements of groups, which must belong to the topology and keep their corners. O(points of
+  /// all paths), and up to 64 times more if faces around an element do not follow each other.
   [[nodiscard]] static Rings of_groups(const Topology& topology, const NormalGroups& groups,
                                        std::size_t most_points = kUnlimited);
 
@@ -57,7 +57,7 @@ class Rings {
   [[nodiscard]] RingSlices view() const noexcept { return {indices_.data(), first_row_.data(), first_row_.size() - 1}; }
   [[nodiscard]] bool empty() const noexcept { return indices_.empty(); }
   [[nodiscard]] std::size_t row_count() const noexcept { return first_row_.back(); }
-  /// The elements with more points than the limit, in ascending order; their paths add nothing.
+  /// Returns the elements with more points than the limit, in ascending order. Their paths add nothing.
   [[nodiscard]] std::span<const std::uint32_t> left_out() const noexcept { return left_out_; }
   [[nodiscard]] std::size_t bytes() const noexcept {
     return (indices_.capacity() + left_out_.capacity()) * sizeof(std::uint32_t) +
@@ -73,18 +73,18 @@ class Rings {
   std::vector<std::uint32_t> left_out_;
 };
 
-/// The paths around the elements of some groups, made when they are first asked for.
+/// Holds the paths around the elements of some groups, made when they are first asked for.
 struct RingsOfGroups {
   std::once_flag once;
   Rings rings;
 };
 
-/// The points of the longest path that rings_around() has.
+/// The most points of a path that rings_around() has.
 inline constexpr std::size_t kMostPathPoints = 64;
 
-/// The paths of up to kMostPathPoints around the elements of groups, which keep them, with their copies: 4 bytes for each
-/// point of the longest of sixteen paths, 33 bytes a vertex of a grid. Any number of threads may ask for them. Throws
-/// std::bad_alloc.
+/// Returns the paths of up to kMostPathPoints around the elements of groups. The groups and their copies keep them: 4
+/// bytes for each point of the longest of sixteen paths, 33 bytes per vertex of a grid. Any number of threads may ask
+/// for them. Throws std::bad_alloc.
 [[nodiscard]] const Rings& rings_around(const Topology& topology, const NormalGroups& groups);
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-// Finds vertices that coincide in all keyframes: it sorts them by place in one keyframe after the other, many of them
-// by a hash of their place first, on all cores.
+// Finds vertices that coincide in all keyframes. It sorts them by place in one keyframe after the other; if they are
+// many, it first splits them by a hash of their place, on all cores.
 #include "normals/groups/weld.h"
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 namespace chronormal {
 namespace {
 
-// A total order of coordinates in which -0 and 0 are the same.
+// Returns a key that gives coordinates a total order, in which -0 and 0 are the same.
 std::uint32_t key(float coordinate) { return bit_cast<std::uint32_t>(coordinate + 0.0F); }
 
-// The place of a vertex in the total order; vertices of separate bodies are never equal.
+// The place of a vertex in the total order. Vertices of separate bodies are never equal.
 using PlaceKey = std::array<std::uint32_t, 3>;
 
 PlaceKey place_key(const Motion::Keyframe& keyframe, std::uint32_t vertex) {
@@ -26,7 +26,7 @@ PlaceKey place_key(const Motion::Keyframe& keyframe, std::uint32_t vertex) {
 
 using Coinciding = std::span<std::uint32_t>;
 
-// Sorts vertices by their places at a keyframe, and by their numbers where these are equal. Appends those that share a
+// Sorts vertices by their places at a keyframe, and by their numbers if these are equal. Appends the ones that share a
 // place with another to `found`.
 void split_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::vector<Coinciding>& found) {
   std::sort(vertices.begin(), vertices.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -40,7 +40,7 @@ void split_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::
   }
 }
 
-// A vertex and a hash of its place. Vertices at one place have the same, and few others have.
+// A vertex and a hash of its place. Vertices at one place have the same hash, and few others do.
 struct Hashed {
   std::uint32_t hash = 0, vertex = 0;
 
@@ -58,7 +58,7 @@ std::uint32_t hash_of(const PlaceKey& place) {
   return static_cast<std::uint32_t>(hash >> 32);
 }
 
-// The same for many vertices: in buckets by the first bits of their hashes, each of which is sorted on its own.
+// Does this for many vertices, in buckets by the first bits of their hashes, each of which is sorted on its own.
 void split_many_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::vector<Coinciding>& found) {
   constexpr std::size_t kBuckets = 1024, kShift = 22, kHashedBlock = std::size_t{1} << 14;
   std::vector<Hashed> hashed(vertices.size()), in_buckets(vertices.size());
@@ -81,10 +81,10 @@ void split_many_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, 
   }
 }
 
-// `found` has the vertices that coincide.
+// Returns the points of all vertices, where `found` has the vertices that coincide.
 Points points_of(std::size_t vertex_count, std::span<const Coinciding> found) {
   Points points = separate_points(vertex_count);
-  std::vector<std::uint32_t>& of_vertex = points.point_of_vertex;  // the first vertex of each at first
+  std::vector<std::uint32_t>& of_vertex = points.point_of_vertex;  // at first, the first vertex of each
   for (const Coinciding vertices : found) {
     for (const std::uint32_t vertex : vertices) of_vertex[vertex] = vertices.front();
   }
@@ -108,7 +108,7 @@ Result<WeldedPoints> weld_from_start(MotionStream& stream) {
   constexpr std::size_t kMany = std::size_t{1} << 14;
   const Motion& motion = stream.motion();
   std::vector<std::uint32_t> order = separate_points(motion.topology.vertex_count()).point_of_vertex;
-  // Vertices that coincide in all keyframes so far are neighbours in the list; each further keyframe tells some of them
+  // Vertices that coincide in all keyframes so far are neighbours in the list. Each further keyframe tells some of them
   // apart.
   std::vector<Coinciding> found = {order}, before;
   if (const auto& bodies = motion.body_of_vertex; !bodies.empty()) {

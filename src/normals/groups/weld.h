@@ -1,4 +1,4 @@
-/// What weld_coincident() finds on its way. Private to normals and workflow.
+/// What weld_coincident() also finds on its way. Private to normals and workflow.
 #ifndef CHRONORMAL_NORMALS_GROUPS_WELD_H_
 #define CHRONORMAL_NORMALS_GROUPS_WELD_H_
 
@@ -9,11 +9,11 @@
 namespace chronormal::inline internal {
 
 struct WeldedPoints {
-  Points always;    ///< weld_coincident(): of vertices that coincide in all keyframes
-  Points at_start;  ///< of vertices that coincide in keyframe 0
+  Points always;    ///< weld_coincident(): vertices that coincide in all keyframes are one point
+  Points at_start;  ///< vertices that coincide in keyframe 0 are one point
 };
 
-/// Errors: those of the stream.
+/// Welds at keyframe 0 and in all keyframes at once. Errors: errors of the stream.
 [[nodiscard]] Result<WeldedPoints> weld_from_start(MotionStream& stream);
 
 }  // namespace chronormal::inline internal

@@ -40,7 +40,7 @@ struct FloatRecompute::Parts {
 
   const Topology& topology;
   std::size_t size;
-  Rings rings;  // empty for faces that are all triangles
+  Rings rings;  // empty if all faces are triangles
   AlignedArray<float> points;
   bool fetch = false;
 };
@@ -63,7 +63,7 @@ std::size_t FloatRecompute::Parts::unit_normals(VectorView<const float> from, Ve
       const IndexRange some{range.first / kRingLanes, (range.count + kRingLanes - 1) / kRingLanes};
       zeros += ring_unit_normals(ring_points, rings.view(), some, part, stream);
     }
-    // Makes what was written past the caches visible to other threads.
+    // Make what was written past the caches visible to other threads.
     if (stream) hwy::FlushStream();
   });
   return zeros;
@@ -85,7 +85,7 @@ std::size_t FloatRecompute::unit_normals(const Segment& segment, double t, Vecto
   assert(result.count == size());
   if (!parts_) return 0;
   if (!std::isnan(t)) return parts_->unit_normals(segment.from, segment.to, local_time(t), result, threads);
-  for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});  // there is no normal at a time that is none
+  for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});  // NaN has no normal
   return result.count;
 }
 

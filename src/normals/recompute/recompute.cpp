@@ -1,4 +1,4 @@
-// Recomputes normals tile by tile, and looks at doubtful elements one by one.
+// Recomputes normals tile by tile, and examines doubtful elements one by one.
 #include "chronormal/normals/recompute.h"
 
 #include "simd/highway-inl.h"
@@ -38,15 +38,15 @@ constexpr std::size_t kWindowSamples = 64;
 constexpr std::size_t kSmallestPart = 4096;  // elements that are worth a thread
 constexpr std::size_t kMostParts = 64;
 
-// n(t) in double from the positions, and what it may be off by.
+// Holds n(t) in double from the positions, and a bound of its error.
 struct NormalAtTime {
   Vec3d n;
   double error = 0;
 };
 
-// Edges, and both products of each component after them, are within 10 u of the absolute products; and
-// each triangle of a fan adds a rounding. No test can tell 10 from 5: it bounds roundings that all go the same way, and
-// climbing from 60 triangles finds no error above 3.4 u of these products.
+// Computes n(t) with a bound. Edges, and both products of each component after them, are within 10 u of the absolute
+// products, and each triangle of a fan adds a rounding. No test can tell 10 from 5: the bound is for roundings that all
+// go the same way, and climbing from 60 triangles finds no error above 3.4 u of these products.
 NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTime& time) {
   const auto face = segment.topology->face(f);
   const double s = time.rest, t = time.t;
@@ -71,14 +71,14 @@ NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTi
 constexpr double kLargestNormal = 0x1p100;  // in float32, with room for sums
 
 FaceNormal rounded(const NormalAtTime& normal) {
-  // A little more, for the rounding of the bound.
+  // Take a little more, for the rounding of the bound.
   const double error = 1.01 * (length(normal.n) + normal.error / kFloatUnitRoundoff);
   if (!(error <= kLargestNormal)) return {0, 0, 0, std::numeric_limits<float>::infinity()};
   const Vec3f n = to_float(normal.n);
   return {n.x, n.y, n.z, static_cast<float>(error)};
 }
 
-// What the kernel makes of a triangle, to the last bit.
+// Holds what the kernel makes of a triangle, to the last bit.
 struct QuickNormal {
   Vec3f n, unit;
   float error = 0;
@@ -87,8 +87,8 @@ struct QuickNormal {
 
 bool in_range(float smallest, float largest) { return smallest >= 0x1p-100f && largest <= 0x1p100f; }
 
-// The normal of a thin triangle, from exact edges, where edges in float32 are not precise enough. a and b are those of
-// quick_normal().
+// Returns the normal of a thin triangle from exact edges, since edges in float32 are not precise enough. a and b are
+// the squares A and B of quick_normal().
 QuickNormal thin_normal(const Segment& segment, std::size_t f, const LocalTime& t, float a, float b) {
   const auto face = segment.topology->face(f);
   const auto edge_to = [&](std::size_t c) {
@@ -137,8 +137,8 @@ FaceNormal face_normal(const Segment& segment, std::size_t f, const LocalTime& t
   return rounded(normal_at_time(segment, f, t));
 }
 
-// The direction of a sum of faces: in double where the rounding turns it by no more than 2^-23 = 1.2e-7 rad, and else
-// without any.
+// Returns the direction of a sum of faces: in double if the rounding turns it by no more than 2^-23 = 1.2e-7 rad, and
+// else from make_exact().
 template <class MakeExact>
 UnitNormal unit_normal_of(const NormalAtTime& normal, const LocalTime& t, const MakeExact& make_exact) {
   constexpr double kLargestAngle = 0x1p-23;
@@ -159,7 +159,7 @@ UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, const Loca
   return fine_unit_normal(segment, f, t);
 }
 
-// Everything that elements share in one evaluation.
+// Holds everything that elements share in one evaluation.
 struct FacesAtTime {
   explicit FacesAtTime(const Segment& segment) : faces(segment) {}
 
@@ -184,7 +184,7 @@ UnitNormal unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& g
   return unit_normal_of(sum, t, [&] { return shared.faces.exact_sum(groups.faces(element)); });
 }
 
-// The same where the kernel would trust the sum of what it makes of the faces; to the last bit.
+// Returns the bits of the kernel if the kernel would trust the sum of its own face normals.
 UnitNormal quick_unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& groups, std::size_t element,
                                       const LocalTime& t) {
   const Segment& segment = shared.faces.segment();
@@ -201,13 +201,14 @@ UnitNormal quick_unit_normal_of_group(const FacesAtTime& shared, const NormalGro
   return unit_normal_of_group(shared, groups, element, t);
 }
 
-// The faces of neighbouring elements; those of NormalGroups lie one after the other.
+// Returns the faces of neighbouring elements, which lie one after the other in NormalGroups.
 std::span<const std::uint32_t> faces_of(const NormalGroups& groups, IndexRange elements) {
   const auto first = groups.faces(elements.first), last = groups.faces(elements.end() - 1);
   return {first.data(), last.data() + last.size()};
 }
 
-// The smallest power of two that holds the faces around nine batches of ten; 0 if that is too large for the cache.
+// Returns the smallest power of two that holds the faces around nine of ten batches, or 0 if that is too large for the
+// cache.
 std::size_t window_for(const NormalGroups& groups) {
   std::array<std::size_t, kWindowSamples> counts{};
   const std::size_t batches = groups.size() / kGroupBatch;
@@ -225,18 +226,18 @@ bool is_packed(const VectorView<const float>& points) {
   return points.stride == 3 && points.y == points.x + 1 && points.z == points.x + 2;
 }
 
-// What a NormalRecompute keeps for its calls.
+// Holds what a NormalRecompute keeps for its calls.
 struct Scratch {
-  bool vertices_are_near = true;  // those of neighbouring faces are neighbours in memory
-  AlignedArray<float> pairs;      // x y z _ of both ends of each vertex, or nothing
-  std::size_t window = 0;         // normals of faces, a power of two; 0: all
+  bool vertices_are_near = true;  // whether vertices of neighbouring faces are neighbours in memory
+  AlignedArray<float> pairs;      // x y z _ of both ends of each vertex, or empty
+  std::size_t window = 0;         // number of face normals, a power of two; 0 for all
   AlignedBytes normals;           // of faces, for groups
 };
 
-// One evaluation.
+// Makes one evaluation.
 class Call {
  public:
-  // Of faces, without scratch. Element `first` goes to result[0].
+  // Evaluates faces, without scratch. Element `first` goes to result[0].
   Call(const Segment& segment, const LocalTime& t, VectorView<float> result, std::size_t first)
       : segment_(segment), shared_(segment), t_(t), result_(result), first_(first) {
     const Topology& topology = *segment.topology;
@@ -274,12 +275,13 @@ class Call {
 
   void write_all_normals(IndexRange faces) const noexcept { write_normals(faces, normals_ + faces.first); }
 
-  // Of elements in ascending order, with a window of its own.
+  // Evaluates elements in ascending order, with their own window.
   std::size_t elements(IndexRange elements, std::size_t part) const noexcept {
     std::size_t zeros = 0;
     FaceNormal* const normals = normals_ + part * window_;
     FaceWindow window{window_};
-    // Faces that may be written there, so that elements which jump to and fro cost no more than a few times their own.
+    // The credit counts faces that may be written to the window, so that elements that jump to and fro cost no more
+    // than a few times the work of computing each face alone.
     std::size_t credit = 2 * window_;
     for (std::size_t e = elements.first; e < elements.end(); e += kGroupBatch) {
       const IndexRange batch{e, std::min(kGroupBatch, elements.end() - e)};
@@ -300,7 +302,7 @@ class Call {
   }
 
  private:
-  // Other threads see what was written past the caches.
+  // Makes what was written past the caches visible to other threads.
   void finish() const {
     if (stream_) hwy::FlushStream();
   }
@@ -343,7 +345,7 @@ class Call {
     }
   }
 
-  // Makes the window hold the needed faces. False where they do not fit, or would cost more than there is credit for.
+  // Makes the window hold the needed faces. Returns false if they do not fit, or would cost more than the credit.
   bool bring(IndexRange needed, FaceNormal* normals, FaceWindow& window, std::size_t& credit) const {
     if (needed.count == 0 || window.holds(needed)) return true;
     const bool follows = window.begin <= needed.first && needed.first <= window.end;
@@ -369,7 +371,7 @@ class Call {
     return zeros;
   }
 
-  // Elements whose faces are too far from each other for the window, one by one.
+  // Evaluates one by one the elements whose faces are too far from each other for the window.
   std::size_t scattered_groups(IndexRange elements) const {
     std::size_t zeros = 0;
     for (std::size_t e = elements.first; e < elements.end(); ++e)
@@ -383,14 +385,14 @@ class Call {
   LocalTime t_;
   VectorView<float> result_;
   std::size_t first_;
-  bool by_kernel_;  // else one by one
+  bool by_kernel_;  // otherwise one by one
   bool stream_;
   MovingTriangles triangles_;
   FaceNormal* normals_ = nullptr;
   std::size_t window_ = 0;
 };
 
-// There is no normal at a time that is none.
+// Writes zeros, since NaN has no normal.
 std::size_t write_zeros(VectorView<float> result) {
   for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});
   return result.count;
@@ -414,7 +416,7 @@ struct NormalRecompute::Parts {
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads);
 
   Segment segment;
-  const NormalGroups* groups;  // nothing: faces
+  const NormalGroups* groups;  // none for faces
   Scratch scratch;
 };
 
@@ -436,7 +438,7 @@ NormalRecompute::Parts::Parts(const Segment& of_segment, const NormalGroups* of_
 
 std::size_t NormalRecompute::Parts::unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) {
   if (size() == 0) return 0;
-  // The same blocks whatever the threads.
+  // Take the same blocks for any number of threads.
   const auto in_blocks = [threads](std::size_t count, std::size_t block, const auto& body) {
     if (threads == Threads::kOne || count <= block)
       body(IndexRange{0, count});

@@ -1,4 +1,4 @@
-/// What one corner adds to the normal of its element, at one t in double.
+/// The share of one corner in the normal of its element, at one t in double.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_CORNER_TERMS_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_CORNER_TERMS_H_
 
@@ -16,7 +16,7 @@
 
 namespace chronormal::inline internal {
 
-/// The vertices of one corner: here, and the ends of its two edges.
+/// Holds the vertices of one corner: its own, and the ends of its two edges.
 struct CornerVertices {
   std::uint32_t here, next, previous;
 };
@@ -28,7 +28,7 @@ struct CornerVertices {
   return {face[i], face[i + 1 == face.size() ? 0 : i + 1], face[i == 0 ? face.size() - 1 : i - 1]};
 }
 
-/// An edge between two vertices at t, and the size of what it was made of: its error is a few eps of that.
+/// Holds an edge between two vertices at t, and the size of its terms. Its error is a few eps of that size.
 struct MovingEdge {
   Vec3d vector;
   double size;
@@ -40,10 +40,10 @@ struct MovingEdge {
   }
 };
 
-/// The error of a cross product of two such edges, relative to the product of their sizes, and a margin.
+/// The error of a cross product of two such edges, relative to the product of their sizes, with a margin.
 inline constexpr double kCrossError = 32 * kUnitRoundoff;
 
-/// What a corner of a face with normal n adds; n is not zero. Zero where an edge has no length.
+/// Returns what a corner of a face with normal n adds, which is zero if an edge has no length. n is not zero
 [[nodiscard]] inline Vec3d corner_term(const Segment& segment, const CornerVertices& corner, const Vec3d& n,
                                        Weighting weighting, const LocalTime& t) noexcept {
   if (weighting == Weighting::kArea) return n;

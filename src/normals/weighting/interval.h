@@ -1,9 +1,9 @@
 /// Intervals that contain the exact result of every operation, whatever was rounded.
 ///
 /// Each bound of a result is moved outwards by more than its rounding error: by 2^-51 of itself, which is at least two
-/// units in the last place, and by the smallest double, for results that underflow. (One unit would do where both
-/// operands are exact; a factor such as 1/3 has a rounding of its own.) A division by an interval that contains zero,
-/// and a root of one that contains negative numbers, give the whole line.
+/// units in the last place, and by the smallest double, for results that underflow. (One unit would do if both operands
+/// were exact; a factor such as 1/3 has its own rounding.) A division by an interval that contains zero, and a root of
+/// an interval that contains negative numbers, give the whole line.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_INTERVAL_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_INTERVAL_H_
 
@@ -18,7 +18,7 @@ namespace chronormal::inline internal {
 struct Interval {
   double low = 0, high = 0;
 
-  /// [low, high] moved outwards; the whole line where a bound is no number.
+  /// Returns [low, high] moved outwards, or the whole line if a bound is NaN.
   [[nodiscard]] static Interval outwards(double low, double high) noexcept {
     constexpr double kStep = 0x1p-51, kSmallest = std::numeric_limits<double>::denorm_min();
     if (!(low <= high)) return whole();
@@ -31,7 +31,7 @@ struct Interval {
   [[nodiscard]] static Interval point(double x) noexcept { return {x, x}; }
 
   [[nodiscard]] bool finite() const noexcept { return std::isfinite(low) && std::isfinite(high); }
-  /// The largest absolute value.
+  /// Returns the largest absolute value.
   [[nodiscard]] double magnitude() const noexcept { return std::max(-low, high); }
 
   friend Interval operator+(const Interval& a, const Interval& b) noexcept {
@@ -51,7 +51,7 @@ struct Interval {
   }
 };
 
-/// 1 / a.
+/// Returns 1 / a.
 [[nodiscard]] inline Interval reciprocal(const Interval& a) noexcept {
   if (!(a.low > 0 || a.high < 0)) return Interval::whole();
   return Interval::outwards(1 / a.high, 1 / a.low);
@@ -62,19 +62,19 @@ struct Interval {
   return Interval::outwards(std::sqrt(a.low), std::sqrt(a.high));
 }
 
-/// a^2, which is never negative.
+/// Returns a^2, which is never negative.
 [[nodiscard]] inline Interval square(const Interval& a) noexcept {
   const Interval product = a * a;
   return {std::max(product.low, 0.0), product.high};
 }
 
-/// The angle of the vector (x, y) with y >= 0: that of a point inside, and how far the others can be from it. The arc
-/// tangent of the C library is taken to be right to 4 eps.
+/// Returns the angles of the vectors (x, y) with y >= 0, from the angle of a point inside and the largest difference of
+/// the others. The arc tangent of core/portable_math.h is taken to be right to 16 eps.
 [[nodiscard]] inline Interval angle_of(const Interval& y, const Interval& x) noexcept {
   if (!y.finite() || !x.finite()) return Interval::whole();
   const double my = std::fmax(0.5 * (y.low + y.high), 0.0), mx = 0.5 * (x.low + x.high);
   const double radius = (y.high - y.low) + (x.high - x.low);
-  // The distance to the origin is at least this on the way from the point inside to any other.
+  // On the way from the point inside to any other, the distance to the origin is at least this.
   const double distance = 0.999 * portable::hypot(mx, my) - radius;
   if (!(distance > 0)) return Interval::whole();
   constexpr double kLibrary = 16 * std::numeric_limits<double>::epsilon();

@@ -1,4 +1,4 @@
-/// The weighted normal of one element at one t, and the length that it would have by area: what fits are made of.
+/// The weighted normal of one element at one t, and the length that it would have by area, from which fits are made.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_SAMPLED_NORMAL_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_SAMPLED_NORMAL_H_
 
@@ -17,12 +17,13 @@ namespace chronormal::inline internal {
 
 struct SampledNormal {
   Vec3d normal;
-  double to_area = 0;  ///< the sum of |n| over the corners as a share of the sum of the lengths of their terms
+  double to_area = 0;  ///< the sum of |n| over the corners, divided by the sum of the lengths of their terms
 
   [[nodiscard]] Vec3d with_area_length() const noexcept { return to_area * normal; }
 };
 
-/// normal_of_face(f) must give the result of face_normals_at() for a face of the element at this t.
+/// Returns the weighted normal of corners. normal_of_face(f) must give the result of face_normals_at() for a face of
+/// the element at this t
 template <class NormalOfFace>
 [[nodiscard]] SampledNormal sample_normal(const Segment& segment, const NormalOfFace& normal_of_face,
                                           std::span<const std::uint32_t> corners, std::span<const std::uint32_t> faces,
@@ -42,13 +43,14 @@ template <class NormalOfFace>
   return result;
 }
 
-/// The quadratic that has the weighted direction of an element at t = 0, 1/2 and 1, with the length by area there.
+/// Returns the quadratic that has the given values, which are weighted directions with lengths by area, at t = 0, 1/2
+/// and 1.
 [[nodiscard]] inline ControlNormals quadratic_through(const Vec3d& start, const Vec3d& middle,
                                                       const Vec3d& end) noexcept {
   return {start, 2.0 * middle - 0.5 * (start + end), end};
 }
 
-/// The weighted normal of an element at t, from positions alone.
+/// Returns the weighted normal of an element at t, from positions alone.
 [[nodiscard]] inline SampledNormal sample_normal(const Segment& segment, const NormalGroups& groups,
                                                  std::size_t element, Weighting weighting, double t) {
   const auto normal_of_face = [&](std::uint32_t f) {

@@ -1,5 +1,5 @@
-/// Bounds over a piece of time of functions that are known by their series: the polynomial lies in the hull of its
-/// Bernstein coefficients, and the function within the remainder of that.
+/// Bounds, over a piece of time, of functions that are known by their series. The polynomial lies in the hull of its
+/// Bernstein coefficients, and the function within the remainder around it.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_SERIES_BOUNDS_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_SERIES_BOUNDS_H_
 
@@ -17,14 +17,14 @@ namespace chronormal::inline internal {
 /// Taylor polynomials have 5 coefficients, and the sixth is the remainder.
 inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
 
-/// The largest length of a vector that is somewhere in these intervals.
+/// Returns the largest length of a vector that is somewhere in these intervals.
 [[nodiscard]] inline double largest_length(const Interval& x, const Interval& y, const Interval& z) noexcept {
   return (1 + 0x1p-50) * length(Vec3d{x.magnitude(), y.magnitude(), z.magnitude()});
 }
 
-/// The Bernstein coefficients over [c - half, c + half] of the Taylor polynomial about c.
+/// Returns the Bernstein coefficients over [c - half, c + half] of the Taylor polynomial about c.
 [[nodiscard]] inline std::array<Interval, kDegree + 1> bernstein(const Series<kTerms>& taylor, double half) noexcept {
-  // C(4, k) x the Bernstein coefficients over [-1, 1] of u^k, k = 0 ... 4.
+  // The rows are C(4, k) x the Bernstein coefficients over [-1, 1] of u^k, k = 0 ... 4.
   constexpr std::array<std::array<double, kDegree + 1>, kDegree + 1> kOfPowers = {
       {{1, 1, 1, 1, 1}, {-4, -2, 0, 2, 4}, {6, 0, -2, 0, 6}, {-4, 2, 0, -2, 4}, {1, -1, 1, -1, 1}}};
   std::array<Interval, kDegree + 1> result;
@@ -37,7 +37,7 @@ inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
   return result;
 }
 
-/// Bounds the remainder of a series: the interval that holds its value at every point of [c - half, c + half]. The
+/// Bounds the remainder of a series: the interval holds its value at every point of [c - half, c + half]. The
 /// coefficients of the series `around` hold for every center in that interval.
 [[nodiscard]] inline Interval remainder(const Series<kTerms>& around, double half) noexcept {
   Interval power = Interval::point(1);
@@ -45,8 +45,8 @@ inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
   return around[kTerms - 1] * power;
 }
 
-/// A lower bound of a function over [c - half, c + half], from its series about c and about all of that. The true
-/// function may differ by `slack`.
+/// Returns a lower bound of a function over [c - half, c + half], from its series about c and about all of the
+/// interval. The true function may differ by `slack`.
 [[nodiscard]] inline double least_over(const Series<kTerms>& here, const Series<kTerms>& around, double half,
                                        double slack) noexcept {
   const auto coefficients = bernstein(here, half);
@@ -55,7 +55,7 @@ inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
   return least - (1 + 0x1p-50) * (remainder(around, half).magnitude() + slack);
 }
 
-/// An upper bound of the length of a vector, likewise.
+/// Returns an upper bound of the length of a vector, in the same way.
 [[nodiscard]] inline double largest_length_over(const VectorSeries<kTerms>& here, const VectorSeries<kTerms>& around,
                                                 double half, double slack) noexcept {
   const auto x = bernstein(here[0], half), y = bernstein(here[1], half), z = bernstein(here[2], half);

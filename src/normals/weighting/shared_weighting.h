@@ -11,11 +11,11 @@
 
 namespace chronormal::inline internal {
 
-/// weighted_normals_at() of weighting.h, for callers that ask for one range after the other.
+/// Writes weighted_normals_at() of weighting.h, for callers that ask for one range after the other.
 void weighted_normals_at(const SharedFaces& shared, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 
-/// Returns them for all elements, on all cores.
+/// Returns the weighted normals of all elements; uses all cores.
 [[nodiscard]] std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups,
                                                          Weighting weighting, const LocalTime& t,
                                                          std::span<const Vec3d> of_faces);

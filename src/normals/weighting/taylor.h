@@ -1,10 +1,10 @@
 /// Taylor coefficients in interval arithmetic.
 ///
 /// A Series<M> has the coefficients of 1, s, ..., s^(M-1) of a function about a point c. About an interval T of points,
-/// each coefficient encloses those about every c in T, so that with c in T and c + s in T
+/// each coefficient encloses the coefficients about every c in T, so that with c in T and c + s in T
 ///     f(c + s) = sum_(k < M-1) f_k(c) s^k + f_(M-1)(x) s^(M-1)     for some x in T, hence a coefficient of the series
-/// about T. A polynomial about its centre is shifted to the interval; what is not a polynomial follows by the
-/// recurrences of power series. (Moore, Interval Analysis, 1966.)
+/// about T. A polynomial about its centre is shifted to the interval; other functions follow by the recurrences of
+/// power series. (Moore, Interval Analysis, 1966.)
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_TAYLOR_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_TAYLOR_H_
 
@@ -21,7 +21,7 @@ using Series = std::array<Interval, M>;
 template <std::size_t M>
 using VectorSeries = std::array<Series<M>, 3>;
 
-/// The first K coefficients of a product. Those that are not there are zero.
+/// Returns the first K coefficients of a product. Missing coefficients are zero.
 template <std::size_t K, std::size_t M, std::size_t N>
 [[nodiscard]] Series<K> product(const Series<M>& a, const Series<N>& b) noexcept {
   Series<K> result{};
@@ -65,7 +65,7 @@ template <std::size_t K, std::size_t M, std::size_t N>
   return {product<K>(factor, a[0]), product<K>(factor, a[1]), product<K>(factor, a[2])};
 }
 
-/// A polynomial about c, as a series about all c + s with s in `around`.
+/// Returns a polynomial about c as a series about all c + s with s in `around`.
 template <std::size_t M>
 [[nodiscard]] Series<M> shifted(const Series<M>& p, const Interval& around) noexcept {
   if (around.low == 0 && around.high == 0) return p;
@@ -83,7 +83,7 @@ template <std::size_t M>
   return {shifted(p[0], around), shifted(p[1], around), shifted(p[2], around)};
 }
 
-/// p to a power, of which the first coefficient is given: from p y' = exponent p' y.
+/// Returns p to a power, from p y' = exponent p' y. The first coefficient of the result is given.
 template <std::size_t K, std::size_t M>
 [[nodiscard]] Series<K> power(const Series<M>& p, double exponent, const Interval& first) noexcept {
   Series<K> y;

@@ -17,11 +17,11 @@ namespace {
 
 constexpr std::size_t kElementsAtOnce = 1024;
 
-// The normal of a face is within this share of itself, so that sums of them are right to 2^-23 = 1.2e-7 rad until they
+// The normal of a face has at most this relative error, so sums of faces are right to 2^-23 = 1.2e-7 rad until they
 // have cancelled to a hundredth.
 constexpr double kFaceError = 0x1p-30, kLargestAngle = 0x1p-23;
 
-// In double, and in integers where that is not enough.
+// Returns the normal of a face, in double, or in integers if double is not enough.
 Vec3d face_normal_at(const Segment& segment, std::span<const std::uint32_t> face, const LocalTime& t) {
   Vec3d n;
   double size = 0;

@@ -21,16 +21,16 @@ namespace {
 
 constexpr std::size_t kFitBlock = 64;
 
-constexpr std::size_t kSamples = 16;      // of the error, to compare the bound with
-constexpr double kTightness = 2;          // times the largest sample is close enough
+constexpr std::size_t kSamples = 16;      // number of samples of the error, to compare the bound with
+constexpr double kTightness = 2;          // a bound of this multiple of the largest sample is close enough
 constexpr double kFineEnough = 1e-9;      // radians
 constexpr int kDeepest = 20;              // halvings of the segment
 constexpr std::size_t kMostPieces = 256;  // per element
 
-// The control normals of a face as intervals that contain the exact ones.
+// Holds the control normals of a face as intervals that contain the exact ones.
 struct IntervalNormals {
   std::array<std::array<Interval, 3>, 3> control;  // n0, m, n1
-  bool area = false;                               // at any time, but for rounding
+  bool area = false;                               // whether there is any at any time, but for rounding
 };
 
 struct IntervalEdge {
@@ -77,7 +77,7 @@ IntervalNormals face_intervals(const Segment& segment, std::span<const std::uint
   return sum;
 }
 
-// A quadratic in Bernstein form, as a series about t.
+// Returns a quadratic in Bernstein form as a series about t.
 Series<3> about(const Interval& n0, const Interval& m, const Interval& n1, double t) {
   const Interval s = Interval::point(t), rest = Interval::point(1) - s;
   const Interval first = m - n0, last = n1 - m;
@@ -97,7 +97,8 @@ VectorSeries<2> about(const IntervalEdge& e, double t) {
   return result;
 }
 
-// The squared length of a vector series that is known about c, about all c + around. The first coefficient is a square.
+// Returns the squared length of a vector series about c, as a series about all c + around. The first coefficient is a
+// square.
 template <std::size_t M>
 Series<2 * M - 1> squared_length(const VectorSeries<M>& v, const Interval& around) {
   Series<2 * M - 1> squares = dot_product<2 * M - 1>(v, v);
@@ -110,7 +111,7 @@ VectorSeries<kTerms> unit_series(const VectorSeries<3>& n, const Interval& aroun
   return scaled_by<kTerms>(power<kTerms>(squares, -0.5, reciprocal(square_root(squares[0]))), shifted(n, around));
 }
 
-// The angle between two edges: its derivative is (x y' - y x') / (x^2 + y^2) with x = e.f, y = |e x f|.
+// Returns the angle between two edges. Its derivative is (x y' - y x') / (x^2 + y^2) with x = e.f, y = |e x f|.
 Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
   const VectorSeries<3> c = cross_product<3>(e, f);
   const Series<3> x_here = dot_product<3>(e, f), x = shifted(x_here, around);
@@ -130,12 +131,13 @@ Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, 
   return angle;
 }
 
-// An angle that is known no better than this over a piece of time.
+// Holds an angle over a piece of time that is only known up to a radius.
 struct CoarseAngle {
   double middle, radius;
 };
 
-// The angle between two edges about all centre + around, where it is not smooth: near 0 and near pi by its tangent.
+// Returns the angle between two edges about all centre + around where it is not smooth: near 0 and near pi by its
+// tangent.
 CoarseAngle coarse_angle(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
   const VectorSeries<3> c = shifted(cross_product<3>(e, f), around);
   const Interval x = shifted(dot_product<3>(e, f), around)[0];
@@ -147,8 +149,8 @@ CoarseAngle coarse_angle(const VectorSeries<2>& e, const VectorSeries<2>& f, con
   return {low + (high - low) / 2, (high - low) / 2 + 1e-15};
 }
 
-// What a corner adds, about the centre and about all of the piece. The true value may differ by a vector of length
-// `slack`.
+// Holds what a corner adds, about the centre and about all of the piece. The true value may differ by a vector of
+// length `slack`.
 struct TermSeries {
   VectorSeries<kTerms> here, around;
   double slack = 0;
@@ -197,7 +199,7 @@ TermSeries term_series(const Segment& segment, const IntervalNormals& of_face, c
           slack};
 }
 
-// Everything about one element that bounds need.
+// Holds everything about one element that bounds need.
 struct Element {
   const Segment* segment;
   std::span<const IntervalNormals> of_faces;
@@ -205,11 +207,11 @@ struct Element {
   Weighting weighting;
   ControlNormals fit;
 
-  // The cross and dot product of the fit and the element, about the centre and about all of the piece.
+  // Holds the cross and dot product of the fit and the element, about the centre and about all of the piece.
   struct Products {
     VectorSeries<kTerms> cross_here, cross_around;
     Series<kTerms> dot_here, dot_around;
-    double slack;  // of all four
+    double slack;  // for all four
   };
   [[nodiscard]] Products products(double centre, const Interval& piece) const {
     TermSeries sum;
@@ -237,7 +239,8 @@ struct Element {
             (1 + 1e-12) * sum.slack * largest};
   }
 
-  // Whether a corner adds anything at any time: not on a face that never has an area, or at an edge without length.
+  // Returns whether a corner adds anything at any time. A corner on a face that never has an area, or at an edge
+  // without length, adds nothing.
   [[nodiscard]] bool adds_something(std::size_t c) const {
     if (!of_faces[faces[c]].area) return false;
     if (weighting == Weighting::kUniform) return true;
@@ -249,7 +252,7 @@ struct Element {
     return apart(v.next) && apart(v.previous);
   }
 
-  // An upper bound of the angle between the fit and the element over [t0, t1]; pi where none is proven.
+  // Returns an upper bound of the angle between the fit and the element over [t0, t1], or pi if none is proven.
   [[nodiscard]] double bound(double t0, double t1) const {
     const double centre = t0 + (t1 - t0) / 2, half = (t1 - t0) / 2;
     const Products series = products(centre, Interval{-half, half});
@@ -259,8 +262,8 @@ struct Element {
     return (1 + 0x1p-48) * portable::atan2((1 + 0x1p-50) * sine, (1 - 0x1p-50) * cosine);
   }
 
-  // The bound over the whole segment. Pieces are halved until their bounds are close to `goal`; where the shortest has
-  // none, there is none.
+  // Returns the bound over the whole segment. Halves pieces until their bounds are close to `goal`. If the shortest
+  // piece has no bound, there is none.
   [[nodiscard]] double bound_over_segment(double goal) const {
     struct Piece {
       double t0, t1;
@@ -289,8 +292,8 @@ struct Element {
   }
 };
 
-// Whether all corners are of one face, whose direction the sum then has. The weights of a triangle vanish with its area
-// only; of other polygons that is true of uniform weights.
+// Returns whether all corners are of one face, whose direction the sum then has. The weights of a triangle vanish only
+// with its area; for other polygons, this is true only of uniform weights.
 bool is_direction_of_one_face(const Segment& segment, std::span<const std::uint32_t> faces, Weighting weighting) {
   if (faces.empty()) return false;
   for (const std::uint32_t face : faces) {
@@ -311,7 +314,7 @@ WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, W
   fit.normals.resize(groups.size());
   fit.bounds.resize(groups.size());
 
-  // The faces once: as intervals, and at the times of the samples.
+  // Make the faces once: as intervals, and at the times of the samples.
   const std::size_t face_count = segment.topology->face_count();
   std::vector<IntervalNormals> intervals(face_count);
   std::vector<std::vector<Vec3d>> of_faces(kSamples + 1, std::vector<Vec3d>(face_count));

@@ -1,4 +1,4 @@
-// Adds to rows one by one, and makes unit normals in lanes of double, an element a lane.
+// Adds to rows one by one, and makes unit normals in lanes of double, one element per lane.
 #include "normals/blend/kernels/blend_rows.h"
 
 #include <algorithm>
@@ -41,13 +41,13 @@ void AddPairRows(std::span<const std::uint32_t> elements, const float* coefficie
   }
 }
 
-// Three floats as x y z 0, without a look at what stands behind them.
+// Loads three floats as x y z 0, without reading what follows them.
 HWY_INLINE DoubleRow LoadLastThree(const float* from) {
   const float row[kBlendLanes] = {from[0], from[1], from[2], 0};
   return LoadDoubleRow(row);
 }
 
-// A factor that leaves nothing of a fourth component, which belongs to the next three floats.
+// Makes a factor that clears the fourth component, which belongs to the next three floats.
 HWY_INLINE DoubleRow ThreeTimes(double factor) {
   const double row[kBlendLanes] = {factor, factor, factor, 0};
   return LoadDoubleRow(row);
@@ -74,7 +74,7 @@ void ResetPoints(std::span<const float> base, IndexRange vertices, double* point
   StoreDoubleRow(LoadLastThree(base.data() + 3 * last), RowAt(points, last));
 }
 
-// One row in float32.
+// Moves one row in float32.
 HWY_INLINE void MoveFloatPoint(const float* delta, float weight, float* point) {
   for (std::size_t k = 0; k < 3; ++k) point[k] += weight * delta[k];
 }
@@ -86,7 +86,7 @@ void MoveFloatPoints(std::span<const std::uint32_t> vertices, const float* delta
   for (std::size_t i = 0; i < last; ++i)
     MoveFloatPoint(deltas + 3 * i, weight, points + kBlendLanes * std::size_t{vertices[i]});
 #else
-  // The fourth component stays what it is: that of the row of deltas belongs to the next three floats.
+  // The fourth component of a point stays as it is, since in the row of deltas it belongs to the next three floats.
   const hn::FixedTag<float, 4> tag;
   const float factors[4] = {weight, weight, weight, 0};
   const auto w = hn::LoadU(tag, factors);
@@ -108,12 +108,12 @@ void ResetFloatPoints(std::span<const float> base, IndexRange vertices, float* p
 
 HWY_INLINE Doubles Squared(Doubles v) { return hn::Mul(v, v); }
 
-// Writes n / |n| of the elements from `first` on whose bits are set in `elements`, and returns the bits of those that
-// are beyond the limits.
+// Writes n / |n| for the elements from `first` on whose bits are set in `elements`. Returns the bits of the elements
+// that are beyond the limits.
 HWY_INLINE std::uint32_t WriteUnit(const Doubles3& n, Doubles error, std::size_t first, std::uint32_t elements,
                                    const UnitLimits& limits, const VectorView<float>& result) {
   const Doubles square = Dot(n, n);
-  // All of this is false for NaN.
+  // All of these comparisons are false for NaN.
   const auto is_usual = hn::And(hn::Ge(square, hn::Set(kDoubles, limits.smallest_square)),
                                 hn::Le(square, hn::Set(kDoubles, limits.largest_square)));
   const Doubles most = hn::Mul(hn::Set(kDoubles, limits.largest_error * limits.largest_error), square);
@@ -130,7 +130,8 @@ HWY_INLINE std::uint32_t WriteUnit(const Doubles3& n, Doubles error, std::size_t
   return elements & ~good;
 }
 
-// Calls body(first, bits) for each kDoubleLanes elements of a word with a bit among them; it returns the bits of some.
+// Calls body(first, bits) for each kDoubleLanes elements of a word with at least one bit set. Returns the bits that
+// body returned.
 template <class Body>
 HWY_INLINE std::uint64_t ForLanesOfWord(std::uint64_t elements, const Body& body) {
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kDoubleLanes) - 1;
@@ -146,7 +147,7 @@ std::uint64_t UnitNormalsOfRows(std::uint64_t elements, std::size_t place, const
                                 const VectorView<float>& result) {
   return ForLanesOfWord(elements, [&](std::size_t lane, std::uint32_t bits) HWY_ATTR {
     const std::size_t first = kBitsOfWord * place + lane;
-    // Behind the last element there are no rows.
+    // There are no rows after the last element.
     const std::size_t last = result.count - 1;
     const DoubleColumns n =
         ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowAt(rows, std::min(first + i, last)); });
@@ -154,7 +155,8 @@ std::uint64_t UnitNormalsOfRows(std::uint64_t elements, std::size_t place, const
   });
 }
 
-// The error of a sum over a path, by its largest edge, or half of what two points are apart that are multiplied as one.
+// Bounds the error of a sum over a path, from its largest edge or half the largest distance of two neighbours whose
+// product is added.
 struct RingError {
   double of_square, of_edge, alone;
 
@@ -182,7 +184,7 @@ std::uint64_t UnitNormalsOfRings(const RingSlices& slices, std::uint64_t element
       indices += kRingLanes;
       return ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowAt(points, row[i]); }).xyz;
     };
-    // What is NaN in an edge is NaN in the sum, so that it does not matter what `largest` makes of it.
+    // A NaN in an edge makes the sum NaN, so it does not matter what `largest` makes of it.
     const Doubles3 centre = next_row();
     Doubles3 before = next_row();
     const auto largest_of = [](const Doubles3& v) HWY_ATTR { return LargerAbs(LargerAbs(v.x, v.y), v.z); };

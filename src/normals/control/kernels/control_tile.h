@@ -1,16 +1,16 @@
-/// Sixteen elements on their way into NormalCurves: what a kernel that makes control normals hands to the one that
-/// packs them.
+/// Sixteen elements on their way into NormalCurves, from a kernel that makes control normals to the one that packs
+/// them.
 ///
 ///     normals     n0.x of 16 elements, n0.y of 16, n0.z, m.x, m.y, m.z, n1.x, n1.y, n1.z
 ///     magnitude   for each element, at least the sum of the absolute products that went into any one component
 ///     degree      for each element, as degree() in control_normals.h finds it
 ///
-/// Tiles that are made in float32 throughout have bounds on the errors of components for `magnitude`, and may say less for
-/// `degree`: of what they keep without m, or without m and n1, that error is the one that counts.
+/// Tiles that are made entirely in float32 have bounds on the errors of components as `magnitude`, and may have a
+/// smaller `degree`. The error then counts the loss from leaving out m, or m and n1.
 ///
-/// In others everything is computed in double and rounded once. Where a component is smaller than the rounding error of its
-/// products (far below 2^-26 of `magnitude`) it may be noise here: the reader must not trust it, and asks for the
-/// element in double instead, where noise is zero. Lanes beyond the last element repeat it.
+/// All other tiles are computed in double and rounded once. A component that is smaller than the rounding error of its
+/// products (far below 2^-26 of `magnitude`) may be noise here. The reader must not trust it, and asks for the element
+/// in double instead, where noise is zero. Lanes beyond the last element repeat it.
 #ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_
 #define CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_
 
@@ -37,7 +37,7 @@ inline void put(ControlTile& tile, std::size_t lane, const ControlNormals& c) no
   }
 }
 
-/// The element in a lane of nine planes of doubles.
+/// Returns the element in a lane of nine planes of doubles.
 [[nodiscard]] inline ControlNormals element_of(const double (&planes)[9][kTile], std::size_t lane) noexcept {
   const auto vector = [&planes, lane](std::size_t k) {
     return Vec3d{planes[k][lane], planes[k + 1][lane], planes[k + 2][lane]};

@@ -1,4 +1,4 @@
-/// Control normals of sixteen faces in double: what tiles and sums are made from.
+/// Control normals of sixteen faces in double, from which tiles and sums are made.
 #ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_
 #define CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_
 
@@ -11,41 +11,42 @@
 
 namespace chronormal::inline internal {
 
-/// Planes as in ControlTile; the bits of face_control_normals().
+/// Holds planes as ControlTile does, with the bits of face_control_normals().
 struct alignas(64) ExactTile {
   double normals[9][kTile];
   float magnitude[kTile];
 };
 
-/// Sixteen elements as BoundedNormals has one: control normals in double, with bounds on their errors.
+/// Holds sixteen elements like BoundedNormals: control normals in double, with bounds on their errors.
 struct BoundedTile : ExactTile {
-  double errors[3][kTile];     ///< how far any component of n0, m and n1 may be from the exact one
-  std::uint32_t left_out = 0;  ///< the elements that are not here but left to others, as bits
+  double errors[3][kTile];     ///< bound of the error of any component of n0, m and n1
+  std::uint32_t left_out = 0;  ///< bits of elements that are left to others
 };
 
-/// Sixteen faces with the longest of their edges from the first corner.
+/// Holds sixteen faces with the longest of their edges from the first corner.
 struct EdgedTile : ExactTile {
-  /// Not less than any component of such an edge at either end of the segment; infinity where a face is no triangle.
+  /// At least as large as any component of such an edge at either end of the segment; infinity if a face is no
+  /// triangle.
   float longest[kTile];
 };
 
 /// Writes an element into a lane of a tile.
 void put(BoundedTile& tile, std::size_t lane, const BoundedNormals& c) noexcept;
 
-/// Of the magnitude of a triangle: its rounding error is below half of it.
+/// The rounding error of a triangle is below half of this share of its magnitude.
 inline constexpr double kErrorAbove = 0x1p-47;
 
-/// A float that is not less than a magnitude, and 0 for 0.
+/// Returns a float that is not less than a magnitude, and 0 for 0.
 [[nodiscard]] float magnitude_above(double magnitude) noexcept;
 
 /// Writes one face into one lane, whatever its corners.
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept;
 
-/// Of the magnitude of a triangle as well: a control normal above it is hardly touched by rounding (kLargestRounding).
+/// A control normal above this share of the magnitude of a triangle is hardly touched by rounding (kLargestRounding).
 inline constexpr double kCertainAbove = 0x1p-22;
 
-/// Writes one triangle into one lane, with zero for what is nothing but rounding, and control normals made of integers
-/// where double is not enough. Keeps the magnitude where it is finite.
+/// Writes one triangle into one lane. Sets to zero what is nothing but rounding, and makes control normals of integers
+/// if double is not enough. Keeps the magnitude if it is finite.
 void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
                           ExactTile& tile) noexcept;
 

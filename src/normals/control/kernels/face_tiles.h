@@ -1,4 +1,4 @@
-/// Control normals of faces, sixteen at a time: the front end of NormalCurves::of_faces, and of every scheme.
+/// Control normals of faces, sixteen at a time. NormalCurves::of_faces and every scheme start here.
 #ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_FACE_TILES_H_
 #define CHRONORMAL_NORMALS_CONTROL_KERNELS_FACE_TILES_H_
 
@@ -13,27 +13,27 @@
 
 namespace chronormal::inline internal {
 
-/// Writes the tiles of a range of faces: tile k holds the faces faces.first + 16 k ... (see ControlTile). The values
-/// are those of face_control_normals(), rounded to float32, and so is the degree.
-/// tiles must have ceil(faces.count / 16) elements; faces.count > 0
+/// Writes the tiles of a range of faces: tile k holds the faces faces.first + 16 k ... (see ControlTile). Values and
+/// degrees are the ones of face_control_normals(), the values rounded to float32. tiles must have ceil(faces.count /
+/// 16) elements; faces.count > 0
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
 
-/// The same, and beside each tile what it is rounded from: the bits of face_control_normals(), and the longest edges.
+/// Also writes, for each tile, the values before rounding: the bits of face_control_normals(), and the longest edges.
 /// exact must have as many elements as tiles
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
                         std::span<EdgedTile> exact) noexcept;
 
-/// The same of triangles, and beside each tile what it is rounded from, with bounds on the errors, for a closer look.
-/// exact must have as many elements as tiles
+/// Does this for triangles, with bounds on the errors of the values before rounding, for a closer look. exact must have
+/// as many elements as tiles
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
                         std::span<BoundedTile> exact) noexcept;
 
-/// Writes the tiles of triangles in float32 throughout, with a bound on their errors: `magnitude` is one of the error
-/// of any component; `degree` is 2 where the curve bends by more than that error, so that its degree is 2 without a
-/// doubt, and 1 elsewhere. The same preconditions
+/// Writes the tiles of triangles entirely in float32. `magnitude` bounds the error of any component. `degree` is 2 if
+/// the curve bends by more than that error, so that its degree is 2 without a doubt, and at most 1 elsewhere. The
+/// preconditions are the ones of face_control_tiles()
 void float_triangle_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
 
-/// face_control_normals() of a mesh of triangles.
+/// Writes face_control_normals() of a mesh of triangles.
 void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
 }  // namespace chronormal::inline internal

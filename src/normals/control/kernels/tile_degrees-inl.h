@@ -1,4 +1,5 @@
-// The degree of sixteen elements, as degree() in control_normals.h finds it in double, and what of it float32 can know.
+// Finds the degree of sixteen elements, as degree() in control_normals.h finds it in double, and as far as float32 can
+// know it.
 //
 // Included once for each instruction set, as lanes-inl.h.
 
@@ -22,8 +23,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Sets the degrees to 2 and returns true if float32 alone shows that they are. Its error in n0 - 2 m + n1 is below
-// 2^-20 of the largest component, far above the tolerance of degree(), but so is the term itself in most motions.
+// Sets the degrees to 2, and returns true if float32 alone shows that they are. The error of float32 in n0 - 2 m + n1
+// is below 2^-20 of the largest component. This is far above the tolerance of degree(), but so is the term itself in
+// most motions.
 HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
   const Floats share = hn::Set(kFloats, 0x1p-19f), smallest_size = hn::Set(kFloats, 0x1p-100f);
   bool all = true;
@@ -41,20 +43,20 @@ HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
   return all;
 }
 
-// What a sum of so many products in float32 is off by, as a share of the absolute products in it (docs/theory.md,
-// section 13): the roundings of a product, and those of its way into the sum.
+// Returns the relative error of a sum of so many products in float32, as a share of the absolute products in it
+// (docs/theory.md, section 13). It counts the roundings of a product, and of its way into the sum.
 HWY_INLINE Floats RoundingsInFloat(std::size_t products) {
   return hn::Set(kFloats, 0x1p-24f * static_cast<float>(products + 5));
 }
 
-// The control normals of one vector of lanes in float32.
+// Holds the control normals of one vector of lanes in float32.
 struct FloatControlLanes {
   Lanes3 n0, m, n1;
 };
 
-// Stores what was made in float32, with the error of its components as magnitude. The degree is 0 where all three are
-// the same, and 2 where the curve bends by more than eight errors. Where it bends by less the degree is 1: a straight
-// curve is off by a quarter of the bend more, and a little for its roundings.
+// Stores control normals in float32, with the error of their components as magnitude. The degree is 0 if all three are
+// the same, and 2 if the curve bends by more than eight errors. If it bends by less the degree is 1: taking it as
+// straight adds an error of a quarter of the bend, and a little for roundings.
 HWY_INLINE void StoreInFloat(const FloatControlLanes& c, Floats error, std::size_t lane, ControlTile& tile) {
   std::size_t k = 0;
   for (const Lanes3* v : {&c.n0, &c.m, &c.n1}) {

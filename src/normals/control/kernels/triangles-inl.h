@@ -1,9 +1,9 @@
-// Control normals of sixteen triangles at a time, in double.
+// Computes the control normals of sixteen triangles at a time, in double.
 //
-// Included once for each instruction set, as lanes-inl.h. The operations are those of polygon_control_normals() in the
-// same order, so that the values have the same bits.
+// Included once for each instruction set, as lanes-inl.h. The operations are the ones of polygon_control_normals() in
+// the same order, so that the values have the same bits.
 //
-// Positions in rows, as (n, 3), are loaded by the point, 16 bytes each, and transposed in registers. The 16 bytes of
+// Positions in rows, as (n, 3), are loaded point by point, 16 bytes each, and transposed in registers. The 16 bytes of
 // the last point would end beyond its array, so triangles with that point are loaded in another way.
 
 #include "simd/highway-inl.h"
@@ -47,15 +47,15 @@ HWY_INLINE auto MaxAbs(const V& a, const V& b, const V& c) {
 }
 HWY_INLINE Doubles MinAbs(const Doubles3& v) { return SmallerAbs(SmallerAbs(v.x, v.y), v.z); }
 
-// How points are loaded: 16 bytes of a row whose first three floats are x y z, where rows are packed, or have both ends
-// side by side, or are any; 12 bytes of any row; or one coordinate after the other, whatever the layout.
+// Says how points are loaded: 16 bytes of a row whose first three floats are x y z, where rows are packed, have both
+// ends side by side, or have any stride; 12 bytes of any row; or one coordinate after the other, whatever the layout.
 enum class PointAccess { kPacked, kEnds, kRow, kLastRow, kAny };
 
 constexpr std::size_t kEndsStride = kScatteredBytes / sizeof(float);
 
 constexpr bool LoadsRows(PointAccess access) { return access < PointAccess::kLastRow; }
 
-// The access to all points, but perhaps the last one.
+// Returns the access that works for all points, except perhaps the last one.
 HWY_INLINE PointAccess AccessOf(const Segment& segment) {
   const auto is_rows = [](const VectorView<const float>& points) {
     return points.stride >= 3 && points.y == points.x + 1 && points.z == points.x + 2;
@@ -68,7 +68,7 @@ HWY_INLINE PointAccess AccessOf(const Segment& segment) {
   return both_are(kEndsStride) ? PointAccess::kEnds : PointAccess::kRow;
 }
 
-// How many floats lie from one point to the next: a constant where it is known.
+// Returns the distance from one point to the next in floats, as a constant if it is known.
 template <PointAccess kAccess>
 HWY_INLINE std::size_t StrideOf(const VectorView<const float>& points) {
   if constexpr (kAccess == PointAccess::kPacked) return 3;
@@ -88,7 +88,7 @@ HWY_INLINE Row LoadPoint(const VectorView<const float>& points, std::uint32_t ve
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// A point for each 128 bits of a vector.
+// Loads a point into each 128 bits of a vector.
 template <PointAccess kAccess>
 HWY_INLINE Floats LoadPoints(const VectorView<const float>& points, const std::uint32_t* vertices) {
   if constexpr (LoadsRows(kAccess)) {
@@ -99,13 +99,13 @@ HWY_INLINE Floats LoadPoints(const VectorView<const float>& points, const std::u
 }
 #endif
 
-// Where the triangles of one vector of lanes are at both ends.
+// Holds the positions of the triangles of one vector of lanes at both ends.
 struct TriangleLanes {
   Lanes3 a0, b0, c0, a1, b1, c1;
 };
 
-// Where one vertex of each lane is at both ends. The vertex of the next lane stands kStep further on. Both ends are
-// loaded together, so that every index is read once.
+// Loads the positions of one vertex of each lane at both ends. The vertex of the next lane stands kStep further on.
+// Both ends are loaded together, so that every index is read once.
 template <PointAccess kAccess, std::size_t kStep>
 HWY_INLINE void LoadBothEnds(const Segment& segment, const std::uint32_t* vertices, Lanes3& from, Lanes3& to) {
 #if HWY_TARGET == HWY_SCALAR
@@ -133,22 +133,22 @@ HWY_INLINE TriangleLanes LoadTriangles(const Segment& segment, const std::uint32
   return p;
 }
 
-// Not less than the sum of the absolute products in any component of e x f, whichever ends e and f belong to.
+// Returns at least the sum of the absolute products in any component of e x f, whichever ends e and f belong to.
 HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1);
   const Floats f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
-  // A little more than twice the product, for its rounding, and something where it underflows.
+  // Take a little more than twice the product, for its rounding, and a tiny number in case it underflows.
   const Floats tiny = hn::Min(hn::Min(e, f), hn::Set(kFloats, std::numeric_limits<float>::min()));
   return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-19f), hn::Mul(e, f)), tiny);
 }
 
-// Not less than any component of an edge from the first corner, at either end.
+// Returns at least the largest component of an edge from the first corner, at either end.
 HWY_INLINE Floats LongestAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1), f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
   return hn::Mul(hn::Set(kFloats, 1 + 0x1p-22f), hn::Max(e, f));  // the differences are rounded
 }
 
-// The same of n0, m and n1, each with its own ends; in m, of both products.
+// Returns such bounds for n0, m and n1, each from its own ends; the bound of m is for both products.
 HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
   const Floats e0 = MaxAbs(p.b0 - p.a0), e1 = MaxAbs(p.b1 - p.a1);
   const Floats f0 = MaxAbs(p.c0 - p.a0), f1 = MaxAbs(p.c1 - p.a1);
@@ -159,8 +159,8 @@ HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
   return {above(e0, f0), hn::Add(above(e0, f1), above(e1, f0)), above(e1, f1)};
 }
 
-// Of half of the lanes, into tile. Whether one of the values may be noise, or a zero, or a vector hardly more than
-// noise.
+// Writes half of the lanes into tile. Returns whether one of the values may be noise, or a zero, or a vector hardly
+// larger than noise.
 template <int kHalf>
 HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::size_t lane, ExactTile& tile) {
   const Doubles3 a0 = ToDouble<kHalf>(p.a0), a1 = ToDouble<kHalf>(p.a1);
@@ -181,7 +181,7 @@ HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::s
   return !hn::AllTrue(kDoubles, hn::Gt(smallest, certain));
 }
 
-// Of half of the lanes, the errors that CrossSum::error() bounds.
+// Stores the errors that CrossSum::error() bounds, for half of the lanes.
 template <int kHalf>
 HWY_INLINE void StoreErrors(const Lanes3& magnitudes, double (*errors)[kTile], std::size_t lane) {
   const Doubles3 e = Scale(hn::Set(kDoubles, 12 * kUnitRoundoff), ToDouble<kHalf>(magnitudes));
@@ -190,8 +190,8 @@ HWY_INLINE void StoreErrors(const Lanes3& magnitudes, double (*errors)[kTile], s
   hn::Store(e.z, kDoubles, errors[2] + lane);
 }
 
-// Makes -0 a 0, and asks for every triangle with a component that may be noise, or a vector of which noise may be more
-// than a little, in another way.
+// Turns -0 into 0. Makes every triangle anew that has a component that may be noise, or a vector in which noise may be
+// more than a little.
 HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t* corners, ExactTile& tile) {
   const Doubles zero = hn::Zero(kDoubles);
   for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
@@ -218,7 +218,7 @@ HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t
   }
 }
 
-// What a tile has beside its normals: the errors of a BoundedTile, or the longest edges of an EdgedTile.
+// Holds what a tile has beside its normals: the errors of a BoundedTile, or the longest edges of an EdgedTile.
 struct TileExtras {
   double (*errors)[kTile] = nullptr;
   float* longest = nullptr;
@@ -243,7 +243,7 @@ void TriangleTile(const Segment& segment, const std::uint32_t* corners, ExactTil
   if (noise) SettleNoise(segment, corners, tile);
 }
 
-// Asks for both ends of `count` vertices of (n, 3) positions before they are loaded.
+// Prefetches both ends of `count` vertices of (n, 3) positions before they are loaded.
 HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vertices, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t vertex = vertices[i];
@@ -255,8 +255,8 @@ HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vert
 template <PointAccess kAccess>
 using AccessConstant = std::integral_constant<PointAccess, kAccess>;
 
-// Calls body(access) with the access that sixteen triangles allow, as a constant; corners: their 48 vertices. Whether
-// those are far from each other in memory.
+// Calls body(access) with the access that sixteen triangles allow, as a constant. corners are their 48 vertices.
+// Returns whether these are far from each other in memory.
 template <class Body>
 HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std::uint32_t* corners, const Body& body) {
   if (access == PointAccess::kAny) {
@@ -285,8 +285,8 @@ HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std
 }
 
 // Calls body(access, corners) for the triangles first ... first + 15, with the access that they allow as a constant and
-// their 48 vertices; those from `end` on repeat the one before. Those that come soon are asked for where they are far
-// from each other. first < end
+// their 48 vertices. Triangles from `end` on repeat the one before. If vertices are far from each other, prefetches the
+// ones that come soon. first < end
 template <class Body>
 HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                               const Body& body) {
@@ -304,8 +304,8 @@ HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::s
   WithAccess(segment, access, repeated, [&](auto known) HWY_ATTR { body(known, repeated); });
 }
 
-// The faces first ... first + 15; those from `end` on repeat the one before. Extras are written for triangles alone.
-// first < end
+// Writes the faces first ... first + 15; faces from `end` on repeat the one before. Extras are written for triangles
+// only. first < end
 HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                          ExactTile& tile, const TileExtras& extras = {}) {
   if (!fits_lanes(segment)) {
@@ -317,7 +317,7 @@ HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t
   });
 }
 
-// Sixteen rows of nine doubles: the components of a face.
+// Stores sixteen rows of nine doubles: the components of a face.
 HWY_INLINE void StoreRows(const ExactTile& tile, double* rows) {
   constexpr std::size_t kRow = 9;
 #if HWY_TARGET == HWY_SCALAR

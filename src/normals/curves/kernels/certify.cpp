@@ -1,4 +1,4 @@
-// Proves for sixteen elements in lanes of double how short n(t) gets, operation by operation as certificate.h does for one.
+// Proves for sixteen elements in lanes of double how short n(t) gets, with the same operations as certificate.h.
 #include "normals/curves/kernels/certify.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ HWY_INLINE Doubles AllOf(double value) { return hn::Set(kDoubles, value); }
 HWY_INLINE Doubles LargestOf(const Doubles3& v) { return LargerAbs(LargerAbs(v.x, v.y), v.z); }
 HWY_INLINE bool None(DoubleMask mask) { return hn::AllFalse(kDoubles, mask); }
 
-// A quadratic of vectors and one of numbers, by their Bernstein coefficients.
+// Hold a quadratic of vectors and one of numbers, by their Bernstein coefficients.
 struct Vectors {
   Doubles3 n0, m, n1;
 };
@@ -38,7 +38,7 @@ struct Quartic {
   Doubles at[5];
 };
 
-// The lanes among `open` for which p >= 0 on [0, 1] can be shown by halves of it, as certainly_not_negative() does.
+// Returns the lanes among `open` for which halves of p show that p >= 0 on [0, 1], as certainly_not_negative() does.
 template <int kDepth>
 HWY_NOINLINE DoubleMask CertainlyNotNegative(const Quartic& p, DoubleMask open) {
   const Doubles zero = hn::Zero(kDoubles), half = AllOf(0.5);
@@ -63,7 +63,7 @@ HWY_NOINLINE DoubleMask CertainlyNotNegative(const Quartic& p, DoubleMask open) 
   }
 }
 
-// The square of a quadratic; of its products, those of neighbours are known to both.
+// Returns the square of a quadratic. product(i, j) is symmetric, so each product of two coefficients is taken once.
 template <class Product>
 HWY_INLINE Quartic Square(const Product& product) {
   const Doubles sixth = AllOf(1.0 / 6), two_thirds = AllOf(4.0 / 6), ends = hn::Mul(sixth, product(0, 2));
@@ -80,7 +80,7 @@ HWY_INLINE Quartic Square(const Vectors& n) {
   return Square([&at](std::size_t i, std::size_t j) HWY_ATTR { return Dot(at[i], at[j]); });
 }
 
-// The lanes among `open` in which ratio |n(t)| >= limit(t) at every t.
+// Returns the lanes among `open` in which ratio |n(t)| >= limit(t) at every t.
 HWY_INLINE DoubleMask StaysAbove(const Quartic& n_square, double ratio, const Quartic& limit_square, DoubleMask open) {
   if (None(open)) return open;
   const Doubles ratio_square = AllOf(ratio * ratio);
@@ -89,7 +89,7 @@ HWY_INLINE DoubleMask StaysAbove(const Quartic& n_square, double ratio, const Qu
   return CertainlyNotNegative<kCertificateDepth>(slack, open);
 }
 
-// A quadratic and a quartic at one of a few instants, by the values of Bernstein polynomials there.
+// Holds the values of the Bernstein polynomials of degrees 2 and 4 at an instant.
 struct Instant {
   double of_degree2[3], of_degree4[5];
 };
@@ -98,7 +98,7 @@ inline constexpr Instant kInstants[] = {
     {{9.0 / 16, 6.0 / 16, 1.0 / 16}, {81.0 / 256, 108.0 / 256, 54.0 / 256, 12.0 / 256, 1.0 / 256}},
     {{1.0 / 16, 6.0 / 16, 9.0 / 16}, {1.0 / 256, 12.0 / 256, 54.0 / 256, 108.0 / 256, 81.0 / 256}}};
 
-// Compares |n(t)| with its limits at a few instants, which is far cheaper than a proof. A proof cannot succeed where n(t)
+// Compares |n(t)| with its limits at a few instants, which is far cheaper than a proof. A proof cannot succeed if n(t)
 // is too short at one of them.
 class Glance {
  public:
@@ -114,14 +114,15 @@ class Glance {
     }
   }
 
-  // Whether ratio |n(t)| >= 1 may hold at every t.
+  // Returns the lanes in which ratio |n(t)| >= 1 may hold at every t.
   HWY_INLINE DoubleMask MayStayAboveOne(double ratio) const {
     Doubles smallest = square_[0];
     for (std::size_t i = 1; i < kCount; ++i) smallest = hn::Min(smallest, square_[i]);
     return hn::Ge(hn::Mul(AllOf(kUp * ratio * ratio), smallest), AllOf(1));
   }
 
-  // Whether ratio |n(t)| >= sum w_k |c_k| may hold at every t; the square of that sum is more than the sum of squares.
+  // Returns the lanes in which ratio |n(t)| >= sum w_k |c_k| may hold at every t. The square of that sum is larger than
+  // the sum of squares.
   HWY_INLINE DoubleMask MayStayAbove(double ratio) const {
     const Doubles factor = AllOf(kUp * ratio * ratio);
     auto may = hn::Ge(hn::Mul(factor, square_[0]), limit_[0]);
@@ -131,7 +132,7 @@ class Glance {
 
  private:
   static constexpr std::size_t kCount = std::size(kInstants);
-  static constexpr double kUp = 1 + 0x1p-40;  // for all roundings
+  static constexpr double kUp = 1 + 0x1p-40;  // makes up for all roundings
   Doubles square_[kCount], limit_[kCount];
 };
 
@@ -141,7 +142,7 @@ HWY_INLINE Numbers LengthsOf(const Vectors& n, const Quartic& n_square) {
   return {hn::Sqrt(n_square.at[0]), ScaledLength(n.m), hn::Sqrt(n_square.at[4])};
 }
 
-// As stays_certain(), of control normals that are scaled to 1.
+// Does what stays_certain() does, for control normals that are scaled to 1.
 HWY_INLINE DoubleMask StaysCertain(const Vectors& n, const Quartic& n_square, Doubles certain, DoubleMask open) {
   const Doubles share = hn::Mul(AllOf(4), certain);
   const Doubles height = hn::Abs(Dot(n.n0, Cross(n.m, n.n1)));
@@ -180,7 +181,7 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const Vectors given{VectorAt(tile, 0, lane), VectorAt(tile, 3, lane), VectorAt(tile, 6, lane)};
   const Doubles size0 = LargestOf(given.n0), size_m = LargestOf(given.m), size1 = LargestOf(given.n1);
   const Doubles largest = hn::Max(hn::Max(size0, size_m), size1);
-  // The larger of two need not be NaN where one of them is, but a sum is.
+  // The larger of two numbers need not be NaN if one of them is, but a sum is.
   const Doubles3 sums = (given.n0 + given.m) + given.n1;
   const Doubles sum = hn::Add(hn::Add(sums.x, sums.y), sums.z);
   const auto in_range =

@@ -13,15 +13,15 @@ constexpr double kLargestSum = 65532;
 
 std::int32_t pair_of(std::int32_t low, std::int32_t high) { return (low & 0xFFFF) | (high * 65536); }
 
-// Integers in the ratios of the weights: only ratios count for a direction, so of some scales the one that rounds least
-// is taken.
+// Returns integers in the ratios of the weights. Only ratios count for a direction, so of some scales the one that
+// rounds least is taken.
 template <std::size_t kCount>
 std::array<std::int32_t, kCount> integer_weights(const std::array<double, kCount>& weights) {
   constexpr int kTrials = 16, kStep = 256;
   const double largest_scale =
       std::min(kLargestWeight / *std::max_element(weights.begin(), weights.end()), kLargestSum);
   std::array<std::int32_t, kCount> best{};
-  double smallest_error = 2, its_scale = 1;  // the error in units of 1 / scale
+  double smallest_error = 2, its_scale = 1;  // errors are in units of 1 / scale
   for (int trial = 0; trial < kTrials && smallest_error > 0; ++trial) {
     const double scale = largest_scale - trial * kStep;
     std::array<std::int32_t, kCount> rounded;

@@ -1,7 +1,8 @@
-/// How NormalCurves keeps its elements: blocks of 16, each of one kind, and runs of neighbouring blocks of one kind.
+/// The layout of NormalCurves: elements in blocks of 16, each of one kind, and runs of neighbouring blocks of one kind.
 ///
-/// A block is a few planes of 16 numbers, element i in lane i. c(k) are the control normals; M is the largest absolute
-/// component of an element. "int16 pairs" are 16 words of 32 bits with one number in each half, the first in the low.
+/// A block is a few planes of 16 numbers, with element i in lane i. c(k) are the control normals; M is the largest
+/// absolute component of an element. "int16 pairs" are 16 words of 32 bits with one number in each half, the first in
+/// the low half.
 ///
 ///     kUnit           u.x u.y u.z                               float32, length 1
 ///     kUnitLength     u.x u.y u.z |n|                           float32
@@ -9,15 +10,15 @@
 ///     kQuadratic32    n0.x n0.y n0.z m.x ... n1.z               float32
 ///     kLinear16       (n0.x, n1.x) (n0.y, n1.y) (n0.z, n1.z)    int16 pairs: c = q M / 32767
 ///     kQuadratic16    (n0.x, n1.x) (n0.y, n1.y) (n0.z, n1.z)
-///                     (m.x, m.y) (m.z, 0)                       the same
-///     kScaled16       as kQuadratic16, but each control normal by a scale of its own, and in place of the 0 three
-///                     exponents of 5 bits, of n0 in the lowest: c(k) = q 2^-e(k) M / 32767
+///                     (m.x, m.y) (m.z, 0)                       int16 pairs: c = q M / 32767
+///     kScaled16       as kQuadratic16, but each control normal has its own scale, and the 0 is replaced by three
+///                     exponents of 5 bits, n0's in the lowest: c(k) = q 2^-e(k) M / 32767
 ///     kQuadratic11    16 words for x, for y, for z; from the lowest bit up: 5 low bits of m, 11 bits of n0, 5 high
 ///                     bits of m, 11 bits of n1; c = q M / 1023 for the ends, m = (32 high + low + 16) 2 M / 1023, with
 ///                     both halves signed, from -16 to 15
 ///     kNone           nothing: all elements are flagged (curve_data.h)
 ///
-/// Pairs are what one instruction multiplies by two weights and adds up (pmaddwd).
+/// Pairs suit the instruction that multiplies two numbers by two weights and adds up the products (pmaddwd).
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_CURVE_BLOCKS_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_CURVE_BLOCKS_H_
 
@@ -41,19 +42,19 @@ enum class BlockKind : int {
   kNone,
 };
 
-/// Bytes for each element.
+/// Returns the number of bytes for each element.
 [[nodiscard]] constexpr std::size_t bytes_of(BlockKind kind) {
   constexpr std::size_t bytes[] = {12, 16, 12, 12, 20, 20, 24, 36, 0};
   return bytes[static_cast<int>(kind)];
 }
 
-/// How precisely the elements of a block are kept, whatever their degree.
+/// Says how precisely the elements of a block are kept, whatever their degree.
 enum class Precision : std::uint8_t { k11, k16, kScaled16, k32 };
 
 /// The degree of a block in which all elements are flagged.
 inline constexpr int kNoDegree = -1;
 
-/// The kind for elements of a degree; with_lengths asks for lengths where all are of degree 0.
+/// Returns the kind for elements of a degree. with_lengths asks for lengths if all are of degree 0.
 [[nodiscard]] constexpr BlockKind kind_for(Precision precision, int degree, bool with_lengths) {
   if (degree == kNoDegree) return BlockKind::kNone;
   if (degree == 0) return with_lengths ? BlockKind::kUnitLength : BlockKind::kUnit;
@@ -70,24 +71,24 @@ inline constexpr int kNoDegree = -1;
   return degree == 1 ? BlockKind::kLinear32 : BlockKind::kQuadratic32;
 }
 
-// Blocks are scaled so that no component is above 2^50, and no end that counts is below 2^-52. Then |n(t)|^2, at worst
-// that of 2^-53 / 64, stays in the range of float32.
+// Blocks are scaled so that no component is above 2^50, and no end that counts is below 2^-52. Then |n(t)|^2 stays in
+// the range of float32; the worst |n(t)| is 2^-53 / 64.
 inline constexpr int kLargestExponent = 50;
 inline constexpr double kLargestComponent = 0x1p50;
 inline constexpr double kSmallestEnd = 0x1p-52;
 
 inline constexpr int kMaxScaleExponent = 31;
 
-/// What all elements share at one t, in the form that each kind wants it.
+/// Holds what all elements share at one t, in the form that each kind needs.
 struct CurveWeights {
-  float linear[2];              ///< of n0, n1
-  float quadratic[3];           ///< of n0, m, n1
-  std::int32_t linear16 = 0;    ///< int16 pair: of n0, n1, in units of a common scale
-  std::int32_t ends16 = 0;      ///< int16 pair: of n0, n1
-  std::int32_t middle16 = 0;    ///< of m, in the same units
-  std::int32_t middle_low = 0;  ///< a 32nd of it
+  float linear[2];              ///< weights of n0, n1
+  float quadratic[3];           ///< weights of n0, m, n1
+  std::int32_t linear16 = 0;    ///< int16 pair: weights of n0, n1, in units of a common scale
+  std::int32_t ends16 = 0;      ///< int16 pair: weights of n0, n1
+  std::int32_t middle16 = 0;    ///< weight of m, in the same units
+  std::int32_t middle_low = 0;  ///< a 32nd of middle16
 
-  /// The integers take a tenth of a microsecond to choose; without `compact` they are left 0.
+  /// Returns the weights. Choosing the integers takes a tenth of a microsecond; without `compact` they stay 0.
   [[nodiscard]] static CurveWeights at(const LocalTime& time, bool compact) noexcept;
 };
 

@@ -6,7 +6,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/evaluate.cpp"
 #include "simd/foreach_target-inl.h"
-// After it, so that it is of one instruction set at a time.
+// This must come after foreach_target, so that it is compiled for one instruction set at a time.
 #include "simd/highway-inl.h"
 
 #include "simd/intrinsics-inl.h"
@@ -17,8 +17,8 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 constexpr std::size_t kPrefetchStep = 64;
 
-// A kind of block: its weights in registers, and how `direction` makes kLanes vectors from the lanes at `lane`. They
-// need no length of 1 unless kUnitLength says that they have it.
+// Each struct is a kind of block: its weights in registers, and how `direction` makes kLanes vectors from the lanes at
+// `lane`. Results have unit length only if kUnitLength.
 
 struct Unit {
   static constexpr bool kUnitLength = true;
@@ -67,7 +67,8 @@ struct Quadratic32 {
 };
 
 #if HWY_TARGET == HWY_SCALAR
-// One lane of 32 bits cannot be taken for two of 16: the halves of a pair one after the other.
+// On this target a lane of 32 bits cannot be taken for two of 16, so the halves of a pair are handled one after the
+// other.
 using Shorts = Ints;
 
 HWY_INLINE Shorts PairSet(std::int32_t pair) { return hn::Set(kInts, pair); }
@@ -94,8 +95,8 @@ HWY_INLINE Shorts PairSet(std::int32_t pair) { return hn::BitCast(kShorts, hn::S
 HWY_INLINE Shorts LoadPairs(const std::int32_t* p) { return hn::BitCast(kShorts, hn::Load(kInts, p)); }
 HWY_INLINE Shorts ShiftHalvesLeft11(Shorts a) { return hn::ShiftLeft<11>(a); }
 
-// start + a.low v.low + a.high v.high + b.low w.low + b.high w.high, for each pair. Integers: exact in any order. Both
-// sums have their lanes in an order of their own until they are rearranged, on NEON, so that start is added then.
+// Returns start + a.low v.low + a.high v.high + b.low w.low + b.high w.high, for each pair. Integers are exact in any
+// order. On NEON, both sums have their lanes in a different order until they are rearranged, so start is added then.
 HWY_INLINE Floats PairSum(Ints start, Shorts a, Shorts v, Shorts b, Shorts w) {
   Ints rest = hn::Zero(kInts);
   Ints sum = hn::ReorderWidenMulAccumulate(kInts, a, v, hn::Zero(kInts), rest);
@@ -157,7 +158,7 @@ struct Scaled16 {
     return hn::ConvertTo(kFloats, hn::ShiftRight<16>(hn::ShiftLeft<16>(pair)));
   }
   HWY_INLINE static Floats High(Ints pair) { return hn::ConvertTo(kFloats, hn::ShiftRight<16>(pair)); }
-  // 2^-e of the lowest five bits: the exponent field of a float, of which 127 stands for 2^0.
+  // Returns 2^-e for the lowest five bits e, by the exponent field of a float, in which 127 stands for 2^0.
   HWY_INLINE static Floats PowerOfTwo(Ints exponent) {
     const Ints e = hn::And(exponent, hn::Set(kInts, kMaxScaleExponent));
     return hn::BitCast(kFloats, hn::ShiftLeft<23>(hn::Sub(hn::Set(kInts, 127), e)));
@@ -177,8 +178,8 @@ struct Quadratic11 {
     const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
     return {Component(p), Component(p + kTile), Component(p + 2 * kTile)};
   }
-  // The ends stand in the upper 11 bits of their halves: 32 times their value. The two halves of m, moved there, are
-  // 2048 times their value; its 16 comes first, so that no sum on the way leaves the range.
+  // The ends stand in the upper 11 bits of their halves, which is 32 times their value. The two halves of m, moved
+  // there, are 2048 times their value. The 16 of m comes first, so that no partial sum leaves the range.
   HWY_INLINE Floats Component(const std::int32_t* p) const {
     const Shorts words = LoadPairs(p);
     return PairSum(start, hn::And(words, mask), ends, ShiftHalvesLeft11(words), middle);
@@ -188,12 +189,12 @@ struct Quadratic11 {
   Ints start;
 };
 
-// Where results go, kLanes vectors at a time.
+// Each struct says where results go, kLanes vectors at a time.
 
 template <bool kPastCaches>
 struct Accesses {
   static constexpr bool kStream = kPastCaches;
-  std::size_t ahead;  // how many bytes ahead a kernel prefetches blocks; 0: it does not
+  std::size_t ahead;  // how many bytes ahead a kernel prefetches blocks; 0 for none
 };
 
 template <bool kPastCaches>
@@ -262,12 +263,12 @@ struct ToRgb10A2 : Accesses<kPastCaches> {
   }
 };
 
-// All whole blocks of a span.
+// Evaluates all whole blocks of a span.
 template <class Kind, class To>
 HWY_NOINLINE void WholeBlocks(const BlockSpan& span, const CurveWeights& weights, To to) {
   const Kind kind(weights);
   const std::size_t ahead = to.ahead;
-  const std::byte* const blocks = span.blocks;  // stores might change what is behind a reference
+  const std::byte* const blocks = span.blocks;  // a copy, since stores might change what is behind a reference
   const std::size_t block_count = span.elements / kTile;
   for (std::size_t b = 0; b < block_count; ++b) {
     const std::byte* const block = blocks + b * kTile * Kind::kBytes;
@@ -309,7 +310,7 @@ void ByAccess(const BlockSpan& span, const CurveWeights& w, bool stream, std::si
   return ByKind(span, w, To<false>{{ahead}, to...});
 }
 
-// The elements of the last block, if it is filled in part: `part` says how many.
+// Holds the elements of the last block if only `part` of them exist.
 struct Tail {
   BlockSpan block;  // as if it were whole
   std::size_t first, part;
@@ -371,7 +372,7 @@ HWY_EXPORT(EvaluateRgb10A2);
 
 namespace {
 
-// Calls evaluate(part of the span, where its results go, how far ahead to prefetch) for all of it.
+// Calls evaluate(part of the span, where its results go, how far ahead to prefetch) until all of the span is done.
 template <class Result, class Evaluate>
 void at_best_distance(const BlockSpan& span, const Result& result, const Evaluate& evaluate) {
   if (span.kind == BlockKind::kNone) return;

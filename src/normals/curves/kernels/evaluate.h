@@ -1,4 +1,4 @@
-/// The kernel of NormalCurves: blocks of one kind to unit normals.
+/// The kernel of NormalCurves, which turns blocks of one kind into unit normals.
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_H_
 
@@ -11,21 +11,21 @@
 
 namespace chronormal::inline internal {
 
-/// Neighbouring blocks of one kind, the last of which may be filled in part.
+/// Holds neighbouring blocks of one kind, the last of which may be filled in part.
 struct BlockSpan {
   const std::byte* blocks = nullptr;
   BlockKind kind = BlockKind::kUnit;
   std::size_t elements = 0;
 };
 
-/// How a kernel goes about the memory: PrefetchRule decides by its working set how early it asks for blocks, and with
-/// `stream` results go past the caches, for which all their arrays must be aligned to 64 bytes.
+/// Says how a kernel uses memory. PrefetchRule decides by its working set how early it prefetches blocks. With
+/// `stream`, results go past the caches, for which all their arrays must be aligned to 64 bytes.
 struct MemoryAccess {
   WorkingSet working_set = WorkingSet::kSmall;
   bool stream = false;
 };
 
-/// For a pass over so many bytes of blocks that writes so many bytes, if its results are aligned.
+/// Returns the access for a pass that reads and writes so many bytes, if its results are aligned.
 constexpr MemoryAccess access_of_pass(std::size_t read, std::size_t written) noexcept {
   constexpr std::size_t kMiB = std::size_t{1} << 20;
   const std::size_t all = read + written;
@@ -36,7 +36,7 @@ constexpr MemoryAccess access_of_pass(std::size_t read, std::size_t written) noe
   return {set, all > kStreamFrom};
 }
 
-/// Where the results of a span go: pointers to that of its first element.
+/// Results of a span go to these pointers, which point to the result of its first element.
 struct PackedResult {
   float* xyz;
   MemoryAccess access = {};
@@ -54,7 +54,7 @@ struct Rgb10A2Result {
   MemoryAccess access = {};
 };
 
-/// Where those of later elements go.
+/// Returns the place of the results from element `count` on.
 inline PackedResult behind(const PackedResult& result, std::size_t count) {
   return {result.xyz + 3 * count, result.access};
 }
@@ -68,13 +68,14 @@ inline Rgb10A2Result behind(const Rgb10A2Result& result, std::size_t count) {
   return {result.bits + count, result.access};
 }
 
-/// Writes the unit normals of all elements of a span, at the t of the weights; of kNone nothing.
+/// Writes the unit normals of all elements of a span, at the t of the weights. Writes nothing for kNone.
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PackedResult result) noexcept;
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PlanesResult result) noexcept;
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, OctahedralResult result) noexcept;
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2Result result) noexcept;
 
-/// Makes what this thread has streamed visible to the others: once, after the last span, for it waits for the memory.
+/// Makes what this thread has streamed visible to other threads. Call it once, after the last span, since it waits for
+/// the memory.
 void flush_stream() noexcept;
 
 }  // namespace chronormal::inline internal

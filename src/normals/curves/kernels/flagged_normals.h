@@ -1,5 +1,5 @@
-/// Unit normals in double, a few at a time: for the elements that float32 cannot carry. What double cannot carry either
-/// it hands back.
+/// Unit normals in double, a few at a time, for the elements that float32 cannot carry. Elements that double cannot
+/// carry either are handed back.
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_FLAGGED_NORMALS_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_FLAGGED_NORMALS_H_
 
@@ -16,22 +16,23 @@
 
 namespace chronormal::inline internal {
 
-/// An element times a power of two, so that its largest component is at least 1 and below 4, and float32 has n(t) in
-/// range.
+/// Holds an element times a power of two, so that its largest component is at least 1 and below 4, and n(t) is in the
+/// range of float32.
 struct FlaggedNormals {
   ControlNormals normals;
-  /// n(t) has a direction where its largest component is above the quadratic with these control values: of each control
-  /// normal the share smallest_certain(), and so much that float32 has the square of n(t); infinite for what cannot be
-  /// scaled.
+  /// n(t) has a direction if its largest component is above the quadratic with these control values. Each is the share
+  /// smallest_certain() of a control normal, and enough for float32 to hold the square of n(t). It is infinite if the
+  /// element cannot be scaled.
   std::array<float, 3> limits{};
-  std::int16_t exponent = 0;  ///< of the power of two that makes of it what it was
+  std::int16_t exponent = 0;  ///< the element is 2^exponent times what is stored
 
-  /// Scales control normals, of which n(t) has a direction where its largest component is above the share `certain` of
-  /// sum w_k max_abs(c_k) (certificate.h).
+  /// Scales control normals whose n(t) has a direction if its largest component is above the share `certain` of sum w_k
+  /// max_abs(c_k) (certificate.h).
   [[nodiscard]] static FlaggedNormals scaled(const ControlNormals& normals, double certain) noexcept;
 };
 
-/// Sixteen of them side by side: the planes of ControlTile in double, and the limits. Lanes that are not used are zero.
+/// Holds sixteen FlaggedNormals side by side: the planes of ControlTile in double, and the limits. Unused lanes are
+/// zero.
 struct alignas(64) FlaggedTile {
   double normals[9][kTile]{};
   float limits[3][kTile]{};
@@ -43,7 +44,7 @@ struct alignas(64) FlaggedTile {
     }
     for (k = 0; k < 3; ++k) limits[k][lane] = flagged.limits[k];
   }
-  /// Copies `count` lanes of another tile, from its lane `first`, to this lane and those behind it.
+  /// Copies `count` lanes of another tile, from its lane `first` on, to this lane and the lanes behind it.
   void set_lanes(std::size_t lane, const FlaggedTile& from, std::size_t first, std::size_t count) noexcept {
     for (std::size_t k = 0; k < 9; ++k) std::copy_n(from.normals[k] + first, count, normals[k] + lane);
     for (std::size_t k = 0; k < 3; ++k) std::copy_n(from.limits[k] + first, count, limits[k] + lane);
@@ -56,7 +57,7 @@ struct alignas(64) FlaggedTile {
 /// Limits are rounded up, and none is below the least.
 inline constexpr double kLimitUp = 1 + 0x1p-20, kLeastLimit = 0x1p-50;
 
-/// Unit normals of a tile.
+/// Holds the unit normals of a tile.
 struct alignas(64) FlaggedUnits {
   float xyz[3 * kTile];     ///< (kTile, 3)
   std::uint32_t uncertain;  ///< bit i: n(t) of element i is not certain
@@ -66,8 +67,8 @@ struct alignas(64) FlaggedUnits {
   }
 };
 
-/// Evaluates n(t) in double, and rounds its direction to float32: within 2^-22 rad.
-/// t is a local_time(); results must have a place for each tile
+/// Evaluates n(t) in double, and rounds its direction to float32: within 2^-22 rad. t is a local_time(); results must
+/// have a place for each tile
 void flagged_unit_normals(std::span<const FlaggedTile> tiles, const LocalTime& t,
                           std::span<FlaggedUnits> results) noexcept;
 

@@ -23,34 +23,35 @@ HWY_INLINE Lanes3 LoadTileVector(const ControlTile& tile, std::size_t k, std::si
 
 HWY_INLINE Floats MaxAbs(const Lanes3& v) { return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); }
 
-// The tests that a lane must pass, as bits: of all lanes, the lowest first.
+// Holds the results of the tests of each lane as bits, the lowest lane first.
 struct LaneTests {
   std::uint32_t certain = 0, fits11 = 0, fits16 = 0, moving = 0, bending = 0;
 };
 
-// Three control normals of a piece of each curve, and their lengths.
+// Holds three control normals of a piece of each curve, and their lengths.
 struct Piece {
   Lanes3 n0, m, n1;
   Floats l0, lm, l1;
 };
 
-// What the quartics of a piece show: where it stays long enough for float32, and a bound of |n(t)|^2 from below there.
+// Holds what the quartics of a piece show: whether n(t) stays long enough for float32, and if so a lower bound of
+// |n(t)|^2.
 struct PieceTest {
   hn::Mask<FloatTag> certain;
   Floats shortest_square;
 };
 
-// Halves that are looked at where a whole shows nothing.
+// Halves are examined down to this depth if the whole piece shows nothing.
 inline constexpr int kPieceDepth = 2;
 
 HWY_INLINE Floats Middle(Floats a, Floats b) { return hn::Mul(hn::Set(kFloats, 0.5f), hn::Add(a, b)); }
 HWY_INLINE Lanes3 Middle(const Lanes3& a, const Lanes3& b) { return Scale(hn::Set(kFloats, 0.5f), a + b); }
 
-// Eq. 11, for whole pieces first and then for halves, until every lane is known or has `enough`, the square that is
-// wanted. What comes of a lane does not depend on the others.
+// Tests eq. 11, for whole pieces first and then for halves, until every lane is known or has `enough`, the square that
+// is wanted. The result of a lane does not depend on the other lanes.
 template <int kDepth>
 HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floats enough) {
-  // A safe part of the ratio 3 to which float32 is exact enough; docs/theory.md, section 13.
+  // This is a safe part of the ratio 3 up to which float32 is exact enough; docs/theory.md, section 13.
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f), third = hn::Set(kFloats, 1.0f / 3);
   const auto in_middle = [&](Floats ends, Floats middle)
                              HWY_ATTR { return hn::Mul(third, hn::Add(ends, hn::Add(middle, middle))); };
@@ -72,7 +73,7 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
     if (hn::AllFalse(kFloats, open)) return whole;
     const Lanes3 a = Middle(p.n0, p.m), b = Middle(p.m, p.n1), c = Middle(a, b);
     const Floats la = Middle(p.l0, p.lm), lb = Middle(p.lm, p.l1), lc = Middle(la, lb);
-    // Both halves end here, so that neither helps a lane that is too short here.
+    // Both halves end here, so neither helps a lane that is too short here.
     open = hn::And(open, hn::Ge(hn::Mul(sum_ratio_square, Dot(c, c)), hn::Mul(lc, lc)));
     if (hn::AllFalse(kFloats, open)) return whole;
     const PieceTest before = TestPiece<kDepth - 1>({p.n0, a, c, p.l0, la, lc}, open, enough);
@@ -85,7 +86,7 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
 // Squares are compared, so that no root is needed. With the axis a = n0 + 2 m + n1, n(t).a >= min c(k).a for all t.
 HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats square11, Floats square16,
                                Floats noise_square) {
-  // As in TestPiece.
+  // This is the ratio of TestPiece.
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f);
   const Floats smallest_largest = hn::Set(kFloats, 0x1p-30f), largest_largest = hn::Set(kFloats, 0x1p50f);
 
@@ -93,7 +94,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
   const Floats largest = hn::Max(hn::Max(MaxAbs(n0), MaxAbs(m)), MaxAbs(n1));
   const auto in_range = hn::And(hn::Ge(largest, smallest_largest), hn::Le(largest, largest_largest));
 
-  // By a power of two into [1, 2), so that fourth powers stay in range.
+  // Scale by a power of two into [1, 2), so that fourth powers stay in range.
   const Ints exponent = hn::And(hn::BitCast(kInts, largest), hn::Set(kInts, 0x7F800000));
   const Floats scale = hn::BitCast(kFloats, hn::Sub(hn::Set(kInts, 0x7F000000), exponent));
   n0 = Scale(scale, n0);
@@ -123,7 +124,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
 
   const auto unknown = hn::AndNot(certain, in_range);
   if (!hn::AllFalse(kFloats, unknown)) {
-    // Eleven bits are hardly ever enough for such elements, unless few are asked for.
+    // Eleven bits are hardly ever enough for such elements, unless the tolerance is large.
     const Floats fewest = hn::Set(kFloats, 3.0f);
     const auto try11 = hn::Ge(square11, fewest), try16 = hn::Gt(square16, hn::Zero(kFloats));
     const Floats wanted = hn::IfThenElse(try11, square11, square16);
@@ -145,7 +146,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
 
 void SummarizeTiles(const ControlTile* tiles, std::size_t count, const PrecisionLimits& limits,
                     TileSummary* summaries) {
-  // A safe part of the limits, for the rounding of the tests themselves.
+  // The limits are reduced to a safe part, for the rounding of the tests themselves.
   constexpr double kSafe = 0.99;
   const auto square = [](double ratio) { return static_cast<float>(kSafe * ratio * ratio); };
   const Floats square11 = hn::Set(kFloats, square(limits.largest_ratio11));
@@ -199,7 +200,7 @@ HWY_INLINE Floats Largest(const Lanes3& n0, const Lanes3& m, const Lanes3& n1) {
   return hn::Max(hn::Max(MaxAbs(n0), MaxAbs(m)), MaxAbs(n1));
 }
 
-// The integer from -limit to limit that stands for a component of 1 / scale.
+// Returns the factor that maps a component to integers from -limit to limit.
 HWY_INLINE Floats IntegersPer(float limit, Floats largest) { return hn::Div(hn::Set(kFloats, limit), largest); }
 
 void PackUnit(const ControlTile& tile, bool with_length, float* to) {
@@ -250,12 +251,12 @@ void PackQuadratic16(const ControlTile& tile, std::int32_t* to) {
   }
 }
 
-// By how many powers of two the largest component of c is below `largest`, rounded down, and at most 31.
+// Returns by how many powers of two the largest component of c is below `largest`, rounded down, and at most 31.
 HWY_INLINE Ints ExponentBelow(Floats largest, const Lanes3& c) {
   const auto field = [](Floats v) HWY_ATTR { return hn::ShiftRight<23>(hn::BitCast(kInts, v)); };
   const Floats own = MaxAbs(c);
   const Ints difference = hn::Sub(field(largest), field(own));
-  // One less where the digits of own are above those of largest, so that own 2^e does not get larger than it.
+  // Take one less if the digits of own are above the digits of largest, so that own 2^e does not exceed largest.
   const auto fraction = [](Floats v) HWY_ATTR { return hn::And(hn::BitCast(kInts, v), hn::Set(kInts, 0x7FFFFF)); };
   const Ints one_less = hn::VecFromMask(kInts, hn::Gt(fraction(own), fraction(largest)));
   const Ints exponent = hn::Add(difference, one_less);
@@ -281,7 +282,7 @@ void PackScaled16(const ControlTile& tile, std::int32_t* to) {
   }
 }
 
-// 11 bits of each end and twice 5 of m, m - 16 = 32 high + low, in one word. m must be in [-512, 511].
+// Puts 11 bits of each end and twice 5 bits of m, m - 16 = 32 high + low, into one word. m must be in [-512, 511]
 HWY_INLINE Ints Word11(Ints n0, Ints m, Ints n1) {
   const Ints bits5 = hn::Set(kInts, 31), bits11 = hn::Set(kInts, 2047);
   const Ints high = hn::ShiftRight<5>(m);
@@ -343,7 +344,7 @@ namespace chronormal::inline internal {
 
 PrecisionLimits PrecisionLimits::for_tolerance(double radians) noexcept {
   constexpr double kSqrt3 = 1.7320508075688772;
-  // From a chord to its angle, and what is left of the tolerance for the rounding of float32 itself.
+  // Turn a chord into its angle, and leave some of the tolerance for the rounding of float32 itself.
   const double error = 0.99 * (std::fmin(radians, kLargestTolerance) - 5e-7);
 
   PrecisionLimits limits;
@@ -353,7 +354,7 @@ PrecisionLimits PrecisionLimits::for_tolerance(double radians) noexcept {
   limits.largest_ratio16 = error / (kSqrt3 / 2 / 32767 + weights);
   limits.largest_ratio11 = error / (0.75 * kSqrt3 / 1023 + weights + 0x1p-15);
   limits.sum_ratio_scaled16 = error / (kSqrt3 / 32767 + 4e-7);
-  // No more than 64, so that |n(t)|^2 stays in the range of float32.
+  // The ratio is at most 64, so that |n(t)|^2 stays in the range of float32.
   limits.sum_ratio32 = std::fmin(64, std::fmax(limits.sum_ratio32, radians / 3.4e-7));
   return limits;
 }

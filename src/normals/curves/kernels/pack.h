@@ -1,4 +1,4 @@
-/// Control normals into blocks: which precision a tile needs, and the block of a kind.
+/// Packs control normals into blocks: finds the precision that a tile needs, and writes the block of a kind.
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_PACK_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_PACK_H_
 
@@ -12,34 +12,34 @@
 
 namespace chronormal::inline internal {
 
-/// How short n(t) may get for each precision to keep a tolerance (docs/theory.md, section 13). A precision that cannot
-/// keep it at all has a limit of 0.
+/// Limits how short n(t) may get for each precision to keep a tolerance (docs/theory.md, section 13). A precision that
+/// cannot keep it at all has a limit of 0.
 struct PrecisionLimits {
-  /// k11 and k16: of M / |n(t)|, where M is the largest absolute component of the control normals.
+  /// The limits of M / |n(t)| for k11 and k16, where M is the largest absolute component of the control normals.
   double largest_ratio11 = 0, largest_ratio16 = 0;
-  /// kScaled16 and k32: of sum w_k |c_k| / |n(t)|.
+  /// The limits of sum w_k |c_k| / |n(t)| for kScaled16 and k32.
   double sum_ratio_scaled16 = 0, sum_ratio32 = 0;
 
-  /// Of `magnitude` / |n(t)|, where `magnitude` is not less than the largest component. In tiles that were made in
-  /// double noise is below 2^-45 of it (12 u for a face, and u for each of up to 100 that are added), so that it turns
-  /// n(t) by less than 2^-24, and no control normal is below 2^-21 of the largest.
+  /// The limit of `magnitude` / |n(t)|, where `magnitude` is at least the largest component. In tiles that were made in
+  /// double, noise is below 2^-45 of it (12 u for a face, and u for each of up to 100 that are added), so it turns n(t)
+  /// by less than 2^-24, and no control normal is below 2^-21 of the largest.
   double largest_magnitude = 0x1p21;
 
-  /// Above kLargestTolerance, in radians, what lies between a chord and its angle would need a closer look.
+  /// Above this tolerance, in radians, the difference of a chord and its angle would matter.
   static constexpr double kLargestTolerance = 0.2;
   [[nodiscard]] static PrecisionLimits for_tolerance(double radians) noexcept;
-  /// The limits for tiles that were made in float32, where `magnitude` is a bound on the error of a component: it may
-  /// take a small part of the tolerance, and the blocks have the rest. Nothing where the tolerance is too small for
-  /// that.
+  /// Returns the limits for tiles that were made in float32, where `magnitude` is a bound on the error of a component.
+  /// That error may take a small part of the tolerance, and the blocks get the rest. Returns nothing if the tolerance
+  /// is too small for that.
   [[nodiscard]] static std::optional<PrecisionLimits> for_float_tiles(double radians) noexcept;
 };
 
-/// What is known of a tile at a glance.
+/// Holds what the quick test shows of a tile.
 struct TileSummary {
   std::uint32_t uncertain = 0;           ///< bit i: element i must be looked at in double
   std::uint32_t moving = 0;              ///< bit i: its degree is 1 or 2
   std::uint32_t bending = 0;             ///< bit i: its degree is 2
-  Precision precision = Precision::k11;  ///< that suffices for all others
+  Precision precision = Precision::k11;  ///< suffices for all other elements
 
   void set_degree(std::size_t lane, int degree) noexcept {
     const std::uint32_t bit = 1u << lane;
@@ -48,14 +48,14 @@ struct TileSummary {
   }
 };
 
-/// Finds the elements of which some operations in float32 show that they stay long enough: all three control normals
-/// lie within some 70 degrees of n0 + 2 m + n1, or eq. 11 holds for the curve, its halves or its quarters; well above
-/// the noise of their products and within the range of float32.
+/// Finds the elements for which some operations in float32 show that they stay long enough: all three control normals
+/// lie within some 70 degrees of n0 + 2 m + n1, or eq. 11 holds for the curve, its halves or its quarters. They must
+/// also be well above the noise of their products and within the range of float32.
 void summarize_tiles(std::span<const ControlTile> tiles, const PrecisionLimits& limits,
                      std::span<TileSummary> summaries) noexcept;
 
-/// Writes one block of 16 elements for each tile. Precondition: the tiles are finite; for kinds of int16 no element is
-/// zero. blocks must have 16 * bytes_of(kind) bytes for each tile, aligned to 64
+/// Writes one block of 16 elements for each tile. The tiles must be finite; for kinds of int16 no element may be zero.
+/// blocks must have 16 * bytes_of(kind) bytes for each tile, aligned to 64
 void pack_tiles(std::span<const ControlTile> tiles, BlockKind kind, std::byte* blocks) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// Takes the times of trials, and finds the distance of the shortest median.
+// Takes the times of trials, and finds the distance with the shortest median.
 #include "normals/curves/kernels/prefetch.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace chronormal::inline internal {
 
 std::optional<std::size_t> PrefetchRule::next() noexcept {
   const std::size_t all = kTrials * distances_;
-  // Several threads may get as far as the second line at once, each with a number of its own; later ones do not count on.
+  // Several threads may pass the first line at once, and each takes a number here. Later threads do not count on.
   if (trials_.load(std::memory_order_relaxed) >= all) {
     if (calls_.fetch_add(1, std::memory_order_relaxed) % kCallsBetween != kCallsBetween - 1) return std::nullopt;
     trials_.store(0, std::memory_order_relaxed);
@@ -18,7 +18,7 @@ std::optional<std::size_t> PrefetchRule::next() noexcept {
   return trial % distances_;
 }
 
-// The median neither cares for trials that the system interrupted, or that found cold caches, nor for a lucky one.
+// The median ignores trials that the system interrupted or that found cold caches, and also a lucky one.
 void PrefetchRule::take(std::size_t distance, float nanoseconds_per_byte) noexcept {
   assert(distance < kDistances.size() && nanoseconds_per_byte > 0);
   const std::size_t trial = counts_[distance].fetch_add(1, std::memory_order_relaxed);
@@ -47,7 +47,7 @@ class Rules {
   PrefetchRule& operator[](WorkingSet set) noexcept { return rules_[static_cast<std::size_t>(set)]; }
 
  private:
-  // In caches that are near, a trial may meet curves that something else has pushed out, and would then ask for too much.
+  // In near caches, a trial may meet curves that something else has pushed out, and would then prefetch too far ahead.
   std::array<PrefetchRule, kWorkingSets> rules_ = {PrefetchRule(1), PrefetchRule(2), PrefetchRule(), PrefetchRule()};
 };
 

@@ -1,10 +1,10 @@
 /// Finds out, on the machine where it runs, how far ahead an evaluation should prefetch its curves, or whether at all.
 ///
-/// Cores differ: one works best when it prefetches 8 KiB or more ahead, another 2 KiB, and a third finds all by itself
-/// and loses a third of its speed to prefetches that it did not need. So the first passes over a working set try
-/// several distances in turn, with 128 KiB of curves each time. From then on, all threads use the distance that was
-/// fastest in the median. Now and then the trials are repeated, since what else the machine is busy with may have decided
-/// them, and changes. Results do not depend on it.
+/// Cores differ: one works best when it prefetches 8 KiB or more ahead, another 2 KiB, and a third needs no help and
+/// loses a third of its speed to prefetches. So the first passes over a working set try several distances in turn, with
+/// 128 KiB of curves each time. From then on, all threads use the distance that was fastest in the median. Now and then
+/// the trials are repeated, since other work of the machine may have decided them, and changes. Results do not depend
+/// on it.
 ///
 ///     a span   [2 KiB][none][4 KiB][8 KiB][16 KiB] the rest at the best so far    until each has had its trials
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_PREFETCH_H_
@@ -21,7 +21,7 @@
 
 namespace chronormal::inline internal {
 
-/// Where all fits that a pass reads and writes; small: 1 MiB, medium: 8 MiB.
+/// The memory that holds everything that a pass reads and writes. Small is up to 1 MiB, medium up to 8 MiB.
 enum class WorkingSet { kSmall, kMedium, kSharedCache, kMemory };
 inline constexpr std::size_t kWorkingSets = 4;
 
@@ -29,15 +29,15 @@ class PrefetchRule {
  public:
   static constexpr std::array<std::size_t, 5> kDistances = {2048, 0, 4096, 8192, 16384};  // bytes; 0: no prefetch
   static constexpr std::size_t kTrials = 16;                                              // for each distance
-  static constexpr std::size_t kTrialBytes = std::size_t{128} << 10;                      // of curves
-  static constexpr std::size_t kCallsBetween = 1024;  // of next() that find no trial before these are repeated
+  static constexpr std::size_t kTrialBytes = std::size_t{128} << 10;                      // bytes of curves in a trial
+  static constexpr std::size_t kCallsBetween = 1024;  // calls of next() without a trial before trials are repeated
 
-  /// A rule that tries the first ones of these distances.
+  /// Makes a rule that tries the first few of these distances.
   explicit PrefetchRule(std::size_t distances = kDistances.size()) noexcept : distances_(distances) {}
 
-  /// The best distance so far, or the first one where none was tried.
+  /// Returns the best distance so far, or the first one if none was tried.
   [[nodiscard]] std::size_t best() const noexcept { return best_.load(std::memory_order_relaxed); }
-  /// The number of the distance to try next; nothing when the trials are over, for a while.
+  /// Returns the number of the distance to try next, or nothing if the trials are over for a while.
   [[nodiscard]] std::optional<std::size_t> next() noexcept;
   /// Takes the time per byte of a trial with the distance of this number.
   void take(std::size_t distance, float nanoseconds_per_byte) noexcept;
@@ -49,10 +49,10 @@ class PrefetchRule {
 
  private:
   std::size_t distances_;
-  std::atomic<std::size_t> trials_ = 0;  // that were given out
-  std::atomic<std::size_t> calls_ = 0;   // that found none
+  std::atomic<std::size_t> trials_ = 0;  // trials that were given out
+  std::atomic<std::size_t> calls_ = 0;   // calls that found no trial
   std::atomic<std::size_t> best_ = kDistances[0];
-  // The trials of each distance in nanoseconds per byte; 0: not over yet.
+  // Holds the trials of each distance in nanoseconds per byte; 0 if one is not over yet.
   std::array<std::array<std::atomic<float>, kTrials>, kDistances.size()> times_ = {};
   std::array<std::atomic<std::size_t>, kDistances.size()> counts_ = {};
 };
@@ -74,8 +74,8 @@ void PrefetchRule::over(std::size_t elements, std::size_t bytes_of_element, cons
   if (first < elements) evaluate(first, elements - first, best());
 }
 
-/// The rules of this process: one for each working set, of curves along straight lines, and of those along paths. Small
-/// sets always take 2 KiB, and medium ones that or none.
+/// Returns a rule of this process. There is one for each working set of curves along straight lines, and of curves
+/// along paths. Small sets always take 2 KiB, and medium ones take 2 KiB or none.
 [[nodiscard]] PrefetchRule& prefetch_of_curves(WorkingSet set) noexcept;
 [[nodiscard]] PrefetchRule& prefetch_of_paths(WorkingSet set) noexcept;
 

@@ -3,8 +3,8 @@
 //     indices --LoadRing--> both ends of each point, a column for each lane --SumRing--> control normals in double
 //                                                                 --RoundTile--> float32, and which of them need a look
 //
-// With the centre c of a path and its points p at two times, every second point adds one product to n0, n1 and m:
-// (p[i] - c) x (p[i + 1] - p[i - 1]), where the two factors are of the same time or of both.
+// With the centre c of a path and its points p at two times, every second point adds one product to n0, n1 and m: (p[i]
+// - c) x (p[i + 1] - p[i - 1]), where the two factors are of the same time or of both.
 #include "normals/groups/kernels/group_tiles.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ namespace chronormal::inline internal {
 // The rounding error of a sum over a path of up to kMostPathPoints is below half of this share of its magnitude.
 inline constexpr float kSumErrorAbove = 0x1p-43f;
 
-// Everything that a kernel reads.
+// Holds everything that a kernel reads.
 struct RingInput {
   const Segment& segment;
   const NormalGroups& groups;
@@ -41,13 +41,13 @@ struct RingInput {
   bool fetch;
 };
 
-// Both ends of a point of each lane: from.x of sixteen, from.y, from.z, to.x, to.y, to.z.
+// Holds both ends of a point of each lane: from.x of sixteen, from.y, from.z, to.x, to.y, to.z.
 struct alignas(64) PointColumns {
   float at[6][kTile];
 };
 
-// The same sum as group_control_normals() makes it, with zero for what is nothing but rounding, into one lane of both
-// tiles.
+// Writes the sum that group_control_normals() makes into one lane of both tiles, with zero for what is nothing but
+// rounding.
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               ExactTile& exact, ControlTile& tile) noexcept;
 
@@ -57,7 +57,7 @@ void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The number of rows of indices ahead at which points are asked for.
+// The number of rows of indices ahead at which points are prefetched.
 constexpr std::size_t kRowsAhead = 24;
 
 // ---- points --------------------------------------------------------------------------------------------------------
@@ -80,7 +80,7 @@ HWY_INLINE void LoadRing(const Segment& segment, const std::uint32_t* indices, s
   }
 }
 
-// Asks for the points of the rows that are kRowsAhead behind these.
+// Prefetches the points of the rows that are kRowsAhead behind these.
 HWY_INLINE void FetchRows(const Segment& segment, PointAccess access, const std::uint32_t* indices, std::size_t rows) {
   for (std::size_t i = 0; i < kTile * rows; ++i) {
     const std::size_t vertex = indices[kTile * kRowsAhead + i];
@@ -89,7 +89,7 @@ HWY_INLINE void FetchRows(const Segment& segment, PointAccess access, const std:
   }
 }
 
-// Whether a path has the last vertex, behind which 16 bytes of a packed row would end beyond the array.
+// Returns whether a path has the last vertex, whose packed row of 16 bytes would end beyond the array.
 HWY_INLINE bool HasLast(const std::uint32_t* indices, std::size_t rows, std::size_t vertex_count) {
   const hn::RebindToUnsigned<FloatTag> tag;
   const auto last = hn::Set(tag, static_cast<std::uint32_t>(vertex_count - 1));
@@ -112,7 +112,7 @@ HWY_INLINE void StoreColumns(const Doubles3& v, double (*to)[kTile], std::size_t
   hn::Store(v.z, kDoubles, to[2] + lane);
 }
 
-// n0, n1 and twice m of a path.
+// Holds n0, n1 and twice m of a path.
 struct RingSum {
   Doubles3 n0, m, n1;
 
@@ -145,7 +145,7 @@ HWY_INLINE void SumRing(const PointColumns* points, std::size_t rows, ExactTile&
   }
 }
 
-// Not less than the sum of the absolute products in any component, whichever ends the factors belong to.
+// Returns at least the sum of the absolute products in any component, whichever ends the factors belong to.
 HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, std::size_t lane) {
   const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
     const auto& plane = points[r].at + 3 * end;
@@ -154,8 +154,8 @@ HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, s
   };
   const auto distance = [&](std::size_t a, std::size_t b)
                             HWY_ATTR { return MaxAbs(at(a, 0) - at(b, 0), at(a, 1) - at(b, 1)); };
-  // A little more than twice the products, for their rounding and that of their sum, and something where one of them
-  // underflows.
+  // Take a little more than twice the products, for their rounding and the rounding of their sum, and a tiny number in
+  // case one of them underflows.
   const Floats factor = hn::Set(kFloats, 2.0f + 0x1p-17f);
   const Floats tiny = hn::Set(kFloats, std::numeric_limits<float>::min());
   Floats sum = hn::Zero(kFloats);
@@ -168,8 +168,8 @@ HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, s
   return sum;
 }
 
-// Half of the lanes of bounds on the errors of a sum over a path: for every product, 4 u of it, and one for each addition;
-// twice that is taken for safety.
+// Stores bounds on the errors of a sum over a path, for half of the lanes: 4 u of every product, and one u for each
+// addition; twice that is taken for safety.
 HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::size_t lane, double (*errors)[kTile]) {
   const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
     const auto& plane = points[r].at + 3 * end;
@@ -179,7 +179,7 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
   };
   const auto distance = [&](std::size_t a, std::size_t b, std::size_t end) HWY_ATTR {
     const auto d = at(a, end) - at(b, end);
-    // A little more, for the rounding of the difference.
+    // Take a little more, for the rounding of the difference.
     return hn::Mul(hn::Set(kDoubles, 1 + 0x1p-20),
                    hn::PromoteTo(kDoubles, hn::Max(hn::Max(hn::Abs(d.x), hn::Abs(d.y)), hn::Abs(d.z))));
   };
@@ -203,7 +203,7 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
 
 // ---- tiles ---------------------------------------------------------------------------------------------------------
 
-// Rounds the sums into the tile. Returns the elements with a component that may be nothing but rounding, as bits.
+// Rounds the sums into the tile. Returns the bits of the elements with a component that may be nothing but rounding.
 HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows, const ExactTile& exact,
                                    ControlTile& tile) {
   std::uint32_t doubtful = 0;
@@ -216,7 +216,7 @@ HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows,
     for (std::size_t k = 0; k < 9; ++k) {
       const Floats v = ToFloat(exact.normals[k] + lane);
       hn::Store(v, kFloats, tile.normals[k] + lane);
-      // A zero is not doubtful, unless it is what rounding left of a negative number.
+      // A zero is not doubtful, unless rounding made it of a negative number.
       const auto has_bits =
           hn::MaskFromVec(hn::BitCast(kFloats, hn::VecFromMask(kInts, hn::Ne(hn::BitCast(kInts, v), hn::Zero(kInts)))));
       some = hn::Or(some, hn::And(has_bits, hn::Le(hn::Abs(v), error)));
@@ -240,11 +240,11 @@ HWY_INLINE void LoadRing(const RingInput& input, PointAccess access, const std::
 
 // ---- tiles in float32 ----------------------------------------------------------------------------------------------
 
-// Writes a tile in float32 throughout, with its error in place of its magnitude.
+// Writes a tile entirely in float32, with its error in place of its magnitude.
 template <PointAccess kAccess>
 HWY_INLINE void FloatTile(const Segment& segment, const std::uint32_t* indices, std::size_t rows, ControlTile& tile) {
-  // A little more than twice the products, for their rounding and that of their sum, and something where one of them
-  // underflows.
+  // Take a little more than twice the products, for their rounding and the rounding of their sum, and a tiny number in
+  // case one of them underflows.
   const Floats factor = hn::Set(kFloats, 2.0f + 0x1p-17f);
   const Floats tiny = hn::Set(kFloats, std::numeric_limits<float>::min());
   const Floats roundings = RoundingsInFloat(rows / 2 + 1);
@@ -412,7 +412,7 @@ void GroupTiles::set_alone(std::size_t element, IndexRange elements, std::span<C
     ControlTile& tile = tiles[i / kTile];
     put(tile, i % kTile, normals);
     tile.degree[i % kTile] = degree(normals);
-    // Whoever reads the tile shall not trust it, but ask for the element in double.
+    // The reader must not trust this tile, but ask for the element in double.
     tile.magnitude[i % kTile] = std::numeric_limits<float>::infinity();
   }
 }

@@ -1,4 +1,4 @@
-/// Control normals of vertices and corners, sixteen at a time: the front end of NormalCurves::of_groups.
+/// Control normals of vertices and corners, sixteen at a time. NormalCurves::of_groups starts here.
 #ifndef CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_
 #define CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_
 
@@ -21,29 +21,27 @@ namespace chronormal::inline internal {
 class GroupTiles {
  public:
   /// Throws std::bad_alloc only. groups must outlive the object, belong to the topology of the segment, and have their
-  /// corners (or paths from before these were forgotten). `fetch` asks for points before they are needed, which pays
-  /// where neighbours are scattered in memory.
+  /// corners (or paths made before the corners were forgotten). `fetch` prefetches points, which pays if neighbours are
+  /// scattered in memory.
   GroupTiles(const Segment& segment, const NormalGroups& groups, bool fetch);
 
-  /// Writes the tiles of a range of elements (see ControlTile). The values are those of group_control_normals() but for
-  /// the rounding of sums in another order: they are within 2^-47 of the magnitude of the sum, rounded to float32, and
-  /// zero where that is all they are. Elements with many faces are added up as group_control_normals() does.
-  /// elements must begin at a multiple of 16, and end at one or at the last element; elements.count > 0; tiles must
-  /// have ceil(elements.count / 16) elements
+  /// Writes the tiles of a range of elements (see ControlTile). The values are the ones of group_control_normals()
+  /// except for the rounding of sums in another order: they are within 2^-47 of the magnitude of the sum, rounded to
+  /// float32, and zero if they are no larger than that. Elements with many faces are added up as
+  /// group_control_normals() does. elements must begin at a multiple of 16, and end at one or at the last element;
+  /// elements.count > 0; tiles must have ceil(elements.count / 16) elements
   void write(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
-  /// The same, and beside each tile its sums in double as they are, with bounds on their errors, for a closer look.
-  /// Elements with many faces are left out of these.
-  /// bounded must have as many elements as tiles
+  /// Also writes, for each tile, its sums in double before any correction, with bounds on their errors, for a closer
+  /// look. Elements with many faces are left out of these. bounded must have as many elements as tiles
   void write(IndexRange elements, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const noexcept;
 
-  /// Writes the tiles of a range of elements in float32 throughout, in about half the time, with a bound on their
-  /// errors: `magnitude` is one of the error of any component, and infinite for elements with many faces; `degree` is 2
-  /// where the curve bends by more than that error, so that its degree is 2 without a doubt, and 1 elsewhere.
-  /// The same preconditions as write()
+  /// Writes the tiles of a range of elements entirely in float32, in about half the time. `magnitude` bounds the error
+  /// of any component, and is infinite for elements with many faces. `degree` is 2 if the curve bends by more than that
+  /// error, so that its degree is 2 without a doubt, and at most 1 elsewhere. The preconditions are the ones of write()
   void write_in_float(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
-  /// The faces that its elements share, for a closer look at these.
+  /// Returns the faces that its elements share, for a closer look at them.
   [[nodiscard]] const SharedFaces& faces() const noexcept { return faces_; }
 
  private:

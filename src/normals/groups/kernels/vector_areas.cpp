@@ -1,4 +1,4 @@
-// Triangles are computed a few at a time, a lane each. Sums are made one by one, each row in as few registers as the
+// Computes triangles a few at a time, one per lane. Sums are made one by one, each row in as few registers as the
 // machine has for four doubles.
 #include "normals/groups/kernels/vector_areas.h"
 
@@ -16,13 +16,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// value, or 0 where it is not above the error.
+// Returns value, or 0 if it is not above the error.
 template <class V>
 HWY_INLINE V WithoutRounding(V value, V error) {
   return hn::IfThenElseZero(hn::Gt(hn::Abs(value), error), value);
 }
 
-// One component of e x f, from the two products that it is the difference of.
+// Returns one component of e x f from its two products.
 HWY_INLINE Doubles ComponentOfArea(Doubles product, Doubles other) {
   const Doubles magnitude = hn::Add(hn::Abs(product), hn::Abs(other));
   return WithoutRounding(hn::Sub(product, other), hn::Mul(hn::Set(kDoubles, 8 * kUnitRoundoff), magnitude));

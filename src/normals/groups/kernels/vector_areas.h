@@ -1,7 +1,7 @@
 /// Vector areas of triangles, and their sums over the faces around elements, in lanes of double.
 ///
-/// Points and areas are rows of four doubles: x y z, and a fourth that counts for nothing in points and is 0 in areas.
-/// Both give the bits of their scalar forms, without_rounding() of CrossSum and VectorSum (core/rounding.h).
+/// Points and areas are rows of four doubles: x y z, and a fourth that is ignored in points and 0 in areas. Both
+/// functions give the bits of their scalar forms, without_rounding() of CrossSum and VectorSum (core/rounding.h).
 #ifndef CHRONORMAL_NORMALS_GROUPS_KERNELS_VECTOR_AREAS_H_
 #define CHRONORMAL_NORMALS_GROUPS_KERNELS_VECTOR_AREAS_H_
 
@@ -17,11 +17,10 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kAreaRow = 4;
 
-/// Writes twice the vector area of each triangle. corners has the three points of each, and areas a row for each.
+/// Writes twice the vector area of each triangle. corners has the three points of each, and areas one row for each.
 void triangle_areas(const double* points, std::span<const std::uint32_t> corners, double* areas) noexcept;
 
-/// Writes the sum of the areas of the faces around each of some elements. areas has the row of face first_face, and
-/// those behind it.
+/// Writes the sum of the areas of the faces around each of some elements. areas begins with the row of face first_face.
 void sums_of_areas(const double* areas, std::size_t first_face, const NormalGroups& groups, IndexRange elements,
                    Vec3d* sums) noexcept;
 

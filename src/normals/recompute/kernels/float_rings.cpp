@@ -35,7 +35,8 @@ HWY_INLINE Lanes3 PointsAt(const float* rows, const IndexOf& index) {
 #endif
 }
 
-// The sum over a path of row_count - 1 points. index(row, lane) is the number of a point; row 0 has the centres.
+// Returns the sum over a path of row_count - 1 points. index(row, lane) is the number of a point; row 0 has the
+// centres.
 template <class IndexOf>
 HWY_INLINE Lanes3 SumOfRing(const float* rows, const IndexOf& index, std::size_t row_count) {
   const auto row = [&](std::size_t r)
@@ -53,7 +54,7 @@ HWY_INLINE Lanes3 SumOfRing(const float* rows, const IndexOf& index, std::size_t
   return sum;
 }
 
-// Writes the vectors n, scaled to length 1, from `place` on; returns how many have no direction.
+// Writes the vectors n, scaled to length 1, from `place` on. Returns how many have no direction.
 template <ResultLayout kLayout>
 HWY_INLINE std::size_t WriteUnit(const Lanes3& n, std::size_t place, const VectorView<float>& result) {
   const Floats square = Dot(n, n);
@@ -125,7 +126,7 @@ void InterpolatePoints(VectorView<const float> from, VectorView<const float> to,
   std::size_t v = points.first;
 #if HWY_TARGET != HWY_SCALAR
   if (from.is_packed() && to.is_packed()) {
-    // Loads kLanes floats of packed points; the first three of every four become a row.
+    // Load kLanes floats of packed points; the first three of every four become a row.
     constexpr std::size_t kRows = kLanes / 4;
     alignas(64) std::int32_t place[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i)

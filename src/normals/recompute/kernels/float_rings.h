@@ -1,5 +1,5 @@
 /// Normals of faces and of groups in float32 from points, sixteen at a time: the inner loops of FloatRecompute.
-/// See groups/rings.h for the paths that they go along.
+/// groups/rings.h describes the paths that they go along.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_FLOAT_RINGS_H_
 #define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_FLOAT_RINGS_H_
 
@@ -11,25 +11,25 @@
 
 namespace chronormal::inline internal {
 
-/// Points in rows x y z _, and whether points of neighbouring elements are scattered in memory and should be
+/// Holds points in rows x y z _, and whether points of neighbouring elements are scattered in memory and should be
 /// prefetched.
 struct RingPoints {
   const float* rows = nullptr;
   bool fetch = false;
 };
 
-/// Writes rows x y z _ of a range of points: s from + t to in float32. result begins with the first of them.
+/// Writes the rows x y z _ of a range of points: s from + t to in float32. result begins with the first of them.
 void interpolate_points(VectorView<const float> from, VectorView<const float> to, float s, float t, IndexRange points,
                         float* result) noexcept;
 
 /// Writes the unit normals of the elements of a range of slices, the first of them to result[0]. Returns how many have
-/// no normal in the range of float32; these get (0, 0, 0). `stream` writes past the caches where the result is packed
-/// and aligned to 64 bytes.
-/// slices.count > 0; result must have as many elements as the slices, or up to kRingLanes - 1 fewer
+/// no normal in the range of float32; these get (0, 0, 0). `stream` writes past the caches if the result is packed and
+/// aligned to 64 bytes. slices.count > 0; result must have as many elements as the slices, or up to kRingLanes - 1
+/// fewer
 std::size_t ring_unit_normals(const RingPoints& points, const RingSlices& all, IndexRange slices,
                               VectorView<float> result, bool stream) noexcept;
 
-/// The same for a range of triangles. corners has three corners for each of the face_count faces of the mesh.
+/// Does this for a range of triangles. corners has three corners for each of the face_count faces of the mesh.
 /// faces.count > 0; result must have as many elements
 std::size_t triangle_unit_normals(const RingPoints& points, const std::uint32_t* corners, std::size_t face_count,
                                   IndexRange faces, VectorView<float> result, bool stream) noexcept;

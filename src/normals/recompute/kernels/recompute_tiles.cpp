@@ -38,7 +38,7 @@ struct Sum {
 
 #else
 
-// Four floats each from `base` plus kLanes / 4 offsets, as blocks of one vector.
+// Loads four floats each from `base` plus kLanes / 4 offsets, as blocks of one vector.
 HWY_INLINE Floats RowsAt(const float* base, const std::size_t* offsets) {
   return LoadBlocks([base, offsets](std::size_t block) HWY_ATTR { return base + offsets[block]; });
 }
@@ -49,7 +49,7 @@ HWY_INLINE Lanes4 LoadRows(const float* rows) {
       {RowsAt(rows, kOffsets), RowsAt(rows + 4, kOffsets), RowsAt(rows + 8, kOffsets), RowsAt(rows + 12, kOffsets)});
 }
 
-// x, y, z and error of normals, added up in double.
+// Adds up x, y, z and error of normals in double.
 template <std::size_t kRegisters>
 struct SumOf {
   using Tag = hn::CappedTag<double, 4 / kRegisters>;
@@ -77,12 +77,12 @@ using Sum = SumOf<kLanes == 4 ? 2 : 1>;
 
 #endif
 
-// Edges from the first corner of the faces of a block, at both ends, and the corners that they were made from.
+// Holds edges from the first corner of the faces of a block, at both ends, and the corners that they were made from.
 struct alignas(64) EdgeBlock {
   float start_e[3][kBlock], start_f[3][kBlock], end_e[3][kBlock], end_f[3][kBlock];
   const std::uint32_t* corners;
   std::uint32_t padded[3 * kBlock];  // the corners of a block of fewer than 16 faces
-  bool has_last;                     // whether one of the corners is the last vertex, behind which nothing may be read
+  bool has_last;                     // whether one of the corners is the last vertex, after which nothing may be read
 };
 
 HWY_INLINE void StorePlanes(const Lanes4& v, float (*planes)[kBlock], std::size_t lane) {
@@ -97,7 +97,7 @@ HWY_INLINE Floats Square(const float (*planes)[kBlock], std::size_t lane) {
   return Dot(v, v);
 }
 
-// Reads the coordinates and nothing else.
+// Loads edges without reading anything but the coordinates.
 inline void LoadEdgesExactly(const float* from, const float* to, std::size_t stride, const std::uint32_t* corners,
                              EdgeBlock& block) {
   for (std::size_t i = 0; i < kBlock; ++i) {
@@ -124,7 +124,7 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
 
 constexpr bool kReadsBehind = true;
 
-// Edges of faces k, k + 4, ... as rows.
+// Holds the edges of faces k, k + 4, ... as rows.
 struct EdgeRows {
   Floats e0, f0, e1, f1;
 };
@@ -144,7 +144,7 @@ HWY_INLINE EdgeRows RowsOfEdges(const float* from, const float* to, const std::u
   return {hn::Sub(b0, a0), hn::Sub(c0, a0), hn::Sub(b1, a1), hn::Sub(c1, a1)};
 }
 
-// Reads a float behind each vertex.
+// Loads edges, and reads one float behind each vertex.
 template <std::size_t kStride>
 HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_t* corners, EdgeBlock& block) {
   for (std::size_t k = 0; k < kBlock; k += kLanes, corners += 3 * kLanes) {
@@ -161,7 +161,7 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
 
 #endif
 
-// Of half of the lanes of a vector, where there are two.
+// Interpolates half of the lanes of a vector if it has two halves.
 HWY_INLINE Doubles3 Lerp(Doubles s, const float (*a)[kBlock], Doubles t, const float (*b)[kBlock], std::size_t lane) {
   const HalfFloatTag part;
   const auto load = [part, lane](const float* plane)
@@ -176,7 +176,7 @@ HWY_INLINE Doubles3 CrossOfLerps(const EdgeBlock& block, std::size_t lane, const
   return Cross(Lerp(s1, block.start_e, t1, block.end_e, lane), Lerp(s1, block.start_f, t1, block.end_f, lane));
 }
 
-// Squares of float32 between these neither overflow nor lose digits.
+// Tells whether squares of float32 neither overflow nor lose digits.
 HWY_INLINE hn::Mask<FloatTag> InRange(Floats smallest, Floats largest) {
   return hn::And(hn::Ge(smallest, hn::Set(kFloats, 0x1p-100f)), hn::Le(largest, hn::Set(kFloats, 0x1p100f)));
 }
@@ -184,7 +184,7 @@ HWY_INLINE hn::Mask<FloatTag> InRange(Floats smallest, Floats largest) {
 struct Normals {
   Lanes3 n;
   Floats product;  // A B of recompute_tiles.h
-  Floats smaller;  // of A and B
+  Floats smaller;  // smaller of A and B
   hn::Mask<FloatTag> trusted;
 };
 
@@ -205,7 +205,7 @@ HWY_INLINE Normals NormalsAt(const EdgeBlock& block, std::size_t lane, const Loc
   return {n, product, smaller, hn::And(precise, InRange(hn::Min(square, smaller), square))};
 }
 
-// The positions of corner c of kLanes faces of a block, at one end.
+// Returns the positions of corner c of kLanes faces of a block, at one end.
 template <std::size_t kStride>
 HWY_INLINE Lanes3 PointsOf(const float* points, const EdgeBlock& block, std::size_t lane, std::size_t c) {
   const std::uint32_t* const corners = block.corners + 3 * lane + c;
@@ -225,7 +225,7 @@ HWY_INLINE Lanes3 PointsOf(const float* points, const EdgeBlock& block, std::siz
   return {hn::Load(kFloats, planes[0]), hn::Load(kFloats, planes[1]), hn::Load(kFloats, planes[2])};
 }
 
-// The results of exact edges for kLanes faces of a block: see "thin" in recompute_tiles.h.
+// Holds the results of exact edges for kLanes faces of a block: see "thin" in recompute_tiles.h.
 struct FineNormals {
   Lanes3 n, unit;
   Floats square;  // of n
@@ -236,7 +236,7 @@ struct CornersAtEnd {
   Lanes3 a, b, c;
 };
 
-// n(t) of half of the lanes, and its multiple of length 1; scale is 1 / |n| in float32.
+// Return n(t) of half of the lanes, and its multiple of length 1. scale is 1 / |n| in float32.
 template <int kHalf>
 HWY_INLINE Doubles3 ExactNormal(const CornersAtEnd& from, const CornersAtEnd& to, const LocalTime& t) {
   const Doubles s1 = hn::Set(kDoubles, t.rest), t1 = hn::Set(kDoubles, t.t);
@@ -247,7 +247,7 @@ HWY_INLINE Doubles3 ExactNormal(const CornersAtEnd& from, const CornersAtEnd& to
 }
 template <int kHalf>
 HWY_INLINE Doubles3 ExactUnit(const Doubles3& n, Floats scale) {
-  // Two steps of Newton's method double the digits twice.
+  // Two steps of Newton's method each double the digits.
   const Doubles half_square = hn::Mul(hn::Set(kDoubles, 0.5), Dot(n, n)), three_halves = hn::Set(kDoubles, 1.5);
   Doubles y = ToDouble<kHalf>(scale);
   for (int step = 0; step < 2; ++step) y = hn::Mul(y, hn::Sub(three_halves, hn::Mul(hn::Mul(half_square, y), y)));
@@ -267,7 +267,8 @@ HWY_NOINLINE FineNormals FineNormalsAt(const MovingTriangles& triangles, const E
   FineNormals fine;
   fine.n = Joined(lower, upper);
   fine.square = Dot(fine.n, fine.n);
-  // Not the square times the largest share, which may be infinite, and then no less than a product that is.
+  // Do not take the square times the largest share: it may be infinite, and then would not be below an infinite
+  // product.
   const auto precise = hn::Le(hn::Mul(product, hn::Set(kFloats, 1 / kMaxThinProduct)), fine.square);
   fine.trusted = hn::And(precise, InRange(hn::Min(fine.square, smaller), fine.square));
   const Floats one = hn::Set(kFloats, 1.0f);
@@ -280,7 +281,7 @@ HWY_INLINE Lanes3 Select(hn::Mask<FloatTag> mask, const Lanes3& yes, const Lanes
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-// Whether one of the 48 corners of a block is this vertex.
+// Returns whether one of the 48 corners of a block is this vertex.
 HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
   const auto wanted = hn::Set(kIndices, vertex);
   auto found = hn::Eq(hn::LoadU(kIndices, corners), wanted);
@@ -289,7 +290,7 @@ HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
   return !hn::AllFalse(kIndices, found);
 }
 
-// How far ahead to fetch: enough for some 50 misses under way.
+// Prefetches this far ahead, enough for some 50 misses under way.
 constexpr std::size_t kFacesAhead = 48, kTermsAhead = 64;
 
 template <std::size_t kStride>
@@ -300,7 +301,7 @@ HWY_INLINE void Fetch(const MovingTriangles& triangles, const std::uint32_t* cor
   }
 }
 
-// Loads the edges of a block of faces; of fewer than 16, the last again and again.
+// Loads the edges of a block of faces. If there are fewer than 16, it repeats the last.
 template <std::size_t kStride>
 HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, std::size_t count, EdgeBlock& block) {
   const auto last = static_cast<std::uint32_t>(triangles.vertex_count - 1);
@@ -370,7 +371,7 @@ std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange fa
                                  FaceNormal* result, std::uint32_t* doubtful) {
   std::size_t count = 0;
   const auto body = [&](std::size_t place, const Normals& normals, const auto& fine_normals) HWY_ATTR {
-    // 2.31 for the edges, 1 for rounding n, and a little for the rounding of the bound itself.
+    // The factor has 2.31 for the edges, 1 for rounding n, and a little for the rounding of the bound itself.
     Floats error = hn::Mul(hn::Set(kFloats, 3.32f), hn::Sqrt(normals.product));
     Lanes3 n = normals.n;
     if (HWY_UNLIKELY(!hn::AllTrue(kFloats, normals.trusted))) {
@@ -408,7 +409,7 @@ HWY_INLINE std::size_t GroupNormals(const NormalGroups& groups, IndexRange eleme
       Sum sum;
       const std::uint32_t* const faces_end = f + groups.faces(elements.first + i + k).size();
       if (!window.fetch && faces_end - f == 6) {
-        // By far the most frequent number.
+        // Six faces are by far the most frequent number.
         for (int term = 0; term < 6; ++term) sum.Add(window.normals[f[term] & window.mask]);
         f = faces_end;
       }

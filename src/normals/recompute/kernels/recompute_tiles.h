@@ -1,20 +1,20 @@
 /// Normals of moving triangles at one t, sixteen at a time, and their sums: the inner loops of NormalRecompute.
 ///
-/// A face at t in float32 edges and double beyond: positions are subtracted in float32, edges are interpolated and
-/// multiplied in double. With u = 2^-24, and E, F the interpolated lengths of both edges, s|e0| + t|e1|,
+/// Most faces use edges in float32 and double after that: positions are subtracted in float32, edges are interpolated
+/// and multiplied in double. With u = 2^-24, and E, F the interpolated lengths of both edges, s|e0| + t|e1|,
 ///
 ///     edges       each component within u of itself            |error of n| <= 2 u 2/sqrt(3) E F = 2.31 u E F
 ///     to float32  of n, and of its multiple of length 1        2 u |n|
 ///     E F         <= sqrt(A B), A = s|e0|^2 + t|e1|^2 (Jensen), and B likewise
 ///
-/// so n is within 1e-6 rad where 2.31 sqrt(A B) <= 14.7 |n|: triangles with more than 9 degrees at their first corner
-/// that do not shrink much on their way. *Thin* ones are made anew of exact edges, in double throughout:
+/// so n is within 1e-6 rad if 2.31 sqrt(A B) <= 14.7 |n|. This holds for triangles with more than 9 degrees at their
+/// first corner that do not shrink much on their way. *Thin* ones are made anew of exact edges, entirely in double:
 ///
 ///     n           in double: edges from exact differences         |error of n| <= 20 2^-53 E F
 ///     unit        in double, and rounded to float32 at the end    2^-24
 ///
-/// which is enough where that error is at most 2^-23 |n|: where A B <= 2^50 |n|^2. Other faces are *doubtful*, and left
-/// to the caller, who examines them one by one.
+/// which is enough if that error is at most 2^-23 |n|, that is, if A B <= 2^50 |n|^2. Other faces are *doubtful*, and
+/// left to the caller, who examines them one by one.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 #define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 
@@ -28,10 +28,10 @@
 
 namespace chronormal::inline internal {
 
-/// Triangles are not thin where A B is at most this share of |n|^2: 2.31 sqrt(40) <= 14.7.
+/// Triangles are not thin if A B is at most this share of |n|^2: 2.31 sqrt(40) <= 14.7.
 inline constexpr float kMostProduct = 40;
 
-/// Triangles as the kernels read them: positions packed; or paired, x0 y0 z0 _ x1 y1 z1 _ for each vertex.
+/// Holds triangles as the kernels read them. Positions are packed, or paired as x0 y0 z0 _ x1 y1 z1 _ for each vertex.
 struct MovingTriangles {
   const std::uint32_t* corners = nullptr;  ///< three for each face
   std::size_t face_count = 0;
@@ -39,42 +39,42 @@ struct MovingTriangles {
   const float* to = nullptr;  ///< paired: from + 4
   std::size_t vertex_count = 0;
   bool is_paired = false;
-  bool is_coherent = true;  ///< neighbouring faces have neighbouring vertices: nothing has to be fetched ahead
+  bool is_coherent = true;  ///< neighbouring faces have neighbouring vertices, so nothing is prefetched
 };
 
-/// n(t) of a face, and how far it may be off: at most 2^-24 `error`.
+/// Holds n(t) of a face, and a bound of its error: 2^-24 `error`.
 struct alignas(16) FaceNormal {
   float x, y, z, error;
 };
 
-/// Up to this times |n|^2, A B leaves double precise enough. Of what remains kThinError sqrt(A B) is more, in units of
-/// 2^-24.
+/// Up to this multiple of |n|^2, A B leaves double precise enough. The remaining error is below kThinError sqrt(A B),
+/// in units of 2^-24.
 inline constexpr float kMaxThinProduct = 0x1p50f, kThinError = 0x1p-24f;
 
-/// Where the normals of faces are: that of face f is normals[f & mask].
+/// Says where the normals of faces are: the normal of face f is normals[f & mask].
 struct NormalWindow {
   const FaceNormal* normals = nullptr;
   std::size_t mask = 0;
-  bool fetch = false;  ///< whether they are anywhere in memory, and have to be fetched ahead
+  bool fetch = false;  ///< whether they are scattered in memory, and have to be prefetched
 };
 
-/// Writes the unit normals of a range of faces, and into `doubtful` the places in it that are not to be trusted;
-/// returns how many those are. `stream`: past the caches, where the result is packed and aligned to 64 bytes.
-/// faces.count > 0; result must have faces.count elements, doubtful as much room
+/// Writes the unit normals of a range of faces, and into `doubtful` the places in the range that are not to be trusted.
+/// Returns the number of doubtful places. `stream` writes past the caches if the result is packed and aligned to 64
+/// bytes. faces.count > 0; result must have faces.count elements, doubtful as much room
 std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
 
-/// The same of normals that keep their length, with their errors.
+/// Does this for normals that keep their length, with their errors.
 std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    FaceNormal* result, std::uint32_t* doubtful) noexcept;
 
-/// Adds up the normals around each element in the order of groups.faces(), and writes unit normals. Doubtful are those
-/// of elements whose faces cancel, and (0, 0, 0).
-/// elements.count > 0; result must have elements.count elements, doubtful as much room
+/// Adds up the normals around each element in the order of groups.faces(), and writes unit normals. Elements are
+/// doubtful if their faces cancel, or if the sum is (0, 0, 0). elements.count > 0; result must have elements.count
+/// elements, doubtful as much room
 std::size_t recompute_group_normals(const NormalGroups& groups, IndexRange elements, const NormalWindow& window,
                                     VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
 
-/// From the smallest to the largest of some values.
+/// Returns the range from the smallest to the largest of some values.
 [[nodiscard]] IndexRange range_of(std::span<const std::uint32_t> values) noexcept;
 
 }  // namespace chronormal::inline internal

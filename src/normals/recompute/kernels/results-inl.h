@@ -37,7 +37,7 @@ HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std
 
 enum class ResultLayout { kPacked, kStreamed, kPlanes, kOther };
 
-// Writes kLanes vectors from number `first` on, except those beyond the end.
+// Writes kLanes vectors from number `first` on, except the ones beyond the end.
 template <ResultLayout kLayout>
 HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float>& result) {
   if (HWY_LIKELY(kLayout != ResultLayout::kOther && first + kLanes <= result.count)) {
