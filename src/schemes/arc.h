@@ -1,9 +1,9 @@
-/// Arcs of circles on the unit sphere: what slerp, quaternion slerp and the circle schemes all run on.
+/// Arcs of circles on the unit sphere, for slerp, quaternion slerp and the circle schemes.
 ///
 /// A rotation about a fixed axis at constant speed takes u0 along a circle,
 ///     u(t) = w + cos(t A) p + sin(t A) q,   w = (axis . u0) axis,  p = u0 - w,  q = axis x u0        (eq. 7)
-/// Quaternion slerp between two frames is such a rotation, so its run time is one sine with its cosine and six
-/// multiplications and additions: no quaternion is left. For a great circle w = 0: that is vector slerp.
+/// Quaternion slerp between two frames is such a rotation, so at run time it needs one sine with its cosine and six
+/// multiplications and additions, and no quaternion. On a great circle w = 0, which is vector slerp.
 #ifndef CHRONORMAL_SCHEMES_ARC_H_
 #define CHRONORMAL_SCHEMES_ARC_H_
 
@@ -24,26 +24,27 @@ struct Arc {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// The arc of u0 about a unit axis.
+/// Returns the arc of u0 about a unit axis.
 [[nodiscard]] inline Arc arc_about(const Vec3d& axis, const Vec3d& u0, double angle) {
   const Vec3d w = dot(axis, u0) * axis;
   return {w, u0 - w, cross(axis, u0), angle};
 }
 
-/// The angle by which v lies behind the start of the arc, counter-clockwise about its axis, in [0, 2 pi).
+/// Returns the angle by which v lies behind the start of the arc, counter-clockwise about its axis, in [0, 2 pi).
 [[nodiscard]] inline double angle_along(const Arc& arc, const Vec3d& v) {
   const double angle = portable::atan2(dot(arc.q, v), dot(arc.p, v));
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
-/// The circles through u0 and u1, as one angle: axis(phi) = cos(phi) pole + sin(phi) bisector        (eq. 6)
+/// Holds the circles through u0 and u1, given by one angle: axis(phi) = cos(phi) pole + sin(phi) bisector        (eq.
+/// 6)
 struct CircleFamily {
   Vec3d u0, u1;
   Vec3d pole;      ///< axis of the great circle: phi = 0, slerp
   Vec3d bisector;  ///< unit(u0 + u1): phi = pi / 2, half a turn
   enum class Kind {
     kGeneral,
-    kEqual,      ///< u0 = u1: every axis but u0 leads nowhere; the family is a point
+    kEqual,      ///< u0 = u1: only the axis u0 keeps it in place; the family is a point
     kAntipodal,  ///< u1 = -u0: pole is a fixed perpendicular, and every circle is a great one
   } kind;
 
@@ -63,7 +64,7 @@ struct CircleFamily {
     }
   }
 
-  /// The arc from u0 to u1 about axis(phi): at most half a turn for phi in [-pi/2, pi/2], more beyond.
+  /// Returns the arc from u0 to u1 about axis(phi): at most half a turn for phi in [-pi/2, pi/2], more beyond.
   [[nodiscard]] Arc arc(double phi) const {
     if (kind == Kind::kEqual) return {{}, u0, {}, 0};
     Arc arc = arc_about(portable::cos(phi) * pole + portable::sin(phi) * bisector, u0, 0);
@@ -71,14 +72,16 @@ struct CircleFamily {
     return arc;
   }
 
-  /// The phi of an axis, which should be as far from u0 as from u1.
+  /// Returns the phi of an axis, which should be as far from u0 as from u1.
   [[nodiscard]] double phi_of(const Vec3d& axis) const { return portable::atan2(dot(axis, bisector), dot(axis, pole)); }
 
-  /// phi = 0: vector slerp. Equal ends stay where they are, antipodal ends turn about a fixed perpendicular.
+  /// Returns the arc of phi = 0, which is vector slerp. Equal ends stay where they are; antipodal ends turn about a
+  /// fixed perpendicular.
   [[nodiscard]] Arc great_arc() const { return arc(0); }
 };
 
-/// (cos, sin) of the angle on an arc that is played, and of the angle of one step: the state of arcs at uniform speed.
+/// Arcs at uniform speed that are played have this state: (cos, sin) of the current angle, and of the angle of one
+/// step.
 inline constexpr std::size_t kTurnPlanes = 4;
 
 inline void put_turn(double* state, double angle, double step_angle) {
@@ -98,7 +101,7 @@ inline void put_arc(double* c, const Arc& arc) {
   c[9] = arc.angle;
 }
 
-/// What every policy on arcs at uniform speed shares; it adds fit().
+/// Holds what every policy on arcs at uniform speed shares; a policy adds fit().
 struct UniformArc {
   [[nodiscard]] std::size_t plane_count() const { return kArcPlanes; }
 

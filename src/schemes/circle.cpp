@@ -1,12 +1,12 @@
-// The circle through three exact normals u0, u(1/2), u1: the frames that interpolate best, in closed form
+// The circle through three exact normals u0, u(1/2), u1. It gives the frames that interpolate best, in closed form
 // (docs/theory.md, section 4.7).
 //
 //   circle         at constant speed
 //   circle:timed   meets the middle normal at t = 1/2 as well: t is replaced by r t / ((1-r)(1-t) + r t), where r is
 //                  the share of the arc that lies before the middle; monotone for every r in (0, 1)
 //
-// Where the three normals do not span a circle (u1 = u0, or the middle one equal or opposite to an end), both fall
-// back to slerp.
+// If the three normals do not span a circle (u1 = u0, or the middle one is equal or opposite to an end), both fall back
+// to slerp.
 
 #include "schemes/arc.h"
 #include "schemes/makers.h"
@@ -16,7 +16,7 @@ namespace {
 
 struct ThroughMiddle {
   Arc arc;
-  double share = 0.5;  // of the arc, up to the middle normal
+  double share = 0.5;  // share of the arc up to the middle normal
 };
 
 ThroughMiddle circle_through_middle(ElementMotion& element) {
@@ -24,7 +24,7 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
   const Vec3d to_middle = middle - u0, to_end = u1 - u0;
   const Vec3d normal = cross(to_middle, to_end);
 
-  // A circle needs three different points; on short arcs the triangle that they span is small of third order.
+  // A circle needs three different points. On short arcs the triangle that they span is small of third order.
   constexpr double kSmallestChord = 1e-12, kSmallestSine = 1e-10;
   const double chords = length(to_middle) * length(to_end);
   if (length(to_end) > kSmallestChord && length(middle + u0) > kSmallestChord &&

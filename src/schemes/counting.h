@@ -1,5 +1,5 @@
-/// A scalar that counts what is done to it. Instantiating a scheme's own evaluation with it gives the operations that
-/// one evaluation costs, so the figures cannot drift from the code.
+/// A scalar that counts the operations on it. Instantiating a scheme's own evaluation with it gives the operations of
+/// one evaluation, so the figures cannot drift from the code.
 #ifndef CHRONORMAL_SCHEMES_COUNTING_H_
 #define CHRONORMAL_SCHEMES_COUNTING_H_
 
@@ -10,14 +10,14 @@
 
 namespace chronormal::inline internal {
 
-/// Comparisons and changes of sign are free; selections are taken as the values have it.
+/// Comparisons and changes of sign are free. Branches are taken as the values decide.
 class Counting {
  public:
   Counting() = default;
   explicit Counting(float value) : value_(value) {}
   explicit Counting(int value) : value_(static_cast<float>(value)) {}
 
-  /// The counts since the last reset(), of this thread.
+  /// Returns the counts of this thread since the last reset().
   static OperationCounts& counts() {
     thread_local OperationCounts counts;
     return counts;

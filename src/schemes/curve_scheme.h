@@ -1,33 +1,33 @@
 /// The frame that most schemes share: coefficients are fitted per element in double, kept as float32 in blocks, and
 /// evaluated by one of the formulas of kernels/formulas-inl.h.
 ///
-/// A scheme of this kind is a *policy*: a small class that says only what is its own,
+/// A scheme of this kind is a *policy*: a small class that has only its own parts,
 ///
 ///     std::size_t plane_count() const                    how many floats an element keeps
 ///     Formula formula() const                            what is evaluated
 ///     void fit(ElementMotion& element, double* c) const  fills them; calls element.use_fallback() where undefined
 ///
-/// where that is a sum, or where it takes anything but shared_values() of the formula,
+/// and if the formula is a sum, or takes anything but its shared_values(),
 ///
 ///     void shared(double t, float* values) const         what all elements have in common at t, as the formula asks
 ///
-/// where certify() shall bound the errors of a sum, and the weights that shared() rounds to float32 are polynomials,
+/// and if certify() shall bound the errors of a sum, and the weights that shared() rounds to float32 are polynomials,
 ///
 ///     WeightBasis basis() const                          these polynomials; may be std::optional
 ///
-/// (of a sum without it, or of another formula with shared() of its own, no bound below half a turn is certified),
-/// where it looks at the face itself,
+/// (for a sum without it, or another formula with its own shared(), no bound below half a turn is certified), and if it
+/// reads the face itself,
 ///
 ///     bool needs_faces = true
 ///
-/// where elements are fitted faster together,
+/// and if elements are fitted faster together,
 ///
-///     void begin(const ElementBlock& block)              looks at all elements before they are fitted
+///     void begin(const ElementBlock& block)              reads all elements before they are fitted
 ///
-/// and, where the scheme can be played step by step,
+/// and, if the scheme can be played step by step,
 ///
 ///     std::size_t state_planes() const                   how many floats the state of an element has; 0: not played
-///     void anchor(ElementCoefficients c, double t, double step, double* state)  the state at t
+///     void anchor(ElementCoefficients c, double t, double step, double* state)  makes the state at t
 ///
 /// An element that has no direction at all is not fitted: its coefficients are zero, and it gets (0, 0, 0).
 #ifndef CHRONORMAL_SCHEMES_CURVE_SCHEME_H_
@@ -46,10 +46,10 @@
 
 namespace chronormal::inline internal {
 
-/// One element while it is fitted.
+/// Represents one element while it is fitted.
 class ElementMotion {
  public:
-  /// The i-th of a block.
+  /// Makes the i-th element of a block.
   ElementMotion(const ElementBlock& block, std::size_t i)
       : segment_(*block.segment),
         element_(block.elements.first + i),
@@ -64,11 +64,12 @@ class ElementMotion {
   [[nodiscard]] std::size_t element() const { return element_; }
   [[nodiscard]] bool is_face() const { return is_face_; }
   [[nodiscard]] const ControlNormals& control_normals() const { return normals_; }
-  /// Exact unit normals at the ends: u0, u1 of docs/theory.md.
+  /// Return the exact unit normals at the ends: u0, u1 of docs/theory.md.
   [[nodiscard]] const UnitNormal& start() const { return start_; }
   [[nodiscard]] const UnitNormal& end() const { return end_; }
 
-  /// The exact unit normal inside. A collapse exactly there counts as a fallback: the limit from before is taken.
+  /// Returns the exact unit normal inside. A collapse exactly there counts as a fallback, which takes the limit from
+  /// before.
   [[nodiscard]] Vec3d node(double t) {
     const Vec3d exact = block_.exact ? unit(block_.exact(index_, t)) : Vec3d{};
     if (exact != Vec3d{}) return exact;
@@ -99,12 +100,12 @@ inline void put_vector(double* c, std::size_t k, const Vec3d& v) {
   c[3 * k + 2] = v.z;
 }
 
-/// Values of elements in blocks (kernels/curve_kernels.h), while they are made.
+/// Holds values of elements in blocks (kernels/curve_kernels.h) while they are made.
 class BlockedValues {
  public:
   BlockedValues() = default;
 
-  /// All zero. Keeps its memory where it is large enough.
+  /// Sets all values to zero. Keeps its memory if it is large enough.
   void assign(std::size_t plane_count, std::size_t element_count) {
     plane_count_ = plane_count;
     element_count_ = element_count;
@@ -112,7 +113,7 @@ class BlockedValues {
     std::fill_n(values_.data(), size(), 0.0f);
   }
 
-  /// One value per plane of element i.
+  /// Puts one value per plane of element i.
   void put(std::size_t i, std::span<const double> values) noexcept {
     assert(values.size() == plane_count_);
     float* to = values_.data() + offset(i);
@@ -123,7 +124,7 @@ class BlockedValues {
 
   [[nodiscard]] CoefficientBlocks view() const noexcept { return {values_.data(), plane_count_, element_count_}; }
   [[nodiscard]] float* data() noexcept { return values_.data(); }
-  /// Without what fills up the last block.
+  /// Returns the bytes without the filling of the last block.
   [[nodiscard]] std::size_t bytes() const noexcept { return element_count_ * plane_count_ * sizeof(float); }
 
  private:
@@ -144,7 +145,7 @@ concept SharesValues = requires(const Policy& policy, float* values) {
   policy.shared(0.0, values);
 };
 
-/// Whether a policy can be played.
+/// A policy that can be played.
 template <class Policy>
 concept Playable = requires(const Policy& policy) {
   policy.state_planes();
@@ -190,7 +191,7 @@ class CurvePlayback final : public SchemePlayback {
   std::size_t anchor_interval_;
   std::size_t index_ = 0;
   BlockedValues state_;
-  std::vector<double> exact_state_;  // of one element
+  std::vector<double> exact_state_;  // state of one element
 };
 
 template <class Policy>
@@ -283,7 +284,7 @@ class CurveScheme final : public Scheme {
     }
   }
 
-  // Of a face that turns from +x to +y, so that no formula takes a short cut.
+  // The example is a face that turns from +x to +y, so that no formula takes a short cut.
   [[nodiscard]] std::vector<float> example_coefficients() const {
     const ControlNormals turning{{1, 0, 0}, {0.7, 0.6, 0.2}, {0, 1, 0}};
     const Segment segment = example_segment();
@@ -294,7 +295,7 @@ class CurveScheme final : public Scheme {
     return {c.begin(), c.end()};
   }
 
-  // A triangle with edges to go with those control normals, for schemes that look at the face itself.
+  // Returns a triangle with edges to go with these control normals, for schemes that read the face itself.
   [[nodiscard]] static Segment example_segment() {
     static const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
     static const float from[] = {0, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -1,4 +1,5 @@
-/// What a scheme keeps of a block, as it evaluates it: for those who must know a scheme as a curve and not by samples.
+/// The data of a scheme for a block, as it evaluates them, for code that must know a scheme as a curve and not by
+/// samples.
 #ifndef CHRONORMAL_SCHEMES_FITTED_CURVES_H_
 #define CHRONORMAL_SCHEMES_FITTED_CURVES_H_
 
@@ -11,26 +12,26 @@
 
 namespace chronormal::inline internal {
 
-/// The coefficients of one element, which lies in a block.
+/// Reads the coefficients of one element, which lies in a block.
 struct ElementCoefficients {
   const float* first;
 
   float operator[](std::size_t plane) const { return first[plane * kBlock]; }
-  /// The vector in the planes 3k, 3k + 1, 3k + 2.
+  /// Returns the vector in the planes 3k, 3k + 1, 3k + 2.
   [[nodiscard]] Vec3f vector(std::size_t k) const { return {(*this)[3 * k], (*this)[3 * k + 1], (*this)[3 * k + 2]}; }
 };
 
-/// The coefficients of element i.
+/// Returns the coefficients of element i.
 [[nodiscard]] inline ElementCoefficients coefficients_of(const CoefficientBlocks& blocks, std::size_t i) noexcept {
   return {blocks.values + i / kBlock * kBlock * blocks.plane_count + i % kBlock};
 }
 
-/// A formula, the coefficients of a block, which are valid until the scheme is prepared anew, and the weights of a sum.
-/// A formula that is no sum is evaluated with its shared_values().
+/// Holds a formula, the coefficients of a block, which are valid until the scheme is prepared anew, and the weights if
+/// the formula is a sum. Other formulas are evaluated with their shared_values().
 struct FittedCurves {
   Formula formula = Formula::kSum;
   CoefficientBlocks coefficients;
-  std::optional<WeightBasis> basis;  ///< of a sum, with a weight for each vector
+  std::optional<WeightBasis> basis;  ///< for a sum, with a weight for each vector
 };
 
 }  // namespace chronormal::inline internal

@@ -8,15 +8,15 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The edges at the first corner of a face: e to the next corner, f to the previous one. For a polygon they are taken
-// within the plane of its vector area.
+// Holds the edges at the first corner of a face: e to the next corner, f to the previous one. For a polygon they are
+// taken within the plane of its vector area.
 struct FaceEdges {
   Vec3d e, f;
 };
 
 struct EdgeMotion {
   FaceEdges start, end;
-  Vec3d e_delta;  // e at t = 1 less e at t = 0
+  Vec3d e_delta;  // e at t = 1 minus e at t = 0
 };
 
 Vec3d within_plane(const Vec3d& v, const Vec3d& unit_normal) { return v - dot(v, unit_normal) * unit_normal; }
@@ -43,13 +43,13 @@ std::optional<FramePair> pair_of(const std::optional<Frame>& start, const std::o
   return FramePair{*start, *end};
 }
 
-// The frame turned about its own normal.
+// Returns the frame turned about its own normal.
 Frame turned(const Frame& frame, double angle) {
   const double c = portable::cos(angle), s = portable::sin(angle);
   return {c * frame.tangent + s * frame.binormal, c * frame.binormal - s * frame.tangent, frame.normal};
 }
 
-// The finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+// Mixes bits by the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t mixed(std::uint64_t z) {
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
@@ -66,8 +66,8 @@ std::optional<FramePair> matrix_frames(const ElementMotion& element) {
   const double square = dot(e0, e0);
   if (square == 0) return std::nullopt;
 
-  // binormal0 = normal x tangent is f0 less its part along e0, so M takes it to the same combination of f1 and e1. The
-  // paper prints tangent1 = n1 x b1, which with b = n x t would be a left-handed frame.
+  // binormal0 = normal x tangent is f0 without its part along e0, so M takes it to the same combination of f1 and e1.
+  // The paper prints tangent1 = n1 x b1, which with b = n x t would be a left-handed frame.
   const Vec3d binormal = unit(within_plane(f1 - (dot(e0, f0) / square) * e1, element.end().vector));
   if (binormal == Vec3d{}) return std::nullopt;
   const Vec3d& u1 = element.end().vector;
@@ -89,9 +89,9 @@ std::optional<FramePair> polar_frames(const ElementMotion& element) {
   const auto frames = edge_frames(element);
   if (!frames) return std::nullopt;
 
-  // M maps the plane of the face to the plane of the face and u0 to u1, so its polar rotation is that of the 2 x 2 map
-  // between the planes. Over the edge frames that map is upper triangular, S = [s11 s12; 0 s22], and its rotation
-  // factor turns by atan2(s21 - s12, s11 + s22); the determinant of S is not negative.
+  // M maps the plane of the face to the plane of the face and u0 to u1, so its polar rotation is the rotation of the 2
+  // x 2 map between the planes. Over the edge frames that map is upper triangular, S = [s11 s12; 0 s22], and its
+  // rotation factor turns by atan2(s21 - s12, s11 + s22). The determinant of S is not negative.
   const EdgeMotion edges = edges_of(element);
   const double e0x = dot(edges.start.e, frames->at_start.tangent), f0x = dot(edges.start.f, frames->at_start.tangent);
   const double f0y = dot(edges.start.f, frames->at_start.binormal);
@@ -121,7 +121,7 @@ Arc shorter_arc(const FramePair& frames) {
   const Vec3d c1 = column(a.tangent.y, b.tangent, a.binormal.y, b.binormal, a.normal.y, b.normal);
   const Vec3d c2 = column(a.tangent.z, b.tangent, a.binormal.z, b.binormal, a.normal.z, b.normal);
 
-  // The quaternion of R, times four times its largest component, so that no digit cancels (Shepperd 1978).
+  // Compute the quaternion of R, times four times its largest component, so that no digit cancels (Shepperd 1978).
   const double trace = c0.x + c1.y + c2.z;
   const std::array<double, 4> squares = {trace, c0.x, c1.y, c2.z};
   std::size_t largest = 0;

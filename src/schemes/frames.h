@@ -2,7 +2,7 @@
 ///
 /// A frame F = (tangent, binormal, normal) is an orthonormal, right-handed triple with binormal = normal x tangent. The
 /// paper asks which F0 and F1 make quaternion slerp interpolate normals best; each function here is one answer. They
-/// return nothing where their construction fails (singular M, an edge of no length).
+/// return nothing if their construction fails (singular M, an edge of no length).
 #ifndef CHRONORMAL_SCHEMES_FRAMES_H_
 #define CHRONORMAL_SCHEMES_FRAMES_H_
 
@@ -21,16 +21,16 @@ struct FramePair {
   Frame at_start, at_end;
 };
 
-/// Frames through the paper's matrix M, which maps the face at t = 0, with its normal, to the face at t = 1.
+/// Returns frames through the paper's matrix M, which maps the face at t = 0, with its normal, to the face at t = 1.
 [[nodiscard]] std::optional<FramePair> matrix_frames(const ElementMotion& element);
-/// Tangent along the first edge of the face at both ends.
+/// Returns frames whose tangent is along the first edge of the face at both ends.
 [[nodiscard]] std::optional<FramePair> edge_frames(const ElementMotion& element);
-/// F1 is F0 turned by the rotation factor of the polar decomposition of M.
+/// Returns frames in which F1 is F0 turned by the rotation factor of the polar decomposition of M.
 [[nodiscard]] std::optional<FramePair> polar_frames(const ElementMotion& element);
-/// The edge frames, the second turned about its normal by an angle drawn from (seed, segment, element).
+/// Returns the edge frames, the second turned about its normal by an angle drawn from (seed, segment, element).
 [[nodiscard]] std::optional<FramePair> random_frames(const ElementMotion& element, std::uint64_t seed);
 
-/// The path of the normal under quaternion slerp from F0 to F1 on the shorter arc (eq. 7).
+/// Returns the path of the normal under quaternion slerp from F0 to F1 on the shorter arc (eq. 7).
 [[nodiscard]] Arc shorter_arc(const FramePair& frames);
 
 }  // namespace chronormal::inline internal

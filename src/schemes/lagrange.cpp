@@ -47,8 +47,8 @@ class Lagrange {
     return WeightBasis::lagrange(degree_);
   }
 
-  // Played by forward differences: K additions per component and step. Not beyond degree 3: differences of high order
-  // are smaller than the rounding of float32.
+  // Curves are played by forward differences, with K additions per component and step. This works only up to degree 3:
+  // differences of high order are smaller than the rounding of float32.
   [[nodiscard]] std::size_t state_planes() const { return degree_ <= 3 ? plane_count() : 0; }
 
   void anchor(ElementCoefficients c, double t, double step, double* state) const {

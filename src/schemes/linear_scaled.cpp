@@ -1,6 +1,6 @@
 // Linear interpolation with one end scaled: u0 + t (s u1 - u0) has the same ends for every s > 0, and the best s makes
-// it run faster where the normal does (docs/theory.md, section 4.8). The best that a viewer can do which only adds one
-// delta. s is found per element by a search over its logarithm.
+// it run faster where the normal does (docs/theory.md, section 4.8). It is the best that a viewer can do that only adds
+// one delta. s is found per element by a search over its logarithm.
 
 #include "core/portable_math.h"
 #include "schemes/makers.h"
@@ -30,7 +30,7 @@ class ScaledLinear {
  private:
   static double best_scale(const ElementMotion& element, const Vec3d& u0, const Vec3d& u1) {
     if (u0 == u1) return 1;
-    // s beyond e^6 is a jump; in float32 it would also cost digits at the other end.
+    // An s beyond e^6 would be a jump; in float32 it would also cost digits at the other end.
     constexpr double kRange = 6;
     constexpr std::size_t kGrid = 25;
     std::array<double, kGrid + 1> points;

@@ -1,4 +1,4 @@
-/// The mean angular error over t, as an objective: what quaternion:optimal and linear:scaled minimise per element.
+/// The mean angular error over t as an objective, which quaternion:optimal and linear:scaled minimise per element.
 #ifndef CHRONORMAL_SCHEMES_MEAN_ERROR_H_
 #define CHRONORMAL_SCHEMES_MEAN_ERROR_H_
 
@@ -13,10 +13,10 @@
 
 namespace chronormal::inline internal {
 
-/// The angle between unit vectors whose difference has this squared length, with an error below 1e-8 rad. A polynomial
-/// in place of the arc sine, since a search asks for it hundreds of times per element.
+/// Returns the angle between unit vectors whose difference has this squared length, with an error below 1e-8 rad. It
+/// takes a polynomial instead of the arc sine, since a search asks for it hundreds of times per element.
 [[nodiscard]] inline double angle_of_squared_chord(double square) noexcept {
-  // angle = 2 asin(sqrt(y)), y = square / 4, and asin(sqrt(y)) = pi/2 - asin(sqrt(1 - y)) in the upper half.
+  // The angle is 2 asin(sqrt(y)), y = square / 4, and asin(sqrt(y)) = pi/2 - asin(sqrt(1 - y)) in the upper half.
   const double y = std::min(0.25 * square, 1.0);
   const bool upper = y > 0.5;
   const double z = upper ? 1 - y : y;
@@ -32,12 +32,12 @@ namespace chronormal::inline internal {
   return upper ? kPi - 2 * half : 2 * half;
 }
 
-/// The exact unit normals of one element at equidistant interior t. (At the ends, schemes are exact.)
+/// Holds the exact unit normals of one element at equidistant interior t. (At the ends, schemes are exact.)
 class ExactSamples {
  public:
   explicit ExactSamples(const ControlNormals& normals) {
     sample(normals, kIntervals);
-    // Where the normal turns fast between two samples, a coarse sum would reward the wrong curve.
+    // If the normal turns fast between two samples, a coarse sum would reward the wrong curve.
     constexpr double kFastTurn = 0.15;
     double longest = 0;
     for (std::size_t i = 0; i + 1 < count_; ++i) {
@@ -47,9 +47,9 @@ class ExactSamples {
     if (longest > kFastTurn * kFastTurn) sample(normals, kFineIntervals);
   }
 
-  /// Mean angle between the exact normal and the arc, over t.
+  /// Returns the mean angle between the exact normal and the arc, over t.
   [[nodiscard]] double mean_error(const Arc& arc) const {
-    // The position on the arc advances by a rotation of (cos, sin): no sine inside the loop.
+    // The position on the arc advances by a rotation of (cos, sin), so there is no sine inside the loop.
     const double step_cosine = portable::cos(arc.angle / intervals_), step_sine = portable::sin(arc.angle / intervals_);
     double cosine = 1, sine = 0, sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -62,7 +62,7 @@ class ExactSamples {
     return sum / intervals_;
   }
 
-  /// Mean angle between the exact normal and normalise((1 - t) u0 + t v), over t.
+  /// Returns the mean angle between the exact normal and normalise((1 - t) u0 + t v), over t.
   [[nodiscard]] double mean_error_of_line(const Vec3d& u0, const Vec3d& v) const {
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {

@@ -1,4 +1,4 @@
-/// Minimum of a function of one variable that may have several.
+/// Finds the minimum of a function of one variable that may have several.
 #ifndef CHRONORMAL_SCHEMES_MINIMIZE_H_
 #define CHRONORMAL_SCHEMES_MINIMIZE_H_
 
@@ -10,13 +10,13 @@
 
 namespace chronormal::inline internal {
 
-/// Evaluates f at every point, then narrows the lowest local minima by golden section.
-/// points must ascend; at most 64 of them. Returns the best x seen, so never worse than the best point given.
+/// Evaluates f at every point, then narrows the lowest local minima by golden section. Returns the best x seen, which
+/// is never worse than the best point given. points must ascend; at most 64 of them
 template <class F>
 [[nodiscard]] double minimize(std::span<const double> points, F f) {
   constexpr std::size_t kMaxPoints = 64, kMinima = 3;
   constexpr double kGolden = 0.6180339887498949;
-  // A bracket is narrow enough when what it can still gain is far below what anybody measures.
+  // A bracket is narrow enough when it can only gain far less than anybody measures.
   constexpr double kGain = 2e-3, kNarrowest = 1e-7;
   const std::size_t n = points.size();
   assert(0 < n && n <= kMaxPoints);
@@ -50,7 +50,7 @@ template <class F>
     while (b - a > kNarrowest) {
       offer(x1, f1);
       offer(x2, f2);
-      // The slope across the bracket bounds what is left to gain, smooth minimum or kink.
+      // The slope across the bracket bounds what is left to gain, for a smooth minimum or a kink.
       const double span = b - a;
       if (std::fabs(f1 - f2) / (x2 - x1) * span < kGain * best && span < 1e-2) break;
       if (f1 <= f2) {

@@ -1,6 +1,6 @@
-// The t-variant cross product, eq. 5: exact. At random access the work is that of NormalCurves
-// (normals/normal_curves.h). Sequential access is the paper's: two additions per component and step, in float32, made
-// anew at anchors.
+// The t-variant cross product, eq. 5, which is exact. Random access does the work of NormalCurves
+// (normals/normal_curves.h). Sequential access goes as in the paper: two additions per component and step, in float32,
+// started anew at anchors.
 
 #include <algorithm>
 #include <vector>
@@ -14,9 +14,10 @@
 namespace chronormal::inline internal {
 namespace {
 
-// docs/theory.md, section 4.9: the error of the state is absolute, so that what shrinks by more must not be played.
+// An element that shrinks by more than this must not be played, since the error of the state is absolute
+// (docs/theory.md, section 4.9).
 constexpr double kMaxShrinkage = 4;
-// Squares of normals between these are normal numbers of float32, and so are those of their differences.
+// Between these sizes, squares of normals and of their differences are normal numbers of float32.
 constexpr double kSmallestPlayed = 0x1p-50, kLargestPlayed = 0x1p50;
 
 // Returns whether the drift of an element stays within the stated bound.
@@ -28,7 +29,7 @@ bool can_be_played(const ControlNormals& c) {
   return stays_above(n, kMaxShrinkage, {longest, longest, longest});
 }
 
-// Returns control normals as blocks of curves hold them: rounded, and with the middle halfway where n(t) is linear.
+// Returns control normals as blocks of curves hold them: rounded, and with the middle halfway if n(t) is linear.
 ControlNormals rounded(const ControlNormals& c) {
   const Vec3d n0 = to_double(to_float(c.n0)), n1 = to_double(to_float(c.n1));
   return {n0, degree(c) == 2 ? to_double(to_float(c.m)) : 0.5 * (n0 + n1), n1};
@@ -99,7 +100,7 @@ class Polynomial final : public Scheme {
     return std::make_unique<PolynomialPlayback>(normals_, start, step, anchor_interval);
   }
 
-  // Of an element of degree 2, evaluated in float32.
+  // Counts the operations for an element of degree 2, evaluated in float32.
   [[nodiscard]] OperationCounts operations() const override {
     using C = Counting;
     const Vec3<C> n0{C(1), C(0), C(0)}, m{C(0.7f), C(0.6f), C(0.2f)}, n1{C(0), C(1), C(0)};

@@ -1,8 +1,8 @@
-// Quaternion slerp of the frames of a face, and the normal out of it (section 2.5 of the paper), for frames that are
-// constructed: matrix (the paper's), edge, polar, random. quaternion_optimal.cpp has those that are searched for.
+// Quaternion slerp of the frames of a face, and the normal from it (section 2.5 of the paper), for frames that are
+// constructed: matrix (the paper's), edge, polar, random. quaternion_optimal.cpp has the frames that are searched for.
 //
-// Slerp on the shorter arc is a rotation about a fixed axis at constant speed, so what is kept is an arc (arc.h). Where
-// the frames cannot be built, slerp takes their place and counts as a fallback.
+// Slerp on the shorter arc is a rotation about a fixed axis at constant speed, so it is kept as an arc (arc.h). If the
+// frames cannot be built, slerp takes their place and counts as a fallback.
 
 #include "schemes/frames.h"
 #include "schemes/makers.h"

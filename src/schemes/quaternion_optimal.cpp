@@ -1,9 +1,10 @@
-// The frames that interpolate best: the paper's open question, answered (docs/theory.md, section 4.6).
+// The frames that interpolate best, which answers the paper's open question (docs/theory.md, section 4.6).
 //
-// All pairs of frames are one angle phi (eq. 6), so the best is a search over one variable per face. Where a face turns
-// mildly, it starts from the circle through the exact normal in the middle (kernels/optimal_arcs.h). Elsewhere it is a
-// grid, the frames that are known by construction, and golden section in the lowest valleys. The result has the
-// smallest mean angular error over t that any quaternion slerp on the shorter arc can have, within 0.2 percent.
+// All pairs of frames are described by one angle phi (eq. 6), so the best is found by a search over one variable per
+// face. If a face turns mildly, the search starts from the circle through the exact normal in the middle
+// (kernels/optimal_arcs.h). Otherwise it takes a grid, the frames that are known by construction, and golden section in
+// the lowest valleys. The result has the smallest mean angular error over t that any quaternion slerp on the shorter
+// arc can have, within 0.2 percent.
 
 #include <cmath>
 #include <limits>
@@ -47,7 +48,7 @@ struct OptimalQuaternion : UniformArc {
     std::size_t count = 0;
     for (; count < kGrid; ++count) points[count] = limit * (2.0 * static_cast<double>(count) / (kGrid - 1) - 1);
 
-    // The grid has slerp; add the frames that are constructed from the edges of a face, and the circle through the
+    // The grid contains slerp. Add the frames that are constructed from the edges of a face, and the circle through the
     // middle.
     if (element.is_face()) {
       for (const auto& frames : {matrix_frames(element), edge_frames(element), polar_frames(element)}) {

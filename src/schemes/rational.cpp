@@ -1,6 +1,7 @@
 // The t-variant cross product with its normalisation in the formula (eq. 3 of the paper): three quadratics over the
-// square root of one quartic, |n(t)|^2, whose coefficients are prepared. No sum of squares at run time, but five more
-// coefficients to read; the direction is that of `polynomial`, without its evaluation in double where n(t) is small.
+// square root of one quartic, |n(t)|^2, whose coefficients are prepared. At run time this saves a sum of squares, but
+// reads five more coefficients. The direction is the one of `polynomial`, without its evaluation in double where n(t)
+// is small.
 
 #include "chronormal/core/polynomial.h"
 #include "schemes/curve_scheme.h"
@@ -9,7 +10,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Against control normals of length 1: below float32's rounding, and its square well above zero.
+// Relative to control normals of length 1, this is below float32's rounding, and its square is well above zero.
 constexpr double kVanishingLength = 1e-7;
 
 class Rational {

@@ -1,6 +1,6 @@
-// The cross product, again at every t: eq. 1 on the vertices at t, then eq. 2. What runs is normals/recompute.h; what
-// is counted is its formula: interpolating the two edges instead of the three vertices gives the same normal, costs
-// less, and keeps its digits far from the origin.
+// The cross product, computed again at every t: eq. 1 on the vertices at t, then eq. 2. It runs normals/recompute.h,
+// and counts its formula: interpolating the two edges instead of the three vertices gives the same normal, costs less,
+// and keeps its digits far from the origin.
 
 #include "chronormal/normals/recompute.h"
 #include "normals/curves/curve_elements.h"
@@ -37,7 +37,8 @@ class Recompute final : public Scheme {
   [[nodiscard]] bool is_exact() const noexcept override { return true; }
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
 
-  // The corners of the faces, and six floats a vertex at both ends: on a closed triangle mesh a vertex serves 2 faces.
+  // Counts the corners of the faces, and six floats per vertex at both ends. On a closed triangle mesh a vertex serves
+  // 2 faces.
   [[nodiscard]] std::size_t bytes() const noexcept override {
     const std::size_t faces = segment_.topology == nullptr ? 0 : segment_.topology->face_count();
     if (faces == 0) return 0;

@@ -1,8 +1,8 @@
 // Vector slerp: the shortest arc from u0 to u1 at constant speed (section 2.3 of the paper, its eq. 5).
 //
-// With q perpendicular to u0 in the plane of both, u(t) = cos(t T) u0 + sin(t T) q is the same curve as
-// (sin((1-t) T) u0 + sin(t T) u1) / sin T, without the division that fails at T = 0 and T = pi. Equal ends stay;
-// antipodal ends turn about a fixed perpendicular, and count as a fallback.
+// If q is perpendicular to u0 in the plane of both, u(t) = cos(t T) u0 + sin(t T) q is the same curve as (sin((1-t) T)
+// u0 + sin(t T) u1) / sin T, without the division that fails at T = 0 and T = pi. Equal ends stay; antipodal ends turn
+// about a fixed perpendicular, and count as a fallback.
 
 #include "schemes/arc.h"
 #include "schemes/makers.h"
@@ -24,7 +24,7 @@ struct Slerp {
 
   [[nodiscard]] Formula formula() const { return Formula::kGreatArc; }
 
-  // Played by a rotation per step (Barrera 2004, as cited by the paper, in the form that drifts least).
+  // The curve is played by a rotation per step (Barrera 2004, as cited by the paper, in the form that drifts least).
   [[nodiscard]] std::size_t state_planes() const { return kTurnPlanes; }
   void anchor(ElementCoefficients c, double t, double step, double* state) const {
     put_turn(state, t * static_cast<double>(c[6]), step * static_cast<double>(c[6]));

@@ -48,7 +48,7 @@ WeightBasis WeightBasis::lagrange(std::size_t degree) {
   std::vector<Coefficients> weights;
   Coefficients sums{};
   for (std::size_t k = 0; k <= degree; ++k) {
-    // The product of (degree x - j) / (k - j), one factor after the other, each of degree 1.
+    // Multiply the factors (degree x - j) / (k - j), each of degree 1, one after the other.
     Coefficients p{1}, sizes{1};
     std::size_t so_far = 0;
     for (std::size_t j = 0; j <= degree; ++j) {

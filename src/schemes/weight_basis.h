@@ -1,4 +1,4 @@
-/// The weights of a sum of vectors as polynomials in t: what a certificate must know of a scheme beside its
+/// The weights of a sum of vectors as polynomials in t, which a certificate must know of a scheme beside its
 /// coefficients.
 #ifndef CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
 #define CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Keeps the part of a polynomial after t, or the one before it, in place: the halves of de Casteljau's triangle over
-/// as many Bernstein coefficients as there are.
+/// Keep the part of a polynomial after t, or the part before it, in place: the halves of de Casteljau's triangle over
+/// all its Bernstein coefficients.
 template <class T>
 void keep_after(std::span<T> p, double t) {
   for (std::size_t level = 1; level < p.size(); ++level) {
@@ -36,8 +36,8 @@ class WeightBasis {
   static constexpr std::size_t kMostDegree = 27;
   using Coefficients = std::array<double, kMostDegree + 1>;
 
-  /// Takes the Bernstein coefficients of each weight. The weights 1 - t and t, and eased ones 1 - 3 t^2 + 2 t^3 and
-  /// 3 t^2 - 2 t^3:
+  /// Takes the Bernstein coefficients of each weight. This makes the weights 1 - t and t, and eased ones 1 - 3 t^2 + 2
+  /// t^3 and 3 t^2 - 2 t^3:
   ///     WeightBasis(1, {{1, 0}, {0, 1}})        WeightBasis(3, {{1, 1, 0, 0}, {0, 0, 1, 1}})
   /// degree must be in [1, kMostDegree]
   WeightBasis(std::size_t degree, std::vector<Coefficients> weights);
@@ -47,13 +47,13 @@ class WeightBasis {
   [[nodiscard]] std::size_t degree() const noexcept { return degree_; }
   [[nodiscard]] std::size_t count() const noexcept { return weights_.size(); }
   [[nodiscard]] const Coefficients& weight(std::size_t k) const noexcept { return weights_[k]; }
-  /// At least the sum of the |weights| at any t.
+  /// Returns a number that is at least the sum of the |weights| at any t.
   [[nodiscard]] double most_weight() const noexcept { return most_weight_; }
   /// Returns the error of a curve through unit vectors whose Bernstein coefficients are made and cut in double.
   [[nodiscard]] double conversion_error() const noexcept { return conversion_error_; }
 
  private:
-  // largest_sum: of the |coefficients| of all weights at one place, without any cancellation in them.
+  // largest_sum is the largest sum of the |coefficients| of all weights at one place, without any cancellation in them.
   WeightBasis(std::size_t degree, std::vector<Coefficients> weights, double largest_sum);
 
   std::size_t degree_;

@@ -1,7 +1,7 @@
-// The angle of a vector in lanes of double, bit for bit that of portable::atan2() for y >= 0, and the type Real, in
-// which formulas are written as for one number.
+// Finds the angle of a vector in lanes of double, with the bits of portable::atan2() for y >= 0. It also has the type
+// Real, in which formulas are written as for one number.
 //
-// This file is included once for each instruction set, as lanes-inl.h is. The polynomial is that of Highway for the arc
+// This file is included once for each instruction set, as lanes-inl.h is. The polynomial is Highway's for the arc
 // tangent on [0, 1], in the same order but never fused, as core/portable_math has it for one number.
 
 #include "simd/highway-inl.h"
@@ -21,7 +21,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// One double of each of kDoubleLanes elements. Every operation is one IEEE operation on each of them.
+// Holds one double of each of kDoubleLanes elements. Every operation is one IEEE operation on each of them.
 struct Real {
   Doubles v;
 
@@ -38,7 +38,7 @@ struct Real {
   friend HWY_INLINE Real operator/(Real a, Real b) { return hn::Div(a.v, b.v); }
 };
 
-// The elements for which a condition holds.
+// Says for which elements a condition holds.
 struct RealMask {
   hn::Mask<DoubleTag> m;
 
@@ -55,10 +55,10 @@ HWY_INLINE Real select(RealMask mask, Real a, Real b) { return hn::IfThenElse(ma
 HWY_INLINE bool any(RealMask mask) { return !hn::AllFalse(kDoubles, mask.m); }
 HWY_INLINE Real sqrt(Real a) { return hn::Sqrt(a.v); }
 HWY_INLINE Real absolute(Real a) { return hn::Abs(a.v); }
-// The result is b where one of them is NaN.
+// The result is b if one of them is NaN.
 HWY_INLINE Real larger_of(Real a, Real b) { return select(a > b, a, b); }
 HWY_INLINE Real smaller_of(Real a, Real b) { return select(a < b, a, b); }
-// Whether the sign bit is set, that of -0 too.
+// Tells whether the sign bit is set, also for -0.
 HWY_INLINE RealMask has_sign(Real a) {
   const hn::RebindToSigned<DoubleTag> bits;
   return {hn::RebindMask(kDoubles, hn::Lt(hn::BitCast(bits, a.v), hn::Zero(bits)))};
@@ -76,7 +76,7 @@ HWY_INLINE Real dot(const Real3& a, const Real3& b) { return a.x * b.x + a.y * b
 HWY_INLINE Real3 cross(const Real3& a, const Real3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-// As in core/vec3.h: where a component is NaN, the others count.
+// Follows core/vec3.h: if a component is NaN, the others count.
 HWY_INLINE Real max_abs(const Real3& a) {
   const Real x = absolute(a.x), y = absolute(a.y), z = absolute(a.z);
   const Real largest = larger_of(z, larger_of(y, x));
@@ -84,7 +84,7 @@ HWY_INLINE Real max_abs(const Real3& a) {
   return select(largest == largest, largest, select(of_two == of_two, of_two, z));
 }
 
-// The arc tangent of q in [0, 1].
+// Returns the arc tangent of q in [0, 1].
 HWY_INLINE Real arc_tangent(Real q) {
   const Real x = q * q, x2 = x * x, x4 = x2 * x2, x8 = x4 * x4, x16 = x8 * x8;
   const auto pair = [x](double c0, double c1) HWY_ATTR { return Real(c1) * x + Real(c0); };
@@ -103,8 +103,8 @@ HWY_INLINE Real arc_tangent(Real q) {
   return series * (x * q) + q;
 }
 
-// The angle of the vector (x, y) with y >= 0, in [0, pi]; 0 for the zero vector, pi where its x is -0. Both are finite,
-// or the result is NaN.
+// Returns the angle of the vector (x, y) with y >= 0, in [0, pi]: 0 for the zero vector, pi if its x is -0. Both must
+// be finite, or the result is NaN.
 HWY_INLINE Real upper_angle(Real y, Real x) {
   const Real ax = absolute(x);
   const RealMask steep = y > ax;

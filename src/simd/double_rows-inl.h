@@ -21,7 +21,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// A row takes one register where that holds four doubles, else two, or four where Highway is plain C++.
+// A row takes one register if that holds four doubles, else two, or four if Highway is plain C++.
 inline constexpr std::size_t kRowStep = kDoubleLanes < 4 ? kDoubleLanes : 4;
 using DoubleRowTag = hn::CappedTag<double, kRowStep>;
 
@@ -40,7 +40,7 @@ HWY_INLINE DoubleRow MakeRow(const PartOf& part) {
 HWY_INLINE DoubleRow LoadDoubleRow(const double* from) {
   return MakeRow([from](std::size_t i) HWY_ATTR { return hn::LoadU(DoubleRowTag(), from + kRowStep * i); });
 }
-// Four floats, as doubles.
+// Loads four floats as doubles.
 HWY_INLINE DoubleRow LoadDoubleRow(const float* from) {
   return MakeRow([from](std::size_t i) HWY_ATTR {
     const hn::Rebind<float, DoubleRowTag> some;
@@ -54,7 +54,7 @@ HWY_INLINE void StoreDoubleRow(const DoubleRow& row, double* to) {
 HWY_INLINE DoubleRow operator+(const DoubleRow& a, const DoubleRow& b) {
   return MakeRow([&](std::size_t i) HWY_ATTR { return hn::Add(a.parts[i], b.parts[i]); });
 }
-// Component by component.
+// Multiplies component by component.
 HWY_INLINE DoubleRow operator*(const DoubleRow& a, const DoubleRow& b) {
   return MakeRow([&](std::size_t i) HWY_ATTR { return hn::Mul(a.parts[i], b.parts[i]); });
 }
@@ -64,7 +64,7 @@ struct DoubleColumns {
   Doubles w;
 };
 
-// Lane i is from the row at row(i).
+// Makes columns whose lane i is from the row at row(i).
 template <class RowOf>
 HWY_INLINE DoubleColumns ColumnsOfDoubles(const RowOf& row) {
 #if HWY_TARGET == HWY_SCALAR

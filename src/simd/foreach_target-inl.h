@@ -1,4 +1,4 @@
-/// Includes the kernel that HWY_TARGET_INCLUDE names once for each instruction set, where Highway has several.
+/// Includes the kernel that HWY_TARGET_INCLUDE names once for each instruction set, if Highway has several.
 #ifdef CHRONORMAL_HIGHWAY
 #include <hwy/foreach_target.h>
 #endif

@@ -1,5 +1,5 @@
-// The special cases of instruction sets: every raw intrinsic of the library stands here, beside the operations of
-// Highway that give the same bits on all other targets. Today those are of AVX-512, whose permutations and masked loads
+// The special cases of instruction sets. Every raw intrinsic of the library is in this file, beside the operations of
+// Highway that give the same bits on all other targets. Today they are for AVX-512, whose permutations and masked loads
 // need fewer instructions than what Highway makes of general shuffles.
 //
 // Included once for each instruction set, as lanes-inl.h.
@@ -22,7 +22,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The larger and the smaller of two absolute values; neither may be NaN.
+// Return the larger and the smaller of two absolute values; neither may be NaN.
 #if HWY_TARGET == HWY_AVX3
 HWY_INLINE Floats LargerAbs(Floats a, Floats b) { return Floats{_mm512_range_ps(a.raw, b.raw, 0b1011)}; }
 HWY_INLINE Doubles LargerAbs(Doubles a, Doubles b) { return Doubles{_mm512_range_pd(a.raw, b.raw, 0b1011)}; }
@@ -38,7 +38,7 @@ HWY_INLINE V SmallerAbs(V a, V b) {
 }
 #endif
 
-// The lanes of a mask as bits, the lowest first.
+// Returns the lanes of a mask as bits, the lowest first.
 template <class Tag>
 HWY_INLINE std::uint32_t BitsOf(Tag tag, hn::Mask<Tag> mask) {
 #if HWY_TARGET == HWY_AVX3
@@ -55,12 +55,12 @@ HWY_INLINE std::uint32_t BitsOf(Tag tag, hn::Mask<Tag> mask) {
 template <bool kStream>
 HWY_INLINE void StorePacked(const Lanes3& v, float* to) {
 #if HWY_TARGET == HWY_AVX3
-  // Two permutations a vector instead of the generic ones by 128-bit pieces.
+  // Take two permutations per vector instead of the generic ones by 128-bit pieces.
   const auto index = [](int a0, int a1, int a2, int b0, int b1, int b2, int c0, int c1, int c2, int d0, int d1, int d2,
                         int e0, int e1, int e2, int f0) HWY_ATTR {
     return _mm512_setr_epi32(a0, a1, a2, b0, b1, b2, c0, c1, c2, d0, d1, d2, e0, e1, e2, f0);
   };
-  // The lanes of x and y first (y counts from 16), then those of z into the gaps (z counts from 16).
+  // Place the lanes of x and y first (y counts from 16), then the lanes of z in the gaps (z counts from 16).
   const __m512i xy0 = index(0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5);
   const __m512i xy1 = index(21, 0, 6, 22, 0, 7, 23, 0, 8, 24, 0, 9, 25, 0, 10, 26);
   const __m512i xy2 = index(0, 11, 27, 0, 12, 28, 0, 13, 29, 0, 14, 30, 0, 15, 31, 0);
@@ -86,7 +86,7 @@ HWY_INLINE void StorePacked(const Lanes3& v, float* to) {
 
 #if HWY_TARGET != HWY_SCALAR
 
-// Four floats from memory for each 128 bits of a vector: address(b) is where those of block b are.
+// Loads four floats for each 128 bits of a vector: address(b) points to the floats of block b.
 template <class AddressOf>
 HWY_INLINE Floats LoadBlocks(const AddressOf& address) {
 #if HWY_TARGET == HWY_AVX3
@@ -100,7 +100,7 @@ HWY_INLINE Floats LoadBlocks(const AddressOf& address) {
 #endif
 }
 
-// Of two vectors of four doubles or of AVX-512, the 128 bits in even places, and those in odd ones.
+// Return the 128 bits in even places, and in odd places, of two vectors of four doubles or of AVX-512.
 HWY_INLINE Doubles EvenPairs(Doubles a, Doubles b) {
 #if HWY_TARGET == HWY_AVX3
   return Doubles{_mm512_shuffle_f64x2(a.raw, b.raw, 0b10001000)};
@@ -116,8 +116,8 @@ HWY_INLINE Doubles OddPairs(Doubles a, Doubles b) {
 #endif
 }
 
-// The k-th of four vectors with all rows of four doubles at row(i), in the order in which interleaving neighbours and
-// then EvenPairs() and OddPairs() leave lane i of row i. Vectors have four doubles, or those of AVX-512.
+// Returns the k-th of four vectors with all rows of four doubles at row(i), in the order in which interleaving
+// neighbours and then EvenPairs() and OddPairs() leave lane i of row i. Vectors have four doubles, or eight on AVX-512.
 template <class RowOf>
 HWY_INLINE Doubles LoadTransposable(const RowOf& row, std::size_t k) {
 #if HWY_TARGET == HWY_AVX3
@@ -129,7 +129,7 @@ HWY_INLINE Doubles LoadTransposable(const RowOf& row, std::size_t k) {
 #endif
 }
 
-// Of each pair of lanes the 128 bits go to rows of their own.
+// Stores the 128 bits of each pair of lanes to a separate row.
 template <class V>
 HWY_INLINE void StorePairs(V v, double* to, std::size_t stride) {
   constexpr std::size_t kPairs = sizeof(V) / 16;
@@ -141,17 +141,17 @@ HWY_INLINE void StorePairs(V v, double* to, std::size_t stride) {
   }
 }
 
-// Row i, at to + i * stride, gets lane i of a and of b.
+// Stores lane i of a and of b to row i, at to + i * stride.
 HWY_INLINE void StoreTwoColumns(Doubles a, Doubles b, double* to, std::size_t stride) {
   StorePairs(hn::InterleaveLower(kDoubles, a, b), to, 2 * stride);
   StorePairs(hn::InterleaveUpper(kDoubles, a, b), to + stride, 2 * stride);
 }
 
-// Row i gets lane i of column(0) ... column(7).
+// Stores lane i of column(0) ... column(7) to row i.
 template <class ColumnOf>
 HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_t stride) {
 #if HWY_TARGET == HWY_AVX3
-  // Pairs, fours, and eights of neighbours.
+  // Join pairs, fours, and eights of neighbours.
   __m512d even[4], odd[4];  // of rows 0 2 4 6 and 1 3 5 7, the columns 2 i and 2 i + 1
   for (std::size_t i = 0; i < 4; ++i) {
     even[i] = _mm512_unpacklo_pd(column(2 * i).raw, column(2 * i + 1).raw);
@@ -177,11 +177,11 @@ HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_
 
 #endif  // HWY_TARGET != HWY_SCALAR
 
-// column[c] gets in lane i the element c of row i, which begins at from + i * kStride; of rows of kStride >= 8.
+// Loads element c of row i, which begins at from + i * kStride, into lane i of column[c]. kStride must be at least 8
 template <std::size_t kStride>
 HWY_INLINE void LoadColumns(const double* from, Doubles (&column)[kStride]) {
 #if HWY_TARGET == HWY_AVX3
-  // Eight columns by pairs, fours and eights of rows, as StoreEightColumns; the others one by one.
+  // Make eight columns by pairs, fours and eights of rows, as StoreEightColumns does, and the others one by one.
   __m512d even[4], odd[4];  // of rows 2 i and 2 i + 1, the columns 0 2 4 6 and 1 3 5 7
   for (std::size_t i = 0; i < 4; ++i) {
     const __m512d first = _mm512_loadu_pd(from + 2 * i * kStride),

@@ -1,4 +1,4 @@
-// What kernels share: vectors of lanes with their few operations, and blocks of 16 elements whatever the lanes.
+// The parts that kernels share: vectors of lanes with their few operations, and blocks of 16 elements whatever the lanes.
 //
 // Included once for each instruction set, inside no namespace; see evaluate.cpp for the frame of a kernel file. Every
 // operation here is one IEEE operation or a selection, so that all instruction sets give the same bits: no fused
@@ -21,7 +21,7 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most 16 floats, so that a block of 16 elements is a whole number of vectors on every machine.
+// Vectors have at most 16 floats, so that a block of 16 elements is a whole number of vectors on every machine.
 using FloatTag = hn::CappedTag<float, 16>;
 using IntTag = hn::RebindToSigned<FloatTag>;
 using Floats = hn::Vec<FloatTag>;
@@ -31,7 +31,7 @@ inline constexpr FloatTag kFloats;
 inline constexpr IntTag kInts;
 inline constexpr std::size_t kLanes = hn::MaxLanes(FloatTag());
 
-// Three-component vectors, one a lane; V is Floats, or Doubles of rows-inl.h.
+// A vector of three components in each lane; V is Floats, or Doubles of rows-inl.h.
 template <class V>
 struct LanesOf3 {
   V x, y, z;
@@ -63,16 +63,16 @@ HWY_INLINE LanesOf3<V> Cross(const LanesOf3<V>& a, const LanesOf3<V>& b) {
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
 
-// v scaled to length 1, bit for bit as normalized() in normals/curves/curve_elements.h. v must not be zero.
+// Returns v scaled to length 1, bit for bit as normalized() in normals/curves/curve_elements.h. v must not be zero
 HWY_INLINE Lanes3 Normalized(const Lanes3& v) { return Scale(hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(Dot(v, v))), v); }
 
-// The nearest integers, the even one of two: adding 1.5 * 2^23 leaves them in the lowest bits. |v| < 2^22.
+// Returns the nearest integers, the even one of two: adding 1.5 * 2^23 leaves them in the lowest bits. |v| < 2^22
 HWY_INLINE Ints RoundToInt(Floats v) {
   const Floats large = hn::Set(kFloats, 12582912.0f);
   return hn::Sub(hn::BitCast(kInts, hn::Add(v, large)), hn::BitCast(kInts, large));
 }
 
-// Stores a vector; with kStream past the caches, where `to` must be aligned to a vector.
+// Stores a vector; with kStream past the caches, for which `to` must be aligned to a vector.
 template <bool kStream>
 HWY_INLINE void StoreOne(Floats v, float* to) {
   if constexpr (kStream) {

@@ -1,9 +1,9 @@
-/// The operations of Google Highway that kernels use, in plain C++ for a compiler alone: vectors of 16 bytes and parts of
-/// them, by the vector extensions of GCC and Clang, whose SSE2, NEON or SIMD128 the compiler finds, and by loops over
-/// arrays for any other compiler. Names and meanings are those of Highway; docs of what is here:
+/// The operations of Google Highway that kernels use, in plain C++ for any compiler. They are vectors of 16 bytes and
+/// parts of them: the vector extensions of GCC and Clang, for which the compiler finds SSE2, NEON or SIMD128, and loops
+/// over arrays for any other compiler. Names and meanings are Highway's, and are described at
 /// https://google.github.io/highway/en/master/quick_reference.html
 ///
-/// Bits       those of Highway on every instruction set: each operation is one IEEE operation, or a choice of lanes
+/// Bits       as Highway's on every instruction set: each operation is one IEEE operation, or a choice of lanes
 /// Target     there is one, HWY_PLAIN, and nothing is dispatched
 #ifndef CHRONORMAL_SIMD_PLAIN_LANES_H_
 #define CHRONORMAL_SIMD_PLAIN_LANES_H_
@@ -19,7 +19,7 @@
 #error "chronormal promises bits, and -ffast-math takes them: compile it without"
 #endif
 
-// The only uses of instructions by name: what these compilers do not find by themselves without flags.
+// These are the only uses of instructions by name. Compilers do not find them by themselves without flags.
 #if defined(__GNUC__) && defined(__SSE2__)
 #include <emmintrin.h>
 #define CHRONORMAL_PLAIN_SSE2 1
@@ -71,7 +71,7 @@ HWY_INLINE void FlushStream() {
 
 namespace N_PLAIN {
 
-// Kinds of vectors: kLanes numbers of type T.
+// Names a kind of vectors: kLanes numbers of type T.
 template <class T, std::size_t kCount>
 struct Simd {
   using Lane = T;
@@ -105,7 +105,7 @@ template <>
 struct IntegerOf<8> {
   using Type = std::int64_t;
 };
-// The signed integer as wide as T.
+// The signed integer that is as wide as T.
 template <class T>
 using Integer = typename IntegerOf<sizeof(T)>::Type;
 
@@ -201,7 +201,7 @@ struct Vector {
 template <class D>
 using Vec = Vector<typename D::Lane, D::kLanes>;
 
-// Lanes of bits that are all set, or none.
+// Holds lanes of bits that are all set, or all clear.
 template <class T, std::size_t kCount>
 struct MaskOf {
   Raw<Integer<T>, kCount> raw;
@@ -238,7 +238,7 @@ template <class D>
 HWY_INLINE void Store(const Vec<D>& v, D d, typename D::Lane* to) {
   StoreU(v, d, to);
 }
-// Past the caches, where the compiler can.
+// Stores past the caches, if the compiler can.
 template <class D>
 HWY_INLINE void Stream(const Vec<D>& v, D d, typename D::Lane* to) {
 #ifdef CHRONORMAL_PLAIN_SSE2
@@ -355,7 +355,7 @@ HWY_INLINE Vector<double, kCount> Sqrt(const Vector<double, kCount>& a) {
   return result;
 }
 
-// The bit of the sign alone.
+// Returns a vector in which only the sign bits are set.
 template <class T, std::size_t kCount>
 HWY_INLINE Vector<T, kCount> SignBit(Simd<T, kCount> d) {
   return Set(d, static_cast<T>(-0.0));
@@ -466,7 +466,7 @@ HWY_INLINE Mask<D> FirstN(D, std::size_t count) {
 
 // ---- other types
 
-// From float to integers, the whole part.
+// Converts from float to integers, by the whole part.
 template <class D, class T, std::size_t kCount>
 HWY_INLINE Vec<D> ConvertTo(D, const Vector<T, kCount>& v) {
   return {Converted<Raw<typename D::Lane, kCount>>(v.raw)};
@@ -499,13 +499,13 @@ HWY_INLINE Vector<std::int32_t, 4> RearrangeToOddPlusEven(const Vector<std::int3
 
 // ---- lanes in other places
 
-// The lanes kFrom... of a and, counted on, of b.
+// Picks the lanes kFrom... of a and, counted on, of b.
 template <class D, std::size_t kCount, std::size_t... kFrom>
 HWY_INLINE Vec<D> Picked(const Vector<typename D::Lane, kCount>& a, const Vector<typename D::Lane, kCount>& b,
                          std::index_sequence<kFrom...>) {
   return {Shuffled<Raw<typename D::Lane, kCount>, static_cast<int>(kFrom)...>(a.raw, b.raw)};
 }
-// The lanes kFirst, kFirst + kStep, ...
+// Picks the lanes kFirst, kFirst + kStep, ...
 template <class D, std::size_t kFirst, std::size_t kCount, std::size_t... kI>
 HWY_INLINE Vec<D> Run(const Vector<typename D::Lane, kCount>& a, const Vector<typename D::Lane, kCount>& b,
                       std::index_sequence<kI...>) {
@@ -596,7 +596,7 @@ HWY_INLINE Vector<T, kCount> TableLookupLanes(const Vector<T, kCount>& v, const 
   return result;
 }
 
-// Every lane of these is the smallest, or the largest, of all.
+// Return vectors in which every lane is the smallest, or the largest, of all lanes.
 template <class D>
 HWY_INLINE Vec<D> MinOfLanes(D d, const Vec<D>& v) {
   typename D::Lane least = v.raw[0];

@@ -1,4 +1,4 @@
-// Vectors of doubles beside those of floats, and rows of four floats that become lanes.
+// Vectors of doubles beside vectors of floats, and rows of four floats that become lanes.
 //
 // Included once for each instruction set, as lanes-inl.h.
 
@@ -28,7 +28,7 @@ inline constexpr DoubleTag kDoubles;
 
 using Doubles3 = LanesOf3<Doubles>;
 
-// The lower (0) or upper (1) half of the lanes.
+// Converts the lower (0) or upper (1) half of the lanes.
 template <int kHalf>
 HWY_INLINE Doubles ToDouble(Floats v) {
 #if HWY_TARGET == HWY_SCALAR
@@ -42,7 +42,7 @@ template <int kHalf>
 HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
   return {ToDouble<kHalf>(v.x), ToDouble<kHalf>(v.y), ToDouble<kHalf>(v.z)};
 }
-// Plain C++ in Highway rounds what is beyond the range of float to the largest float, where all others and
+// Highway's plain C++ rounds what is beyond the range of float to the largest float, while all other targets and
 // static_cast give infinity.
 #undef CHRONORMAL_DEMOTE_CLAMPS
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
@@ -51,7 +51,7 @@ HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
 #define CHRONORMAL_DEMOTE_CLAMPS 0
 #endif
 
-// Both halves of the lanes, in the range of float; a single lane is the lower one.
+// Joins both halves of the lanes, in the range of float. A single lane is the lower one.
 HWY_INLINE Floats Joined(Doubles lower, [[maybe_unused]] Doubles upper) {
 #if HWY_TARGET == HWY_SCALAR
   return hn::DemoteTo(kFloats, lower);
@@ -64,7 +64,7 @@ HWY_INLINE Lanes3 Joined(const Doubles3& lower, const Doubles3& upper) {
   return {Joined(lower.x, upper.x), Joined(lower.y, upper.y), Joined(lower.z, upper.z)};
 }
 
-// kLanes doubles in memory.
+// Rounds kLanes doubles in memory to floats.
 HWY_INLINE Floats ToFloat(const double* from) {
 #if CHRONORMAL_DEMOTE_CLAMPS
   float rounded[kLanes];
@@ -81,7 +81,7 @@ struct Lanes4 {
   HWY_INLINE Lanes3 xyz() const { return {x, y, z}; }
 };
 
-// Columns(row) gives those of a matrix with a row of four floats for each lane, row(i).
+// Columns(row) returns the columns of a matrix with a row of four floats for each lane, row(i).
 #if HWY_TARGET == HWY_SCALAR
 
 using Row = Lanes4;
@@ -99,7 +99,7 @@ HWY_INLINE Lanes4 Columns(const RowOf& row) {
 using Row = hn::Vec<hn::FixedTag<float, 4> >;
 HWY_INLINE Row LoadRow(const float* from) { return hn::LoadU(hn::FixedTag<float, 4>(), from); }
 
-// Four lanes for each 128 bits of a vector: load(b) gives those of block b.
+// Makes a vector of four lanes for each 128 bits: load(b) returns the lanes of block b.
 template <class LoadBlock>
 HWY_INLINE Floats Blocks(const LoadBlock& load) {
   if constexpr (kLanes == 4) {
@@ -112,7 +112,7 @@ HWY_INLINE Floats Blocks(const LoadBlock& load) {
   }
 }
 
-// Lane i of rows[k] is from the row 4 * (i / 4) + k.
+// Transposes. Lane i of rows[k] is from the row 4 * (i / 4) + k.
 HWY_INLINE Lanes4 Transposed(const Floats (&rows)[4]) {
   const auto pairs = [](Floats v) HWY_ATTR { return hn::BitCast(kDoubles, v); };
   const Doubles xy01 = pairs(hn::InterleaveLower(kFloats, rows[0], rows[1]));
@@ -135,7 +135,7 @@ HWY_INLINE Lanes4 Columns(const RowOf& row) {
 
 #endif
 
-// Four doubles, rounded.
+// Rounds four doubles to a row.
 HWY_INLINE Row RoundedRow(const double* from) {
 #if CHRONORMAL_DEMOTE_CLAMPS
   float rounded[4];

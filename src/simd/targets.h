@@ -1,5 +1,5 @@
-/// Which instruction set the kernels run on: chosen at run time, the widest that the machine has. For tests and
-/// benchmarks, which go through all of them; results are the same bits on each.
+/// The instruction set on which the kernels run. It is chosen at run time, the widest that the machine has. Tests and
+/// benchmarks go through all of them; results are the same bits on each.
 #ifndef CHRONORMAL_SIMD_TARGETS_H_
 #define CHRONORMAL_SIMD_TARGETS_H_
 
@@ -9,14 +9,16 @@
 
 namespace chronormal::inline internal {
 
-/// Those that the kernels are compiled for and that this machine runs, the best first. Values of Highway's HWY_TARGET.
+/// Returns the targets that the kernels are compiled for and that this machine runs, the best first, as values of
+/// Highway's HWY_TARGET.
 [[nodiscard]] std::vector<std::int64_t> supported_targets();
-/// As Highway names them: "SSE4", "AVX2", "AVX3" (AVX-512); without it there is one, "plain".
+/// Returns the name that Highway has for a target: "SSE4", "AVX2", "AVX3" (AVX-512); without Highway there is only
+/// "plain".
 [[nodiscard]] std::string target_name(std::int64_t target);
-/// The one that runs now.
+/// Returns the target that runs now.
 [[nodiscard]] std::int64_t current_target();
 
-/// Runs all kernels on one instruction set while it lives. Not while other threads run kernels.
+/// Runs all kernels on one instruction set while it lives. Other threads must not run kernels meanwhile.
 class ScopedTarget {
  public:
   explicit ScopedTarget(std::int64_t target);

@@ -26,7 +26,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Scalars whose masks are bool.
+// These are for scalars whose masks are bool.
 template <class S>
 HWY_INLINE S select(bool mask, const S& a, const S& b) {
   return mask ? a : b;
@@ -44,8 +44,8 @@ HWY_INLINE float next_bits(float s) { return bit_cast<float>(bit_cast<std::uint3
 
 template <class S>
 HWY_INLINE SinCos<S> sin_cos(const S& x) {
-  // Bring x to r in [-pi/4, pi/4] with x = quarter * pi/2 + r; pi/2 in two parts, the first of 8 bits, keeps r exact to
-  // 1e-10. Adding 3 * 2^22 rounds to an integer, and leaves it in the lowest bits.
+  // Bring x to r in [-pi/4, pi/4] with x = quarter * pi/2 + r. Splitting pi/2 into two parts, the first of 8 bits,
+  // keeps r exact to 1e-10. Adding 3 * 2^22 rounds to an integer, and leaves it in the lowest bits.
   const S shift(12582912.0f);
   const S shifted = x * S(0.636619772f) + shift;
   const S quarter = shifted - shift;
@@ -61,7 +61,7 @@ HWY_INLINE SinCos<S> sin_cos(const S& x) {
 
 template <class S>
 HWY_INLINE S upper_angle(const S& y, const S& x) {
-  // atan of a quotient in [0, 1], folded once more at tan(pi/8), then unfolded by octant.
+  // Compute atan of a quotient in [0, 1], folded once more at tan(pi/8), then unfold it by octant.
   const S zero(0.0f);
   const S ax = absolute(x), larger = larger_of(y, ax), smaller = smaller_of(y, ax);
   const auto steep = y > ax;

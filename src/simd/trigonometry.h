@@ -1,8 +1,8 @@
 /// Sine, cosine and arc tangent in float32, from plain arithmetic.
 ///
-/// The standard library's differ from machine to machine in the last bit; these give the same bits everywhere and have
-/// no branch. src/simd/trigonometry-inl.h has them for vectors of lanes, the same text and the same bits. Polynomials:
-/// interpolation at Chebyshev nodes (own fit).
+/// The standard library's functions differ from machine to machine in the last bit; the ones here give the same bits
+/// everywhere and have no branch. src/simd/trigonometry-inl.h has them for vectors of lanes, with the same text and the
+/// same bits. The polynomials interpolate at Chebyshev nodes (own fit).
 #ifndef CHRONORMAL_SIMD_TRIGONOMETRY_H_
 #define CHRONORMAL_SIMD_TRIGONOMETRY_H_
 
@@ -13,10 +13,10 @@ struct SinCos {
   S sin, cos;
 };
 
-/// Sine and cosine of x. Error below 1.2e-7 for |x| <= 8, the arcs that schemes need.
+/// Returns sine and cosine of x. The error is below 1.2e-7 for |x| <= 8, which covers the arcs that schemes need.
 [[nodiscard]] SinCos<float> sin_cos(float x) noexcept;
 
-/// The angle of the vector (x, y) with y >= 0, in [0, pi]; 0 for the zero vector. Error below 3e-7.
+/// Returns the angle of the vector (x, y) with y >= 0, in [0, pi]; 0 for the zero vector. The error is below 3e-7.
 [[nodiscard]] float upper_angle(float y, float x) noexcept;
 
 }  // namespace chronormal::inline internal

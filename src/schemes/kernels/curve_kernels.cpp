@@ -24,12 +24,12 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 enum class Layout { kPacked, kPackedPastCaches, kPlanes };
 
-// Where the normals of whole blocks go.
+// Says where the normals of whole blocks go.
 struct BlockResult {
   float *x, *y, *z;
   Layout layout;
 
-  // The elements i, i + 1, ..., i + kStep - 1.
+  // Stores the elements i, i + 1, ..., i + kStep - 1.
   HWY_INLINE void store(std::size_t i, const Triple<Lanes>& u) const {
     store(i, Lanes3{u.x.low, u.y.low, u.z.low});
     store(i + kLanes, Lanes3{u.x.high, u.y.high, u.z.high});
@@ -48,7 +48,7 @@ struct BlockResult {
   }
 };
 
-// Asks for the block that is read about 2 KiB later.
+// Prefetches the block that is read about 2 KiB later.
 HWY_INLINE void PrefetchBlock(const float* block, std::size_t plane_count) {
   constexpr std::size_t kAhead = 2048 / sizeof(float);
   constexpr std::size_t kCacheLine = 64 / sizeof(float);
@@ -58,7 +58,7 @@ HWY_INLINE void PrefetchBlock(const float* block, std::size_t plane_count) {
 template <class F>
 HWY_NOINLINE void EvaluateBlocks(const CoefficientBlocks& curves, std::size_t first_block, std::size_t block_count,
                                  const SharedValues& shared, const BlockResult& result_of_caller) {
-  // Copies, so that the compiler sees that no store changes them.
+  // These are copies, so that the compiler sees that no store changes them.
   const BlockResult result = result_of_caller;
   const SharedValues common = shared;
 
@@ -89,7 +89,7 @@ HWY_NOINLINE void AdvanceBlocks(const CoefficientBlocks& curves, std::size_t fir
   }
 }
 
-// Calls visit(class of the formula).
+// Calls visit() with the class of the formula.
 template <class Visitor>
 auto VisitPlayable(Formula formula, Visitor visit) {
   switch (formula) {

@@ -1,9 +1,9 @@
-/// The formulas of schemes over blocks of elements, on the widest instruction set that the machine has; the same bits
-/// on all of them. formulas-inl.h says what each computes, and from which planes.
+/// The formulas of schemes over blocks of elements, on the widest instruction set that the machine has, with the same
+/// bits on all of them. formulas-inl.h says what each computes, and from which planes.
 ///
 /// An element is kept as one float per plane. Thirty-two elements make a block, and blocks lie one after the other:
 ///
-///     plane 0 of elements 0 to 31, plane 1 of the same, ..., the last plane of the same, plane 0 of elements 32 to 63,
+///     plane 0 of elements 0 to 31, plane 1 of these elements, ..., their last plane, plane 0 of elements 32 to 63,
 ///     ...
 ///
 /// so that an evaluation is one pass over memory. The last block is filled up with zeros, which every formula takes.
@@ -25,7 +25,8 @@ inline constexpr std::size_t kBlock = 32;
 inline constexpr std::size_t kMaxLagrangeDegree = 64;      // the weights at equidistant nodes grow as 2^degree
 inline constexpr std::size_t kMaxDeCasteljauNormals = 32;  // K (K - 1) / 2 slerps an evaluation
 
-/// What all elements have in common at one t: t itself, or weights; the formula says which, and how many of them count.
+/// Holds what all elements have in common at one t: t itself, or weights. The formula says which, and how many of them
+/// count.
 using SharedValues = std::array<float, kMaxLagrangeDegree + 1>;
 
 enum class Formula {
@@ -45,27 +46,28 @@ enum class Formula {
   return f == Formula::kSum || f == Formula::kSumOf2 || f == Formula::kSumOf3 || f == Formula::kSumOf4;
 }
 
-/// Returns the values that a formula which is no sum needs at one t: t itself, or the Bernstein weights of a quadratic
+/// Returns the values that a formula other than a sum needs at one t: t itself, or the Bernstein weights of a quadratic
 /// and of its square.
 [[nodiscard]] SharedValues shared_values(Formula formula, double t) noexcept;
 
-/// Coefficients in blocks, aligned to 64 bytes. The memory is the caller's.
+/// Refers to coefficients in blocks, aligned to 64 bytes. The memory is the caller's.
 struct CoefficientBlocks {
   const float* values = nullptr;
   std::size_t plane_count = 0;
   std::size_t element_count = 0;
 };
 
-/// Writes the unit normals of all elements at one t.
-/// stream_from: see core/memory.h. result must have as many vectors as there are elements, and may have any layout
+/// Writes the unit normals of all elements at one t. core/memory.h explains stream_from. result must have as many
+/// vectors as there are elements, and may have any layout
 void evaluate_curves(Formula formula, const CoefficientBlocks& curves, const SharedValues& shared,
                      VectorView<float> result, std::size_t stream_from = kStreamFrom) noexcept;
 
-/// Writes the unit normals of a state that is being played, and moves it on by a step. The state lies in blocks like
-/// the coefficients. The formula must be a sum of 2, 3 or 4, or an arc at uniform speed.
+/// Writes the unit normals of a state that is being played, and advances the state by a step. The state lies in blocks
+/// like the coefficients. The formula must be a sum of 2, 3 or 4, or an arc at uniform speed
 void advance_curves(Formula formula, const CoefficientBlocks& curves, float* state, VectorView<float> result) noexcept;
 
-/// What either costs for one element of these coefficients: the same text, instantiated with a scalar that counts.
+/// Return the operations for one element of these coefficients. They run the same code, instantiated with a scalar that
+/// counts.
 [[nodiscard]] OperationCounts count_evaluation(Formula formula, std::span<const float> coefficients,
                                                const SharedValues& shared);
 [[nodiscard]] OperationCounts count_advance(Formula formula, std::span<const float> coefficients,

@@ -1,14 +1,15 @@
-// The formulas of schemes, each standing once: Lanes runs it, Counting counts it (scalars-inl.h).
+// The formulas of schemes, each written once: Lanes runs it, Counting counts it (scalars-inl.h).
 //
-// A formula is a class of static functions, templates on the scalar S, and of the number of planes that it reads (0: as
-// many as there are):
+// A formula is a class of static functions, templates on the scalar S, and of the number of planes that it reads (0:
+// all that there are):
 //
 //     kPlanes, kStatePlanes
-//     Triple<S> evaluate(const Coefficients<S>& c, const float* shared)    the unit normals at one t; `shared` is what
-//                                                                          all elements have in common there
-//     Triple<S> advance(const Coefficients<S>& c, const State<S>& state)   those of the state, which moves on by a step
+//     Triple<S> evaluate(const Coefficients<S>& c, const float* shared)    returns the unit normals at one t; `shared`
+//                                                                          has what all elements have in common there
+//     Triple<S> advance(const Coefficients<S>& c, const State<S>& state)   returns the unit normals of the state, and
+//                                                                          advances it by a step
 //
-// Lanes do not branch: what depends on an element is selected, and a rare case is skipped where no lane has it.
+// Lanes do not branch: results that depend on the element are selected, and a rare case is skipped if no lane has it.
 // Coefficients that are zero give (0, 0, 0).
 
 #include "simd/highway-inl.h"
@@ -28,7 +29,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// v scaled to length 1, or `fallback` where v is as good as zero: opposite unit vectors can cancel.
+// Returns v scaled to length 1, or `fallback` if v is as good as zero, since opposite unit vectors can cancel.
 template <class S>
 HWY_INLINE Triple<S> normalized_or(const Triple<S>& v, const Triple<S>& fallback) {
   const S square = dot(v, v);
@@ -37,7 +38,7 @@ HWY_INLINE Triple<S> normalized_or(const Triple<S>& v, const Triple<S>& fallback
   return select(has_length, scale * v, fallback);
 }
 
-// Sum of vectors times shared weights, as many as kCount (0: as there are), then normalised. Where the sum vanishes
+// Adds up kCount vectors (0: all that there are) times shared weights, and normalises the sum. If the sum vanishes
 // (opposite ends meet in the middle) the result is the first vector.
 template <std::size_t kCount>
 struct WeightedSum {
@@ -52,7 +53,7 @@ struct WeightedSum {
     return normalized_or(sum, first);
   }
 
-  // The state is the sum and its forward differences.
+  // Advances the sum and its forward differences, which are the state.
   template <class S>
   static HWY_INLINE Triple<S> advance(const Coefficients<S>& c, const State<S>& state) {
     const Triple<S> here = vector_of(state, 0);
@@ -66,7 +67,7 @@ struct WeightedSum {
   }
 };
 
-// Eq. 3 of the paper: three quadratics over the root of the quartic in the planes 9 to 13.
+// Evaluates eq. 3 of the paper: three quadratics over the root of the quartic in the planes 9 to 13.
 struct RationalQuadratic {
   static constexpr std::size_t kPlanes = 14;
 
@@ -76,7 +77,7 @@ struct RationalQuadratic {
         S(weights[0]) * vector_of(c, 0) + S(weights[1]) * vector_of(c, 1) + S(weights[2]) * vector_of(c, 2);
     S square = S(weights[3]) * c[9];
     for (std::size_t k = 1; k < 5; ++k) square = square + S(weights[3 + k]) * c[9 + k];
-    // Below this share of the largest coefficient the quartic has lost its digits: measure n instead.
+    // Below this share of the largest coefficient the quartic has lost its digits; measure n instead.
     const auto has_digits = square > S(0.1f);
     const Triple<S> u = (S(1.0f) / sqrt(select(has_digits, square, S(1.0f)))) * n;
     if (!any(!has_digits)) return u;
@@ -85,9 +86,9 @@ struct RationalQuadratic {
   }
 };
 
-// (cos, sin) of the angle on an arc that is played, and of the angle of one step: the state of arcs at uniform speed.
-// Returns (sine, cosine) and moves on by a step. A rotation per step instead of the Chebyshev recurrence
-// x' = 2 cos(step) x - x'', which needs no sine but loses digits a hundred times faster.
+// Returns (sine, cosine) of the current angle, and advances it by a step. The state holds (cos, sin) of the angle on
+// the arc, and of the angle of one step. A rotation per step is used instead of the Chebyshev recurrence x' = 2
+// cos(step) x - x'', which needs no sine but loses digits a hundred times faster.
 template <class S>
 HWY_INLINE SinCos<S> advance_turn(const State<S>& state) {
   const S cosine = state[0], sine = state[1], step_cosine = state[2], step_sine = state[3];
@@ -96,7 +97,7 @@ HWY_INLINE SinCos<S> advance_turn(const State<S>& state) {
   return {sine, cosine};
 }
 
-// An arc about the origin: u0, q, A, and u(t) = cos(t A) u0 + sin(t A) q.
+// Evaluates an arc about the origin: u0, q, A, and u(t) = cos(t A) u0 + sin(t A) q.
 struct GreatArc {
   static constexpr std::size_t kPlanes = 7, kStatePlanes = 4;
 
@@ -116,7 +117,7 @@ struct GreatArc {
   }
 };
 
-// An arc about any centre (eq. 7): w, p, q, A.
+// Evaluates an arc about any centre (eq. 7): w, p, q, A.
 struct CircleArc {
   static constexpr std::size_t kPlanes = 10, kStatePlanes = 4;
 
@@ -136,7 +137,7 @@ struct CircleArc {
   }
 };
 
-// An arc whose share in plane 10 is passed at t = 1/2.
+// Evaluates an arc whose share in plane 10 is passed at t = 1/2.
 struct TimedCircleArc {
   static constexpr std::size_t kPlanes = 11;
 
@@ -150,7 +151,7 @@ struct TimedCircleArc {
   }
 };
 
-// Half a turn about a fixed perpendicular of a, t of it: slerp to -a.
+// Turns a by the share t of half a turn about a fixed perpendicular, which is slerp to -a.
 template <class S>
 HWY_INLINE Triple<S> half_turn_at(const Triple<S>& a, const S& t) {
   const S zero(0.0f), one(1.0f);
@@ -160,7 +161,8 @@ HWY_INLINE Triple<S> half_turn_at(const Triple<S>& a, const S& t) {
   return turn.cos * a + turn.sin * normalized_or(other, a);
 }
 
-// Slerp of vectors that are only known at run time. Antipodal ones turn about a fixed perpendicular.
+// Interpolates by slerp between vectors that are only known at run time. Antipodal ones turn about a fixed
+// perpendicular.
 template <class S>
 HWY_INLINE Triple<S> slerp_at(const Triple<S>& a, const Triple<S>& b, const S& t) {
   const Triple<S> normal = cross(a, b);
@@ -169,7 +171,7 @@ HWY_INLINE Triple<S> slerp_at(const Triple<S>& a, const Triple<S>& b, const S& t
   const S b_weight = turn.sin / sine;
   const Triple<S> slerp = (turn.cos - b_weight * cosine) * a + b_weight * b;
 
-  // Below 1e-4 rad, the chord and the arc differ by less than rounding. Here the quotient may have been 0 / 0.
+  // Below 1e-4 rad, the chord and the arc differ by less than rounding, and the quotient may have been 0 / 0.
   const auto aligned = sine < S(1e-4f);
   if (!any(aligned)) return slerp;
   const auto opposite = !(cosine > S(0.0f));
@@ -179,7 +181,7 @@ HWY_INLINE Triple<S> slerp_at(const Triple<S>& a, const Triple<S>& b, const S& t
   return select(opposite, far, chord);
 }
 
-// Slerp in place of every linear interpolation of de Casteljau's triangle, over as many vectors as there are.
+// Takes slerp in place of every linear interpolation of de Casteljau's triangle, over all vectors that there are.
 struct SphericalDeCasteljau {
   static constexpr std::size_t kPlanes = 0;
 

@@ -2,8 +2,8 @@
 //
 //     tan(beta)^2 = tan(h)^2 + y^2,  y = tan(h) tan(phi),
 //
-// and on a small part of the sphere its middle stands g = y / (1 + sqrt(1 + y^2)) half chords off the chord. g is what
-// is searched for: positions along the arc are nearly linear in it, up to half a turn, where it is 1.
+// and on a small part of the sphere its middle is g = y / (1 + sqrt(1 + y^2)) half chords away from the chord. The
+// search is for g: positions along the arc are nearly linear in it, up to half a turn, where it is 1.
 #include "schemes/kernels/optimal_arcs.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -27,7 +27,7 @@ inline constexpr double kGain = 1e-4;          // the share of the mean error th
 inline constexpr double kNoError = 1e-10;      // radians; smaller errors are not searched
 inline constexpr double kLargestG = 0.77;      // an arc of 150 degrees
 
-// Sine and cosine of x in [0, 0.16], to the rounding of double.
+// Returns the sine of x in [0, 0.16], to the rounding of double.
 HWY_INLINE Real small_sine(Real x) {
   const Real z = x * x;
   return x - x * z * (Real(1.0 / 6) - z * (Real(1.0 / 120) - z * (Real(1.0 / 5040) - z * Real(1.0 / 362880))));
@@ -37,8 +37,8 @@ HWY_INLINE Real small_cosine(Real x) {
   return Real(1.0) - z * (Real(1.0 / 2) - z * (Real(1.0 / 24) - z * (Real(1.0 / 720) - z * Real(1.0 / 40320))));
 }
 
-// The angle between unit vectors with this squared distance: angle_of_squared_chord() of mean_error.h below a right
-// angle, and too much beyond.
+// Returns the angle between unit vectors with this squared distance: angle_of_squared_chord() of mean_error.h below a
+// right angle, and too much beyond.
 HWY_INLINE Real angle_of_chord(Real square) {
   const Real z = Real(0.25) * square;
   const Real series =
@@ -53,7 +53,7 @@ HWY_INLINE Real angle_of_chord(Real square) {
   return Real(2.0) * sqrt(z) * series;
 }
 
-// A search for one element in each lane.
+// Searches for one element in each lane.
 struct Search {
   Real3 u0, pole, bisector;
   Real cosine, tangent;  // of half the angle between the ends
@@ -78,7 +78,7 @@ struct Search {
   }
 };
 
-// Three arcs in ascending order, and their errors.
+// Holds three arcs in ascending order, and their errors.
 struct Bracket {
   Real low, middle, high;
   Real at_low, at_middle, at_high;
@@ -93,10 +93,10 @@ struct Bracket {
 
 HWY_INLINE Real3 unit(const Real3& v) { return (Real(1.0) / sqrt(dot(v, v))) * v; }
 
-// tan(phi) of the best arcs; NaN where that is not known.
+// Returns tan(phi) of the best arcs, and NaN if it is not known.
 HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) {
   const Real zero(0.0), one(1.0), none(std::numeric_limits<double>::quiet_NaN());
-  // Lengths whose squares neither overflow nor vanish.
+  // The lengths must have squares that neither overflow nor vanish.
   const auto has_length = [](const Real3& v) HWY_ATTR {
     const Real square = dot(v, v);
     return (square > Real(1e-200)) & (square < Real(1e200));
@@ -115,7 +115,7 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
   search.cosine = dot(start, search.bisector);
   const Real3 half = Real(0.5) * (end - start);
   search.tangent = sqrt(dot(half, half)) / search.cosine;
-  // Where a normal is short against its control normals, its direction is left to the slower search.
+  // An element whose normal is short against its control normals is left to the slower search.
   const Real size = dot(n0, n0) + dot(m, m) + dot(n1, n1);
   Real3 before = start;
   for (std::size_t i = 0; i < kIntervals; ++i) {
@@ -172,7 +172,8 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
     open = open & (bracket.gain() > larger_of(Real(kGain) * bracket.at_middle, Real(kNoError)));
     if (!any(open)) break;
     const Real left = bracket.middle - bracket.low, right = bracket.high - bracket.middle;
-    // The lowest point of the parabola through the three; every third time the golden section of the longer side.
+    // Take the lowest point of the parabola through the three, and every third time the golden section of the longer
+    // side.
     const Real of_low = (bracket.at_low - bracket.at_middle) / left,
                of_high = (bracket.at_high - bracket.at_middle) / right;
     const Real sum = of_low + of_high;

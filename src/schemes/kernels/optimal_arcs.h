@@ -1,11 +1,11 @@
 /// Finds the arc with the least mean error, which quaternion:optimal looks for, for many elements at a time.
 ///
 /// The arcs from u0 to u1 that turn by at most half a turn are one family (eq. 6). As a function of how far the middle
-/// of an arc stands off the great circle, in half chords, the mean error is nearly convex, and the circle through the
+/// of an arc is from the great circle, in half chords, the mean error is nearly convex, and the circle through the
 /// exact normal in the middle is nearly the best arc. So a search starts with three arcs around that circle, and
 /// continues with parabolas until convexity shows that hardly anything is left to gain.
 ///
-/// That holds where the element turns mildly: by less than a radian over the segment and by 0.15 between neighbouring
+/// This is true if the element turns mildly: by less than a radian over the segment and by 0.15 between neighbouring
 /// samples, with an arc of less than 150 degrees, and a normal that vanishes nowhere. Other elements are left to a
 /// search over the whole family.
 #ifndef CHRONORMAL_SCHEMES_KERNELS_OPTIMAL_ARCS_H_
@@ -18,9 +18,8 @@
 namespace chronormal::inline internal {
 
 /// Writes phi of eq. 6 for each element, and NaN for elements that are left to the other search. The mean error, as
-/// ExactSamples (mean_error.h) has it, is within 0.01 percent of the least. Results have the same bits on every
-/// instruction set.
-/// Both must have the same size.
+/// ExactSamples (mean_error.h) defines it, is within 0.01 percent of the least. Results have the same bits on every
+/// instruction set. Both must have the same size
 void find_optimal_arcs(std::span<const ControlNormals> normals, std::span<double> phis) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,8 +1,8 @@
-// What the formulas of schemes are written in: a scalar S, vectors of three of it, and the planes that an element is
-// kept in.
+// The types in which the formulas of schemes are written: a scalar S, vectors of three of it, and the planes of an
+// element.
 //
-// S is Lanes, which runs, or Counting, which counts; so each formula stands once. Included once for each instruction
-// set, inside no namespace.
+// S is Lanes, which runs, or Counting, which counts, so that each formula is written once. Included once for each
+// instruction set, inside no namespace.
 
 #include "simd/highway-inl.h"
 
@@ -22,11 +22,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// How many elements are evaluated at a time: two vectors, since a processor cannot look far enough ahead to keep busy
-// with one after the other where a formula is a long chain of operations, as a sine is.
+// The number of elements that are evaluated at a time is two vectors. If a formula is a long chain of operations, as a
+// sine is, a processor cannot look far enough ahead to keep busy with one vector after the other.
 inline constexpr std::size_t kStep = 2 * kLanes;
 
-// One number of each of kStep elements. Every operation is one IEEE operation on each of them.
+// Holds one number of each of kStep elements. Every operation is one IEEE operation on each of them.
 struct Lanes {
   Floats low, high;
 
@@ -49,7 +49,7 @@ struct Lanes {
   friend HWY_INLINE Lanes sqrt(const Lanes& a) { return {hn::Sqrt(a.low), hn::Sqrt(a.high)}; }
 };
 
-// Which of the elements a condition holds for. Counting has bool.
+// Says for which elements a condition holds. Counting has bool.
 struct LanesMask {
   hn::Mask<FloatTag> low, high;
 };
@@ -66,11 +66,11 @@ HWY_INLINE Lanes select(const LanesMask& mask, const Lanes& a, const Lanes& b) {
   return {hn::IfThenElse(mask.low, a.low, b.low), hn::IfThenElse(mask.high, a.high, b.high)};
 }
 
-// Whether it holds for any of the elements: lets a rare case be skipped, and never changes a result.
+// Returns whether it holds for any of the elements. This lets a rare case be skipped, and never changes a result.
 HWY_INLINE bool any(const LanesMask& mask) { return !hn::AllFalse(kFloats, hn::Or(mask.low, mask.high)); }
 HWY_INLINE bool any(bool mask) { return mask; }
 
-// See simd/trigonometry-inl.h.
+// See simd/trigonometry-inl.h for what these must do.
 HWY_INLINE Lanes absolute(const Lanes& a) { return {hn::Abs(a.low), hn::Abs(a.high)}; }
 HWY_INLINE Lanes larger_of(const Lanes& a, const Lanes& b) { return {hn::Max(a.low, b.low), hn::Max(a.high, b.high)}; }
 HWY_INLINE Lanes smaller_of(const Lanes& a, const Lanes& b) { return {hn::Min(a.low, b.low), hn::Min(a.high, b.high)}; }
@@ -93,7 +93,7 @@ HWY_INLINE Lanes next_bits(const Lanes& s) {
   return {next(s.low), next(s.high)};
 }
 
-// Three-component vectors. (Vec3 of core/vec3.h is compiled for no instruction set and cannot take lanes.)
+// A vector of three components. (Vec3 of core/vec3.h is compiled for no instruction set and cannot take lanes.)
 template <class S>
 struct Triple {
   S x, y, z;
@@ -123,7 +123,7 @@ HWY_INLINE Triple<Lanes> select(const LanesMask& mask, const Triple<Lanes>& a, c
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// The coefficients of the elements that are being evaluated, one value per plane.
+// Reads the coefficients of the elements that are being evaluated, one value per plane.
 template <class S>
 struct Coefficients {
   const S* first;
@@ -132,7 +132,7 @@ struct Coefficients {
   HWY_INLINE S operator[](std::size_t plane) const { return first[plane]; }
 };
 
-// The same for what changes from step to step where a curve is played.
+// Reads and writes, one value per plane, what changes from step to step while a curve is played.
 template <class S>
 struct State {
   S* first;
@@ -141,7 +141,7 @@ struct State {
   HWY_INLINE void set(std::size_t plane, const S& value) const { first[plane] = value; }
 };
 
-// Lanes lie in a block (curve_kernels.h).
+// These specialisations read lanes from a block (curve_kernels.h).
 template <>
 struct Coefficients<Lanes> {
   const float* first;
@@ -165,7 +165,7 @@ struct State<Lanes> {
   }
 };
 
-// The vector in the planes 3k, 3k + 1, 3k + 2.
+// Returns the vector in the planes 3k, 3k + 1, 3k + 2.
 template <template <class> class Planes, class S>
 HWY_INLINE Triple<S> vector_of(const Planes<S>& planes, std::size_t k) {
   return {planes[3 * k], planes[3 * k + 1], planes[3 * k + 2]};
