@@ -1,4 +1,4 @@
-// The parts that kernels share: vectors of lanes with their few operations, and blocks of 16 elements whatever the lanes.
+// The parts that kernels share: vectors of lanes with their operations, and blocks of 16 elements whatever the lanes.
 //
 // Included once for each instruction set, inside no namespace; see evaluate.cpp for the frame of a kernel file. Every
 // operation here is one IEEE operation or a selection, so that all instruction sets give the same bits: no fused

@@ -23,8 +23,8 @@ namespace chronormal {
 
 namespace {
 
-// The triangles of a list, strip or fan (section 3.7.2.1 of the specification): every second one of a strip is turned
-// round, so that all face the same side. Indices left over make no triangle.
+// Returns the triangles of a list, strip or fan (section 3.7.2.1 of the specification). Every second triangle of a
+// strip is turned round, so that all face the same side. Indices left over make no triangle.
 std::vector<std::uint32_t> to_triangles(int mode, std::vector<std::uint32_t> elements) {
   if (mode == 4) {
     elements.resize(elements.size() - elements.size() % 3);
@@ -102,7 +102,7 @@ Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
 
 namespace {
 
-// The times of all keys of the channels of single weights, ascending.
+// Returns the times of all keys of the channels of single weights, ascending.
 Result<std::vector<float>> times_of_all(gltf::Bytes& bytes, const gltf::TrackSource& source) {
   std::vector<float> times;
   std::set<std::size_t> inputs;
@@ -120,7 +120,7 @@ Result<std::vector<float>> times_of_all(gltf::Bytes& bytes, const gltf::TrackSou
   return times;
 }
 
-// Puts the channels of single weights together; the weights of all others are at rest, and so are their tangents.
+// Puts the channels of single weights together. All other weights are at rest, and so are their tangents.
 Result<GltfKeys> assembled_keys(gltf::Bytes& bytes, const gltf::TrackSource& source, const GltfTrack& track) {
   const Result<std::vector<float>> times = times_of_all(bytes, source);
   if (!times) return times.error();
@@ -142,8 +142,8 @@ Result<GltfKeys> assembled_keys(gltf::Bytes& bytes, const gltf::TrackSource& sou
   return keys;
 }
 
-// Counts the keys of tracks that are put together from channels with different times. Where these cannot be read, the
-// number stays as it is, and whoever asks for the keys is told why.
+// Counts the keys of tracks that are put together from channels with different times. If these cannot be read, the
+// number stays as it is, and an attempt to read the keys reports the error.
 void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
   for (std::size_t a = 0; a < model.animations.size(); ++a) {
     for (std::size_t t = 0; t < model.animations[a].tracks.size(); ++t) {
@@ -157,8 +157,8 @@ void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
   }
 }
 
-// Drops the tracks whose numbers cannot be read, with a note for each array that is at fault. Arrays without bytes of
-// their own are left to those who ask for keys.
+// Drops the tracks whose numbers cannot be read, with a note for each array that is at fault. Arrays without their own
+// bytes are only checked when keys are asked for.
 void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
   std::map<std::pair<std::size_t, bool>, bool> known;  // by the accessor, and whether it has times
   const auto can_read = [&](std::size_t accessor, bool has_times) {

@@ -1,4 +1,4 @@
-/// What a GltfDocument holds. Private to io.
+/// The data of a GltfDocument. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_DOCUMENT_STATE_H_
 #define CHRONORMAL_IO_GLTF_GLTF_DOCUMENT_STATE_H_
 
@@ -20,16 +20,16 @@ struct GltfDocument::State {
   State(GlbChunks found, gltf::Model parsed, gltf::Origin asset, std::size_t most)
       : chunks(found), model(std::move(parsed)), name(asset.name), bytes(model, std::move(asset)), most_bytes(most) {}
 
-  // Whether the arrays of a primitive and so many targets would take too much.
+  // Returns an error if the arrays of a primitive and so many targets would take too much memory.
   [[nodiscard]] Status check_size(std::size_t mesh, std::size_t primitive, std::size_t targets, bool shading);
-  // The arrays that are wanted of those that an object of attributes names, but for those that are there already.
+  // Reads the wanted arrays that an object of attributes names, except arrays that already have values.
   [[nodiscard]] Status read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
                             std::vector<float>& normals, std::vector<float>& tangents);
   // Gives memory back that holds the files, after so many vertices were read.
   void release(std::size_t vertices) const noexcept;
 
-  std::optional<FileBytes> file;  // where the document keeps it
-  GlbChunks chunks;               // of a .gltf file: its JSON, at offset 0
+  std::optional<FileBytes> file;  // if the document keeps it
+  GlbChunks chunks;               // for a .gltf file: its JSON, at offset 0
   gltf::Model model;
   std::string name;
   gltf::Bytes bytes;

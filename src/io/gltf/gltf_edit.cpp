@@ -29,7 +29,7 @@ struct GltfEdit::State {
 
   [[nodiscard]] Status apply(const Change& change, JsonText& json) const;
   [[nodiscard]] Result<gltf::EditLayout> lay_out(gltf::LayoutTarget target);
-  /// What a path asks for; an empty one for the file of the source itself.
+  /// Returns what a path asks for. An empty path stands for the file of the source itself.
   [[nodiscard]] Result<gltf::LayoutTarget> target_of(const std::string& path) const;
 
   GltfDocument::State& document;
@@ -47,7 +47,7 @@ bool is_same_folder(const std::string& a, const std::string& b) {
   return std::filesystem::equivalent(a.empty() ? "." : a, b.empty() ? "." : b, error);
 }
 
-// What is wrong with text that is to be a JSON value at so many levels of nesting; empty for nothing.
+// Returns what is wrong with text that is to be a JSON value at this level of nesting, or an empty text if nothing is.
 std::string value_fault(const std::string& json, std::size_t level) {
   constexpr const char* kNone = "what is to be written here is no JSON value: ";
   // The parser takes a zero byte for the end of the text, and skips a byte order mark.
@@ -84,7 +84,7 @@ Status GltfEdit::State::apply(const Change& change, JsonText& json) const {
 
 Result<gltf::EditLayout> GltfEdit::State::lay_out(gltf::LayoutTarget target) {
   std::string_view text = document.chunks.json;
-  // A GLB has none before its JSON (section 4.4.3.2 of the specification).
+  // A GLB has no byte order mark before its JSON (section 4.4.3.2 of the specification).
   if (target.glb && !is_glb && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   JsonText json(text);
   for (const Change& change : changes) {

@@ -1,29 +1,29 @@
-// Evaluates the channel of one weight at the keys of all weights of its node. Pieces of lines, steps and cubics are again
+// Evaluates the channel of one weight at the keys of all weights of its node. Pieces of lines, steps and cubics are
 // lines, steps and cubics, so that nothing is lost.
 #include "io/gltf/gltf_lone_weights.h"
 
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// The three numbers that a cubic spline has at each of its keys.
+// Holds the three numbers that a cubic spline has at each of its keys.
 struct Row {
   double in_tangent = 0, value = 0, out_tangent = 0;
 };
 
 double number(std::span<const float> numbers, std::size_t i) { return static_cast<double>(numbers[i]); }
 
-// The key of this index as the file has it.
+// Returns the key of this index as the file has it.
 Row key_at(const LoneKeys& keys, std::size_t k) {
   if (keys.interpolation != GltfInterpolation::kCubicSpline) return {0, number(keys.values, k), 0};
   return {number(keys.values, 3 * k), number(keys.values, 3 * k + 1), number(keys.values, 3 * k + 2)};
 }
 
-// The slope of the line from key k to the next.
+// Returns the slope of the line from key k to the next.
 double slope_after(const LoneKeys& keys, std::size_t k) {
   return (number(keys.values, k + 1) - number(keys.values, k)) / (number(keys.times, k + 1) - number(keys.times, k));
 }
 
-// A row at one of the keys of the channel. Where it is constant on one side, so is the row there.
+// Returns a row at one of the keys of the channel. If the channel is constant on one side, the row is too.
 Row row_at_key(const LoneKeys& keys, std::size_t k, bool is_first, bool is_last) {
   Row row = key_at(keys, k);
   const bool begins = k == 0, ends = k + 1 == keys.times.size();
@@ -37,7 +37,7 @@ Row row_at_key(const LoneKeys& keys, std::size_t k, bool is_first, bool is_last)
   return row;
 }
 
-// A row at a time between key k and the next.
+// Returns a row at a time between key k and the next.
 Row row_between(const LoneKeys& keys, std::size_t k, double time) {
   const Row from = key_at(keys, k), to = key_at(keys, k + 1);
   const double begin = number(keys.times, k), duration = number(keys.times, k + 1) - begin;
@@ -52,7 +52,7 @@ Row row_between(const LoneKeys& keys, std::size_t k, double time) {
     case GltfInterpolation::kCubicSpline:
       break;
   }
-  // Appendix C.4 of the specification, and its derivative by the time.
+  // This is appendix C.4 of the specification, and its derivative by the time.
   const double rise = to.value - from.value;
   const double value = from.value + s * s * (3 - 2 * s) * rise +
                        duration * s * (1 - s) * ((1 - s) * from.out_tangent - s * to.in_tangent);

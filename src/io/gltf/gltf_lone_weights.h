@@ -1,5 +1,5 @@
-/// A weight that has a channel of its own (KHR_animation_pointer to /weights/K), as a column of the track that all weights
-/// of its node make together. Private to io.
+/// Turns a weight that has its own channel (KHR_animation_pointer to /weights/K) into a column of the track that all
+/// weights of its node make together. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_LONE_WEIGHTS_H_
 #define CHRONORMAL_IO_GLTF_GLTF_LONE_WEIGHTS_H_
 
@@ -10,7 +10,7 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// The keys of a channel for one weight, with as many values as keys, or three times as many for a cubic spline.
+/// Holds the keys of a channel for one weight, with as many values as keys, or three times as many for a cubic spline.
 struct LoneKeys {
   std::span<const float> times;   ///< ascending; one at least
   std::span<const float> values;  ///< for a cubic spline: in-tangent, value, out-tangent of each key
@@ -18,9 +18,9 @@ struct LoneKeys {
 };
 
 /// Writes the weight at each of `times` into values[target + width * i], so that the track takes the same course as the
-/// channel. The times must ascend, and those of all keys of the channel must be among them. Before its first key and after
-/// its last, the channel is constant. In a cubic track each time has three rows, of which the first and the last are the
-/// slopes before and after it; a channel may be linear or cubic there. Else it must have the interpolation of the track.
+/// channel. The times must ascend, and contain all keys of the channel. Before its first key and after its last, the
+/// channel is constant. In a cubic track each time has three rows, of which the first and the last are the slopes
+/// before and after it; the channel may then be linear or cubic. Otherwise it must have the interpolation of the track.
 void write_column(const LoneKeys& keys, std::span<const float> times, bool is_cubic_track, std::size_t target,
                   std::size_t width, std::span<double> values) noexcept;
 

@@ -21,10 +21,10 @@ namespace {
 
 using gltf::WeightCurve;
 
-// A face that speaks for a quarter of an hour needs some 200,000 at the usual tolerance.
+// A face that speaks for a quarter of an hour needs some 200,000 pieces at the usual tolerance.
 constexpr std::size_t kMostPieces = 250000;
 
-// The primitives of a motion, one after the other, and what moves them.
+// Collects the primitives of a motion, one after the other, and what moves them.
 class Assembly {
  public:
   Assembly(const GltfDocument& document, bool world) : document_(document), world_(world) {}
@@ -41,7 +41,7 @@ class Assembly {
     }
   }
 
-  // Adds the meshes that `wanted` names, in the world as often as nodes carry them.
+  // Adds the meshes that `wanted` names. In the world, each is added for every node that carries it.
   template <class Wanted>
   void add_meshes(const Wanted& wanted) {
     if (world_) {
@@ -58,7 +58,7 @@ class Assembly {
   [[nodiscard]] bool empty() const noexcept { return result_.parts.empty(); }
   [[nodiscard]] const std::vector<GltfPart>& parts() const noexcept { return result_.parts; }
 
-  // Whether so many keyframes can be had, with what they are made from: targets, corners, and other_bytes of weights.
+  // Checks whether so many keyframes fit in memory, with their sources: targets, corners, and other_bytes of weights.
   [[nodiscard]] Status check_memory(std::size_t keyframes, std::size_t most_bytes, std::size_t other_bytes = 0) const {
     constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kWithResiduals = 3 * (sizeof(float) + sizeof(double));
     constexpr std::size_t kBytesPerCorner = 2 * sizeof(std::uint32_t);
@@ -90,7 +90,7 @@ class Assembly {
   // Reads geometry and faces of all parts.
   [[nodiscard]] Status read(bool with_targets) {
     std::vector<std::uint32_t> corners;
-    std::uint32_t body = 0;  // a mesh, as one node carries it
+    std::uint32_t body = 0;  // number of a mesh as one node carries it
     for (std::size_t p = 0; p < parts().size(); ++p) {
       GltfPart& part = result_.parts[p];
       Result<GltfGeometry> geometry = document_.geometry(part.mesh, part.primitive, {false, with_targets});
@@ -119,7 +119,7 @@ class Assembly {
   [[nodiscard]] const GltfGeometry& geometry(std::size_t part) const { return geometries_[part]; }
   [[nodiscard]] const AffineTransform& transform(std::size_t part) const { return transforms_[part]; }
 
-  // Adds a keyframe; weights(part) gives the weights of the targets of a part, as a span.
+  // Adds a keyframe. weights(part) returns the weights of the targets of a part, as a span.
   template <class Weights>
   [[nodiscard]] Status add_keyframe(double time, std::string name, const Weights& weights) {
     std::vector<double> high(3 * vertex_count_), low(3 * vertex_count_);
@@ -160,7 +160,7 @@ class Assembly {
  private:
   static constexpr std::size_t kBlockOfCoordinates = 3 * 2048;
 
-  // The coordinates of one block of vertices of a part at these weights, in the mesh or in the world.
+  // Returns the coordinates of one block of vertices of a part at these weights, in the mesh or in the world.
   [[nodiscard]] LongSums coordinates(std::size_t part, IndexRange some, std::span<const double> weights) const {
     const GltfGeometry& geometry = geometries_[part];
     LongSums sums(some.count);
@@ -223,7 +223,7 @@ Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOp
   return assembly.finish();
 }
 
-// One animation: the curves of the nodes that it drives, and the pieces of time between their keys.
+// Reads one animation: the curves of the nodes that it drives, and the pieces of time between their keys.
 class AnimationReader {
  public:
   AnimationReader(const GltfDocument& document, std::size_t animation, const GltfMotionOptions& options)
@@ -289,13 +289,14 @@ class AnimationReader {
     return Success{};
   }
 
-  // The most keyframes that so many pieces of time have: one at each end, and two where weights jump.
+  // Returns the most keyframes that so many pieces of time have: one at each end, and two where weights jump.
   [[nodiscard]] std::size_t keyframes_of(std::size_t pieces) const {
     const bool jump = std::any_of(curves_.begin(), curves_.end(), [](const WeightCurve& c) { return c.jumps(); });
     return jump ? 2 * pieces : pieces + 1;
   }
 
-  // The largest way that a weight of 1 moves a vertex, of every target of every part; and the size of the whole.
+  // Finds the largest distance that a weight of 1 moves a vertex, for every target of every part, and the size of the
+  // whole.
   void measure() {
     double low[3], high[3];
     std::fill_n(low, 3, std::numeric_limits<double>::infinity());
@@ -329,7 +330,7 @@ class AnimationReader {
     size_ = std::max(portable::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3 * size_);
   }
 
-  // A bound of the acceleration of any vertex between two neighbouring keys.
+  // Returns a bound of the acceleration of any vertex between two neighbouring keys.
   [[nodiscard]] double acceleration(double from, double to) const {
     double largest = 0;
     std::vector<double> bounds;
@@ -343,7 +344,7 @@ class AnimationReader {
     return largest;
   }
 
-  // A chord of a curve is never farther from it than h^2 / 8 times the largest acceleration.
+  // Cuts curves into chords. A chord is never farther from its curve than h^2 / 8 times the largest acceleration.
   Status cut() {
     const double tolerance = options_.curve_tolerance * size_;
     double curve_error = 0;
@@ -367,7 +368,7 @@ class AnimationReader {
     return Success{};
   }
 
-  // Weights of all parts at a time, part after part.
+  // Returns the weights of all parts at a time, part after part.
   [[nodiscard]] std::vector<std::vector<double>> weights_at(double time, bool just_before) const {
     std::vector<std::vector<double>> weights(assembly_.parts().size());
     for (std::size_t p = 0; p < weights.size(); ++p) {
@@ -377,7 +378,7 @@ class AnimationReader {
     return weights;
   }
 
-  // The keyframes at both ends of a piece of time; the first is the one before it where the weights do not jump there.
+  // Adds the keyframes at both ends of a piece of time. The first is the one before it unless the weights jump there.
   Status add_piece(double from, double to) {
     const Motion& motion = assembly_.motion();
     for (const auto& [time, just_before] : {std::pair(from, false), std::pair(to, true)}) {

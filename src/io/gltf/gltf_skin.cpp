@@ -1,5 +1,5 @@
-// A pose is found from the roots to the joints: each bone gets its place in its parent, moved by the curves that it has,
-// and then that of the parent in the world.
+// Finds a pose from the roots to the joints: each bone gets its place in its parent, moved by the curves that it has,
+// and then the parent's place in the world.
 #include "io/gltf/gltf_skin.h"
 
 #include <algorithm>
@@ -22,14 +22,14 @@ using Quaternion = std::array<double, 4>;
 
 constexpr std::uint32_t kNoBone = ~std::uint32_t{0};
 
-// Scales a quaternion to length 1, and returns the identity where it has no direction.
+// Scales a quaternion to length 1, and returns the identity if it has no direction.
 Quaternion as_rotation(const Quaternion& q) {
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + (q[2] * q[2] + q[3] * q[3]));
   if (!(length > 0)) return {0, 0, 0, 1};
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
-// Along the arc between two keys where they are LINEAR, as the specification has it.
+// Returns the rotation at a time. LINEAR keys are interpolated along the arc between them, as the specification says.
 Quaternion rotation_at(const gltf::WeightCurve& curve, GltfInterpolation interpolation, double time, bool just_before) {
   Quaternion rotation;
   const auto times = curve.times();
@@ -137,7 +137,7 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
       !status)
     return status;
   std::vector<std::vector<float>> joints(sets.size()), weights(sets.size());
-  // All joints and weights that a compressed mesh holds are decoded together.
+  // Decode all joints and weights that a compressed mesh holds together.
   std::vector<gltf::AttributeSource> compressed;
   std::vector<std::pair<std::string, std::vector<float>*>> of_compressed;
   for (std::size_t n = 0; n < sets.size(); ++n) {

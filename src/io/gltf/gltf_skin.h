@@ -5,7 +5,8 @@
 ///                     vertex of the mesh to where that joint carries it (section 3.7.3.3 of the specification). The
 ///                     place of the node that has the skin does not matter.
 ///
-/// Nothing of this is checked when a document is opened: a file whose skin makes no sense can be read by everybody else.
+/// None of this is checked when a document is opened, so that a file whose skin makes no sense can still be read by
+/// callers that do not need it.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
 #define CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
 
@@ -22,7 +23,7 @@
 
 namespace chronormal::inline internal {
 
-/// A joint of the skin that a vertex follows, and its share.
+/// Holds a joint of the skin that a vertex follows, and its share.
 struct JointShare {
   std::uint32_t joint = 0;
   double share = 0;
@@ -30,35 +31,35 @@ struct JointShare {
 
 class GltfSkin {
  public:
-  /// Reads the skin of a node and what an animation does to its joints; without one they stand as the file has them.
-  /// Errors: kInvalidInput with the JSON pointer, where the skin or the animation is not as the specification has them
+  /// Reads the skin of a node and what an animation does to its joints; without an animation they stand as the file has
+  /// them. Errors: kInvalidInput with the JSON pointer, if the skin or the animation breaks the specification
   [[nodiscard]] static Result<GltfSkin> read(const GltfDocument& document, std::size_t node,
                                              std::optional<std::size_t> animation);
 
-  /// Appends the shares of the vertices of a primitive, of which every one has the same number of them; first gets
-  /// where those of each vertex begin. They add up to 1: other weights are divided by their sum, and a vertex without
-  /// any follows its first joint, as in three.js. Joints without a weight are left out.
-  /// Errors: kInvalidInput with the JSON pointer, also for joints that this skin does not have
+  /// Appends the shares of the vertices of a primitive, and to first the index at which the shares of each vertex
+  /// begin. They add up to 1: other weights are divided by their sum, and a vertex without any weight follows its first
+  /// joint, as in three.js. Joints without a weight are left out. Errors: kInvalidInput with the JSON pointer, also for
+  /// joints that this skin does not have
   [[nodiscard]] Status read_shares(const GltfDocument& document, std::size_t mesh, std::size_t primitive,
                                    std::vector<std::size_t>& first, std::vector<JointShare>& shares) const;
 
   [[nodiscard]] std::size_t joint_count() const noexcept { return joints_.size(); }
 
-  /// Whether the joints move in the animation.
+  /// Returns whether the joints move in the animation.
   [[nodiscard]] bool moves() const noexcept { return !curves_.empty(); }
 
-  /// The times of the keys of all its curves, ascending, each once.
+  /// Returns the times of the keys of all its curves, ascending, each once.
   [[nodiscard]] std::vector<double> key_times() const;
 
-  /// The joint matrices at a time; where the joints jump, those just after it or just before it. O(joints and nodes
-  /// above them).
+  /// Returns the joint matrices at a time. Where joints jump, they are the ones just after the time, or just before it
+  /// if just_before is set. O(joints and nodes above them).
   [[nodiscard]] std::vector<AffineTransform> pose(double time, bool just_before) const;
 
  private:
   // A joint, or a node above one. Parents come before their children.
   struct Bone {
     gltf::Placement placement;
-    std::optional<std::size_t> parent;  // among the bones
+    std::optional<std::size_t> parent;  // index among the bones
   };
   struct Curve {
     std::size_t bone = 0;
@@ -72,7 +73,7 @@ class GltfSkin {
   [[nodiscard]] Status add_curve(const GltfDocument& document, const gltf::NodeChannel& channel);
 
   std::vector<std::uint32_t> joints_;        // nodes
-  std::vector<std::uint32_t> bone_of_node_;  // kNoBone where a node is none
+  std::vector<std::uint32_t> bone_of_node_;  // kNoBone if a node is no bone
   std::vector<std::uint32_t> bone_of_joint_;
   std::vector<AffineTransform> inverse_binds_;
   std::vector<Bone> bones_;

@@ -18,7 +18,7 @@ double WeightCurve::tangent(std::size_t key, bool out, std::size_t target) const
 void WeightCurve::at(double time, bool just_before, std::span<double> weights) const noexcept {
   assert(weights.size() == target_count_);
   const std::vector<double>& times = keys_.times;
-  // The key at or before the time: before it, where the weights just before a key are asked for.
+  // Find the key at or before the time, or strictly before it if the weights just before a key are asked for.
   const auto after = just_before ? std::lower_bound(times.begin(), times.end(), time)
                                  : std::upper_bound(times.begin(), times.end(), time);
   const std::size_t next = static_cast<std::size_t>(after - times.begin());
@@ -37,7 +37,7 @@ void WeightCurve::at(double time, bool just_before, std::span<double> weights) c
     }
     const double leaving = duration * tangent(key, true, i), arriving = duration * tangent(next, false, i);
     const double s = 1 - t;
-    // Hermite's form, in the basis of Bernstein.
+    // This is Hermite's form, in the basis of Bernstein.
     weights[i] =
         s * s * s * from + 3 * s * s * t * (from + leaving / 3) + 3 * s * t * t * (to - arriving / 3) + t * t * t * to;
   }
@@ -55,7 +55,7 @@ void WeightCurve::curvature(double from_time, double to_time, std::span<double> 
   for (std::size_t i = 0; i < target_count_; ++i) {
     const double from = value(key, i), to = value(next, i);
     const double leaving = duration * tangent(key, true, i), arriving = duration * tangent(next, false, i);
-    // w'' is linear in time, so that it is largest at an end of the interval.
+    // w'' is linear in time, so it is largest at an end of the interval.
     const double at_start = 6 * (to - from) - 4 * leaving - 2 * arriving;
     const double at_end = 6 * (from - to) + 2 * leaving + 4 * arriving;
     for (const double time : {from_time, to_time}) {

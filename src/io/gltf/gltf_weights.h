@@ -10,24 +10,25 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// The weights of one node (N targets) as functions of time: constant before the first key and after the last, between
-/// them as appendix C of the glTF specification has it.
+/// Gives the weights of one node (N targets) as functions of time: constant before the first key and after the last,
+/// and between keys as in appendix C of the glTF specification.
 class WeightCurve {
  public:
-  /// keys as GltfDocument::keys() gives them.
+  /// keys are as GltfDocument::keys() returns them.
   WeightCurve(GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count)
       : target_count_(target_count), interpolation_(interpolation), keys_(std::move(keys)) {}
 
-  /// Whether weights just before a key may be others than at the key.
+  /// Returns whether weights just before a key may differ from the weights at the key.
   [[nodiscard]] bool jumps() const noexcept { return interpolation_ == GltfInterpolation::kStep; }
 
   [[nodiscard]] std::span<const double> times() const noexcept { return keys_.times; }
 
-  /// Writes the weights at a time; where they jump, those just after it or just before it.
+  /// Writes the weights at a time. Where they jump, takes the ones just after it, or just before it if just_before is
+  /// set.
   void at(double time, bool just_before, std::span<double> weights) const noexcept;
 
-  /// Writes a bound of |w''| of every weight between two times that lie between the same two keys; 0 where the weights
-  /// are linear or constant.
+  /// Writes a bound of |w''| of every weight between two times that lie between the same two keys; 0 if the weights are
+  /// linear or constant.
   void curvature(double from, double to, std::span<double> bounds) const noexcept;
 
  private:

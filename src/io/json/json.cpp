@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Whether text is a number as JSON writes it.
+// Returns whether text is a number as JSON writes it.
 bool is_number(std::string_view text) {
   const auto skip_digits = [&] {
     const std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
@@ -36,7 +36,7 @@ bool is_number(std::string_view text) {
   return text.empty();
 }
 
-// Whether a number is beyond double. What is too small is not: it is 0.
+// Returns whether a number is beyond the range of double. A number that is too small is not: it counts as 0.
 bool overflows(std::string_view number) {
   constexpr std::size_t kMostDigits = 308;  // those of the largest double are one more
   const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
@@ -45,7 +45,7 @@ bool overflows(std::string_view number) {
   const auto [stop, code] = from_chars(number.data(), number.data() + number.size(), value);
   if (code == std::errc()) return std::isinf(value);
   if (code != std::errc::result_out_of_range) return false;
-  // Too large or too small, by far: what counts is where the first digit that is not 0 stands.
+  // The number is far too large or too small. The place of its first digit that is not 0 decides which.
   const std::string_view mantissa = number.substr(0, exponent_at);
   const auto first = static_cast<std::ptrdiff_t>(mantissa.find_first_of("123456789"));
   const auto point = static_cast<std::ptrdiff_t>(std::min(mantissa.find('.'), mantissa.size()));
@@ -54,19 +54,19 @@ bool overflows(std::string_view number) {
   std::int64_t exponent = 0;
   if (!digits.empty() && from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
     return digits.front() != '-';
-  // More than the text has digits decides alone.
+  // An exponent beyond the number of digits of the text decides alone.
   constexpr std::int64_t kFar = std::int64_t{1} << 40;
   return std::clamp(exponent, -kFar, kFar) + (point - first) > 0;
 }
 
-// What a walk over text finds before anything is built from it.
+// Holds what a walk over text finds before anything is built from it.
 struct Scan {
-  std::size_t too_deep = std::string_view::npos;  // the byte at which it is nested deeper than allowed
+  std::size_t too_deep = std::string_view::npos;  // first byte that is nested deeper than allowed
   struct Number {
     std::size_t begin, end;
-    std::size_t nulls;  // how many null come before it
+    std::size_t nulls;  // how many nulls come before it
   };
-  std::vector<Number> too_large;  // numbers beyond double
+  std::vector<Number> too_large;  // numbers beyond the range of double
 };
 
 Scan scan_json(std::string_view text) {
@@ -101,7 +101,7 @@ Scan scan_json(std::string_view text) {
 // callback walks over all siblings at the end of every object.)
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  // infinities: the numbers beyond double, which stand as null in the text, by how many null come before them.
+  // infinities has the numbers beyond double, which stand as null in the text, by how many nulls come before them.
   TreeBuilder(const JsonItems& items, const std::vector<Scan::Number>& infinities)
       : items_(items), infinities_(infinities) {}
 
@@ -140,7 +140,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
   bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& exception) override {
     error_at_ = position > 0 ? position - 1 : 0;
-    // The library's text repeats the place; what it says after the last ": " is enough.
+    // The library's text repeats the place; the part after the last ": " is enough.
     std::string_view message = exception.what();
     if (const std::size_t colon = message.rfind(": "); colon != std::string_view::npos)
       message.remove_prefix(colon + 2);
@@ -149,7 +149,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  // Puts a value where the walk stands: into an array, a member or the root.
+  // Puts a value at the current place of the walk: into an array, a member or the root.
   nlohmann::json* put(nlohmann::json&& value) {
     if (stack_.empty()) {
       root_ = std::move(value);
@@ -177,7 +177,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   const std::vector<Scan::Number>& infinities_;
   std::size_t null_count_ = 0, next_infinity_ = 0;
   nlohmann::json root_;
-  std::vector<nlohmann::json*> stack_;  // the arrays and objects that are open; their places do not move meanwhile
+  std::vector<nlohmann::json*> stack_;  // the open arrays and objects, which do not move meanwhile
   nlohmann::json* member_ = nullptr;    // of the innermost object
   bool inside_items_ = false;
   std::size_t item_count_ = 0, error_at_ = 0;
@@ -197,15 +197,15 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
     text.remove_prefix(kByteOrderMark.size());
     offset += kByteOrderMark.size();
   }
-  if (text.starts_with(kByteOrderMark))  // which the library would skip too
+  if (text.starts_with(kByteOrderMark))  // the library would skip it too
     return invalid_input(binary::place(name, offset), "this is no JSON: a second byte order mark");
-  // No JSON has a zero byte. The parser complains about it; a sparse file may have a terabyte of them.
+  // JSON never has a zero byte. The parser complains about it; a sparse file may have a terabyte of them.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) text = text.substr(0, zero + 1);
   const Scan scan = scan_json(text);
   if (scan.too_deep != std::string_view::npos)
     return invalid_input(binary::place(name, offset + scan.too_deep),
                          "arrays and objects are nested deeper than " + std::to_string(kDeepestJson) + " levels");
-  // The library refuses numbers beyond double wherever they stand. The shortest is 1e309: longer than null.
+  // The library refuses numbers beyond double everywhere. The shortest is 1e309, which is longer than null.
   std::string replaced;
   if (!scan.too_large.empty()) {
     replaced = text;

@@ -1,8 +1,8 @@
-/// JSON from outside, read with a place for every complaint. Private to io.
+/// Reads JSON from outside, with a place for every complaint. Private to io.
 ///
-/// A JsonView is a value of a document and its JSON pointer (RFC 6901). Its getters check type and range; the first
-/// complaint of a document is kept in a JsonComplaint, and after it every getter returns its fallback, so that a parser
-/// reads one entity in straight lines and asks once whether all went well.
+/// A JsonView is a value of a document and its JSON pointer (RFC 6901). Its getters check type and range. The first
+/// complaint of a document is kept in a JsonComplaint, and after it every getter returns its fallback. So a parser
+/// reads one entity without branches, and asks once whether all went well.
 #ifndef CHRONORMAL_IO_JSON_JSON_H_
 #define CHRONORMAL_IO_JSON_JSON_H_
 
@@ -20,24 +20,23 @@
 
 namespace chronormal::inline internal {
 
-/// Arrays and objects may be nested so deep; glTF itself needs about ten.
+/// The deepest allowed nesting of arrays and objects; glTF itself needs about ten levels.
 inline constexpr std::size_t kDeepestJson = 256;
 
-/// Takes the objects of a long list while it is parsed, so that they need no memory of their own: every object in the
-/// array `key` of the root is given to `take` with its index, and dropped. What is no object stays in the array.
+/// Takes the objects of a long list while it is parsed, so that they need no memory: every object in the array `key` of
+/// the root is given to `take` with its index, and dropped. Other items stay in the array.
 struct JsonItems {
   std::string_view key;
   std::function<void(std::size_t index, const nlohmann::json& item)> take;
 };
 
 /// Parses UTF-8 text (a byte order mark is allowed) that begins at byte `offset` of the file `name`. Numbers beyond
-/// double become infinity, about which a JsonView complains when it is asked for them.
-/// Errors: kInvalidInput with the place "NAME, byte N": no JSON, or nested deeper than kDeepestJson (found before
-/// anything is built).
+/// double become infinity, about which a JsonView complains when it is asked for them. Errors: kInvalidInput with the
+/// place "NAME, byte N": no JSON, or nested deeper than kDeepestJson (found before anything is built).
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& name, std::size_t offset,
                                                 const JsonItems& items);
 
-/// The first thing that was wrong in a document.
+/// Keeps the first thing that was wrong in a document.
 class JsonComplaint {
  public:
   explicit JsonComplaint(std::string name) : name_(std::move(name)) {}
@@ -45,13 +44,13 @@ class JsonComplaint {
   void add(const std::string& pointer, std::string message) {
     if (!first_) first_ = invalid_input(place(pointer), std::move(message));
   }
-  /// Complains of what was found before.
+  /// Complains with an error that was found before.
   void add(Error error) {
     if (!first_) first_ = std::move(error);
   }
   [[nodiscard]] std::string place(const std::string& pointer) const;
   [[nodiscard]] const std::optional<Error>& first() const noexcept { return first_; }
-  /// The same, after which there is none.
+  /// Returns the first complaint, and forgets it.
   [[nodiscard]] std::optional<Error> take() noexcept { return std::exchange(first_, std::nullopt); }
 
  private:
@@ -64,34 +63,34 @@ class JsonView {
   JsonView(const nlohmann::json& value, std::string pointer, JsonComplaint& complaint)
       : value_(&value), pointer_(std::move(pointer)), complaint_(&complaint) {}
 
-  /// Whether the object has this member. False for values that are no objects.
+  /// Returns whether the object has this member. Values that are not objects have none.
   [[nodiscard]] bool has(const char* key) const { return find(key) != nullptr; }
 
-  /// A member that is an object or an array of at least one item, as a view; nothing where it is missing, or after a
-  /// complaint.
+  /// Returns a member that is an object or an array of at least one item, as a view, or nothing if it is missing, or
+  /// after a complaint.
   [[nodiscard]] std::optional<JsonView> object(const char* key) const;
   [[nodiscard]] std::optional<JsonView> array(const char* key) const;
 
-  /// The items of an array, or members of an object.
+  /// Returns the number of items of an array, or of members of an object.
   [[nodiscard]] std::size_t size() const noexcept { return value_->size(); }
   [[nodiscard]] JsonView item(std::size_t i) const { return {(*value_)[i], pointer(i), *complaint_}; }
   /// Complains unless the value itself is an object.
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  /// A whole number from 0 to most; 4.0 is one, as glTF asks.
+  /// Return a whole number from 0 to most; 4.0 is one, as glTF demands.
   [[nodiscard]] std::optional<std::size_t> find_count(const char* key, std::size_t most) const;
   [[nodiscard]] std::size_t count(const char* key, std::size_t most, std::size_t fallback) const;
   [[nodiscard]] std::size_t required_count(const char* key, std::size_t most) const;
-  /// An index below count: "there are only N WHAT" otherwise.
+  /// Return an index below count, and complain otherwise: "there are only N WHAT".
   [[nodiscard]] std::optional<std::size_t> find_index(const char* key, std::size_t count, const char* what) const;
   [[nodiscard]] std::optional<std::size_t> required_index(const char* key, std::size_t count, const char* what) const;
-  /// The value itself as an index.
+  /// Returns the value itself as an index.
   [[nodiscard]] std::optional<std::size_t> as_index(std::size_t count, const char* what) const;
   [[nodiscard]] bool flag(const char* key) const;
   [[nodiscard]] std::string text(const char* key) const;
   [[nodiscard]] std::string required_text(const char* key) const;
-  /// The value itself as text or as a finite number.
+  /// Return the value itself as text or as a finite number.
   [[nodiscard]] std::string as_text() const;
   [[nodiscard]] double as_number() const;
 

@@ -12,14 +12,15 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
-// Longer runs of blanks are not repeated before what is added: a file must not grow by a megabyte for every number.
+// Longer runs of blanks are not repeated before what is added, so that a file does not grow by a megabyte for every
+// number.
 constexpr std::size_t kMostBlanks = 256;
 
 std::size_t skip_blanks(std::string_view text, std::size_t at) {
   return std::min(text.find_first_not_of(kBlanks, at), text.size());
 }
 
-// The end of the string whose quotation mark is at `at`.
+// Returns the end of the string whose quotation mark is at `at`.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   for (++at; text[at] != '"'; ++at) {
     if (text[at] == '\\') ++at;
@@ -66,7 +67,7 @@ bool is_named(std::string_view quoted, std::string_view name) {
   return quoted.substr(1, quoted.size() - 2) == name;
 }
 
-// The index that a token of a pointer stands for: without a sign and without zeros before it.
+// Returns the index that a token of a pointer stands for, which must have no sign and no leading zeros.
 std::optional<std::size_t> to_index(std::string_view token) {
   std::size_t index = 0;
   const char* const end = token.data() + token.size();
@@ -80,9 +81,9 @@ std::optional<std::size_t> to_index(std::string_view token) {
 // An item of an array or a member of an object.
 struct JsonText::Member {
   std::string_view key;   // with its quotation marks; empty in arrays
-  std::string_view text;  // of the value, as it stands in that of the node, or as it was added
+  std::string_view text;  // text of the value, in the node's text or as it was added
   bool added = false, replaced = false;
-  std::unique_ptr<Node> value;  // where a pointer led to it
+  std::unique_ptr<Node> value;  // set if a pointer led to it
 };
 
 struct JsonText::Node {
@@ -95,9 +96,9 @@ struct JsonText::Node {
 
   std::string_view text;
   bool changed = false, expanded = false;
-  std::vector<Member> members;  // those that were added come last
-  std::size_t end_of_last = 1;  // in text, where they are put
-  std::string_view blanks;      // before the last one
+  std::vector<Member> members;  // added members come last
+  std::size_t end_of_last = 1;  // place in text at which members are added
+  std::string_view blanks;      // blanks before the last member
   std::string_view colon = ":";
 };
 
@@ -139,7 +140,7 @@ std::string decode_json_string(std::string_view quoted) {
     }
     std::uint32_t code = hexadecimal(quoted.substr(i + 1, 4));
     i += 4;
-    // Two of them for one character beyond the first 65536.
+    // A character beyond the first 65536 takes two of these codes.
     if (code >= 0xD800 && code < 0xDC00 && i + 6 < quoted.size()) {
       code = 0x10000 + ((code - 0xD800) << 10) + (hexadecimal(quoted.substr(i + 3, 4)) - 0xDC00);
       i += 6;
@@ -269,7 +270,7 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
     }
     if (!node.is_object())
       return error("the array has " + std::to_string(node.members.size()) + " items, and no item " + token);
-    // What is missing is made as one.
+    // Missing levels are made together.
     std::string made = append ? std::string("[").append(value).append("]") : std::move(value);
     for (std::size_t k = tokens->size() - 1; k > i; --k) made = JsonObject().add((*tokens)[k], made).text();
     add_member(node, token, std::move(made));
@@ -340,7 +341,7 @@ void JsonText::add_pieces(const Node& node, std::vector<std::string_view>& resul
 }
 
 std::vector<std::string_view> JsonText::pieces() const {
-  // The root itself may have been replaced; around it are blanks.
+  // The root itself may have been replaced; keep the blanks around it.
   std::vector<std::string_view> result;
   const std::size_t begin = skip_blanks(text_, text_.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
   result.push_back(text_.substr(0, begin));

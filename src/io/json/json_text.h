@@ -1,6 +1,6 @@
-/// Changes to JSON text that leave every byte between them as it is. Private to io.
+/// Changes JSON text, and leaves every byte between the changes as it is. Private to io.
 ///
-/// A value is found by its JSON pointer (RFC 6901), and what takes its place is spliced into the text, so that numbers,
+/// A value is found by its JSON pointer (RFC 6901), and its replacement is spliced into the text, so that numbers,
 /// blanks and the order of members elsewhere stay as somebody wrote them:
 ///
 ///     JsonText json(R"({ "a": [1, 2], "n": 1e400 })");
@@ -9,8 +9,8 @@
 ///     join(json.pieces());                              // { "a": [1, 2, 3], "n": 1e400, "b": {"c":true} }
 ///
 /// Names     may be escaped in the text ("a" is "\u0061"); of members with the same name, the last counts.
-/// Order     each change works on what those before it made: a value that was set or appended can be changed again.
-/// Style     what is added takes the blanks of the last sibling, so that an indented list stays one.
+/// Order     each change works on the result of the earlier ones: a value that was set can be changed again.
+/// Style     an added value takes the blanks of the last sibling, so that an indented list stays indented.
 /// Cost      containers are taken apart once, when the first pointer leads through them.
 #ifndef CHRONORMAL_IO_JSON_JSON_TEXT_H_
 #define CHRONORMAL_IO_JSON_JSON_TEXT_H_
@@ -27,19 +27,20 @@
 
 namespace chronormal::inline internal {
 
-/// What some editors write before the text of a file: U+FEFF in UTF-8. JSON does not know it.
+/// The byte order mark that some editors write at the start of a file: U+FEFF in UTF-8. JSON does not allow it.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// The text of a string: "\u00e9" without its quotation marks, in UTF-8. quoted must be a valid JSON string.
+/// Returns the text of a string in UTF-8, given as "\u00e9" without its quotation marks. quoted must be a valid JSON
+/// string.
 [[nodiscard]] std::string decode_json_string(std::string_view quoted);
 
-/// The names in a pointer; nothing where it is none.
+/// Returns the names in a pointer, or nothing if it is no pointer.
 [[nodiscard]] std::optional<std::vector<std::string>> split_json_pointer(std::string_view pointer);
 
-/// The pointer to a member of what a pointer leads to.
+/// Returns the pointer to a member of the value at a pointer.
 [[nodiscard]] std::string with_json_token(const std::string& pointer, std::string_view name);
 
-/// How deep the arrays and objects of valid JSON are nested; 0 for a number.
+/// Returns how deep the arrays and objects of valid JSON are nested; 0 for a number.
 [[nodiscard]] std::size_t json_depth(std::string_view text) noexcept;
 
 /// A member of an object, or an item of an array, whose name is empty.
@@ -58,23 +59,22 @@ class JsonText {
   JsonText& operator=(const JsonText&) = delete;
   ~JsonText();
 
-  /// The text of a value; nothing where there is none.
-  /// Precondition: nothing was changed
+  /// Returns the text of a value, or nothing if there is none. Nothing may have been changed
   [[nodiscard]] std::optional<std::string_view> find(std::string_view pointer);
-  /// The members of an object or the items of an array, in their order; none for other values or where there is none.
-  /// Precondition: nothing was changed
+  /// Returns the members of an object or the items of an array, in their order; none for other values or if the pointer
+  /// leads nowhere. Nothing may have been changed
   [[nodiscard]] std::vector<JsonMember> members(std::string_view pointer);
 
-  /// Replaces a value, or adds it as a member; objects that are missing on the way are made. value must be JSON.
-  /// Errors: kInvalidInput with the pointer as the place, where it is no pointer, leads through what is neither object
-  /// nor array, or to an item that an array does not have; then nothing is changed.
+  /// Replaces a value, or adds it as a member, and makes objects that are missing on the way. value must be JSON.
+  /// Errors: kInvalidInput with the pointer as the place, if it is no pointer, leads through a value that is neither
+  /// object nor array, or to an item that an array does not have; then nothing is changed.
   [[nodiscard]] Status set(std::string_view pointer, std::string value);
-  /// Adds a value to the end of an array, which is made where it is missing. Errors: as above; the value is no array.
+  /// Adds a value to the end of an array, which is made if it is missing. Errors: as for set(); the value is no array.
   [[nodiscard]] Status append(std::string_view pointer, std::string value);
 
-  /// What was replaced or added, sorted: the outermost of what was added together.
+  /// Returns what was replaced or added, sorted; for values added together, only the outermost.
   [[nodiscard]] std::vector<std::string> pointers() const;
-  /// The text with its changes, in pieces that live as long as this and the source.
+  /// Returns the text with its changes, in pieces that live as long as this and the source.
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
  private:
@@ -93,7 +93,7 @@ class JsonText {
   std::deque<std::string> kept_;  // text of changes; they stay where they are
 };
 
-/// Pieces of a text as one.
+/// Joins the pieces of a text.
 [[nodiscard]] std::string join(const std::vector<std::string_view>& pieces);
 
 }  // namespace chronormal::inline internal

@@ -1,9 +1,10 @@
-/// JSON as text, for values that are spliced into a file: strings, numbers and objects. Private to io and workflow.
+/// Writes JSON as text, for values that are spliced into a file: strings, numbers and objects. Private to io and
+/// workflow.
 ///
 ///     edit.append("/meshes/0/primitives/0/targets", JsonObject().add("POSITION", 7).add("NORMAL", 9).text());
 ///
-/// A whole document is an nlohmann::ordered_json instead. It cannot hold what has to stay as it is: a number that
-/// somebody wrote as 4.0, a data URI of a gigabyte that is needed once.
+/// A whole document is an nlohmann::ordered_json instead. That cannot hold what must stay as it is: a number that
+/// somebody wrote as 4.0, or a data URI of a gigabyte that is needed once.
 #ifndef CHRONORMAL_IO_JSON_JSON_WRITER_H_
 #define CHRONORMAL_IO_JSON_JSON_WRITER_H_
 
@@ -13,15 +14,15 @@
 
 namespace chronormal::inline internal {
 
-/// A string as JSON. text must be UTF-8.
+/// Returns a string as JSON. text must be UTF-8.
 [[nodiscard]] std::string quote_json(std::string_view text);
 
-/// A number as JSON: the fewest digits that read back to the same float, or to the same double.
-/// It must be finite
+/// Returns a number as JSON: the fewest digits that read back to the same float, or to the same double. The number must
+/// be finite
 [[nodiscard]] std::string json_number(float value);
 [[nodiscard]] std::string json_number(double value);
 
-/// An object, member by member.
+/// Builds an object, member by member.
 class JsonObject {
  public:
   /// Adds a member whose value is JSON already.

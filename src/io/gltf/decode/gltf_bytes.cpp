@@ -24,7 +24,7 @@ std::uint32_t load_index(const char* at, Component component) noexcept {
   return binary::load<std::uint32_t>(at, kOrder);
 }
 
-// The largest value means "begin a new strip" to some hardware, and glTF forbids it.
+// Returns the largest index, which means "begin a new strip" to some hardware, and which glTF forbids.
 std::uint32_t restart_index(Component component) noexcept {
   if (component == Component::kUint8) return 0xFF;
   return component == Component::kUint16 ? 0xFFFF : 0xFFFFFFFF;
@@ -122,7 +122,7 @@ const Expansion& Bytes::expansion() {
   for (std::size_t i = 0; i < model_.buffers.size(); ++i) {
     const std::optional<std::string>& uri = model_.buffers[i].uri;
     if (!uri || is_data_uri(*uri) || !seen.insert(*uri).second) continue;
-    // A buffer that cannot be read counts nothing here; whoever reads its data reports the error.
+    // A buffer that cannot be read counts nothing here. The error is reported when its data is read.
     if (const Result<std::string_view> bytes = buffer(i)) found.add_read(bytes.value().size());
   }
   expansion_ = found;
@@ -232,7 +232,7 @@ Status Bytes::for_each_sparse(std::size_t index, const Put& put) {
   return Success{};
 }
 
-// What an accessor declares may be more than its buffer has: so memory is taken when that is there.
+// Opens the buffer before memory is taken, since an accessor may declare more than its buffer has.
 Status Bytes::open_buffer_of(const Accessor& accessor) {
   if (!accessor.view) return Success{};
   const Result<View> found = view(*accessor.view);

@@ -1,4 +1,4 @@
-/// The bytes of a glTF file as numbers: buffers are opened, views decompressed and accessors decoded when they are
+/// The bytes of a glTF file as numbers. Buffers are opened, views decompressed and accessors decoded when they are
 /// first asked for. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_DECODE_GLTF_BYTES_H_
 #define CHRONORMAL_IO_GLTF_DECODE_GLTF_BYTES_H_
@@ -20,28 +20,28 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// One number as glTF means it (section 3.6.2.2 of the specification): integers that are normalised are fractions.
+/// Returns one number as glTF defines it (section 3.6.2.2 of the specification): normalised integers are fractions.
 [[nodiscard]] double load_number(const char* at, Component component, bool normalized) noexcept;
 
-/// The bytes of a buffer view: of the file, or decompressed and shared with whoever looks at them.
+/// Holds the bytes of a buffer view, from the file, or decompressed and shared by all that hold it.
 struct View {
   std::string_view bytes;
-  std::shared_ptr<const std::string> owner;  ///< nullptr where they are of the file
+  std::shared_ptr<const std::string> owner;  ///< nullptr if they are in the file
 };
 
-/// Decompressed views are kept for the next that asks, up to so many bytes in all.
+/// Decompressed views are kept for later use, up to this many bytes in all.
 inline constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20;
 
-/// Where an asset and its files are.
+/// Says where an asset and its files are.
 struct Origin {
   std::string name;                     ///< for messages
-  std::optional<std::string> folder;    ///< of its files; nothing for standard input
+  std::optional<std::string> folder;    ///< of its files; none for standard input
   std::optional<std::string_view> bin;  ///< the BIN chunk
   bool allow_external = false;
   Expansion expansion;        ///< of the asset itself
-  FileResolver resolve = {};  ///< where its files come from; empty: the file system
+  FileResolver resolve = {};  ///< finds its files; empty for the file system
 
-  /// The path that a relative URI stands for (io/gltf/gltf_uri.h); place is for messages.
+  /// Returns the path that a relative URI stands for (io/gltf/gltf_uri.h); place is for messages.
   [[nodiscard]] Result<std::string> path_of(std::string_view uri, const std::string& place) const;
   /// Opens what path_of() found; place is for messages.
   [[nodiscard]] Result<FileBytes> open(const std::string& path, const std::string& place) const;
@@ -52,32 +52,33 @@ class Bytes {
   /// The model must outlive this, and so must the BIN chunk.
   Bytes(const Model& model, Origin origin) : model_(model), origin_(std::move(origin)) {}
 
-  /// The bytes of a buffer, at least as many as it declares.
-  /// Errors: there are none, or too few; the file can not be read.
+  /// Returns the bytes of a buffer, at least as many as it declares. Errors: there are none, or too few; the file
+  /// cannot be read.
   [[nodiscard]] Result<std::string_view> buffer(std::size_t index);
 
-  /// The bytes of a view, decompressed where they are compressed.
+  /// Returns the bytes of a view, decompressed if necessary.
   [[nodiscard]] Result<View> view(std::size_t index);
 
-  /// The numbers of an accessor that parse_model() has checked, count x components of them: integers that are
-  /// normalised become fractions (f = c / 127, at least -1, and so on), others their value.
-  /// Errors: of the buffer; numbers that are not finite; sparse indices that do not ascend.
+  /// Returns the numbers of an accessor that parse_model() has checked, count x components of them. Normalised integers
+  /// become fractions (f = c / 127, at least -1, and so on), others their value. Errors: errors of the buffer; numbers
+  /// that are not finite; sparse indices that do not ascend.
   [[nodiscard]] Result<std::vector<float>> floats(std::size_t accessor);
 
-  /// The same of times of keys, which must ascend from 0 or more.
+  /// Returns the numbers of an accessor as times of keys, which must ascend from 0 or more.
   [[nodiscard]] Result<std::vector<float>> times(std::size_t accessor);
 
-  /// The same as indices, of which every one must be below vertex_count.
+  /// Returns the numbers of an accessor as indices, each of which must be below vertex_count.
   [[nodiscard]] Result<std::vector<std::uint32_t>> indices(std::size_t accessor, std::size_t vertex_count);
 
-  /// How much the asset may ask for, with the files of its buffers as far as they can be opened: each counts once.
+  /// Returns how much memory the asset may ask for. The files of its buffers count once each, as far as they can be
+  /// opened.
   [[nodiscard]] const Expansion& expansion();
 
-  /// Gives memory back that holds what was read of buffers in files of their own.
+  /// Gives memory back that holds what was read of buffers in separate files.
   void release() const noexcept;
 
   [[nodiscard]] std::string place(std::string_view pointer) const;
-  /// The place of an accessor: "NAME, /accessors/3".
+  /// Returns the place of an accessor: "NAME, /accessors/3".
   [[nodiscard]] std::string accessor_place(std::size_t index) const;
 
   [[nodiscard]] const Origin& origin() const noexcept { return origin_; }
@@ -85,7 +86,7 @@ class Bytes {
  private:
   [[nodiscard]] Status open_buffer_of(const Accessor& accessor);
   [[nodiscard]] Result<std::string> decompress(std::size_t view_index, const Compression& compression);
-  /// Replaces elements of the accessor: put(element, bytes of its value).
+  /// Replaces elements of the accessor by put(element, bytes of its value).
   template <class Put>
   [[nodiscard]] Status for_each_sparse(std::size_t accessor, const Put& put);
   template <class Read>
@@ -97,7 +98,7 @@ class Bytes {
   std::map<std::size_t, std::string> embedded_;                      // by buffer: decoded data URIs
   std::map<std::size_t, std::shared_ptr<const std::string>> views_;  // by view: decompressed
   std::size_t kept_bytes_ = 0;                                       // of views_
-  std::optional<Expansion> expansion_;                               // once it was asked for
+  std::optional<Expansion> expansion_;                               // set when it was first asked for
 };
 
 }  // namespace chronormal::inline internal::gltf

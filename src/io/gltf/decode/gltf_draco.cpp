@@ -42,7 +42,7 @@ draco::DataType data_type(Component component) {
   return draco::DT_INVALID;
 }
 
-// The bytes are read here and not by the library's conversion, which believes flags of the file.
+// Reads the bytes here and not by the library's conversion, which trusts flags of the file.
 Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& accessor, const std::string& place,
                       std::vector<float>& result) {
   const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
@@ -71,8 +71,8 @@ Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& a
   return Success{};
 }
 
-// How many faces the compressed mesh says that it has: the library takes memory for them before it reads any. Nothing
-// where that cannot be found out.
+// Returns how many faces the compressed mesh declares, or nothing if that cannot be found out. The library takes memory
+// for them before it reads any.
 std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
   draco::DracoHeader header;
   if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return std::nullopt;
@@ -87,7 +87,7 @@ std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
     return ok ? std::optional(number) : std::nullopt;
   };
   if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING) return count(version >= DRACO_BITSTREAM_VERSION(2, 2));
-  // Before the faces stand how they are walked, new vertices (up to 2.1), and vertices.
+  // Before the faces come the method of traversal, new vertices (up to 2.1), and vertices.
   const bool is_varint = version >= DRACO_BITSTREAM_VERSION(2, 0);
   std::uint8_t traversal = 0;
   if (!buffer.Decode(&traversal)) return std::nullopt;
@@ -98,7 +98,7 @@ std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
 // Decodes a mesh of as many vertices as its accessors declare.
 Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::size_t vertex_count,
                                                  const Expansion& expansion, const std::string& place) {
-  constexpr std::uint64_t kBytesPerFace = 64;  // of the library's tables, and ours
+  constexpr std::uint64_t kBytesPerFace = 64;  // for the library's tables, and ours
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::unique_ptr<draco::Mesh> mesh;
@@ -116,7 +116,7 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
       else
         reason = decoded.status().error_msg_string();
     }
-  } catch (const std::exception& exception) {  // lengths that it believed
+  } catch (const std::exception& exception) {  // it trusted lengths of the file
     reason = exception.what();
   }
   if (!mesh) return invalid_input(place, std::string("the compressed mesh is broken: ").append(reason));

@@ -1,4 +1,4 @@
-/// Primitives that KHR_draco_mesh_compression keeps compressed. Private to io.
+/// Decodes primitives that KHR_draco_mesh_compression compresses. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_DECODE_GLTF_DRACO_H_
 #define CHRONORMAL_IO_GLTF_DECODE_GLTF_DRACO_H_
 
@@ -16,17 +16,16 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Decodes triangles, positions and, where they are wanted and there, normals and tangents; what the numbers mean is
-/// said by the accessors of the primitive, which must have draco.
-/// Errors: kInvalidInput at place: broken bytes, no triangles, another number of vertices than the accessors declare,
-/// an attribute that is not there or of another type; more faces than expansion allows, which is asked first.
+/// Decodes triangles, positions and, if they are wanted and present, normals and tangents. The accessors of the
+/// primitive say what the numbers mean; it must have draco. Errors: kInvalidInput at place: broken bytes, no triangles,
+/// another number of vertices than the accessors declare, an attribute that is missing or of another type; more faces
+/// than expansion allows, which is asked first.
 [[nodiscard]] Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model,
                                                 const PrimitiveSource& source, bool with_shading,
                                                 const Expansion& expansion, const std::string& place);
 
-/// Decodes some attributes of a mesh of so many vertices, each with an id in it, in the order of
-/// vertices that decode_draco() has.
-/// Errors: as above; those of an attribute at place_of(n)
+/// Decodes some attributes of a mesh of so many vertices, each with an id in it, in the order of vertices of
+/// decode_draco(). Errors: as for decode_draco(); errors of an attribute are at place_of(n)
 [[nodiscard]] Result<std::vector<std::vector<float>>> decode_draco_attributes(
     std::string_view bytes, const Model& model, std::size_t vertex_count, std::span<const AttributeSource> attributes,
     const Expansion& expansion, const std::string& place, const std::function<std::string(std::size_t n)>& place_of);

@@ -19,14 +19,14 @@ void decode_element(char* element) noexcept {
   float x = load(0), y = load(1);
   const float z = load(2) - (std::fabs(x) + std::fabs(y));
 
-  // Folds the corners of the square, which are the half with negative z, back.
+  // Fold the corners of the square, which are the half with negative z, back.
   const float fold = std::min(z, 0.0F);
   x += x < 0 ? -fold : fold;
   y += y < 0 ? -fold : fold;
 
   const float length = std::sqrt(x * x + (y * y + z * z));
   const float scale = length > 0 ? static_cast<float>(std::numeric_limits<T>::max()) / length : 0.0F;
-  const auto store = [&](std::size_t i, float component) {  // halves to even
+  const auto store = [&](std::size_t i, float component) {  // rounds halves to even
     binary::store(element + i * sizeof(T), static_cast<T>(std::nearbyint(component * scale)), kOrder);
   };
   store(0, x);

@@ -18,7 +18,7 @@ namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::size_t kFloat = 5126, kArrayBuffer = 34962;
-// What the JSON of a sparse accessor has more than that of a dense one, about.
+// The JSON of a sparse accessor is about this much longer than the JSON of a dense one.
 constexpr std::size_t kSparseJson = 130;
 
 void pad(std::string& bytes) { bytes.resize((bytes.size() + 3) / 4 * 4, '\0'); }
@@ -30,7 +30,7 @@ std::string bytes_of(std::span<const float> values) {
   return bytes;
 }
 
-// The facts about an array that one pass over its values finds.
+// Holds the facts about an array that one pass over its values finds.
 struct ArraySurvey {
   std::array<float, 3> least{}, most{};  // of each component
   std::size_t used = 0, last_used = 0;   // elements that are not zero
@@ -84,8 +84,8 @@ ArraySurvey survey_array(std::span<const float> values, std::size_t components) 
   return all;
 }
 
-// A bound of each component, as JSON. Readers compare it in double with what they find in the array, so that its digits
-// have to read back as a double.
+// Returns a bound of each component, as JSON. Readers compare it in double with what they find in the array, so its
+// digits must read back as a double.
 std::string bound_json(std::span<const float> bounds) {
   std::string json = "[";
   for (std::size_t c = 0; c < bounds.size(); ++c)
@@ -93,7 +93,7 @@ std::string bound_json(std::span<const float> bounds) {
   return json + "]";
 }
 
-// "bufferView":3,"byteOffset":16
+// Adds "bufferView":3,"byteOffset":16.
 void add_place(std::size_t view, std::uint64_t offset, JsonObject& object) {
   object.add("bufferView", view);
   if (offset > 0) object.add("byteOffset", std::to_string(offset));

@@ -1,4 +1,4 @@
-/// New arrays of a glTF file: how they are stored, and the accessors and buffer views that name them. Private to io.
+/// New arrays of a glTF file: their storage, and the accessors and buffer views that name them. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_ARRAYS_H_
 #define CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_ARRAYS_H_
 
@@ -17,47 +17,48 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// How many bytes an array of floats takes, as the shorter of a dense and a sparse one: of `count` items `used` are
-/// other than zero, the last of them at `last_used`. Zeros alone take none.
+/// Returns how many bytes an array of floats takes, as the shorter of a dense and a sparse one. Of `count` items `used`
+/// are not zero, the last of them at `last_used`. An array of zeros takes none.
 [[nodiscard]] std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t count,
                                           std::size_t components);
 
-/// Arrays of one kind share a buffer view: vectors, whose target is ARRAY_BUFFER (section 3.6.2.4 of the
-/// specification), scalars, and the indices and values of sparse accessors, neither of which may have a target.
+/// Stores new arrays. Arrays of one kind share a buffer view: vectors, whose target is ARRAY_BUFFER (section 3.6.2.4 of
+/// the specification), scalars, and the indices and values of sparse accessors, neither of which may have a target.
 class NewArrays {
  public:
   /// Puts the bytes of the arrays into the spool.
   explicit NewArrays(Spool spool = {}) : spool_(std::move(spool)) {}
 
-  /// Stores an array of `components` numbers per element, 1 or 3, unless there is the same already. Returns its index.
+  /// Stores an array of `components` numbers per element, 1 or 3, unless an equal one exists already. Returns its
+  /// index.
   std::size_t add(std::span<const float> values, std::size_t components, const GltfVectors& options);
 
-  /// Stores a table of scalars, of which never more than a few rows are in memory beside the spool: fill(row, values)
-  /// writes one row over zeros. It has bytes for zeros and no bounds, and is not looked for among the others.
+  /// Stores a table of scalars row by row: fill(row, values) writes one row over zeros. Never more than a few rows are
+  /// in memory beside the spool. The table has bytes even for zeros, no bounds, and is not compared with other arrays.
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
-  /// Puts the arrays into another order: place i gets the array that was order[i], and has the index i from now on. No
-  /// array may be added after that. order must have each index once
+  /// Puts the arrays into another order: place i gets the array that was order[i], which has the index i from now on.
+  /// No array may be added after that. order must have each index once
   void put_in_order(std::span<const std::size_t> order);
 
   /// Takes the spool out, so that it can be cleared and used again.
   [[nodiscard]] Spool take_spool() && { return std::move(spool_); }
 
-  /// Whether all bytes could be put aside. Errors: those of Spool.
+  /// Returns whether all bytes could be put aside. Errors: errors of Spool.
   [[nodiscard]] const Status& status() const noexcept { return spool_.status(); }
 
   [[nodiscard]] std::size_t count() const noexcept { return arrays_.size(); }
-  /// Of all bytes, a multiple of 4.
+  /// Returns the number of all bytes, a multiple of 4.
   [[nodiscard]] std::uint64_t byte_count() const noexcept;
   [[nodiscard]] std::size_t view_count() const noexcept;
-  /// Gives all bytes to take, in the order of the buffer, and forgets them. Errors: those of Spool::give_away().
+  /// Gives all bytes to take, in the order of the buffer, and forgets them. Errors: errors of Spool::give_away().
   [[nodiscard]] Status give_away(const Spool::Take& take);
-  /// All bytes, in the order of the buffer, as views, which live as long as this. The spool must be in memory
+  /// Returns all bytes, in the order of the buffer, as views, which live as long as this. The spool must be in memory
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
-  /// The JSON of buffer views and of accessors, in the order of their indices, for bytes that begin at `offset` of a
-  /// buffer, and buffer views that are numbered from first_view.
+  /// Holds the JSON of buffer views and of accessors, in the order of their indices, for bytes that begin at `offset`
+  /// of a buffer, and buffer views that are numbered from first_view.
   struct Json {
     std::vector<std::string> views, accessors;
   };
@@ -72,18 +73,18 @@ class NewArrays {
 
     bool operator==(const Array&) const = default;
   };
-  // The bytes of an array, each padded to a multiple of 4.
+  // Holds the bytes of an array, each part padded to a multiple of 4.
   struct Encoded {
     Array array;
-    std::string_view dense;       // of the values themselves, or of `swapped` where the machine has another order
-    std::string indices, values;  // of the sparse_count elements that are not zero
+    std::string_view dense;       // the values, or `swapped` if the machine has another byte order
+    std::string indices, values;  // for the sparse_count elements that are not zero
     std::string swapped;
     std::size_t hash = 0;
 
     Encoded() = default;
-    Encoded(Encoded&&) = delete;  // since views would not follow
+    Encoded(Encoded&&) = delete;  // views would not follow
   };
-  // The same bytes in the spool, one after the other from `at` on.
+  // Holds the place of these bytes in the spool, one part after the other from `at` on.
   struct Stored {
     Array array;
     std::uint64_t at = 0, dense = 0, indices = 0, values = 0;

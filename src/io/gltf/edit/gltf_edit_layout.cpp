@@ -14,14 +14,14 @@ namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::string_view kZeros{"\0\0\0\0\0\0\0", 7};
-// What is moved into the BIN chunk begins at a multiple of this, which suits numbers of every size.
+// Bytes that are moved into the BIN chunk begin at a multiple of this, which suits numbers of every size.
 constexpr std::size_t kViewAlignment = 8;
 
 std::string item_pointer(const char* array, std::size_t index) {
   return std::string("/").append(array).append("/").append(std::to_string(index));
 }
 
-// The media type of an image by its first bytes; nullptr where it is none that glTF files have.
+// Returns the media type of an image by its first bytes, or nullptr if glTF files cannot have it.
 const char* media_type_of(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG\r\n\x1A\n")) return "image/png";
   if (bytes.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
@@ -31,7 +31,7 @@ const char* media_type_of(std::string_view bytes) {
   return nullptr;
 }
 
-// Pieces as base64, as if they were one.
+// Appends the pieces as base64, as if they were one.
 void append_base64(std::string& text, const std::vector<std::string_view>& pieces) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::size_t size = 0;
@@ -49,7 +49,7 @@ void append_base64(std::string& text, const std::vector<std::string_view>& piece
   text.append((3 - size % 3) % 3, '=');
 }
 
-// Adds the members of an object but for some.
+// Adds the members of an object except some.
 void add_other_members(const std::vector<JsonMember>& members, std::initializer_list<std::string_view> without,
                        JsonObject& object) {
   for (const JsonMember& member : members) {
@@ -62,7 +62,7 @@ const JsonMember* find_last(const std::vector<JsonMember>& members, std::string_
   return found == members.rend() ? nullptr : &*found;
 }
 
-// A whole number that the reader has accepted, or that stands in an extension nobody read; 4.0 is one too.
+// Returns a whole number that the reader has accepted, or that is in an extension that was not read; 4.0 is one too.
 std::optional<std::size_t> to_count(const JsonMember* member) {
   constexpr double kMost = 9007199254740992;  // 2^53
   if (member == nullptr) return std::nullopt;
@@ -126,7 +126,7 @@ Result<GlbPieces> EditLayout::file() const {
   return chronormal::lay_out_glb(json, bin_, document_.chunks.rest, target_.name);
 }
 
-// The images that are files beside the source.
+// Finds the images that are files beside the source.
 Status EditLayout::find_images() {
   const Origin& origin = document_.bytes.origin();
   const std::size_t count = document_.source.members("/images").size();
@@ -152,7 +152,7 @@ Status EditLayout::find_images() {
   return Success{};
 }
 
-// The accessors of new arrays, whose bytes begin at offset of a buffer.
+// Adds the accessors of new arrays, whose bytes begin at offset of a buffer.
 Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   NewArrays::Json json = document_.arrays.json(buffer, offset, document_.model.views.size());
   for (std::string& view : json.views) {
@@ -164,7 +164,8 @@ Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   return Success{};
 }
 
-// Finds the arrays that the changes leave unused in buffers that the result holds itself: holds(buffer) says which.
+// Finds the arrays that the changes leave unused in buffers that the result holds itself, for which holds(buffer) is
+// true.
 template <class Holds>
 Status EditLayout::leave_out_unused(const Holds& holds) {
   if (!document_.without_unused) return Success{};
@@ -193,8 +194,8 @@ Status EditLayout::lay_out_glb() {
   }
   const std::uint64_t array_bytes = document_.arrays.byte_count();
   const bool grows = array_bytes > 0 || !images_.empty();
-  // A .gltf file becomes one with a BIN chunk; a GLB stays as it is where it can. Its buffer 0 has to be the BIN chunk
-  // where that gets more bytes.
+  // A .gltf file becomes one with a BIN chunk. A GLB stays as it is if possible; if its BIN chunk gets more bytes, that
+  // must be its buffer 0.
   const bool must_move =
       !buffers.empty() && (!document_.is_glb || (target_.stands_alone && any_file) || (grows && !is_bin(0)));
   const auto is_held = [&](std::size_t i) { return is_bin(i) || (must_move && buffers[i].uri); };
@@ -227,7 +228,7 @@ Status EditLayout::lay_out_glb() {
     if (Status status = set(pointer, of_image.text()); !status) return status;
   }
 
-  if (must_move && bin_size_ == 0) (void)add_to_bin(kZeros, 1);  // buffer 0 needs bytes, even where no other has any
+  if (must_move && bin_size_ == 0) (void)add_to_bin(kZeros, 1);  // buffer 0 needs bytes, even if no other has any
   JsonObject buffer;
   buffer.add("byteLength", bin_size_);
   if (must_move) {
@@ -239,8 +240,8 @@ Status EditLayout::lay_out_glb() {
   return append("/buffers", buffer.text());
 }
 
-// Moves all buffers that have bytes into the BIN chunk, which is buffer 0 then. Those without any, which compressed
-// buffer views name as a fallback, stay, behind it.
+// Moves all buffers that have bytes into the BIN chunk, which then is buffer 0. Buffers without bytes, which compressed
+// buffer views name as a fallback, stay behind it.
 Status EditLayout::move_buffers() {
   const std::vector<Buffer>& buffers = document_.model.buffers;
   std::vector<Moved> moved;
@@ -273,7 +274,7 @@ Status EditLayout::move_buffers() {
   return Success{};
 }
 
-// A buffer view, or the extension of one. offset: where it begins in its buffer; nothing: where the source says.
+// Moves a buffer view, or the extension of one. offset is its new start in its buffer; none if it is as in the source.
 Status EditLayout::move_view(const std::string& pointer, const std::vector<Moved>& moved,
                              std::optional<std::size_t> offset) {
   const std::vector<JsonMember> members = document_.source.members(pointer);

@@ -1,4 +1,4 @@
-/// Lays an edited glTF document out as a file: which bytes go where, and what its JSON says about that. Private to io.
+/// Lays an edited glTF document out as a file: decides which bytes go where, and says so in its JSON. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_LAYOUT_H_
 #define CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_LAYOUT_H_
 
@@ -21,40 +21,41 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// What is written. All of it must outlive the layout.
+/// Holds what is written. All of it must outlive the layout.
 struct EditedDocument {
   const Model& model;
   Bytes& bytes;
   const GlbChunks& chunks;
   bool is_glb;
-  JsonText& source;  ///< the JSON as it was
+  JsonText& source;  ///< the original JSON
   const NewArrays& arrays;
-  bool without_unused = false;  ///< whether arrays are left out that nothing refers to any more
+  bool without_unused = false;  ///< whether to leave out arrays that nothing refers to any more
 };
 
 struct LayoutTarget {
   std::string name;           ///< for messages
   bool glb = false;           ///< the container
   bool stands_alone = false;  ///< references to files beside the source would lead nowhere
-  bool with_bytes = true;     ///< false where only pointers are wanted: data URIs are left empty
+  bool with_bytes = true;     ///< false if only pointers are wanted: data URIs are left empty
 };
 
 class EditLayout {
  public:
-  /// changed: the JSON of the document with its changes, which this adds to.
+  /// changed is the JSON of the document with its changes, to which this adds.
   EditLayout(const EditedDocument& document, LayoutTarget target, JsonText changed)
       : document_(document), target_(std::move(target)), json_(std::move(changed)) {}
   EditLayout(EditLayout&&) noexcept = default;
 
-  /// Decides all. Errors: a buffer or an image that cannot be read, too much for a GLB, a change that is not possible.
+  /// Decides everything. Errors: a buffer or an image that cannot be read, too much for a GLB, a change that is not
+  /// possible.
   [[nodiscard]] Status run();
 
-  /// After run().
+  /// These are valid after run().
   [[nodiscard]] const JsonText& json() const noexcept { return json_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
-  /// How many bytes of the source are left out.
+  /// Returns how many bytes of the source are left out.
   [[nodiscard]] std::size_t unused_bytes() const noexcept { return unused_.bytes(); }
-  /// The file, in pieces that live as long as this.
+  /// Returns the file, in pieces that live as long as this.
   [[nodiscard]] Result<GlbPieces> file() const;
 
  private:
@@ -63,7 +64,7 @@ class EditLayout {
     const char* media_type = "";
     std::string_view bytes;
   };
-  // Where a buffer of the source is now.
+  // Says where a buffer of the source is now.
   struct Moved {
     std::size_t buffer = 0, offset = 0;
   };

@@ -15,7 +15,7 @@ using Range = UnusedArrays::Range;
 
 constexpr std::size_t kRangeAlignment = 4;
 
-// Extensions whose objects refer to textures, nodes and materials, but neither to accessors nor to buffer views.
+// Lists extensions whose objects refer to textures, nodes and materials, but neither to accessors nor to buffer views.
 constexpr std::string_view kKnownExtensions[] = {"KHR_materials_",
                                                  "KHR_texture_",
                                                  "EXT_texture_",
@@ -36,7 +36,7 @@ bool is_known(std::string_view extension) {
                      [&](std::string_view known) { return extension.starts_with(known); });
 }
 
-// Whether every extension that is used anywhere in a value is a known one.
+// Returns whether every extension that is used anywhere in a value is a known one.
 bool has_known_extensions_only(const Json& value) {
   if (value.is_object()) {
     const auto extensions = value.find("extensions");
@@ -48,7 +48,7 @@ bool has_known_extensions_only(const Json& value) {
   return !value.is_structured() || std::all_of(value.begin(), value.end(), has_known_extensions_only);
 }
 
-// A member of an object or an item of an array; null where there is none.
+// Returns a member of an object or an item of an array, or null if there is none.
 const Json& at(const Json& value, const char* key) {
   static const Json kNull;
   const auto found = value.is_object() ? value.find(key) : value.end();
@@ -94,14 +94,14 @@ struct Part {
   std::size_t view = 0, offset = 0, length = 0;
 };
 
-// The bytes of elements at a stride; nothing where that is no number.
+// Returns the bytes of elements at a stride, or nothing on overflow.
 std::optional<std::size_t> length_of(std::size_t count, std::size_t stride, std::size_t size) {
   if (count == 0) return 0;
   if (stride > 0 && count - 1 > (static_cast<std::size_t>(-1) - size) / stride) return std::nullopt;
   return (count - 1) * stride + size;
 }
 
-// Nothing where a part is not inside its view.
+// Returns the parts of an accessor, or nothing if one of them is not inside its view.
 std::optional<std::vector<Part>> parts_of(const Model& model, const Accessor& accessor) {
   std::vector<Part> parts;
   if (accessor.is_matrix && component_size(accessor.component) < kRangeAlignment)
@@ -126,7 +126,7 @@ std::optional<std::vector<Part>> parts_of(const Model& model, const Accessor& ac
   return parts;
 }
 
-// Ascending and apart.
+// Returns the ranges in ascending order, joined so that they do not touch.
 std::vector<Range> joined(std::vector<Range> ranges) {
   std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });
   std::vector<Range> result;
@@ -159,7 +159,7 @@ std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const st
   return result;
 }
 
-// Says where a byte is found after some ranges were left out.
+// Tells where a byte is found after some ranges were left out.
 class Moved {
  public:
   explicit Moved(const std::vector<Range>& ranges) : ranges_(ranges) {
@@ -177,7 +177,7 @@ class Moved {
 
  private:
   const std::vector<Range>& ranges_;
-  std::vector<std::size_t> before_;  // what is left out before each
+  std::vector<std::size_t> before_;  // bytes that are left out before each
 };
 
 }  // namespace
@@ -215,7 +215,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
   };
   const Result<Json> source = parse(before), edited = parse(after);
   if (!source || !edited || !has_known_extensions_only(edited.value())) return {};
-  // Nobody knows what arrays that could not be read refer to.
+  // Nobody knows what arrays that could not be read refer to, so leave nothing out.
   const auto has_fault = [](const auto& array) { return array.fault.has_value(); };
   if (std::any_of(model.accessors.begin(), model.accessors.end(), has_fault) ||
       std::any_of(model.views.begin(), model.views.end(), has_fault))
@@ -223,7 +223,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
   const std::size_t count = model.accessors.size();
   const References was(source.value(), count), is(edited.value(), count);
 
-  // A view is used where an image or a living accessor refers to it, and unused where only dead accessors do.
+  // A view is used if an image or a living accessor refers to it, and unused if only dead accessors do.
   std::vector<bool> is_used(model.views.size(), false), is_unused(model.views.size(), false);
   for (const Json& image : at(edited.value(), "images")) {
     const Json& view = at(image, "bufferView");
@@ -268,7 +268,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
     std::vector<Range>& ranges = result.ranges[b];
     if (sizes[b]) ranges = aligned_difference(joined(std::move(unused[b])), joined(std::move(used[b])));
     if (result.bytes_of(b) > 0 && result.bytes_of(b) == sizes[b]) {
-      ranges.front().begin = kRangeAlignment;  // it is one range then
+      ranges.front().begin = kRangeAlignment;  // so it is one range
       if (ranges.front().begin == ranges.front().end) ranges.clear();
     }
     moved.emplace_back(ranges);

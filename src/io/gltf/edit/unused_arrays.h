@@ -1,15 +1,15 @@
-/// The arrays of a glTF file that an edit leaves without anybody who refers to them. Private to io.
+/// Finds the arrays of a glTF file to which nothing refers after an edit. Private to io.
 ///
-///     unused    accessors that the source refers to and the edited document does not: from primitives, targets, samplers
-///               and skins. What nobody referred to before is not ours, and stays.
-///     left out  bytes of buffers that the result holds itself (the BIN chunk, data URIs, files that it takes in), where
-///               they belong to such accessors and to nothing else; what follows moves towards the front of its buffer by
-///               whole multiples of 4, so that every number stays aligned
+///     unused    accessors that the source refers to and the edited document does not: from primitives, targets,
+///               samplers and skins. Accessors that nothing referred to before are not ours, and stay.
+///     left out  bytes of buffers that the result holds itself (the BIN chunk, data URIs, files that it takes in), if
+///               they belong to such accessors and to nothing else; the bytes behind them move towards the front of the
+///               buffer by whole multiples of 4, so that every number stays aligned
 ///
-/// Indices stay: an unused accessor becomes one of a single zero, and a buffer view of unused ones a view of one byte. So a
-/// buffer of nothing but unused arrays keeps its first four bytes.
-/// An extension may refer to accessors and views where only its author knows: files with another one than those that
-/// are known to do without keep all their bytes.
+/// Indices stay: an unused accessor becomes one of a single zero, and a buffer view of unused accessors a view of one
+/// byte. So a buffer of nothing but unused arrays keeps its first four bytes.
+/// An extension may refer to accessors and views in places that only its author knows. So files with an extension that
+/// is not known to do without keep all their bytes.
 #ifndef CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 #define CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 
@@ -30,20 +30,21 @@ struct UnusedArrays {
     std::size_t begin = 0, end = 0;
   };
 
-  std::vector<std::vector<Range>> ranges;  ///< of each buffer, ascending and apart; empty where nothing is left out
-  std::vector<std::size_t> view_offsets;   ///< where each view begins in its buffer then; empty as well
-  /// Pointers and the values that they need once these bytes are left out.
+  std::vector<std::vector<Range>> ranges;  ///< of each buffer, ascending and apart; empty if nothing is left out
+  std::vector<std::size_t> view_offsets;   ///< where each view then begins in its buffer; empty as well
+  /// Pointers, and the values that they need once these bytes are left out.
   std::vector<std::pair<std::string, std::string>> changes;
 
   [[nodiscard]] bool any() const noexcept { return !ranges.empty(); }
   [[nodiscard]] std::size_t bytes_of(std::size_t buffer) const noexcept;
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// The pieces of a buffer that remain.
+  /// Returns the pieces of a buffer that remain.
   [[nodiscard]] std::vector<std::string_view> kept(std::size_t buffer, std::string_view bytes) const;
 };
 
-/// sizes has the bytes of each buffer of the model that may become shorter, and nothing for the others; before and after
-/// are the JSON of the source, which the model was parsed from, and of the edited document. O(size of the JSON).
+/// Finds the unused arrays. sizes has the bytes of each buffer of the model that may become shorter, and nothing for
+/// the others. before is the JSON of the source, from which the model was parsed; after is the JSON of the edited
+/// document. O(size of the JSON).
 [[nodiscard]] UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optional<std::size_t>> sizes,
                                               std::string_view before, std::string_view after);
 

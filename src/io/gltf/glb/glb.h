@@ -3,7 +3,7 @@
 ///     byte 0   "glTF"   4   version: 2   8   bytes of the file
 ///         12   bytes of the JSON chunk, "JSON", its text, padded to a multiple of 4 with blanks
 ///              bytes of the BIN chunk, "BIN\0", its bytes, padded with zeros       (at most one, and second)
-///              further chunks, of which nothing is known
+///              further chunks, whose meaning is unknown
 ///
 /// Private to io.
 #ifndef CHRONORMAL_IO_GLTF_GLB_GLB_H_
@@ -22,42 +22,43 @@
 
 namespace chronormal::inline internal {
 
-/// Views of the file.
+/// Holds views of the file.
 struct GlbChunks {
   std::string_view json;
   std::size_t json_offset = 0;          ///< where the JSON begins, in bytes
-  std::optional<std::string_view> bin;  ///< nothing where there is no BIN chunk
+  std::optional<std::string_view> bin;  ///< none if there is no BIN chunk
   std::string_view rest;                ///< further chunks, with their headers
 };
 
 [[nodiscard]] inline bool is_glb(std::string_view bytes) noexcept { return bytes.starts_with("glTF"); }
-/// Whether files with this extension, in lower case, are GLB files: avatars are too.
+/// Returns whether files with this extension, in lower case, are GLB files: avatars are too.
 [[nodiscard]] inline bool is_glb_extension(std::string_view extension) noexcept {
   return extension == ".glb" || extension == ".vrm";
 }
 
-/// Finds the chunks. Errors: kInvalidInput with the place "NAME, byte N": another version, a length that is not that of
-/// the file, chunks that do not lie inside it, no JSON chunk first. Bytes after the declared length are refused.
+/// Finds the chunks. Errors: kInvalidInput with the place "NAME, byte N": another version, a length that differs from
+/// the file's, chunks that do not lie inside it, no JSON chunk first. Bytes after the declared length are refused.
 [[nodiscard]] Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name);
 
-/// The headers and the padding around the chunks of a file. A file has one JSON chunk and at most one BIN chunk.
+/// Holds the headers and the padding around the chunks of a file. A file has one JSON chunk and at most one BIN chunk.
 struct GlbFrame {
   std::string before_json, behind_json, behind_bin;  ///< headers, and the padding of the chunk before
   std::uint64_t size = 0;                            ///< of the file
 };
 
-/// Frames chunks of so many bytes. bin_size: nothing for no BIN chunk. rest_size: of further chunks, with their
+/// Frames chunks of so many bytes. bin_size: none for no BIN chunk. rest_size: size of further chunks, with their
 /// headers. Errors: kInvalidInput with the name as the place, for a file of 4 GiB or more.
 [[nodiscard]] Result<GlbFrame> frame_glb(std::uint64_t json_size, std::optional<std::uint64_t> bin_size,
                                          std::uint64_t rest_size, const std::string& name);
 
-/// A file in pieces: views of the chunks and of the frame around them, which stays where it is when this is moved.
+/// Holds a file in pieces: views of the chunks and of the frame around them, which stays where it is when this is
+/// moved.
 struct GlbPieces {
   std::unique_ptr<const GlbFrame> frame;
   std::vector<std::string_view> pieces;
 };
 
-/// Lays chunks out as a file. bin: nothing for no BIN chunk. rest: further chunks, with their headers. Errors: those of
+/// Lays chunks out as a file. bin: none for no BIN chunk. rest: further chunks, with their headers. Errors: errors of
 /// frame_glb().
 [[nodiscard]] Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
                                             const std::optional<std::vector<std::string_view>>& bin,

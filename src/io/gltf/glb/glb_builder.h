@@ -29,27 +29,27 @@
 
 namespace chronormal::inline internal {
 
-/// "chronormal 0.2.0": what files say that made them.
+/// Returns "chronormal 0.2.0", which files name as their generator.
 [[nodiscard]] std::string_view generator_name() noexcept;
 
 class GlbBuilder {
  public:
-  /// Takes bytes that follow those that it took before, of a file that has file_size bytes in the end.
+  /// Takes bytes that follow the bytes that it took before, of a file that has file_size bytes in the end.
   using Take = std::function<Status(std::string_view bytes, std::size_t file_size)>;
-  /// Returns one that puts the bytes into `file`, which must outlive it.
+  /// Returns a Take that puts the bytes into `file`, which must outlive it.
   [[nodiscard]] static Take gather_in(std::string& file);
 
   /// A GLB counts its bytes in 32 bits.
   static constexpr std::size_t kMostBytes = 0xFFFFFFFF;
 
-  /// The file may have this many bytes, and not more than kMostBytes. Its arrays are put aside in the spool until the
-  /// file is put together, since the JSON that says where they lie comes first.
+  /// Makes a file of at most this many bytes, and never more than kMostBytes. Its arrays are put aside in the spool
+  /// until the file is put together, since the JSON that says where they lie comes first.
   explicit GlbBuilder(std::optional<std::size_t> most_bytes = {}, Spool spool = {});
 
-  /// Sets the corners of the triangles, in 16 bits where that is enough for the vertices. Returns their accessor.
+  /// Sets the corners of the triangles, in 16 bits if that is enough for the vertices. Returns their accessor.
   std::size_t set_triangles(std::span<const std::uint32_t> corners, std::size_t vertex_count);
-  /// Adds an accessor of float32 VEC3 (n, 3), or of SCALAR (n), and returns its index; the same array only once.
-  /// Preconditions: those of GltfEdit
+  /// Adds an accessor of float32 VEC3 (n, 3), or of SCALAR (n), and returns its index. An equal array is stored only
+  /// once. The preconditions are the ones of GltfEdit
   std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
   /// Adds an accessor of SCALAR (rows x width), row by row: fill(row, values) writes one row over zeros. Returns its
@@ -57,24 +57,24 @@ class GlbBuilder {
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
-  /// Numbers the accessors of arrays anew: the one that was order[i] becomes the i-th behind that of the triangles, and
-  /// bytes are in this order too. Nothing may be added after that. order must have each accessor of an array once
+  /// Numbers the accessors of arrays anew: the one that was order[i] becomes the i-th after the triangles, and bytes
+  /// get this order too. Nothing may be added after that. order must have each accessor of an array once
   void put_in_order(std::span<const std::size_t> order);
 
   /// Takes the spool out, so that it can be cleared and used again.
   [[nodiscard]] Spool take_spool() && { return std::move(arrays_).take_spool(); }
 
-  /// Whether all arrays could be put aside. Errors: those of the spool.
+  /// Returns whether all arrays could be put aside. Errors: errors of the spool.
   [[nodiscard]] const Status& status() const noexcept { return arrays_.status(); }
-  /// Bytes of the arrays so far.
+  /// Returns the bytes of the arrays so far.
   [[nodiscard]] std::uint64_t byte_count() const noexcept { return indices_.size() + arrays_.byte_count(); }
   [[nodiscard]] std::size_t most_bytes() const noexcept { return most_bytes_; }
   [[nodiscard]] nlohmann::ordered_json& document() noexcept { return document_; }
 
   /// Puts the file together, gives its bytes to take and forgets them. Returns how many there are. Errors:
-  /// kInvalidInput where there would be too many, before take gets any; those of the spool and of take.
+  /// kInvalidInput if there would be too many, before take gets any; errors of the spool and of take.
   [[nodiscard]] Result<std::size_t> finish(const Take& take);
-  /// The same in memory.
+  /// Puts the file together in memory.
   [[nodiscard]] Result<std::string> finish();
 
  private:

@@ -1,4 +1,4 @@
-/// Morph targets over a base as a new GLB file: a mesh with a target each and their names. Private to io.
+/// Writes morph targets over a base as a new GLB file: a mesh with a target each and their names. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_GLB_GLB_TARGETS_H_
 #define CHRONORMAL_IO_GLTF_GLB_GLB_TARGETS_H_
 
@@ -9,10 +9,11 @@
 
 namespace chronormal::inline internal {
 
-/// Makes a GLB of one mesh. Its base has the area-weighted normals of the polygons, which vertices at one point of the
-/// base and of all targets share, unless weld is false; (0, 0, 1) where there is no area. Polygons become fans of
-/// triangles. Targets have deltas of positions alone, sparse where that is smaller, and the names of their keyframes: bake gives them normals.
-/// The motion must be valid, and have the kind kTargets. Errors: kInvalidInput where the file would be too large.
+/// Makes a GLB of one mesh. Its base has the area-weighted normals of the polygons, and (0, 0, 1) where there is no
+/// area. Vertices at one point of the base and of all targets share normals unless weld is false. Polygons become fans
+/// of triangles. Targets have only deltas of positions, sparse if that is smaller, and the names of their keyframes;
+/// bake gives them normals. The motion must be valid, and have the kind kTargets. Errors: kInvalidInput if the file
+/// would be too large.
 [[nodiscard]] Result<std::string> write_glb_targets(const Motion& motion, bool weld = true);
 
 }  // namespace chronormal::inline internal

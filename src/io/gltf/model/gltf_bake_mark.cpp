@@ -14,10 +14,10 @@ namespace {
 using Json = nlohmann::json;
 
 // Version 1 had two factors for each extra target: the indices of targets, or "base", which is 1 minus the sum of the
-// weights of all targets that are no extra ones.
+// weights of all targets that are not extra ones.
 constexpr std::size_t kVersion = 2, kVersionOfFactors = 1;
 
-// The items of an array that may be missing or empty; none after a complaint.
+// Returns the items of an array that may be missing or empty. Returns none after a complaint.
 std::vector<JsonView> items_of(const JsonView& view, const Json& value, const char* key) {
   const auto found = value.find(key);
   if (found == value.end() || (found->is_array() && found->empty())) return {};
@@ -28,7 +28,7 @@ std::vector<JsonView> items_of(const JsonView& view, const Json& value, const ch
   return items;
 }
 
-// Whether a term is an array of so many items; complains otherwise.
+// Returns whether a term is an array of so many items, and complains otherwise.
 bool is_term(const JsonView& term, const Json& value, std::size_t size, const char* form) {
   if (value.is_array() && value.size() == size) return true;
   term.complain(std::string("a term is ") + form);
@@ -50,12 +50,12 @@ void read_terms(const JsonView& item, const Json& value, std::size_t target_coun
   }
 }
 
-// The terms of two factors, where own are the targets that are no extra ones.
+// Reads the terms of two factors, where own are the targets that are not extra ones.
 void read_factors(const JsonView& item, const Json& value, std::size_t target_count,
                   const std::vector<std::size_t>& own, GltfExtraTarget& extra) {
   const std::optional<JsonView> factors = item.array("factors");
   if (!factors || factors->size() != 2) return item.complain("factors", "there must be two factors");
-  std::array<std::optional<std::size_t>, 2> targets;  // nothing: the base
+  std::array<std::optional<std::size_t>, 2> targets;  // none for the base
   for (std::size_t n = 0; n < 2; ++n) {
     const Json& factor = value["factors"][n];
     if (!factor.is_string())
@@ -74,7 +74,7 @@ void read_factors(const JsonView& item, const Json& value, std::size_t target_co
   }
 }
 
-// Extra targets ascend, and follow from none of them.
+// Checks that extra targets ascend, and follow from none of themselves.
 void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtraTarget>& extras) {
   const auto is_extra = [&](std::size_t i) {
     const auto found = std::lower_bound(extras.begin(), extras.end(), i,
@@ -93,7 +93,7 @@ void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtra
   }
 }
 
-// The targets that no extra target names as its own.
+// Returns the targets that no extra target names as itself.
 std::vector<std::size_t> own_targets(const std::vector<GltfExtraTarget>& extras, std::size_t target_count) {
   std::vector<bool> is_extra(target_count);
   for (const GltfExtraTarget& extra : extras) is_extra[extra.target] = true;
@@ -103,7 +103,7 @@ std::vector<std::size_t> own_targets(const std::vector<GltfExtraTarget>& extras,
   return own;
 }
 
-// A flag that may be 0 or 1: editors that keep extras as custom properties know no booleans (Blender 3.4).
+// Reads a flag that may be 0 or 1: editors that keep extras as custom properties know no booleans (Blender 3.4).
 bool read_flag(const JsonView& view, const Json& value, const char* key) {
   const auto found = value.find(key);
   if (found != value.end() && (*found == 0 || *found == 1)) return *found == 1;

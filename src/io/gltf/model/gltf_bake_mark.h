@@ -10,12 +10,12 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Sets mesh.mark where there is one, or mesh.mark_fault where there is one that makes no sense. Extras are anyone's:
-/// they never make a file unreadable. pointer is that of the mesh, name that of the file; mesh has its target_count.
+/// Sets mesh.mark if there is a mark, or mesh.mark_fault if the mark makes no sense. Anyone may write extras, so they
+/// never make a file unreadable. pointer leads to the mesh, name is the file's; mesh must have its target_count
 void read_bake_mark(const nlohmann::json& document, const std::string& pointer, const std::string& name,
                     GltfMesh& mesh);
 
-/// A mark as it is written, by version 2.
+/// Returns a mark as version 2 writes it.
 [[nodiscard]] nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark);
 
 }  // namespace chronormal::inline internal::gltf

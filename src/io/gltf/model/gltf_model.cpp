@@ -1,4 +1,5 @@
-// Assets, buffers, buffer views, accessors and nodes; meshes and animations are in gltf_model_meshes.cpp.
+// Parses assets, buffers, buffer views, accessors and nodes; meshes and animations are in gltf_model_meshes.cpp and
+// gltf_model_animations.cpp.
 #include "io/gltf/model/gltf_model.h"
 
 #include <algorithm>
@@ -99,7 +100,7 @@ Result<Model> Parser::parse(const nlohmann::json& document) {
 void Parser::parse_asset(const JsonView& root) {
   const std::optional<JsonView> asset = root.object("asset");
   if (!asset) return root.complain("asset", "there is no asset: this is not a glTF 2.0 file");
-  // A file may ask for a later minor version than that it was written for; only 2.0 is known.
+  // A file may ask for a later minor version than the one it was written for; only 2.0 is known.
   const std::string version = asset->required_text("version"), least = asset->text("minVersion");
   if (!version.starts_with("2.")) asset->complain("version", "only glTF 2.0 can be read");
   if (!least.empty() && least != "2.0") asset->complain("minVersion", "only glTF 2.0 can be read");
@@ -112,7 +113,7 @@ void Parser::parse_asset(const JsonView& root) {
 void Parser::check_required(const JsonView& root) {
   const std::optional<JsonView> required = root.array("extensionsRequired");
   if (!required) return;
-  // Extensions of what is read may change it: a primitive, its mesh, and whatever holds bytes.
+  // Extensions of what is read may change it: a primitive, its mesh, and everything that holds bytes.
   const auto is_extended = [](const nlohmann::json& value, const std::string& extension) {
     if (!value.is_object()) return false;
     // Points and lines are not read.
@@ -312,7 +313,7 @@ void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
 }
 
 void Parser::parse_transform(const JsonView& item, std::size_t index) {
-  // The numbers of an array that must have `count` of them; false where there is none.
+  // Reads an array that must have `count` numbers. Returns false if there is none.
   const auto read = [&](const char* key, std::size_t count, double* result) {
     const std::optional<JsonView> array = item.array(key);
     if (!array) return false;
@@ -348,7 +349,7 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
 void Parser::check_nodes(const JsonView& root) {
   if (complaint_.first() || !root.has("nodes")) return;
   const std::size_t count = model_.nodes.size();
-  // What is left of the array was no object.
+  // Items that are left in the array were no objects.
   if (const nlohmann::json& rest = (*document_)["nodes"]; count == 0 || !rest.is_array() || !rest.empty())
     return root.complain("nodes", "this must be an array of one object or more");
   for (std::size_t i = 0; i < count && !complaint_.first(); ++i) {
@@ -405,7 +406,7 @@ void Parser::connect_nodes() {
       return complaint_.add(pointer, "node " + std::to_string(child) + " has a parent already");
     model_.nodes[child].parent = parent;
   }
-  // Parents form a forest: whoever meets its own path again is in a circle. Every node is walked over once.
+  // Parents form a forest: a walk that meets its own path again is in a circle. Every node is walked over once.
   std::vector<std::uint32_t> seen_from(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const auto mark = static_cast<std::uint32_t>(i + 1);
@@ -418,8 +419,8 @@ void Parser::connect_nodes() {
   }
 }
 
-// Other programs drop the extras of meshes and keep those of nodes, and some hang the mesh into a node of its own
-// below.
+// Takes marks from nodes, since other programs drop the extras of meshes and keep the extras of nodes, and some hang
+// the mesh on a new node below.
 void Parser::read_marks_of_nodes() {
   for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
     const GltfNode& node = model_.nodes[i];

@@ -1,8 +1,8 @@
-/// The JSON of a glTF file as structs, references checked: what the reading of its bytes works from. Private to io.
+/// The JSON of a glTF file as structs, with references checked, from which its bytes are read. Private to io.
 ///
-/// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h; here is where each of their arrays
-/// lies. "What is read is checked": a buffer view is checked against its buffer, and an accessor that a primitive or
-/// a sampler names against its buffer view; other accessors only have to be well-formed.
+/// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h; this half says where each of their
+/// arrays lies. "What is read is checked": a buffer view is checked against its buffer, and an accessor that a
+/// primitive or a sampler names is checked against its buffer view; other accessors only have to be well-formed.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
 
@@ -20,7 +20,7 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// The values are those of the format.
+/// The values are the format's.
 enum class Component { kInt8 = 5120, kUint8 = 5121, kInt16 = 5122, kUint16 = 5123, kUint32 = 5125, kFloat = 5126 };
 
 [[nodiscard]] constexpr std::size_t component_size(Component component) noexcept {
@@ -33,14 +33,14 @@ struct Buffer {
   std::size_t byte_length = 0;
 };
 
-/// A buffer view that EXT_meshopt_compression keeps compressed.
+/// A buffer view that EXT_meshopt_compression compresses.
 struct Compression {
   enum class Mode { kAttributes, kTriangles, kIndices };
   enum class Filter { kNone, kOctahedral, kQuaternion, kExponential };
 
-  std::size_t buffer = 0, offset = 0, length = 0;  ///< of the compressed bytes
-  std::size_t stride = 0, count = 0;               ///< of the elements
-  /// By KHR_meshopt_compression, whose bytes may be of a later version than can be decoded.
+  std::size_t buffer = 0, offset = 0, length = 0;  ///< the compressed bytes
+  std::size_t stride = 0, count = 0;               ///< the elements
+  /// Tells whether it is by KHR_meshopt_compression, whose bytes may be of a later version than can be decoded.
   bool is_khr = false;
   Mode mode = Mode::kAttributes;
   Filter filter = Filter::kNone;
@@ -50,7 +50,7 @@ struct BufferView {
   std::size_t buffer = 0, offset = 0, length = 0;
   std::optional<std::size_t> stride;
   std::optional<Compression> compression;
-  std::optional<Error> fault = {};  ///< why it cannot be read: an error for those alone who need it
+  std::optional<Error> fault = {};  ///< why it cannot be read; an error only when it is needed
 };
 
 struct Sparse {
@@ -61,23 +61,23 @@ struct Sparse {
 };
 
 struct Accessor {
-  std::optional<std::size_t> view;  ///< nothing: all zeros
+  std::optional<std::size_t> view;  ///< none for all zeros
   std::size_t offset = 0, count = 0;
   Component component = Component::kFloat;
   std::size_t components = 1;  ///< numbers in an element: 1 for SCALAR, 3 for VEC3
   bool is_matrix = false, normalized = false;
   std::optional<Sparse> sparse;
-  std::optional<Error> fault = {};  ///< as that of a buffer view
+  std::optional<Error> fault = {};  ///< why it cannot be read; an error only when it is needed
 
   [[nodiscard]] std::size_t element_size() const noexcept { return components * component_size(component); }
 };
 
-/// Indices of accessors.
+/// Holds indices of accessors.
 struct Attributes {
   std::optional<std::size_t> position, normal, tangent;
 };
 
-/// A primitive that KHR_draco_mesh_compression keeps compressed: ids of attributes in the compressed mesh.
+/// A primitive that KHR_draco_mesh_compression compresses, with ids of attributes in the compressed mesh.
 struct Draco {
   std::size_t view = 0;
   Attributes attributes;
@@ -86,7 +86,7 @@ struct Draco {
 /// An attribute of a primitive.
 struct AttributeSource {
   std::size_t accessor = 0;
-  std::optional<std::size_t> draco = {};  ///< its id in the compressed mesh, where that holds it
+  std::optional<std::size_t> draco = {};  ///< its id in the compressed mesh, if that holds it
 };
 
 /// A set of JOINTS_n and WEIGHTS_n.
@@ -99,7 +99,7 @@ struct PrimitiveSource {
   std::optional<std::size_t> indices;
   std::vector<Attributes> targets;
   std::optional<Draco> draco;
-  std::vector<InfluenceSource> influences = {};  ///< of primitives with targets only
+  std::vector<InfluenceSource> influences = {};  ///< only for primitives with targets
   std::optional<Error> influence_fault = {};     ///< why they cannot be read
 };
 
@@ -119,8 +119,8 @@ struct ElementSource {
 
 struct TrackSource {
   std::size_t sampler = 0, input = 0, output = 0;  ///< input, output: accessors
-  /// Where every weight has a channel of its own, these channels, ascending by target; input and output are those of
-  /// the first then. Weights without a channel stay as they are in rest.
+  /// If every weight has its own channel, these channels, ascending by target; input and output then belong to the
+  /// first. Weights without a channel stay at rest.
   std::vector<ElementSource> elements = {};
   std::vector<double> rest = {};
 };
@@ -141,7 +141,7 @@ struct NodeChannels {
   std::optional<Error> fault;  ///< why they cannot be read
 };
 
-/// Where a node stands in its parent: by a matrix, or by what animations can move.
+/// The place of a node in its parent, as a matrix, or in the parts that animations can move.
 using Placement = std::variant<AffineTransform, NodeTransform>;
 
 struct Model {
@@ -157,21 +157,21 @@ struct Model {
   std::vector<std::vector<TrackSource>> track_sources;  ///< beside animations[a].tracks
   std::vector<NodeChannels> node_channels;              ///< beside animations
   std::vector<std::string> extensions;
-  std::vector<Error> notes;  ///< what is wrong with parts that nobody needs for the others
+  std::vector<Error> notes;  ///< faults of parts that no other part needs
 };
 
-/// Where a node stands in its parent, as the file has it. O(log nodes).
+/// Returns the place of a node in its parent, as the file has it. O(log nodes).
 [[nodiscard]] Placement placement_of(const Model& model, std::size_t node) noexcept;
-/// The same as a transform.
+/// Returns a place as a transform.
 [[nodiscard]] AffineTransform transform_of(const Placement& placement) noexcept;
 
-/// The JSON pointer of a primitive.
+/// Returns the JSON pointer of a primitive.
 [[nodiscard]] std::string primitive_pointer(std::size_t mesh, std::size_t primitive);
 
-/// Takes a document apart: JSON that begins at byte `offset` of the file. file_bytes: the size of the file, which
-/// bounds how many elements an accessor without a buffer view may have. What is wrong with parts that the others do not
-/// need is a note of the model, and an error where is_strict. Errors: kInvalidInput, with name and JSON pointer as the
-/// place, or name and byte for what is no JSON.
+/// Parses a document, whose JSON begins at byte `offset` of the file. file_bytes is the size of the file, which bounds
+/// how many elements an accessor without a buffer view may have. A fault in a part that the others do not need becomes
+/// a note of the model, or an error if is_strict. Errors: kInvalidInput, with name and JSON pointer as the place, or
+/// name and byte if it is no JSON.
 [[nodiscard]] Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset,
                                         std::size_t file_bytes, bool is_strict);
 

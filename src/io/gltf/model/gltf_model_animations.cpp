@@ -1,5 +1,5 @@
-// Reads the animations of weights: channels by node or by KHR_animation_pointer, and those of single weights, which become
-// one track.
+// Reads the animations of weights: channels by node or by KHR_animation_pointer. Channels of single weights become one
+// track.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -16,7 +16,7 @@
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// Where KHR_animation_pointer points to; empty where it does not.
+// Returns the pointer of KHR_animation_pointer, or an empty text if there is none.
 std::string pointer_of(const JsonView& target) {
   const std::optional<JsonView> extensions = target.object("extensions");
   const std::optional<JsonView> extension = extensions ? extensions->object("KHR_animation_pointer") : std::nullopt;
@@ -36,7 +36,7 @@ Parser::Driven Parser::pointed_to(const JsonView& target) {
   const std::string pointer = pointer_of(target);
   Driven driven;
   bool is_unknown = false;
-  // Takes "/nodes/3/weights" and "/nodes/3/weights/1" apart.
+  // Parses "/nodes/3/weights" and "/nodes/3/weights/1".
   const auto index_in = [&](std::string_view list) -> std::optional<std::size_t> {
     std::size_t index = 0, weight = 0;
     if (!pointer.starts_with(list)) return std::nullopt;
@@ -64,7 +64,7 @@ Parser::Driven Parser::pointed_to(const JsonView& target) {
     all.push_back(n);
     if (model_.nodes[n].weights.empty()) driven.nodes.push_back(n);
   }
-  // Where all nodes have their own weights, nobody shows those of the mesh.
+  // If all nodes have their own weights, no node shows the weights of the mesh.
   if (driven.nodes.empty() && !all.empty()) driven.nodes.push_back(all.front());
   return driven;
 }
@@ -112,7 +112,7 @@ void Parser::parse_animation(const JsonView& item) {
   if (complaint_.first()) return;
   const bool has_channels = understands([&] { parse_channels(item, animation, sources); });
   if (complaint_.first()) return;
-  // The same numbers mean the same weights only by the same interpolation, for as many targets.
+  // The same numbers mean the same weights only with the same interpolation, for as many targets.
   std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
   for (std::size_t t = 0; t < sources.size(); ++t) {
     GltfTrack& track = animation.tracks[t];
@@ -175,9 +175,9 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
       track.interpolation = of_weight.interpolation;
       source = read;
     }
-    // At most: how many of them are at the same times is known when they are read.
+    // This is an upper bound. How many keys are at the same times is known when they are read.
     if (inputs.insert(read.input).second) track.key_count = saturating_sum(track.key_count, of_weight.key_count);
-    // A line is a cubic, too. A step is none of both.
+    // A line is a cubic, too. A step is neither.
     const bool is_step = of_weight.interpolation == GltfInterpolation::kStep;
     if (is_step != (track.interpolation == GltfInterpolation::kStep))
       return target.complain("some channels of single weights of node " + std::to_string(node) +
@@ -202,7 +202,7 @@ void Parser::parse_node_channels(const JsonView& animation, std::vector<NodeChan
     std::optional<std::size_t> node;
     std::string path = target->text("path");
     if (path == "pointer") {
-      // "/nodes/3/rotation"
+      // The pointer looks like "/nodes/3/rotation".
       const std::string pointer = pointer_of(*target);
       constexpr std::string_view kNodes = "/nodes/";
       std::size_t index = 0;

@@ -1,4 +1,4 @@
-// Reads meshes, checks what their accessors must look like, and reads the expressions of avatars.
+// Reads meshes, checks the form of their accessors, and reads the expressions of avatars.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// Weights of an expression beyond this are no weights.
+// Weights of an expression beyond this are taken for errors and ignored.
 constexpr double kLargestBind = 100;
 
 constexpr std::size_t kAnyId = ~std::uint32_t{0};
@@ -46,8 +46,8 @@ void Parser::parse_mesh(const JsonView& item) {
   mesh.weights = parse_weights(item);
   if (!mesh.weights.empty()) check_weights(item.pointer(), mesh.weights, mesh.target_count);
   mesh.weights.resize(mesh.target_count, 0.0);
-  // Names are a convention, not part of the format: what does not fit is no fault. Older versions of UniVRM write them
-  // into each primitive.
+  // Names are a convention, not part of the format, so names that do not fit are no fault. Older versions of UniVRM
+  // write them into each primitive.
   for (const char* const place : {"/extras/targetNames", "/primitives/0/extras/targetNames"}) {
     const nlohmann::json::json_pointer pointer(item.pointer() + place);
     if (!mesh.target_names.empty() || !document_->contains(pointer)) continue;
@@ -151,7 +151,7 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
     const JsonView target = targets->item(k);
     if (!target.is_object()) return;
     if (target.size() == 0) note(target, "a target moves at least one attribute: this one moves nothing");
-    if (target.size() == 0 || !source.base.position) {  // nothing of it is read
+    if (target.size() == 0 || !source.base.position) {  // none of it is read
       source.targets.emplace_back();
       primitive.targets.emplace_back();
       continue;
@@ -252,7 +252,7 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
     return complain("must be of type " + (components == 1 ? std::string("SCALAR") : "VEC" + number(components)));
   }
 
-  // Section 3.7.2.1 of the specification, and KHR_mesh_quantization.
+  // The rules are in section 3.7.2.1 of the specification, and in KHR_mesh_quantization.
   const bool small = is_one_of(accessor.component, {kInt8, kInt16});
   bool fits = accessor.component == kFloat;
   switch (use) {
@@ -288,7 +288,7 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
   }
   if (!fits) return complain("has a component type that is not allowed here");
 
-  if (compressed) return;  // what it says of the result is checked when that is there
+  if (compressed) return;  // the decoded result is checked later
   if (accessor.view) check_inside_view(object, key, index, use);
   const bool moved = use == Use::kMovedPosition || use == Use::kMovedNormal || use == Use::kMovedTangent;
   constexpr std::size_t kPlausible = 65536;
@@ -356,7 +356,7 @@ void Parser::check_unstrided(const JsonView& object, const char* key, const Buff
 
 namespace {
 
-// Calls visit(name, binds) for each expression of a VRM avatar, as its version has them.
+// Calls visit(name, binds) for each expression of a VRM avatar, in the form of its version.
 template <class Visit>
 void for_each_expression(const nlohmann::json& root, const Visit& visit) {
   using Pointer = nlohmann::json::json_pointer;
@@ -378,7 +378,7 @@ void for_each_expression(const nlohmann::json& root, const Visit& visit) {
   }
 }
 
-// A number of an object that is a whole one below a limit.
+// Returns a member of an object that is a whole number below a limit.
 std::optional<std::size_t> whole_below(const nlohmann::json& object, const char* key, std::size_t limit) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number()) return std::nullopt;
@@ -395,7 +395,7 @@ void Parser::parse_expressions(const nlohmann::json& root) {
     if (!binds.is_array()) return;
     for (const nlohmann::json& bind : binds) {
       if (!bind.is_object() || !bind.contains("weight") || !bind["weight"].is_number()) continue;
-      // Version 0 names the mesh, and weights in percent; version 1 a node of it, and weights from 0 to 1.
+      // Version 0 names the mesh, and weights in percent; version 1 names one of its nodes, and weights from 0 to 1.
       const auto node = whole_below(bind, "node", model_.nodes.size());
       auto mesh = whole_below(bind, "mesh", model_.meshes.size());
       if (node && model_.nodes[*node].mesh) mesh = *model_.nodes[*node].mesh;

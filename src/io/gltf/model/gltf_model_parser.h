@@ -1,4 +1,4 @@
-/// The parser behind parse_model(), declared once for its two source files. Private to io.
+/// The parser behind parse_model(), declared once for its source files. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_PARSER_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_PARSER_H_
 
@@ -21,13 +21,13 @@ class Parser {
   Parser(const std::string& name, std::size_t file_bytes, bool is_strict)
       : complaint_(name), file_bytes_(file_bytes), is_strict_(is_strict) {}
 
-  /// Parses a node, which may come before all else.
+  /// Parses a node, which may come before everything else.
   void parse_node(std::size_t index, const nlohmann::json& value);
   /// Parses the rest, and checks nodes against it.
   Result<Model> parse(const nlohmann::json& document);
 
  private:
-  /// What an accessor is used for, which decides what it may look like.
+  /// The use of an accessor, which decides its allowed forms.
   enum class Use {
     kPosition,
     kNormal,
@@ -38,14 +38,14 @@ class Parser {
     kIndices,
     kTimes,
     kWeights,
-    kJoints,  ///< of vertices, and what they weigh
+    kJoints,  ///< joints of vertices, and their weights
     kJointWeights,
     kInverseBinds,
     kMovedNode,  ///< translations and scales over time
     kTurnedNode  ///< rotations over time
   };
 
-  /// Parses a part of the file that only those have to understand who ask for it, and takes its complaint.
+  /// Parses a part of the file that only its users must understand, and takes its complaint.
   template <class Parse>
   std::optional<Error> fault_of(const Parse& parse) {
     if (complaint_.first()) return std::nullopt;
@@ -53,8 +53,7 @@ class Parser {
     return complaint_.take();
   }
 
-  /// Parses a part that is passed over where it cannot be understood, with a note of why. Returns whether it was
-  /// understood.
+  /// Parses a part that is skipped if it cannot be understood, with a note of why. Returns whether it was understood.
   template <class Parse>
   bool understands(const Parse& parse) {
     if (complaint_.first()) return false;
@@ -63,7 +62,7 @@ class Parser {
     if (!is_strict_) model_.notes.push_back(*complaint_.take());
     return false;
   }
-  /// Tells of a part that is passed over.
+  /// Notes that a part is skipped.
   void note(const JsonView& item, std::string message) {
     (void)understands([&] { item.complain(std::move(message)); });
   }
@@ -77,12 +76,11 @@ class Parser {
   }
 
   void parse_asset(const JsonView& root);
-  /// Finds where the file uses extensions that it requires and that are not known, and notes those that do not change
-  /// what is read.
+  /// Finds where the file uses unknown extensions that it requires, and notes the ones that do not change what is read.
   void check_required(const JsonView& root);
-  /// Notes what is wrong with buffer views and accessors that nothing has asked for.
+  /// Notes the faults of buffer views and accessors that nothing has asked for.
   void note_faults();
-  /// Tells whether a node, or a node below, carries a mesh, or a skin is hung on it.
+  /// Returns, for each node, whether it or a node below carries a mesh, or a skin depends on it.
   [[nodiscard]] std::vector<bool> nodes_that_place_meshes() const;
   void parse_buffer(const JsonView& item);
   void parse_view(const JsonView& item, BufferView& view);
@@ -92,9 +90,9 @@ class Parser {
   void parse_transform(const JsonView& item, std::size_t index);
   void check_nodes(const JsonView& root);
   void connect_nodes();
-  /// Gives meshes without a mark of a bake the one of a node that carries them, or of the node above that.
+  /// Gives meshes without a mark of a bake the mark of a node that carries them, or of the node above that.
   void read_marks_of_nodes();
-  /// The member "weights" of a mesh or node; empty where there is none.
+  /// Returns the member "weights" of a mesh or node, or nothing if there is none.
   static std::vector<double> parse_weights(const JsonView& item);
   void check_weights(const std::string& pointer, const std::vector<double>& weights, std::size_t target_count);
 
@@ -104,30 +102,31 @@ class Parser {
   void parse_targets(const JsonView& item, GltfPrimitive& primitive, PrimitiveSource& source);
   /// Gives primitives that have fewer targets than others of their mesh targets that move nothing.
   void fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vector<PrimitiveSource>& sources);
-  /// Joints and weights of vertices: JOINTS_n and WEIGHTS_n.
+  /// Reads joints and weights of vertices: JOINTS_n and WEIGHTS_n.
   void parse_influences(const JsonView& item, PrimitiveSource& source);
   void parse_skins();
   void parse_skin(const JsonView& item, SkinSource& skin);
-  /// The accessor that a member names, checked for its use; nothing where there is none, or after a complaint.
+  /// Returns the accessor that a member names, checked for its use. Returns nothing if there is none, or after a
+  /// complaint.
   std::optional<std::size_t> parse_use(const JsonView& object, const char* key, Use use, bool compressed = false);
   void check_use(const JsonView& object, const char* key, std::size_t index, Use use, bool compressed);
   void check_inside_view(const JsonView& object, const char* key, std::size_t index, Use use);
   void check_sparse(const JsonView& object, const char* key, std::size_t index);
-  /// The buffer view of an accessor. It complains where that cannot be read.
+  /// Returns the buffer view of an accessor, and complains if that cannot be read.
   const BufferView& view_of(std::size_t index);
   void check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what);
 
   void parse_animation(const JsonView& item);
-  /// The channels that drive weights. Those that cannot be understood are passed over.
+  /// Reads the channels that drive weights, and skips the ones that cannot be understood.
   void parse_channels(const JsonView& item, GltfAnimation& animation, std::vector<TrackSource>& sources);
-  /// What a channel drives: all weights of some nodes, or one of them; no nodes where it is something else.
+  /// Says what a channel drives: all weights of some nodes, or one of them. There are no nodes if it is something else.
   struct Driven {
     std::vector<std::size_t> nodes = {};
     std::optional<std::size_t> target = {};
   };
-  /// The same of KHR_animation_pointer.
+  /// Returns what a pointer of KHR_animation_pointer drives.
   Driven pointed_to(const JsonView& target);
-  /// A channel of single weights, and which.
+  /// A channel of a single weight, with the weight's index.
   struct LoneWeight {
     std::size_t channel = 0, target = 0;
   };
@@ -139,9 +138,9 @@ class Parser {
   /// Reads and checks the sampler of a channel, which gives a key so many elements. Returns false after a complaint.
   bool parse_sampler(const JsonView& animation, std::size_t channel_index, Use use, std::size_t per_key,
                      GltfTrack& track, TrackSource& source);
-  /// The channels that move nodes.
+  /// Reads the channels that move nodes.
   void parse_node_channels(const JsonView& animation, std::vector<NodeChannel>& result);
-  /// The expressions of a VRM avatar. What is not as they are defined is passed over: no geometry depends on it.
+  /// Reads the expressions of a VRM avatar. Malformed ones are skipped, since no geometry depends on them.
   void parse_expressions(const nlohmann::json& root);
 
   const nlohmann::json* document_ = nullptr;

@@ -25,7 +25,7 @@ constexpr std::array<std::uint8_t, 256> base64_digits() {
   return digits;
 }
 
-// Nothing where the text is not base64. Padding may be missing, as it often is.
+// Decodes base64, or returns nothing if the text is not base64. Padding may be missing, as it often is.
 std::optional<std::string> decode_base64(std::string_view text) {
   static constexpr std::array<std::uint8_t, 256> kDigits = base64_digits();
   for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
@@ -72,7 +72,7 @@ std::optional<std::string> decode_percent(std::string_view uri) {
   return path;
 }
 
-// "http:", "file:", "C:" and the like.
+// Returns whether the URI begins with "http:", "file:", "C:" and the like.
 bool has_scheme(std::string_view uri) {
   const std::size_t colon = uri.find(':');
   return colon != std::string_view::npos && colon < uri.find('/') && colon > 0;
@@ -90,8 +90,8 @@ Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place)
   return fs::path(*relative);
 }
 
-// The file of a path, or where there is none, the one that a person means by it: as the URI has it, without decoding,
-// or in the same folder, of the same name in another form of Unicode.
+// Returns the file of a path, or if there is none, the one that a person means by it: as the URI has it, without
+// decoding, or a name in the same folder that is the same in another form of Unicode.
 fs::path existing(const fs::path& path, const fs::path& literal) {
   std::error_code code;
   if (fs::exists(path, code)) return path;

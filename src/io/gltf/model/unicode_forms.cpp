@@ -13,7 +13,7 @@ struct Parts {
   std::uint16_t whole, letter, mark;
 };
 
-// Letters and what they consist of, ascending, from the Unicode Character Database (Decomposition_Mapping).
+// Lists letters and their parts, ascending, from the Unicode Character Database (Decomposition_Mapping).
 constexpr auto kParts = std::to_array<Parts>(
     {{0xC0, 0x41, 0x300},      {0xC1, 0x41, 0x301},      {0xC2, 0x41, 0x302},      {0xC3, 0x41, 0x303},
      {0xC4, 0x41, 0x308},      {0xC5, 0x41, 0x30A},      {0xC7, 0x43, 0x327},      {0xC8, 0x45, 0x300},
@@ -193,7 +193,7 @@ void take_apart(char32_t c, std::u32string& result) {
   result += found->mark;
 }
 
-// The characters of UTF-8, taken apart. A byte that belongs to none stands for itself, beyond all characters.
+// Returns the characters of UTF-8, taken apart. A byte that belongs to none stands for itself, beyond all characters.
 std::u32string parts_of(std::string_view text) {
   constexpr char32_t kBytes = 0x200000;
   std::u32string result;
