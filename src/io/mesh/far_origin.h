@@ -1,5 +1,5 @@
-/// Positions far from the origin, such as those of surveys: a float32 keeps 24 bits, of which most are the same for all
-/// vertices there. A common origin is taken away in double before positions are rounded, and writers add it again
+/// Handles positions far from the origin, such as surveys have: a float32 keeps 24 bits, most of which are the same for
+/// all vertices there. A common origin is subtracted in double before positions are rounded, and writers add it again
 /// (Motion::origin). Private to io.
 #ifndef CHRONORMAL_IO_MESH_FAR_ORIGIN_H_
 #define CHRONORMAL_IO_MESH_FAR_ORIGIN_H_
@@ -15,9 +15,9 @@ namespace chronormal::inline internal {
 
 using Origin = std::array<double, 3>;
 
-/// Finds the point to count positions (V, 3) from where that saves four bits or more: where they are farther from
-/// (0, 0, 0) than 16 times their extent. It is near their middle, and a multiple of a power of two of about that
-/// extent, so that it is taken away without rounding. (0, 0, 0) otherwise.
+/// Finds the point to count positions (V, 3) from if that saves four bits or more: if they are farther from (0, 0, 0)
+/// than 16 times their extent. It is near their middle, and a multiple of a power of two of about that extent, so that
+/// subtracting it does not round. Returns (0, 0, 0) otherwise.
 template <class Real>
 [[nodiscard]] Origin far_origin(std::span<const Real> positions) {
   constexpr double kFar = 16, kBeside = 4;
@@ -40,16 +40,16 @@ template <class Real>
   return middle;
 }
 
-/// Tells whether float32 rounds a number away that is given in so many units of its last digit.
+/// Tells whether float32 rounds away digits of a number whose last digit has this unit.
 [[nodiscard]] inline bool loses_digits(double value, double last_digit) noexcept {
   return std::fabs(value - double{static_cast<float>(value)}) > last_digit / 2 * (1 + 1e-6);
 }
 
-/// Says of positions that have no more digits than float32 what rounding to that took away before, where that is much
-/// for their extent; empty where it is not.
+/// Returns a note on the digits that positions lost before, when they were rounded to float32, if the loss is large
+/// relative to their extent. Returns an empty text otherwise.
 [[nodiscard]] std::string note_of_lost_digits(std::span<const float> positions);
 
-/// "(452312, 5411872, 0)"
+/// Returns "(452312, 5411872, 0)".
 [[nodiscard]] std::string origin_text(const Origin& origin);
 
 }  // namespace chronormal::inline internal

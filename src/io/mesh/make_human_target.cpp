@@ -18,10 +18,10 @@ namespace {
 
 using scan::NumberFault;
 
-// Ends what inflateInit2() began.
+// Calls inflateInit2(), and ends what it began.
 struct Inflater {
   z_stream stream{};
-  bool is_ready = ::inflateInit2(&stream, 16 + MAX_WBITS) == Z_OK;  // 16: gzip, and nothing else
+  bool is_ready = ::inflateInit2(&stream, 16 + MAX_WBITS) == Z_OK;  // 16 stands for gzip only
 
   Inflater() = default;
   Inflater(const Inflater&) = delete;
@@ -31,7 +31,7 @@ struct Inflater {
   }
 };
 
-// Unpacks all members of a gzip file, but no more than `most` bytes: memory grows with what comes out.
+// Unpacks all members of a gzip file, but no more than `most` bytes. Memory grows with the result.
 Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const std::string& name) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max(), kFirstRoom = 16384;
   Inflater inflater;
@@ -50,7 +50,7 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
       stream.avail_in = static_cast<uInt>(part.size());
       handed_over += part.size();
     }
-    // One byte more than allowed has room, so that it can be seen.
+    // There is room for one byte more than allowed, so that an excess can be seen.
     if (done == text.size()) text.resize(std::min(most + 1, std::max(kFirstRoom, 2 * done)));
     const auto room = static_cast<uInt>(std::min(text.size() - done, kMostAtOnce));
     stream.next_out = reinterpret_cast<Bytef*>(text.data() + done);
@@ -70,7 +70,7 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
       return error(std::move(message));
     }
     if (stream.avail_in == 0 && handed_over == packed.size()) break;
-    (void)::inflateReset(&stream);  // another member
+    (void)::inflateReset(&stream);  // prepares for another member
   }
   text.resize(done);
   return text;
@@ -99,7 +99,7 @@ class TargetReader {
   const std::string& name_;
   scan::Lines lines_;
   VectorView<const float> base_;
-  std::vector<bool> has_delta_;  // of each vertex
+  std::vector<bool> has_delta_;  // for each vertex
   MakeHumanTarget target_;
 };
 

@@ -24,8 +24,8 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
   return bytes;
 }
 
-// Takes the next word of a statement; empty at its end or where a comment begins. Inside a word, # is not a comment:
-// 1.#QNAN is a number that some programs write, and must not be read as 1.
+// Takes the next word of a statement, which is empty at its end or where a comment begins. Inside a word, # is not a
+// comment: 1.#QNAN is a number that some programs write, and must not be read as 1.
 std::string_view take_word(std::string_view& line) {
   const std::string_view word = scan::take_word(line);
   if (!word.starts_with('#')) return word;
@@ -40,15 +40,15 @@ bool has_comment(std::string_view line) {
   return false;
 }
 
-// How the faces are shaded, as far as the file was read.
+// Holds the shading of the faces that were read so far.
 struct Shading {
   std::vector<float> normals;                   // (vn, 3)
   std::vector<std::uint32_t> normal_of_corner;  // its index plus 1; 0 for none
-  bool has_normals = false;                     // some corner has one
+  bool has_normals = false;                     // whether some corner has one
   std::map<std::string, std::uint32_t, std::less<>> groups;
   std::vector<std::uint32_t> group_of_face;
-  std::uint32_t group = 0;                               // of the faces that follow
-  bool has_groups = false;                               // there was an s
+  std::uint32_t group = 0;                               // group of the faces that follow
+  bool has_groups = false;                               // whether there was an s
   std::size_t unknown_normals = 0, nameless_groups = 0;  // corners, and s without a word
 
   [[nodiscard]] std::size_t normal_count() const { return normals.size() / 3; }
@@ -56,7 +56,7 @@ struct Shading {
 
 class ObjReader {
  public:
-  /// Passes over what is in Shading where shading is null.
+  /// Skips statements of shading if shading is nullptr.
   ObjReader(std::string_view bytes, const std::string& name, const Origin& origin, Shading* shading)
       : name_(name),
         lines_(bytes, bytes.find('\n') == std::string_view::npos ? '\r' : '\n'),
@@ -94,11 +94,11 @@ class ObjReader {
 
   const std::string& name_;
   scan::Lines lines_;
-  std::size_t statement_line_ = 0;  // where the statement begins that is being read
+  std::size_t statement_line_ = 0;  // line where the current statement begins
   std::string joined_;              // a statement of several lines
   std::vector<float> positions_;
   PolygonBuilder faces_;
-  // The largest positive index so far: whether it names a vertex is known only at the end.
+  // Holds the largest positive index so far. Whether it names a vertex is known only at the end.
   struct Largest {
     std::int64_t index = 0;
     std::size_t line = 0;
@@ -134,7 +134,7 @@ Result<MeshFrame> ObjReader::read() {
   };
   note(dropped_faces_, " face has", " faces have", " fewer than three corners: left out");
   if (shading_ == nullptr) return mesh;
-  // Normals may stand behind the faces that name them.
+  // Normals may come after the faces that name them.
   for (std::uint32_t& index : shading_->normal_of_corner) {
     if (index > shading_->normal_count()) {
       index = 0;
@@ -148,7 +148,7 @@ Result<MeshFrame> ObjReader::read() {
   return mesh;
 }
 
-// The current line, and those that continue it.
+// Returns the current line, joined with the lines that continue it.
 std::string_view ObjReader::whole_statement() {
   const auto is_continued = [](std::string_view& line) {
     std::string_view body = line;
@@ -182,7 +182,7 @@ Status ObjReader::read_statement(std::string_view line) {
   return Success{};
 }
 
-// Whether nothing but blanks is left of a statement.
+// Returns whether only blanks are left of a statement.
 bool is_over(std::string_view rest) { return std::all_of(rest.begin(), rest.end(), scan::is_blank); }
 
 Status ObjReader::read_vertex(std::string_view numbers) {
@@ -211,7 +211,7 @@ Status ObjReader::read_vertex(std::string_view numbers) {
   return Success{};
 }
 
-// Counts a coordinate from the origin.
+// Reads a coordinate, and counts it from the origin.
 NumberFault ObjReader::read_coordinate(std::string_view word, std::size_t axis, float& coordinate) {
   if (!is_far_) return scan::parse_float(word, coordinate);
   double value = 0, last_digit = 0;
@@ -221,8 +221,8 @@ NumberFault ObjReader::read_coordinate(std::string_view word, std::size_t axis, 
   return fault;
 }
 
-// Takes a corner that is a positive index in digits alone. Returns 0 where the next word is no such corner; the line
-// then stays as it is.
+// Takes a corner that is a positive index of digits alone. Returns 0 if the next word is no such corner; the line then
+// stays as it is.
 std::int64_t take_plain_corner(std::string_view& line) {
   constexpr std::ptrdiff_t kMostDigits = 9;
   const char* at = line.data();
@@ -261,7 +261,7 @@ Status ObjReader::read_face(std::string_view corners) {
   return Success{};
 }
 
-// One of v, v/vt, v//vn, v/vt/vn.
+// Reads one of v, v/vt, v//vn, v/vt/vn.
 Status ObjReader::read_corner(std::string_view word) {
   const std::size_t first_slash = word.find('/');
   std::int64_t index = 0;
@@ -292,7 +292,7 @@ Status ObjReader::resolve(std::int64_t index, std::string_view word) {
   if (index < -count) return error(open_corner() + unknown_vertex(index) + " so far");
   if (index > largest_.index) largest_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
   const std::int64_t vertex = index < 0 ? count + index : index - 1;
-  // What does not fit in 32 bits is refused at the end, by largest_.
+  // An index that does not fit in 32 bits is refused at the end, by largest_.
   if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
     return error("the mesh has more than 4,294,967,295 corners");
   return Success{};
@@ -311,7 +311,7 @@ Status ObjReader::read_normal(std::string_view numbers) {
   return Success{};
 }
 
-// Groups are told apart by their words; 01 is 1.
+// Reads a smoothing group. Groups are told apart by their words; 01 is 1.
 Status ObjReader::read_group(std::string_view line) {
   const std::string_view word = take_word(line);
   shading_->has_groups = true;
@@ -328,8 +328,8 @@ Status ObjReader::read_group(std::string_view line) {
   return Success{};
 }
 
-// The normal of the corner that comes next; an empty word for none. One that the file does not have, or not yet, is
-// found out at the end.
+// Sets the normal of the next corner; an empty word means none. A normal that the file does not have, or not yet, is
+// found at the end.
 void ObjReader::resolve_normal(std::string_view word) {
   std::int64_t index = 0;
   if (!word.empty()) {
@@ -362,7 +362,7 @@ void append_vectors(std::string& text, std::string_view keyword, VectorView<cons
   }
 }
 
-// normal_of_corner may be empty: then corners are vertices alone.
+// Appends the faces. If normal_of_corner is empty, corners are vertices alone.
 void append_faces(std::string& text, const Topology& topology, std::span<const std::uint32_t> normal_of_corner) {
   std::size_t corner = 0;
   for (std::size_t f = 0; f < topology.face_count(); ++f) {

@@ -1,4 +1,4 @@
-/// Wavefront OBJ, the polygons of it.
+/// The polygons of Wavefront OBJ.
 ///
 ///     v 0 0 0                a vertex: x y z, then any numbers (w, or a colour), which are checked and left out
 ///     v 1 0 0 \              a line that ends in a backslash goes on in the next one
@@ -7,10 +7,10 @@
 ///     f 1/1/1 2//2 -1        a face of three or more corners: v, v/vt, v//vn or v/vt/vn
 ///
 /// Vertices are counted from 1; -1 is the vertex before the face. A positive index may name a vertex that follows
-/// later. Texture indices must be integers and are left out; so is every other statement (vt, vp, g, o, usemtl, mtllib,
-/// l, p, and words unknown). Lines end in LF, CRLF or CR; a byte order mark is passed over.
+/// later. Texture indices must be integers and are left out. So is every other statement (vt, vp, g, o, usemtl, mtllib,
+/// l, p, and unknown words). Lines end in LF, CRLF or CR; a byte order mark is skipped.
 ///
-/// How the mesh is shaded is left out too, unless it is asked for by read_obj_shading():
+/// The shading of the mesh is left out too, unless it is asked for by read_obj_shading():
 ///
 ///     vn 0 0 1               a normal, counted as vertices are; f names it after the last slash
 ///     s 1                    a smoothing group, for the faces that follow: a number or a name; off and 0 are none
@@ -32,23 +32,23 @@
 
 namespace chronormal::inline internal {
 
-/// Reads the mesh of an OBJ file, of which name is the name for messages.
+/// Reads the mesh of an OBJ file; name is its name for messages.
 ///
-/// Errors: kInvalidInput with the place "NAME, line N": coordinates that are missing, no number, glued to something
-/// else, not finite or too large for float32 (too small becomes 0); the index 0 and indices of no vertex; a file
+/// Errors: kInvalidInput with the place "NAME, line N": coordinates that are missing, no number, joined to something
+/// else, not finite or too large for float32 (too small becomes 0); the index 0 and indices without a vertex; a file
 /// without vertices or without faces. Messages count vertices, faces and corners from 0, and quote indices as the file
 /// has them. A file that was cut off inside its last number, or between two faces, is still an OBJ file: it is read as
 /// the mesh that it describes. Faces of fewer than 3 corners are left out, with a note that counts them. Positions
 /// count from the origin.
-/// Cost: one pass; memory in proportion to the numbers that are there, whatever the indices say.
+/// Cost: one pass; memory in proportion to the numbers in the file, whatever the indices say.
 [[nodiscard]] Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name, const Origin& origin = {});
 
-/// Reads the mesh of an OBJ file and how it is shaded. Faces before the first s are in no smoothing group.
+/// Reads the mesh of an OBJ file and its shading. Faces before the first s are in no smoothing group.
 ///
-/// A corner with the normal index 0, or one of no vn, has no normal, and faces after an s without a word are in no
-/// group; a note counts each of these.
+/// A corner with the normal index 0, or an index without a vn, has no normal, and faces after an s without a word are
+/// in no group; a note counts each of these.
 ///
-/// Errors: those of read_obj(), and in the same way: vn that are not three finite numbers.
+/// Errors: errors of read_obj(), and vn that are not three finite numbers, reported in the same way.
 [[nodiscard]] Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name,
                                                  const Origin& origin = {});
 
@@ -58,8 +58,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::string write_obj(const Topology& topology, VectorView<const float> positions,
                                     const Origin& origin = {});
 
-/// The same with normals: vn, and corners of the form v//vn. normal_of_corner must have an index of a normal for each
-/// corner of the topology.
+/// Writes the faces with normals: vn, and corners of the form v//vn. normal_of_corner must have an index of a normal
+/// for each corner of the topology.
 [[nodiscard]] std::string write_obj(const Topology& topology, VectorView<const float> positions,
                                     VectorView<const float> normals, std::span<const std::uint32_t> normal_of_corner,
                                     const Origin& origin = {});

@@ -9,7 +9,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The part of a file before its first face.
+// Holds the part of a file before its first face.
 struct Head {
   std::vector<float> positions;
   std::size_t end = 0;  // where the line of the first face begins

@@ -1,4 +1,4 @@
-/// Reads OBJ files of one sequence that repeat the same faces byte by byte, as most programs write them: the text of
+/// Reads OBJ files of one sequence that repeat the same faces byte by byte, as most programs write them. The text of
 /// the faces is compared, and not read again.
 #ifndef CHRONORMAL_IO_MESH_OBJ_FACES_H_
 #define CHRONORMAL_IO_MESH_OBJ_FACES_H_
@@ -10,7 +10,7 @@
 
 namespace chronormal::inline internal {
 
-/// The part of an OBJ file that begins with its first face.
+/// Holds the part of an OBJ file that begins with its first face.
 ///
 /// Shapes     V = vertices; positions are (V, 3).
 /// Threads    const member functions may be called from several threads at a time.
@@ -19,10 +19,10 @@ class ObjFaces {
   /// Takes a file that read_obj() accepts, and the positions that read_obj() returned. bytes must stay valid.
   ObjFaces(std::string_view bytes, const std::vector<float>& positions);
 
-  /// The positions of another file, where it has as many vertices before its first face, and the same text from there
-  /// on: read_obj() would return these positions, and the faces of the first file. Returns nothing for any other file,
-  /// and for one that takes more care: where numbers are wrong or too many, statements go over several lines, or there
-  /// is a byte order mark or no LF.
+  /// Returns the positions of another file, if it has as many vertices before its first face, and the same text from
+  /// there on: read_obj() would return these positions, and the faces of the first file. Returns nothing for any other
+  /// file, and for one that needs more care: if numbers are wrong or too many, statements go over several lines, or
+  /// there is a byte order mark or no LF.
   [[nodiscard]] std::optional<std::vector<float>> positions_of(std::string_view bytes) const;
 
  private:

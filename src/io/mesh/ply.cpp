@@ -25,8 +25,8 @@ using ply::Property;
 using ply::Role;
 using ply::Scalar;
 
-// A source hands out the values of the body one after the other, in either encoding. Its functions return false where
-// the value is not there or is not one; message() and place() then say what and where.
+// A source hands out the values of the body one after the other, in either encoding. Its functions return false if the
+// value is missing or malformed; message() and place() then say what is wrong and where.
 
 class AsciiSource {
  public:
@@ -35,7 +35,7 @@ class AsciiSource {
         lines_(bytes.substr(header.body_begin), header.separator),
         header_lines_(header.line_count) {}
 
-  // The fewest bytes of a row: each value is a digit and a separator. The last row may have no line end.
+  // Returns the fewest bytes of a row: each value is a digit and a separator. The last row may have no line end.
   [[nodiscard]] static std::size_t fewest_bytes(const Property& /*property*/) { return 2; }
   [[nodiscard]] std::size_t bytes_left() const { return left_ - lines_.position() + 1; }
 
@@ -77,7 +77,7 @@ class AsciiSource {
   [[nodiscard]] const std::string& message() const { return message_; }
 
  private:
-  // A row may go on in the next line.
+  // Takes the next word. A row may go on in the next line.
   std::string_view take() {
     while (next_.empty() && lines_.next()) {
       row_ = lines_.line();
@@ -202,7 +202,7 @@ class BinarySource {
         "the file ends before the data that its header declares: " + std::to_string(bytes_left()) + " bytes are left";
     return false;
   }
-  // Sets the place back to the value that was just read.
+  // Fails at the value that was just read.
   bool fail(std::string message, Scalar type) {
     message_ = std::move(message);
     position_ -= ply::byte_size(type);
@@ -252,7 +252,7 @@ class BodyReader {
 
   [[nodiscard]] Status read_element(std::size_t e) {
     const Element& element = header_.elements[e];
-    if (element.properties.empty()) return Success{};  // takes no space, however many there are
+    if (element.properties.empty()) return Success{};  // takes no space, whatever the count
     // The count is in proportion to the size of the file.
     if (e == header_.vertex_element) positions_.reserve(3 * static_cast<std::size_t>(element.count));
     if (e == header_.face_element) faces_.reserve_triangles(static_cast<std::size_t>(element.count));
@@ -310,7 +310,7 @@ class BodyReader {
     return true;
   }
 
-  // Counts a coordinate from the origin.
+  // Reads a coordinate, and counts it from the origin.
   [[nodiscard]] bool read_coordinate(const Property& property, float& coordinate) {
     if (!is_far_) return source_.coordinate(property.type, coordinate);
     double value = 0, last_digit = 0;
@@ -382,7 +382,7 @@ Result<MeshFrame> read_body(std::string_view bytes, const std::string& name, con
   return BodyReader<BinarySource>(bytes, name, header, has_velocities, origin).read();
 }
 
-// The numbers of a file, one after the other, in one of the encodings.
+// Writes the numbers of a file, one after the other, in one of the encodings.
 class RowWriter {
  public:
   RowWriter(std::string& bytes, PlyEncoding encoding)

@@ -4,7 +4,7 @@
 ///     format ascii 1.0
 ///     comment lines of comment and obj_info may stand anywhere
 ///     element vertex 3                         elements in any order
-///     property float x                         x, y, z of any scalar type; other properties are passed over
+///     property float x                         x, y, z of any scalar type; other properties are skipped
 ///     property float y
 ///     property float z
 ///     element face 1
@@ -15,10 +15,9 @@
 ///     0 1 0
 ///     3 0 1 2
 ///
-/// Elements other than vertex and face are passed over, but must be there. What follows the last element is left out.
+/// Elements other than vertex and face are skipped, but must be there. Anything after the last element is left out.
 /// Header lines end in LF, CRLF or CR. Scalar types: char uchar short ushort int uint float double, and int8 uint8
-/// int16 uint16 int32 uint32 float32 float64. double is rounded to float32, after
-/// the origin was taken away.
+/// int16 uint16 int32 uint32 float32 float64. double is rounded to float32, after the origin was subtracted.
 ///
 /// Shapes     V = vertices; positions are (V, 3).
 /// Threads    pure.
@@ -37,40 +36,41 @@ namespace chronormal::inline internal {
 
 enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 
-/// Reads the mesh of a PLY file, of which name is the name for messages.
+/// Reads the mesh of a PLY file; name is its name for messages.
 ///
 /// Errors: kInvalidInput with the place "NAME, line N" (header, ascii) or "NAME, byte N" (binary), followed by element
-/// and row where they are known ("cube.ply, byte 310, face 17"): a header that breaks the grammar or declares something
+/// and row if they are known ("cube.ply, byte 310, face 17"): a header that breaks the grammar or declares something
 /// twice; no vertices, no x, y, z, or no faces with vertex_indices; triangle strips; counts for which there are too few
 /// bytes (refused before memory is taken); data that end early; coordinates that are no number, not finite or too large
-/// for float32; indices of no vertex; in ascii, a row that ends inside a line, with numbers behind it. Faces of fewer
-/// than 3 corners are left out, with a note that counts them. In ascii, a row may go over several lines. A file cut off
-/// anywhere before its end is an error, with one exception: the last number of an ascii file may lose digits and still
-/// be a number.
+/// for float32; indices without a vertex; in ascii, a row that ends inside a line, with numbers after it. Faces of
+/// fewer than 3 corners are left out, with a note that counts them. In ascii, a row may go over several lines. A file
+/// cut off anywhere before its end is an error, with one exception: the last number of an ascii file may lose digits
+/// and still be a number.
 /// Cost: one pass; memory in proportion to the size of the file.
 [[nodiscard]] Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name, const Origin& origin = {});
 
-/// The same with the velocities of vertices: vx, vy, vz or velocity_x, velocity_y, velocity_z, the first of these that
-/// the vertices have, of any scalar type. A file has all three of them or none. Errors: also kInvalidInput where it
-/// does not, where one is a list, and for velocities that are no number, not finite or too large for float32.
+/// Reads a mesh with the velocities of vertices: vx, vy, vz or velocity_x, velocity_y, velocity_z, the first of these
+/// that the vertices have, of any scalar type. A file must have all three of them or none. Errors: errors of
+/// read_ply(); kInvalidInput if only some exist, if one is a list, and for velocities that are no number, not finite or
+/// too large for float32.
 [[nodiscard]] Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name,
                                                 const Origin& origin = {});
 
-/// Writes a PLY file with float x, y, z, or where there is an origin to be added double x, y, z, and one list of
-/// indices for each face. In ascii, coordinates have the fewest digits that read back as the same float32. positions
-/// must have as many elements as the topology has vertices.
+/// Writes a PLY file with float x, y, z, or double x, y, z if there is an origin to be added, and one list of indices
+/// for each face. In ascii, coordinates have the fewest digits that read back as the same float32. positions must have
+/// as many elements as the topology has vertices.
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding,
                                     const Origin& origin = {});
 
-/// What a file has beside positions and faces, each where it is not empty: normals, as properties float nx, ny, nz, and
-/// after them a number that programs can show in colours, as a property float quality.
+/// Holds what a file has beside positions and faces, each if it is not empty: normals, as properties float nx, ny, nz,
+/// and after them a number that programs can show in colours, as a property float quality.
 struct PlyProperties {
   VectorView<const float> of_vertices;                           ///< one for each vertex, after x, y, z
   VectorView<const float> of_faces;                              ///< one for each face, after its indices
   std::span<const float> quality_of_vertices, quality_of_faces;  ///< one for each
 };
 
-/// The same with these.
+/// Writes a PLY file with these properties.
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions,
                                     const PlyProperties& properties, PlyEncoding encoding, const Origin& origin = {});
 

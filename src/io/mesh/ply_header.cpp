@@ -38,7 +38,7 @@ std::optional<Scalar> find_scalar(std::string_view word) {
   return std::nullopt;
 }
 
-// A file with old Macintosh line ends has a CR after the first word and no LF.
+// Returns what separates lines. A file with old Macintosh line ends has a CR after the first word and no LF.
 char find_separator(std::string_view bytes) {
   return bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n';
 }
@@ -187,7 +187,7 @@ Status HeaderReader::assign_role(Property& property) {
   return Success{};
 }
 
-// What a mesh needs is there.
+// Checks that everything that a mesh needs is there.
 Status HeaderReader::check_elements() {
   header_.vertex_element = header_.face_element = kNone;
   bool has_strips = false;

@@ -1,4 +1,4 @@
-/// The header of a PLY file: which elements follow, and how they are written. Private to io.
+/// Reads the header of a PLY file, which says which elements follow, and how they are written. Private to io.
 #ifndef CHRONORMAL_IO_MESH_PLY_HEADER_H_
 #define CHRONORMAL_IO_MESH_PLY_HEADER_H_
 
@@ -23,7 +23,7 @@ enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, k
   return type != Scalar::kFloat32 && type != Scalar::kFloat64;
 }
 
-/// What a property is to us.
+/// The meaning of a property for the reader.
 enum class Role { kX, kY, kZ, kVelocityX, kVelocityY, kVelocityZ, kIndices, kOther };
 
 struct Property {
@@ -51,11 +51,11 @@ struct Header {
 };
 
 /// Reads and checks the header. Afterwards there is one element vertex with the scalars x, y, z, and one element face
-/// with the list vertex_indices of an integer type, both with a count above 0. Views point into bytes.
-/// Errors: as read_ply(), with the place "NAME, line N".
+/// with the list vertex_indices of an integer type, both with a count above 0. Views point into bytes. Errors: as for
+/// read_ply(), with the place "NAME, line N".
 [[nodiscard]] Result<Header> read_header(std::string_view bytes, const std::string& name);
 
-/// Gives the velocities of vertices their roles, where there are any; returns whether there are. Errors: as
+/// Gives the velocities of vertices their roles, if there are any. Returns whether there are. Errors: as for
 /// read_moving_ply(), with the place "NAME, header".
 [[nodiscard]] Result<bool> assign_velocities(Header& header, const std::string& name);
 

@@ -13,23 +13,23 @@
 
 namespace chronormal::inline internal {
 
-/// Keeps no offsets until the first face that is not a triangle: most meshes never need them.
+/// Builds the faces. It keeps no offsets until the first face that is not a triangle: most meshes never need them.
 class PolygonBuilder {
  public:
   static constexpr std::size_t kMaxCorners = std::numeric_limits<std::uint32_t>::max();
 
   void reserve_triangles(std::size_t count) { corners_.reserve(3 * count); }
 
-  /// Adds a corner to the face that is being built; false where the mesh has too many to be counted in 32 bits.
+  /// Adds a corner to the face that is being built. Returns false if the mesh has too many to be counted in 32 bits.
   [[nodiscard]] bool add_corner(std::uint32_t vertex) {
     if (corners_.size() >= kMaxCorners) return false;
     corners_.push_back(vertex);
     return true;
   }
 
-  /// Corners of the face that is being built.
+  /// Returns the corners of the face that is being built.
   [[nodiscard]] std::size_t open_corners() const noexcept { return corners_.size() - face_begin_; }
-  /// Faces that were ended: the index of the face that is being built.
+  /// Returns how many faces were ended, which is the index of the face that is being built.
   [[nodiscard]] std::size_t face_count() const noexcept { return face_count_; }
 
   /// Leaves out the face that is being built.
@@ -44,7 +44,7 @@ class PolygonBuilder {
     ++face_count_;
   }
 
-  /// Makes the topology; the builder is used up. Errors: those of Topology::polygons().
+  /// Makes the topology; the builder is used up. Errors: errors of Topology::polygons().
   [[nodiscard]] Result<Topology> build(std::size_t vertex_count) {
     corners_.shrink_to_fit();
     offsets_.shrink_to_fit();
