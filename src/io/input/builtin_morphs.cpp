@@ -27,7 +27,8 @@ constexpr std::array kBlendShapes = {
     BuiltinMorph{"bumps", "blend shapes: 12 overlapping targets on the front of a head, 6,144 faces"},
 };
 
-// A grid of (columns + 1) x (rows + 1) points, each quad two triangles; `closed` joins the last column to the first.
+// A grid of (columns + 1) x (rows + 1) points, with each quad as two triangles. `closed` joins the last column to the
+// first.
 struct Grid {
   std::size_t columns, rows;
   bool closed;
@@ -51,7 +52,7 @@ struct Grid {
     return Topology::triangles(vertex_count(), std::move(corners)).value();
   }
 
-  // The positions point(u, v) with u, v in [0, 1] over columns and rows.
+  // Returns a keyframe with the positions point(u, v), where u, v in [0, 1] run over columns and rows.
   template <class Point>
   [[nodiscard]] Motion::Keyframe keyframe(double time, Point point) const {
     Motion::Keyframe keyframe{{}, time, {}};
@@ -78,7 +79,7 @@ Motion connected(Topology topology, std::vector<Motion::Keyframe> keyframes) {
   return motion;
 }
 
-// A wave in which every point runs round an ellipse, and a weaker one across it.
+// Makes a wave in which every point runs round an ellipse, and a weaker one across it.
 Motion cloth() {
   const Grid grid{133, 132, false};
   std::vector<Motion::Keyframe> keyframes;
@@ -93,7 +94,7 @@ Motion cloth() {
   return connected(grid.topology(), std::move(keyframes));
 }
 
-// A tube along y; bending keeps the length of its middle line.
+// Makes a tube along y; bending keeps the length of its middle line.
 Motion bend() {
   const Grid grid{149, 150, true};
   const auto tube = [&grid](double time, double bend_angle) {
@@ -109,7 +110,7 @@ Motion bend() {
   return connected(grid.topology(), {tube(0, 0), tube(1, kPi / 2)});
 }
 
-// A column with a square cross-section, so that its sides are flat and its edges are sharp.
+// Twists a column with a square cross-section, so that its sides are flat and its edges are sharp.
 Motion twist() {
   const Grid grid{100, 76, true};
   const auto column = [&grid](double time, double twist_angle) {
@@ -122,7 +123,7 @@ Motion twist() {
   return connected(grid.topology(), {column(0, 0), column(1, 2 * kPi / 3)});
 }
 
-// Every point goes through the neighbourhood of the centre to the opposite side, turning as it goes.
+// Turns a sphere inside out: every point goes past the centre to the opposite side, turning as it goes.
 Motion eversion() {
   const Grid grid{100, 105, true};
   const auto sphere = [&grid](double time, double scale, double turn) {
@@ -141,7 +142,7 @@ Motion soup() {
   std::mt19937_64 random(20110601);
   std::vector<std::uint32_t> corners(3 * kFaces);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
-  // By hand: the standard distributions differ between libraries.
+  // Random numbers are made by hand here, since the standard distributions differ between libraries.
   const auto coordinate = [&random] {
     return static_cast<float>(std::ldexp(static_cast<double>(random() >> 40), -23) - 1);
   };
@@ -154,7 +155,8 @@ Motion soup() {
   return connected(Topology::triangles(3 * kFaces, std::move(corners)).value(), std::move(keyframes));
 }
 
-// An egg with ripples, and targets that push parts of its front about: neighbours overlap, as those of a face do.
+// Makes an egg with ripples, and targets that push parts of its front about. Neighbours overlap, as targets of a face
+// do.
 Motion bumps() {
   constexpr std::size_t kTargets = 12;
   const Grid grid{64, 48, true};
@@ -166,7 +168,8 @@ Motion bumps() {
       const double radius = 1 + 0.03 * portable::sin(5 * around) * portable::sin(6 * down);
       const Vec3d base = radius * Vec3d{out.x, 0.85 * out.y, 1.2 * out.z};
       if (target == 0) return base;
-      // Four rows of three on the front, which looks along x; every other one pushes out, the others along the skin.
+      // There are four rows of three on the front, which looks along x. Every other one pushes out, the others along
+      // the skin.
       const std::size_t row = (target - 1) / 3, column = (target - 1) % 3;
       const double centre_around = 0.45 * (static_cast<double>(column) - 1);
       const double centre_down = kPi / 2 + 0.35 * (static_cast<double>(row) - 1.5);

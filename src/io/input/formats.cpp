@@ -1,4 +1,4 @@
-// The one table of file formats.
+// Holds the one table of file formats.
 #include "io/input/formats.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ constexpr std::array<Extension, 1> kObj = {".obj"}, kPly = {".ply"}, kNpz = {".n
 constexpr std::array<Extension, 2> kMaya = {".mc", ".mcx"}, kTarget = {".target", ".target.gz"};
 constexpr std::array<Extension, 3> kGltf = {".gltf", ".glb", ".vrm"};
 
-// The first line that is neither empty nor a comment begins with a common word of OBJ.
+// Tells whether the first line that is neither empty nor a comment begins with a common word of OBJ.
 bool is_obj(std::string_view first_bytes) {
   constexpr std::array<std::string_view, 12> kKeywords = {"v",      "vn", "vt", "f", "o",      "g",
                                                           "mtllib", "s",  "l",  "p", "usemtl", "vp"};
@@ -61,7 +61,7 @@ std::string write_plain_obj(const Topology& topology, VectorView<const float> po
   return write_obj(topology, positions, origin);
 }
 
-// No count of it is larger than the file.
+// Needs no limit of expansion, since no count of the format is larger than the file.
 Result<Motion> read_whole_md2(std::string_view bytes, const std::string& name, double frames_per_second,
                               std::size_t /*max_expansion*/) {
   return read_md2(bytes, name, frames_per_second);
@@ -140,7 +140,7 @@ std::string unknown_format(std::string_view bytes, std::string_view what) {
 
 std::string way_in(std::string_view file_name, std::string_view bytes) {
   struct Foreign {
-    std::string_view kind;  // as known_kind() has it
+    std::string_view kind;  // in the words of known_kind()
     std::array<std::string_view, 4> extensions;
     std::string_view way;
   };

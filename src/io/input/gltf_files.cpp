@@ -1,5 +1,5 @@
-// The glTF files that inputs stand for. Keyframes and glTF files are told apart by their names alone; a folder whose
-// own files are meshes is a sequence, whatever lies in the folders in it.
+// Finds the glTF files that inputs stand for. Keyframes and glTF files are told apart only by their names. A folder
+// whose own files are meshes is a sequence, whatever its subfolders hold.
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -21,8 +21,8 @@ bool holds(const std::string& path, Holds kind) {
   return format != nullptr && format->holds == kind;
 }
 
-// The glTF files in a folder and in the folders in it; none where its own files are meshes. What cannot be listed is
-// for the one who opens it to say.
+// Returns the glTF files in a folder and its subfolders, or none if its own files are meshes. A folder that cannot be
+// listed is reported when it is opened.
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::error_code code;
   fs::recursive_directory_iterator entries(folder, fs::directory_options::skip_permission_denied, code);
@@ -30,7 +30,7 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::string own_mesh, own_gltf;
   while (!code && entries != fs::recursive_directory_iterator{}) {
     const std::string path = entries->path().string();
-    std::error_code ignored;  // a link to nowhere is no file
+    std::error_code ignored;  // a broken link is no file
     if (file_name_of(path).starts_with('.')) {
       entries.disable_recursion_pending();
     } else if (!fs::is_directory(path, ignored)) {
@@ -66,7 +66,7 @@ Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>&
     } else if (is_pattern) {
       InputOptions pattern;
       pattern.files = {input};
-      // That it matches nothing is for the one who opens it to say.
+      // A pattern that matches nothing is reported when it is opened.
       Result<std::vector<std::string>> matches = find_input_files(pattern, list_folder);
       found = matches ? std::move(matches).value() : pattern.files;
     } else if (is_folder) {

@@ -1,6 +1,6 @@
-// One door for what is read. open_input() goes through the forms that an input can have, in this order: a built-in
-// morph, a base with its targets, a cache with its mesh, one file that is whole, the files of a sequence. What a file
-// is, its extension says, or else its content, which is there by then: no file is opened twice.
+// The one entry for everything that is read. open_input() goes through the forms that an input can have, in this order:
+// a built-in morph, a base with its targets, a cache with its mesh, one file that is whole, the files of a sequence.
+// The extension of a file tells its format, or else its content, which has been read by then: no file is opened twice.
 #include "chronormal/io/input.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ Error not_animated(const std::string& input) {
   return misuse(input, "--animation chooses among those of a glTF file, which this is not");
 }
 
-// The error for a choice of keyframes in an input that is no sequence.
+// Returns the error for a choice of keyframes in an input that is no sequence.
 Error chooses_nothing(const InputOptions& options) {
   return misuse(options.from > 0     ? "--from"
                 : options.to         ? "--to"
@@ -50,14 +50,14 @@ Error chooses_nothing(const InputOptions& options) {
                 "it chooses among the keyframes of a sequence, which this is not");
 }
 
-// What was opened: a document, or else a motion or a mesh.
+// Holds what was opened: a document, or else a motion or a mesh.
 struct Opened {
   std::optional<GltfDocument> document;
   std::size_t file_size = 0;  // of the document
-  ReadMotion read;            // of the document not yet
+  ReadMotion read;            // not yet read for a document
 };
 
-// What messages and tables call a file, and what they call several.
+// Return the names of a file and of several files, for messages and tables.
 std::string name_of_file(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
 std::string short_name(std::string path) {
@@ -112,7 +112,7 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (motion.kind == MotionKind::kTargets || motion.segments.empty()) return chooses_nothing(options);
   const Result<std::vector<std::size_t>> frames = choose_frames(motion.keyframes.size(), options);
   if (!frames) return frames.error();
-  // A part of several clips that has jumps stays one, and a part without them is a sequence like any other.
+  // A part of several clips that has jumps stays an animation, and a part without jumps is a sequence like any other.
   const std::size_t last = options.to.value_or(motion.keyframes.size() - 1);
   bool jumps = false;
   for (std::size_t k = options.from + 1; k <= last && motion.kind == MotionKind::kAnimation; ++k)
@@ -122,7 +122,7 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
                   "the motion jumps there from one clip to the next: choose the keyframes of one by --from and --to");
   std::vector<Motion::Keyframe> kept;
   for (const std::size_t k : frames.value()) {
-    // The ends may follow from keyframes that are chosen and from others.
+    // The ends may depend on chosen keyframes and on others.
     Motion::Keyframe& keyframe = motion.keyframes[k];
     kept.push_back(options.is_curved() || options.loop ? keyframe : std::move(keyframe));
   }
@@ -135,8 +135,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   return set_end_velocities(options, times, positions, motion);
 }
 
-// Makes a stream of the chosen keyframes of a motion whose positions are still in the file. The stream has a descriptor
-// of its own: it does not read the file by its name, and maps nothing.
+// Makes a stream of the chosen keyframes of a motion whose positions are still in the file. The stream has its own file
+// descriptor: it does not read the file by its name, and maps nothing.
 Result<MotionStream> stream_samples(const InputOptions& options, Motion outline, PositionedFile file,
                                     CacheLayout layout, const std::string& name) {
   std::vector<std::size_t> frames(outline.keyframes.size());
@@ -164,14 +164,14 @@ Result<MotionStream> stream_samples(const InputOptions& options, Motion outline,
   return MotionStream(std::move(outline), read, options.kept_bytes);
 }
 
-// The cache of a layout, without positions.
+// Returns the cache of a layout, without positions.
 Result<PositionCache> outline_of(const CacheLayout& layout) {
   PositionCache cache{layout.vertex_count, {}, layout.origin};
   for (const double time : layout.times) cache.samples.push_back({time, {}});
   return cache;
 }
 
-// The layout of a cache whose samples can be read one by one. It is nothing where they cannot, and where something is
+// Holds the layout of a cache whose samples can be read one by one. There is none if they cannot, or if something is
 // wrong, which the reader of the whole file reports.
 struct FoundSamples {
   PositionedFile file;
@@ -189,16 +189,16 @@ std::optional<FoundSamples> find_samples(const CacheInput& input, const CacheOpt
   return FoundSamples{std::move(*file), std::move(layout).value()};
 }
 
-// Notes where positions that were float32 in their file have lost digits: these are the first of them.
+// Adds a note if positions that were float32 in their file have lost digits; `first` are the first positions.
 void note_if_far(const Origin& origin, std::span<const float> first, ReadMotion& read) {
   if (origin != Origin{} || far_origin(first) == Origin{}) return;
   if (std::string note = note_of_lost_digits(first); !note.empty()) read.notes.push_back(std::move(note));
 }
 
-// Says that a cache has the vertices of a mesh in another order, or is of another mesh; empty where nothing tells that.
-// Motion keeps the lengths of edges, or changes them smoothly. Between vertices in a wrong order, they are those of any
-// two points, which are much longer in all but the smallest meshes. There the coordinates tell, each axis by itself:
-// where they are those of the mesh in another order, so are the vertices.
+// Returns a doubt that a cache has the vertices of a mesh in another order, or belongs to another mesh; empty if
+// nothing suggests it. Motion keeps the lengths of edges, or changes them smoothly. If vertices are in a wrong order,
+// edges are as long as the distances of any two points, which are much longer in all but the smallest meshes. There the
+// coordinates tell, each axis by itself: if they are the coordinates of the mesh in another order, so are the vertices.
 std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh, const std::vector<float>& first) {
   constexpr double kTolerance = 1e-4, kFarther = 2, kSpread = 0.15;
   constexpr std::size_t kFewCoordinates = 1 << 20;  // are sorted in no time
@@ -293,7 +293,7 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   Result<PositionCache> cache = samples ? outline_of(samples->layout) : read_cache(input, cache_options, options);
   if (!cache) return cache.error();
   const Origin of_mesh_origin = read.motion.origin, of_cache_origin = cache.value().origin;
-  // The files of a cache have no fewer bytes than its positions.
+  // The files of a cache have at least as many bytes as its positions.
   read.bytes_read += sizeof(float) * 3 * std::uint64_t{cache.value().vertex_count} * cache.value().samples.size();
   if (options.progress) options.progress(2, 2);
   Result<Motion> motion =
@@ -323,7 +323,7 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   return read;
 }
 
-// A mesh that does not move, as one keyframe.
+// Reads a mesh that does not move, as one keyframe.
 Result<ReadMotion> read_still_mesh(std::string_view bytes, const std::string& path, const InputOptions& options) {
   if (options.chooses_frames()) return chooses_nothing(options);
   ReadMotion read;
@@ -334,8 +334,8 @@ Result<ReadMotion> read_still_mesh(std::string_view bytes, const std::string& pa
   return read;
 }
 
-// Whether one input is a file by itself, and not a pattern or a folder, that may be whole. A mesh is that only where
-// one that does not move is welcome.
+// Returns whether one input is a file by itself, and not a pattern or a folder, that may be whole. A mesh is whole only
+// if one that does not move is allowed.
 bool may_be_whole(const std::string& input, const InputOptions& options) {
   const Format* const format = find_format(input);
   if (format != nullptr && format->holds == Holds::kMesh && !options.allow_mesh) return false;
@@ -363,7 +363,7 @@ Result<Opened> open_document(FileBytes file, const std::string& path, const Inpu
   return opened;
 }
 
-// Reads a file that holds a whole motion, or only its outline where samples can be read one by one.
+// Reads a file that holds a whole motion, or only its outline if samples can be read one by one.
 Status read_whole_motion(const Format& format, std::string_view bytes, const std::string& path,
                          const InputOptions& options, ReadMotion& read) {
   const std::string name = file_name_of(path);
@@ -392,7 +392,7 @@ Status read_whole_motion(const Format& format, std::string_view bytes, const std
   return Success{};
 }
 
-// Opens the one file that the input is.
+// Opens an input that is one file.
 Result<Opened> open_whole(const std::string& path, const InputOptions& options) {
   Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();
@@ -487,14 +487,14 @@ Status check_input(const InputOptions& options) {
 struct Input::State {
   std::string name;
   Opened opened;
-  Expansion expansion;       // of what is not a document
+  Expansion expansion;       // of everything but documents
   GltfMotionOptions chosen;  // of the document
   bool allow_mesh = false;
   Path path;
   std::size_t most_pieces = kMostPieces, kept_bytes = 0;
   std::optional<CutPath> cut;
   std::optional<Error> cut_error;
-  // Of the document, once it was asked for.
+  // These belong to the document, and are set once it was asked for them.
   bool has_motion = true, has_normals = true;
   std::vector<GltfPart> parts;
   double curve_error = 0;
@@ -650,7 +650,7 @@ Result<Input> open_input(const InputOptions& asked) {
   if (!options.base.empty()) return keep(name_of_file(options.base), read_targets(options));
   if (options.files.size() > 1 || !may_be_whole(options.files.front(), options)) {
     std::vector<std::string> files = options.files;
-    (void)sort_listed(files);  // as find_frames() does
+    (void)sort_listed(files);  // in the order of find_frames()
     return keep(name_of_files(files), read_several(options));
   }
 

@@ -1,4 +1,4 @@
-// The files that inputs stand for, in order, and one mesh out of them.
+// Finds the files that inputs stand for, in order, and reads one mesh from them.
 #include "io/input/input_files.h"
 
 #include <glob.h>
@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view kNoneMatches = "no file of this name, and none that matches it";
 constexpr std::string_view kTopologyMustNotChange = ": topology must not change between keyframes";
 
-// Takes the digits at the front of text, without leading zeros.
+// Takes the digits at the front of text, and drops leading zeros.
 std::string_view take_number(std::string_view& text) {
   std::size_t end = 0;
   while (end < text.size() && scan::is_digit(text[end])) ++end;
@@ -42,8 +42,8 @@ std::vector<std::string> match_pattern(const std::string& pattern, int flags = 0
   return files;
 }
 
-// Finds what comes before and behind the number in a name with a place for one, %d or %0Nd, as outputs are given by.
-// Returns nothing where it has no such place.
+// Finds the parts before and after the number in a name with a place for one, %d or %0Nd, in the form of output names.
+// Returns nothing if it has no such place.
 std::optional<std::pair<std::string, std::string>> around_number(const std::string& input) {
   const std::size_t slash = input.rfind('/');
   const std::size_t percent = input.find('%', slash == std::string::npos ? 0 : slash);
@@ -145,7 +145,7 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
   read.bytes_read += bytes.size();
   const std::size_t k = read.motion.keyframes.size();
   std::vector<std::vector<float>>& normals = read.normals.of_keyframes;
-  // The normals of all keyframes count as far as every one so far had some.
+  // The normals of all keyframes are kept as long as every keyframe so far had some.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool wanted = k == 0 ? options.shading != KeepShading::kNone : of_all && normals.size() == k;
   WantedOfMesh of_mesh{wanted, options.velocities, read.motion.origin};
@@ -159,7 +159,7 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
       if (!shifted) return shifted;
       bool has_more_digits = shifted.value().has_more_digits;
       for (std::size_t i = 0; i < read.other_files.size() && !has_more_digits; ++i) {
-        // Faults of other files are found when these are read in their turn.
+        // Faults of other files are found when they are read in their turn.
         const Result<FileBytes> file = FileBytes::open(read.other_files[i], options.resolve);
         if (!file) continue;
         const Result<MeshFrame> other =
@@ -213,7 +213,7 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
 }
 
 double closing_time(std::span<const double> times, std::span<const std::size_t> frames) {
-  const std::size_t count = frames.size() - 1;  // of different keyframes
+  const std::size_t count = frames.size() - 1;  // number of different keyframes
   const double first = times[frames[0]], last = times[frames[count - 1]];
   return last + (last - first) / static_cast<double>(count - 1);
 }
@@ -227,7 +227,7 @@ Status set_loop_velocities(const InputOptions& options, std::size_t count,
   if (!frames) return frames.error();
   const std::size_t round = chosen.keyframes.size() - 1;
   const double period = chosen.keyframes.back().time - chosen.keyframes.front().time;
-  constexpr std::size_t kBeside = 3;  // keyframes on each side, which is as many as velocities depend on
+  constexpr std::size_t kBeside = 3;  // velocities depend on so many keyframes on each side
   std::vector<double> times;
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i <= 2 * kBeside; ++i) {
@@ -256,7 +256,7 @@ Status set_end_velocities(const InputOptions& options, std::span<const double> t
                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   if (!options.is_curved() || !options.chooses_frames()) return Success{};
   if (options.loop) return set_loop_velocities(options, times.size(), read, chosen);
-  // Only the keyframes count that the same step chooses from the whole sequence.
+  // Only the keyframes that the same step chooses from the whole sequence count.
   const std::size_t start = options.from % options.every, first = options.from / options.every;
   std::vector<double> of_whole, of_part;
   for (std::size_t k = start; k < times.size(); k += std::min(options.every, times.size()))

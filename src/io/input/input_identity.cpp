@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The file of a cache with its channel, "cache.mcx#shape".
+// Returns the file of a cache that is given with its channel, "cache.mcx#shape".
 std::string without_channel(const std::string& input) {
   const std::size_t hash = input.rfind('#');
   std::error_code ignored;

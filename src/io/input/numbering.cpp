@@ -1,5 +1,5 @@
-// Numbers in the names of files. A name is cut into texts and numbers, in a way that all names of a set agree on. Names
-// with the same texts are one group; in a sequence there is one group, of which one number differs from name to name.
+// Finds the numbers in the names of files. A name is cut into texts and numbers, in a way that all names of a set agree
+// on. Names with the same texts are one group; a sequence is one group, in which one number differs from name to name.
 #include "io/input/numbering.h"
 
 #include <algorithm>
@@ -46,7 +46,7 @@ struct Number {
 struct Place {
   std::size_t begin = 0, end = 0;    // with its sign
   std::size_t digits = 0;            // where its digits begin
-  std::size_t point = 0, power = 0;  // of the decimal point and of the letter e; `end` where there is none
+  std::size_t point = 0, power = 0;  // places of the decimal point and of the letter e; `end` if there is none
 };
 
 struct Cut {
@@ -60,7 +60,7 @@ struct Cut {
   }
 };
 
-// The extension of a format that is read, in lower case; empty where the name has none: 0.05 is a number.
+// Returns the extension of a format that is read, in lower case. It is empty if the name has none: 0.05 is a number.
 std::string known_extension(std::string_view name) {
   return find_format(name) == nullptr ? std::string() : lower_extension(name);
 }
@@ -100,7 +100,7 @@ Cut cut_name(std::string_view name, Syntax syntax) {
     place.end = at;
     if (place.point == 0) place.point = place.end;
     if (place.power == 0) place.power = place.end;
-    // A minus at the start of a name, or after a blank.
+    // This is a minus at the start of a name, or after a blank.
     if (place.begin > 0 && name[place.begin - 1] == '-' &&
         (place.begin == 1 || name[place.begin - 2] == ' ' || name[place.begin - 2] == '/'))
       --place.begin;
@@ -137,7 +137,7 @@ Number number_at(std::string_view name, const Place& place) {
   return number;
 }
 
-// Returns the number as a double, which it may be too large for.
+// Returns the number as a double, for which it may be too large.
 double value_of(const Number& number) {
   const std::string text = (number.is_negative ? "-0." : "0.") + number.digits + "e" + std::to_string(number.point);
   double value = 0;
@@ -145,10 +145,10 @@ double value_of(const Number& number) {
   return code == std::errc{} || number.point < 0 ? value : std::numeric_limits<double>::infinity();
 }
 
-// A set of names, cut alike, and what tells them apart.
+// A set of names that are cut alike, and what tells them apart.
 struct Group {
   std::vector<std::size_t> files;
-  std::vector<std::size_t> varying;  // numbers that are not the same in all of them
+  std::vector<std::size_t> varying;  // numbers that differ between the files
 };
 
 class Names {
@@ -209,7 +209,7 @@ class Names {
   }
 
   // Tells whether the points between digits can be decimal points. `before` are digits in front of the point, `behind`
-  // those after it.
+  // the digits after it.
   [[nodiscard]] bool have_fractions() const {
     std::map<std::pair<std::string, std::size_t>, std::vector<std::pair<std::string, std::string>>> found;
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
@@ -244,7 +244,7 @@ class Names {
     return true;
   }
 
-  // Makes a minus a sign where other names have none at its place.
+  // Makes a minus a sign if other names have none at its place.
   void take_signs() {
     std::set<std::vector<std::string>> texts;
     for (const Cut& cut : cuts_) texts.insert(cut.texts);
@@ -265,7 +265,7 @@ class Names {
   std::vector<std::vector<Number>> numbers_ = std::vector<std::vector<Number>>(files_.size());
 };
 
-// "walk_0.obj ... walk_9.obj (10 files)"
+// Returns "walk_0.obj ... walk_9.obj (10 files)".
 std::string group_words(const std::vector<std::string>& files, const Group& group) {
   const std::string first = file_name_of(files[group.files.front()]);
   if (group.files.size() == 1) return first;
@@ -273,8 +273,8 @@ std::string group_words(const std::vector<std::string>& files, const Group& grou
          " files)";
 }
 
-// Divides groups of which several numbers differ by all of these but the last: take1_1, take1_2, take2_1, take2_2.
-// Names that stand alone then, such as those of dates, are one group.
+// Divides groups in which several numbers differ by all of these but the last: take1_1, take1_2, take2_1, take2_2.
+// Names that then stand alone, such as names with dates, form one group.
 std::vector<Group> divided(const Names& names, const std::vector<Group>& groups) {
   std::vector<Group> result;
   for (const Group& group : groups) {
@@ -304,7 +304,7 @@ void reorder(std::vector<std::string>& files, const std::vector<std::size_t>& or
   files = std::move(sorted);
 }
 
-// Tells whether a shell may have listed the files in this order: by their bytes, or as most languages have it, where
+// Tells whether a shell may have listed the files in this order: by their bytes, or as most languages sort, where
 // letters and digits count first.
 bool stand_as_listed(const std::vector<std::string>& files) {
   const auto letters_of = [](const std::string& name) {

@@ -1,4 +1,4 @@
-// Sequences: mesh files in order, of one topology.
+// Reads sequences, which are mesh files in order, of one topology.
 #include "io/input/sequence.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
     const std::filesystem::path path = entries->path();
     const std::string name = path.filename().string();
     const Format* const own = find_format(name);
-    std::error_code ignored;  // a link to nowhere is no file
+    std::error_code ignored;  // a broken link is no file
     if (own != nullptr && own->holds == Holds::kMesh && !name.starts_with('.') &&
         !std::filesystem::is_directory(path, ignored)) {
       if (format != nullptr && format != own)
@@ -63,15 +63,15 @@ Result<FileBytes> open_frame(const InputOptions& options, const std::string& pat
   return error;
 }
 
-// A frame other than the first.
+// Holds a frame other than the first.
 struct ReadFrame {
   Result<std::vector<float>> positions = std::vector<float>();
   std::vector<float> velocities = {};
-  std::uint64_t bytes = 0;  // the size of its file, where it was not counted otherwise
+  std::uint64_t bytes = 0;  // size of its file, unless it was counted elsewhere
 };
 
-// Reads a frame; of_first has the faces and the origin of the first one. `faces` are those of the first frame, where
-// their text can be compared; `shaded` gets the normals of the frame, where they are wanted.
+// Reads a frame; of_first has the faces and the origin of the first one. `faces` are the faces of the first frame if
+// their text can be compared; `shaded` gets the normals of the frame if they are wanted.
 ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
                      const ObjFaces* faces, ReadMotion* shaded, const Motion& of_first, const std::string& first_name) {
   const Result<FileBytes> file = open_frame(options, path, place);
@@ -93,14 +93,15 @@ ReadFrame read_frame(const InputOptions& options, const std::string& path, const
   return {std::move(mesh.value().positions), std::move(mesh.value().velocities), counted};
 }
 
-// The faces of a file whose text can be compared with that of other files; nothing for other formats than OBJ.
+// Returns the faces of a file whose text can be compared with other files, or nothing for formats other than OBJ.
 std::optional<ObjFaces> faces_of(const std::string& path, std::string_view bytes, const std::vector<float>& positions) {
   const Format* const format = find_format(file_name_of(path), bytes);
   if (format == nullptr || format->read_mesh != read_obj) return std::nullopt;
   return ObjFaces(bytes, positions);
 }
 
-// The sizes of all files; nothing where one of them is not there, or cannot be read again, such as a pipe.
+// Returns the size of all files together, or nothing if one of them is missing, or cannot be read again, such as a
+// pipe.
 std::optional<std::uint64_t> bytes_of(const std::vector<std::string>& files, const std::vector<std::size_t>& frames) {
   std::uint64_t bytes = 0;
   for (const std::size_t k : frames) {
@@ -126,7 +127,7 @@ Result<std::vector<std::string>> find_frames(const InputOptions& options, std::v
 
 namespace {
 
-// The numbers of the files that are keyframes.
+// Returns the numbers of the files that are keyframes.
 Result<std::vector<std::size_t>> choose_files(const std::vector<std::string>& files, const InputOptions& options) {
   const std::size_t total = files.size();
   if (total < 2)
@@ -141,7 +142,7 @@ Result<std::vector<std::size_t>> choose_files(const std::vector<std::string>& fi
 
 namespace {
 
-// The times of all files in seconds. Notes where they are not evenly spaced.
+// Returns the times of all files in seconds, and adds a note if they are not evenly spaced.
 Result<std::vector<double>> find_times(const std::vector<std::string>& files, const InputOptions& options,
                                        ReadMotion& read) {
   FileTimes found = times_of_files(files);
@@ -161,7 +162,7 @@ Result<std::vector<double>> find_times(const std::vector<std::string>& files, co
   return std::move(found.times);
 }
 
-// Chooses the files that are looked at where the first one has no more digits than float32: the last one, which is the
+// Chooses the files that are examined if the first one has no more digits than float32: the last one, which is the
 // likeliest to have moved, and others evenly between.
 std::vector<std::string> files_that_tell_digits(const std::vector<std::string>& files,
                                                 const std::vector<std::size_t>& frames) {
@@ -211,14 +212,14 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   motion.topology = std::move(first.value().topology);
   keep(std::move(first.value().positions), std::move(first.value().velocities));
 
-  // Reads the frames that follow, as many at a time as there are threads. Frames come one by one from a resolver, which
-  // may not be safe to call from several threads, and where the normals of a frame depend on whether the one before had
-  // some.
+  // Read the frames that follow, as many at a time as there are threads. Frames come one by one from a resolver, which
+  // may not be safe to call from several threads, and also if the normals of a frame are read only if the one before
+  // had some.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;
-  // Text that is the same is compared with positions as they stand in the file.
+  // The same text can only be used with positions as they stand in the file.
   if (!keeps_normals && motion.origin == Origin{})
     faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
   while (motion.keyframes.size() < total) {
@@ -279,7 +280,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   if (valid) valid = validate_outline(outline);
   if (!valid) return valid.error();
 
-  // The first file stays mapped, so that the text of its faces can be compared with that of the others.
+  // The first file stays mapped, so that the text of its faces can be compared with other files.
   struct First {
     FileBytes file;
     std::optional<ObjFaces> faces;

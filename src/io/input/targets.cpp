@@ -1,4 +1,4 @@
-// Morph targets over a base: meshes of its topology, and deltas.
+// Reads morph targets over a base: meshes of its topology, and deltas.
 #include "io/input/targets.h"
 
 #include <algorithm>
@@ -22,18 +22,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The format of a target, by the name of its file; nullptr for what is none.
+// Returns the format of a target by the name of its file, or nullptr if it is none.
 const Format* target_format(const std::string& file_name) {
   const Format* const format = find_format(file_name);
   return format != nullptr && (format->holds == Holds::kTarget || format->holds == Holds::kMesh) ? format : nullptr;
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;  // what is not there is reported when it is opened
+  std::error_code ignored;  // a missing file is reported when it is opened
   return a == b || fs::equivalent(a, b, ignored);
 }
 
-// All targets in a folder and in the folders in it, without the base.
+// Returns all targets in a folder and its subfolders, without the base.
 Result<std::vector<std::string>> list_targets(const std::string& folder, const std::string& base) {
   std::error_code code;
   fs::recursive_directory_iterator entries(folder, code);
@@ -42,7 +42,7 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
   while (!code && entries != fs::recursive_directory_iterator{}) {
     const std::string path = entries->path().string(), name = entries->path().filename().string();
     const Format* const own = target_format(name);
-    std::error_code ignored;  // a link to nowhere is no file
+    std::error_code ignored;  // a broken link is no file
     if (name.starts_with('.')) {
       entries.disable_recursion_pending();
     } else if (own != nullptr && !fs::is_directory(path, ignored) && !is_same_file(path, base)) {
@@ -62,17 +62,17 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
   return files;
 }
 
-// What messages call a file.
+// Returns the name of a file in messages.
 std::string place_of(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
-// "a/blink.target.gz" -> "blink"
+// Returns "blink" for "a/blink.target.gz".
 std::string keyframe_name(const std::string& path) {
   const fs::path name = file_name_of(path), stem = name.stem();
   const bool is_packed_target = is_make_human_target(path) && lower_extension(path) == ".gz";
   return (is_packed_target ? stem.stem() : stem).string();
 }
 
-// Asks for the positions of a keyframe, beside those that are there: a target of one line has as many as any.
+// Asks for the positions of a keyframe, beside the existing ones: a target of one line has as many as any other.
 Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {
   const std::uint64_t keyframes = read.motion.keyframes.size() + 1, vertices = read.motion.topology.vertex_count();
   const Expansion expansion(options.max_expansion, read.bytes_read);
@@ -119,7 +119,7 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
       files, [&](const std::string& file) { return file == base || (!options.resolve && is_same_file(file, base)); });
   if (files.empty()) return invalid_input(place_of(base), "there is no target besides the base itself");
 
-  // Normals are those of the base: viewers that show targets have none of theirs.
+  // Take normals only from the base: viewers that show targets have no normals for them.
   InputOptions of_base = options;
   if (of_base.shading != KeepShading::kNone) of_base.shading = KeepShading::kFirst;
   const std::size_t total = 1 + files.size();

@@ -1,15 +1,15 @@
-/// Morph targets over a base mesh: a star of segments, one from the base to each target. Private to io.
+/// Reads morph targets over a base mesh: a star of segments, one from the base to each target. Private to io.
 ///
 ///     base.obj  +  smile.obj, blink.target.gz, 'mouth_*.target', targets/
 ///
 ///     keyframes   0 base   1 smile   2 blink   3 mouth_1 ...
 ///     segments    0 -> 1   0 -> 2   0 -> 3 ...
 ///
-/// A target is a mesh with the faces of the base (.obj, .ply), or what is added to it (io/mesh/make_human_target.h).
-/// Inputs are files and patterns as in io/input.h, and folders: all targets in a folder and in the folders in it,
-/// sorted by path with numbers as numbers; names that begin with a dot and links to folders are passed over. The file
-/// of the base itself is passed over wherever it comes among the inputs, so that it may lie in the folder of its
-/// targets.
+/// A target is a mesh with the faces of the base (.obj, .ply), or deltas that are added to it
+/// (io/mesh/make_human_target.h). Inputs are files and patterns as in io/input.h, and folders: all targets in a folder
+/// and its subfolders, sorted by path with numbers as numbers. Names that begin with a dot and links to folders are
+/// skipped. The file of the base itself is skipped wherever it comes among the inputs, so that it may lie in the folder
+/// of its targets.
 #ifndef CHRONORMAL_IO_INPUT_TARGETS_H_
 #define CHRONORMAL_IO_INPUT_TARGETS_H_
 
@@ -19,13 +19,13 @@
 namespace chronormal::inline internal {
 
 /// Reads the base and the targets of the options. A keyframe takes the name of its file without the extensions
-/// ("blink"). The result is valid (motion/motion.h). Only one file is open at a time; memory is 12 bytes per vertex
-/// for each target, however few vertices it moves.
+/// ("blink"). The result is valid (motion/motion.h). Only one file is open at a time; memory is 12 bytes per vertex for
+/// each target, however few vertices it moves.
 ///
-/// Errors: kFailed for files that are not there or can not be read; kInvalidInput of the readers, for a mesh whose
-/// vertex count or faces differ from the base's, for a folder without targets, or with targets of several formats, and
-/// where there is no target besides the base; kUsage for "-" twice. The place is the input, or begins with the path of
-/// the file ("targets/blink.target, line 17").
+/// Errors: kFailed for files that are missing or cannot be read; kInvalidInput of the readers, for a mesh whose vertex
+/// count or faces differ from the base's, for a folder without targets, or with targets of several formats, and if
+/// there is no target besides the base; kUsage for "-" twice. The place is the input, or begins with the path of the
+/// file ("targets/blink.target, line 17").
 [[nodiscard]] Result<ReadMotion> read_targets(const InputOptions& options);
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// Motions as files: one that holds everything, or one for each keyframe.
+// Writes motions as files: one that holds everything, or one for each keyframe.
 #include <cassert>
 #include <cstdint>
 #include <string_view>
@@ -22,7 +22,7 @@ namespace {
 struct NamePattern {
   std::string before, after;
   bool has_number = false;
-  std::size_t width = 0;  // of the number, filled up with zeros
+  std::size_t width = 0;  // of the number, padded with zeros
 
   [[nodiscard]] std::string name(std::size_t k) const {
     if (!has_number) return before;
@@ -64,7 +64,7 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
   for (const std::string& name : names.value()) {
     if (Status status = check_output(name, force); !status) return status;
   }
-  // No file gets its name before all keyframes were read: they may come from files of these names.
+  // No file gets its name before all keyframes were read, since they may come from files of these names.
   std::vector<OutputFile> files;
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     if (Status status = stream.hold(k, k); !status) return status;
@@ -72,7 +72,7 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
     assert(coordinates.size() == 3 * motion.topology.vertex_count());
     const auto positions = VectorView<const float>::packed(coordinates.data(), motion.topology.vertex_count());
     const std::string bytes = format.write_mesh(motion.topology, positions, motion.origin);
-    // Keyframes take about as many bytes each: the first tells before anything is written.
+    // Keyframes take about as many bytes each, so the first one tells before anything is written.
     const std::uint64_t all = std::uint64_t{bytes.size()} * motion.keyframes.size();
     if (Status status = k == 0 ? expansion.check(all, pattern) : Success{}; !status) return status;
     Result<OutputFile> file = OutputFile::create(names.value()[k], force);
