@@ -1,4 +1,4 @@
-// Reads samples from where a layout says that they lie, and checks their coordinates.
+// Reads samples from the places that a layout names, and checks their coordinates.
 #include "io/cache/cache_layout.h"
 
 #include <algorithm>

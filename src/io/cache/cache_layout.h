@@ -1,9 +1,10 @@
-/// Where the positions of a cache lie in its file, so that a sample can be read without those before it. Private to io.
+/// Says where the positions of a cache lie in its file, so that a sample can be read without the samples before it.
+/// Private to io.
 ///
 ///     byte begin                       sample 0: (V, 3) numbers, float32 or float64
 ///     byte begin + 3 V item_size       sample 1, and so on
 ///
-/// PC2, MDD and arrays of NumPy in C order are all of this form; their readers find the layout, and read by it.
+/// PC2, MDD and arrays of NumPy in C order all have this form; their readers find the layout, and read by it.
 ///
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_CACHE_LAYOUT_H_
@@ -23,16 +24,16 @@
 
 namespace chronormal::inline internal {
 
-/// The number of bytes at the beginning of a file in which its layout is looked for; a file that needs more has none.
+/// The number of bytes at the beginning of a file in which its layout is looked for. A file that needs more has none.
 inline constexpr std::size_t kLayoutBytes = std::size_t{1} << 20;
 
 struct CacheLayout {
   std::size_t vertex_count = 0;
-  std::vector<double> times;  ///< seconds, of each sample
+  std::vector<double> times;  ///< in seconds, one for each sample
   std::uint64_t begin = 0;
   std::size_t item_size = sizeof(float);  ///< 4 or 8
   std::endian order = std::endian::little;
-  Origin origin = {};      ///< that positions are to count from; of float64 alone
+  Origin origin = {};      ///< the point from which positions count; only for float64
   std::string array = {};  ///< the name of the array in NumPy: errors then name an element, and not a byte
 
   [[nodiscard]] std::size_t coordinates() const noexcept { return 3 * vertex_count; }
@@ -47,7 +48,7 @@ struct CacheLayout {
 [[nodiscard]] Status decode_coordinates(const CacheLayout& layout, const std::string& name, std::size_t k,
                                         std::size_t first, std::string_view bytes, std::span<float> result);
 
-/// Reads sample k of a file. Errors: the same, and those of PositionedFile.
+/// Reads sample k of a file. Errors: as for decode_coordinates(), and errors of PositionedFile.
 [[nodiscard]] Status read_sample(const CacheLayout& layout, const PositionedFile& file, const std::string& name,
                                  std::size_t k, std::span<float> positions);
 

@@ -100,7 +100,7 @@ class DescriptionReader {
   MayaCacheDescription description_;
 };
 
-// Takes a word and the whole number after it off the front of text. False where they do not stand there.
+// Takes a word and the whole number after it off the front of text. Returns false if they are not there.
 bool take_number_after(std::string_view& text, std::string_view word, std::int32_t& number) {
   if (!text.starts_with(word)) return false;
   const std::string_view digits = text.substr(word.size());
@@ -110,7 +110,7 @@ bool take_number_after(std::string_view& text, std::string_view word, std::int32
   return true;
 }
 
-// Whether a file name is STEM "Frame" N EXTENSION or STEM "Frame" N "Tick" M EXTENSION.
+// Returns whether a file name is STEM "Frame" N EXTENSION or STEM "Frame" N "Tick" M EXTENSION.
 bool is_frame_file(std::string_view file, std::string_view stem, std::string_view extension) {
   if (!file.starts_with(stem) || !file.ends_with(extension) || file.size() < stem.size() + extension.size())
     return false;
@@ -137,11 +137,11 @@ Result<std::vector<std::string>> list_frame_files(const std::filesystem::path& f
     entries.increment(code);
   }
   if (code) return Error{ErrorCode::kFailed, folder.string(), code.message()};
-  std::sort(files.begin(), files.end());  // so that messages do not depend on the file system
+  std::sort(files.begin(), files.end());  // so messages do not depend on the file system
   return files;
 }
 
-// The first time that a regular channel should have and the sorted samples have not.
+// Returns the first time that a regular channel should have and the sorted samples do not.
 std::optional<std::int64_t> find_missing(const MayaCacheDescription::Channel& channel, const PositionCache& cache) {
   std::size_t k = 0;
   for (std::int64_t ticks = channel.start; ticks <= channel.end; ticks += channel.step, ++k) {
@@ -206,8 +206,8 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
     if (!list) return list.error();
     return use(opened.value().bytes(), list.value());
   };
-  // The first file decides which channel is meant (in the others one that is sampled less often may be missing), and the
-  // origin that positions count from; whether they need it, any file may tell.
+  // The first file decides which channel is meant, since in the others a channel that is sampled less often may be
+  // missing. It also decides the origin from which positions count; any file may tell whether they need it.
   maya::FarPoints far;
   for (const std::string& file : files) {
     const bool is_first = &file == files.data();

@@ -8,13 +8,14 @@
 ///
 ///     TIME  int32 ticks (else the start of the file)
 ///     CHNM  name of a channel, SIZE  int32 points, FVCA or DVCA  points x 3 of float32 or float64; any number of these
-///     ...   other chunks, which are passed over
+///     ...   other chunks, which are skipped
 ///
-/// Maya counts 6000 ticks a second; a frame is TimePerFrame ticks of the description, 250 where it does not say (24
-/// frames a second). A cache that is sampled more or less often than once a frame is nothing special.
+/// Maya counts 6000 ticks a second. A frame is TimePerFrame ticks of the description, or 250 (24 frames a second) if it
+/// does not say. A cache may be sampled more or less often than once a frame.
 ///
-/// A channel is the points of one mesh. Which one it is: the one that the caller names; else the one with as many
-/// points as the mesh has vertices, and among several of those the only one whose ChannelInterpretation is "positions".
+/// A channel has the points of one mesh. The reader takes the channel that the caller names; else the one with as many
+/// points as the mesh has vertices, and among several such channels the only one whose ChannelInterpretation is
+/// "positions".
 ///
 /// Threads    pure, but for the files that read_maya_cache() opens.
 #ifndef CHRONORMAL_IO_CACHE_MAYA_CACHE_H_
@@ -33,14 +34,14 @@ namespace chronormal::inline internal {
 
 constexpr std::int32_t kMayaTicksPerSecond = 6000;
 
-/// What a description says.
+/// Holds the content of a description.
 struct MayaCacheDescription {
   struct Channel {
     std::string name;
     std::string interpretation;       ///< "positions", "normals", ...
-    bool is_regular = false;          ///< there is a sample every `step` ticks from start to end
-    std::int32_t step = 0;            ///< > 0 where is_regular
-    std::int32_t start = 0, end = 0;  ///< ticks; start <= end where is_regular
+    bool is_regular = false;          ///< whether there is a sample every `step` ticks from start to end
+    std::int32_t step = 0;            ///< > 0 if is_regular
+    std::int32_t start = 0, end = 0;  ///< ticks; start <= end if is_regular
   };
 
   bool has_file_per_frame = false;
@@ -49,26 +50,24 @@ struct MayaCacheDescription {
   std::vector<Channel> channels;
 };
 
-/// Reads a description, of which name is the name for messages.
-/// Errors: kInvalidInput with the place "NAME, byte N": no XML, another root, types and formats unknown, numbers that
-/// are none, more than 16 MiB.
+/// Reads a description; name is its name for messages. Errors: kInvalidInput with the place "NAME, byte N": no XML,
+/// another root, unknown types and formats, malformed numbers, more than 16 MiB.
 [[nodiscard]] Result<MayaCacheDescription> read_maya_description(std::string_view bytes, const std::string& name);
 
-/// Reads one .mc or .mcx file by itself.
-/// Errors: kInvalidInput with the place "NAME, byte N", followed by channel and point for a coordinate that is not
-/// finite or too large: chunks that do not lie inside the one around them, or are in no order that means something; no
-/// channel that the options choose, or several (the message names them); a channel whose number of points changes.
+/// Reads one .mc or .mcx file by itself. Errors: kInvalidInput with the place "NAME, byte N", followed by channel and
+/// point for a coordinate that is not finite or too large: chunks that do not lie inside the one around them, or are in
+/// a meaningless order; no channel that the options choose, or several (the message names them); a channel whose number
+/// of points changes.
 [[nodiscard]] Result<PositionCache> read_maya_points(std::string_view bytes, const std::string& name,
                                                      const CacheOptions& options = {});
 
-/// Reads a description and the files of points beside it, which are those in its own folder that begin with its own
-/// name without ".xml"; nothing else is opened. Samples are sorted by time.
+/// Reads a description and the files of points beside it. These are the files in its folder that begin with its name
+/// without ".xml"; nothing else is opened. Samples are sorted by time.
 ///
-/// Errors: those of both, with the file name in the place; kFailed for files that can not be opened; kInvalidInput with
-/// the missing time and the file where a regularly sampled channel has not all the samples that the description
-/// declares.
-/// With a resolver, files are found by it, by their paths; kUsage for a cache of a file per frame, whose files only a
-/// folder can list.
+/// Errors: errors of both readers, with the file name in the place; kFailed for files that cannot be opened;
+/// kInvalidInput with the missing time and the file, if a regularly sampled channel lacks samples that the description
+/// declares. With a resolver, files are found by their paths through it; kUsage for a cache of a file per frame, whose
+/// files only a folder can list.
 [[nodiscard]] Result<PositionCache> read_maya_cache(
     const std::string& xml_path, const CacheOptions& options = {},
     const std::function<Result<std::string_view>(const std::string& name)>& resolve = {});

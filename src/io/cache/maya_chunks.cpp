@@ -35,7 +35,7 @@ class ChunkReader {
         return error(at, scan::quoted(group.tag) + " stands where a group must begin");
       if (group.end - group.begin < kTagSize) return error(at, "the group has no name");
       if (Status status = read_group(bytes_.substr(group.begin, kTagSize), group); !status) return status.error();
-      at = group.end;  // groups are not filled up
+      at = group.end;  // groups are not padded
     }
     return std::move(list_);
   }
@@ -120,7 +120,7 @@ class ChunkReader {
   std::vector<Points> list_;
 };
 
-// "'a' (36), 'b' (72)", cut short.
+// Returns "'a' (36), 'b' (72)", cut short.
 std::string names_of(const std::map<std::string_view, std::uint32_t>& channels) {
   constexpr std::size_t kMostNames = 8;
   std::string text;

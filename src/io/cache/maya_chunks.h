@@ -1,4 +1,4 @@
-/// The chunks of .mc and .mcx files, and the choice of a channel. Private to io.
+/// Reads the chunks of .mc and .mcx files, and chooses a channel. Private to io.
 #ifndef CHRONORMAL_IO_CACHE_MAYA_CHUNKS_H_
 #define CHRONORMAL_IO_CACHE_MAYA_CHUNKS_H_
 
@@ -14,26 +14,26 @@
 
 namespace chronormal::inline internal::maya {
 
-/// The points of one channel at one time.
+/// Holds the place of the points of one channel at one time.
 struct Points {
   std::string_view channel;  ///< points into the file
   std::int32_t ticks = 0;
   std::uint32_t count = 0;
   bool is_double = false;
-  std::size_t begin = 0;  ///< byte of the first coordinate, of 3 x count that are there
+  std::size_t begin = 0;  ///< byte of the first of 3 x count coordinates, all inside the file
 };
 
-/// Lists all points of a file in its order. Errors: as read_maya_points().
+/// Lists all points of a file in its order. Errors: as for read_maya_points().
 [[nodiscard]] Result<std::vector<Points>> list_points(std::string_view bytes, const std::string& name);
 
-/// The channel of a list that the options choose. Errors: kInvalidInput with name as the place; the message names the
-/// channels that there are.
+/// Returns the channel of a list that the options choose. Errors: kInvalidInput with name as the place; the message
+/// names the existing channels.
 [[nodiscard]] Result<std::string> choose_channel(const std::vector<Points>& list, const CacheOptions& options,
                                                  const std::vector<MayaCacheDescription::Channel>& described,
                                                  const std::string& name);
 
-/// Tells what the points of one channel say of an origin to count from (io/mesh/far_origin.h): where the first of them
-/// are far, and whether any of them has more digits than float32.
+/// Holds what the points of one channel say about an origin to count from (io/mesh/far_origin.h): the origin if the
+/// first of them are far, and whether any of them has more digits than float32.
 struct FarPoints {
   Origin origin = {};
   bool has_more_digits = false;
@@ -41,8 +41,8 @@ struct FarPoints {
 [[nodiscard]] FarPoints find_far_points(std::string_view bytes, const std::vector<Points>& list,
                                         std::string_view channel);
 
-/// Reads the points of one channel from a list, counts them from the origin of the cache, and appends them; the time is
-/// in ticks / 6000. Errors: as read_maya_points().
+/// Reads the points of one channel from a list, counts them from the origin of the cache, and appends them with their
+/// times in seconds (ticks / 6000). Errors: as for read_maya_points().
 [[nodiscard]] Status append_samples(std::string_view bytes, const std::vector<Points>& list, std::string_view channel,
                                     const std::string& name, PositionCache& cache);
 

@@ -122,8 +122,8 @@ class Md2Reader {
     return Success{};
   }
 
-  // Frames of one clip follow each other. A model of several clips is an animation, in which each clip begins at the
-  // time at which the one before ends: two keyframes at one time, and no segment between them.
+  // Sets the times of frames. Frames of one clip follow each other. A model of several clips is an animation, in which
+  // each clip begins at the time at which the one before ends: two keyframes at one time, and no segment between them.
   static void set_times(double frames_per_second, Motion& motion) {
     std::size_t clips = 1;
     double frame = 0;
@@ -133,7 +133,7 @@ class Md2Reader {
       frame += k == 0 || begins ? 0 : 1;
       motion.keyframes[k].time = frame / frames_per_second;
     }
-    const bool are_clips = clips > 1 && frame > 0;  // some have two frames
+    const bool are_clips = clips > 1 && frame > 0;  // some clip has two frames
     for (std::size_t k = 0; k < motion.keyframes.size() && !are_clips; ++k)
       motion.keyframes[k].time = static_cast<double>(k) / frames_per_second;
     motion.connect(are_clips ? MotionKind::kAnimation : MotionKind::kSequence);

@@ -1,4 +1,4 @@
-/// MD2, the animated models of Quake II. Little endian; a header of 17 int32, of which these are read:
+/// MD2, the animated models of Quake II. It is little endian, with a header of 17 int32, of which these are read:
 ///
 ///     byte  0   "IDP2"            16   bytes of a frame     56   byte of the first frame
 ///           4   version: 8        24   vertices, V
@@ -8,8 +8,8 @@
 ///     frame      3 x float32 scale, 3 x float32 translate, 16 characters of name, V x {3 bytes x y z, 1 byte normal}
 ///
 /// A position is scale * byte + translate, in double, rounded to float32. Frames whose names tell of several clips
-/// (stand01, stand02, run1) are an animation that jumps from one to the next. Quake counts the corners of a triangle
-/// clockwise; they are turned round, so that normals point outwards.
+/// (stand01, stand02, run1) are an animation that jumps from one clip to the next. Quake counts the corners of a
+/// triangle clockwise; they are turned round, so that normals point outwards.
 ///
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_MD2_H_
@@ -23,13 +23,12 @@
 
 namespace chronormal::inline internal {
 
-/// Reads a motion, of which name is the name for messages; keyframe k is at k / frames_per_second, less one
-/// frame for each clip before, and has the name of the frame ("stand01"). The result is valid (validate() in
-/// motion/motion.h).
+/// Reads a motion; name is its name for messages. Keyframe k is at k / frames_per_second, less one frame for each clip
+/// before, and has the name of the frame ("stand01"). The result is valid (validate() in motion/motion.h).
 ///
-/// Errors: kInvalidInput with the place "NAME, byte N", followed by triangle or frame where they are known: another
-/// first word or version, no vertices or triangles, fewer than two frames, tables that do not lie inside the file (all
-/// of this before memory is taken), indices of no vertex, coordinates that are not finite or too large for float32.
+/// Errors: kInvalidInput with the place "NAME, byte N", followed by triangle or frame if they are known: another first
+/// word or version, no vertices or triangles, fewer than two frames, tables that do not lie inside the file (all of
+/// this before memory is taken), indices without a vertex, coordinates that are not finite or too large for float32.
 [[nodiscard]] Result<Motion> read_md2(std::string_view bytes, const std::string& name, double frames_per_second = 1);
 
 }  // namespace chronormal::inline internal

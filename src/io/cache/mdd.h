@@ -1,4 +1,4 @@
-/// MDD, the point cache of LightWave. Big endian, without a first word to know it by:
+/// MDD, the point cache of LightWave. It is big endian, and has no first word by which to recognise it:
 ///
 ///     byte  0   int32    samples, S
 ///           4   int32    vertices, V
@@ -20,16 +20,16 @@
 
 namespace chronormal::inline internal {
 
-/// Reads an MDD file, of which name is the name for messages; nothing of options is needed.
+/// Reads an MDD file; name is its name for messages. It uses no options.
 ///
-/// Errors: kInvalidInput with the place "NAME, byte N", followed by sample and vertex where they are known: no vertices
-/// or samples, more or fewer bytes than the header declares (refused before memory is taken), times and coordinates
-/// that are not finite.
+/// Errors: kInvalidInput with the place "NAME, byte N", followed by sample and vertex if they are known: no vertices or
+/// samples, more or fewer bytes than the header declares (refused before memory is taken), times and coordinates that
+/// are not finite.
 [[nodiscard]] Result<PositionCache> read_mdd(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
 /// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
-/// Errors: those of read_mdd(), except for coordinates; kInvalidInput for times that lie behind these bytes.
+/// Errors: errors of read_mdd(), except for coordinates; kInvalidInput for times beyond these bytes.
 [[nodiscard]] Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
@@ -37,7 +37,7 @@ namespace chronormal::inline internal {
 /// 2^31 - 1 vertices or keyframes, and for times that are the same in float32.
 [[nodiscard]] Result<std::string> mdd_header(const Motion& motion);
 
-/// Writes the header, and the positions as they are read. Errors: those of the header, the stream and the file.
+/// Writes the header, and the positions as they are read. Errors: errors of the header, the stream and the file.
 [[nodiscard]] Status write_mdd(MotionStream& stream, OutputFile& file);
 
 }  // namespace chronormal::inline internal

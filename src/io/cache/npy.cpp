@@ -13,7 +13,7 @@
 namespace chronormal::inline internal::npy {
 namespace {
 
-// Reads the few forms of Python that a header is made of.
+// Reads the few forms of Python that occur in a header.
 class Python {
  public:
   explicit Python(std::string_view text) noexcept : text_(text) {}
@@ -37,7 +37,7 @@ class Python {
     return std::nullopt;
   }
   [[nodiscard]] std::optional<bool> boolean() {
-    (void)sign('\0');  // passes over blanks
+    (void)sign('\0');  // skips blanks
     for (const auto& [word, value] : {std::pair<std::string_view, bool>{"True", true}, {"False", false}}) {
       if (!text_.starts_with(word)) continue;
       text_.remove_prefix(word.size());
@@ -45,7 +45,7 @@ class Python {
     }
     return std::nullopt;
   }
-  // (), (2,), (2, 3), with the L that Python 2 put after long numbers.
+  // Reads (), (2,), (2, 3), with the L that Python 2 put after long numbers.
   [[nodiscard]] std::optional<std::vector<std::uint64_t>> tuple() {
     std::vector<std::uint64_t> numbers;
     if (!sign('(')) return std::nullopt;
@@ -74,7 +74,7 @@ class Python {
   std::string_view text_;
 };
 
-// Reads "<f4", or where text is allowed "<U7". False for a type that is none of ours.
+// Reads "<f4", or if text is allowed "<U7". Returns false for a type that is not supported.
 bool read_type(std::string_view type, bool allow_text, Array& array) {
   if (allow_text && type.size() > 2 && (type[1] == 'U' || type[1] == 'S')) {
     std::uint32_t length = 0;
@@ -94,7 +94,7 @@ bool read_type(std::string_view type, bool allow_text, Array& array) {
   return array.item_size == 1 || array.item_size == 2 || array.item_size == 4 || array.item_size == 8;
 }
 
-// The header of an array of numbers, or where it is allowed of text.
+// Reads the header of an array of numbers, or if it is allowed of text.
 Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, bool allow_text, bool more_may_follow,
                               const std::string& place) {
   const auto error = [&](std::string message) { return invalid_input(place, std::move(message)); };
@@ -226,7 +226,7 @@ Result<std::string> read_text(std::string_view bytes, const std::string& place) 
     if (c > 127) return invalid_input(place, "the text is not ASCII");
     text += static_cast<char>(c);
   }
-  while (text.ends_with('\0')) text.pop_back();  // NumPy fills up with them
+  while (text.ends_with('\0')) text.pop_back();  // NumPy fills up with zeros
   return text;
 }
 

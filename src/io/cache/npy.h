@@ -1,4 +1,4 @@
-/// One NumPy array: a header that is a piece of Python, and its elements. Private to io.
+/// One NumPy array: a header in the form of Python, and its elements. Private to io.
 ///
 ///     "\x93NUMPY"  version 1.0  uint16 length   {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 3), }
 ///     elements
@@ -18,15 +18,15 @@ namespace chronormal::inline internal::npy {
 
 enum class Kind : char { kFloat = 'f', kInteger = 'i', kUnsigned = 'u', kText = 'U', kBytes = 'S' };
 
-/// Every .npy file begins with these bytes.
+/// The bytes with which every .npy file begins.
 inline constexpr std::string_view kFirstWord("\x93NUMPY", 6);
 
-/// Longest header that is read; NumPy itself stops at 10,000 bytes unless it is told otherwise.
+/// The longest header that is read. NumPy itself stops at 10,000 bytes unless it is told otherwise.
 constexpr std::size_t kLongestHeader = 65536;
 
 struct Array {
   Kind kind{};
-  std::size_t item_size = 0;  ///< 1, 2, 4 or 8; floats 4 or 8; of text 4 for each character, or 1
+  std::size_t item_size = 0;  ///< 1, 2, 4 or 8; 4 or 8 for floats; for text 4 for each character, or 1
   std::endian order = std::endian::little;
   bool is_fortran = false;
   std::vector<std::uint64_t> shape;
@@ -38,31 +38,32 @@ struct Array {
     for (const std::uint64_t length : shape) count *= length;
     return count;
   }
-  /// The byte behind the last element.
+  /// Returns the byte after the last element.
   [[nodiscard]] std::uint64_t data_end() const noexcept { return data_begin + element_count() * item_size; }
-  /// The element that is so many items after the first.
+  /// Return the element that is so many items after the first.
   [[nodiscard]] double real(std::size_t item) const noexcept;           ///< kFloat
-  [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;  ///< else; negative: 2^64 - 1
+  [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;  ///< other kinds; 2^64 - 1 if negative
   [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< kInteger
 
-  /// "(2, 3, 3) of '<f4'": for messages.
+  /// Returns "(2, 3, 3) of '<f4'", for messages.
   [[nodiscard]] std::string text() const;
 };
 
-/// Reads the text of an array that is a single string of ASCII ("<U7", "|S7"), as NumPy keeps one; bytes are all of the
-/// array. Errors: kInvalidInput with place.
+/// Reads the text of an array that is a single string of ASCII ("<U7", "|S7"), in the form of NumPy. bytes are all of
+/// the array. Errors: kInvalidInput with place.
 [[nodiscard]] Result<std::string> read_text(std::string_view bytes, const std::string& place);
 
-/// The bytes of such an array.
+/// Returns the bytes of such an array.
 [[nodiscard]] std::string write_text(std::string_view text);
 
 /// Reads the header of an array of total_size bytes, of which start are the first (all, or kLongestHeader + 12).
-/// Afterwards the elements of shape, none of whose products overflow, are exactly what follows data_begin, or, where
-/// more may follow, its first data_end() - data_begin bytes. Errors: kInvalidInput with place: the message says what.
+/// Afterwards the elements of shape, whose products do not overflow, are exactly what follows data_begin; if more may
+/// follow, they are its first data_end() - data_begin bytes. Errors: kInvalidInput with place, and a message that says
+/// what is wrong.
 [[nodiscard]] Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place,
                                         bool more_may_follow = false);
 
-/// The header of an array in C order, padded so that what follows is aligned to 64 bytes.
+/// Returns the header of an array in C order, padded so that the elements are aligned to 64 bytes.
 [[nodiscard]] std::string write_header(std::string_view type, const std::vector<std::uint64_t>& shape);
 
 }  // namespace chronormal::inline internal::npy

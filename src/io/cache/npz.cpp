@@ -26,7 +26,7 @@ namespace {
 using npy::Array;
 using npy::Kind;
 
-constexpr std::endian kNpzOrder = std::endian::little;  // of what is written
+constexpr std::endian kNpzOrder = std::endian::little;  // for writing
 
 std::string element_place(const std::string& place, std::initializer_list<std::size_t> indices) {
   std::string text = place + "[";
@@ -41,7 +41,7 @@ Status check_positions(const Array& array, const std::string& place, const std::
                        what + " must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
 }
 
-// The layout of positions in C order, in a file that has the array from byte `begin` on.
+// Returns the layout of positions in C order, in a file that has the array from byte `begin` on.
 CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string& what) {
   CacheLayout layout;
   layout.vertex_count = static_cast<std::size_t>(array.shape[1]);
@@ -53,9 +53,9 @@ CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string
   return layout;
 }
 
-// Finds the origin that positions are to count from, by the first sample of an array with data; (0, 0, 0) where no
-// sample has more digits than float32. Of an array that is too large to look at, the first, the middle and the last one
-// tell.
+// Finds the origin from which positions are to count, by the first sample of an array with data. It is (0, 0, 0) if no
+// sample has more digits than float32. In an array that is too large to examine, only the first, the middle and the
+// last sample are examined.
 Origin origin_of(const Array& array) {
   constexpr std::uint64_t kMostLooked = std::uint64_t{1} << 22;  // coordinates
   const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
@@ -117,8 +117,8 @@ constexpr const char* kPadded =
     "alone: "
     "faces.reshape(-1, 4)[:, 1:] of triangles";
 
-// Tells whether rows of so many numbers begin with the number of the others. Polygons around a vertex of that number
-// do, too, but have it once, and share no edge on the far side.
+// Tells whether each row of so many numbers begins with the number of the others. Polygons around a vertex with that
+// number do so too, but they have it only once, and share no edge on the far side.
 bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   if (width < 4 || rows.size() < 2 * width) return false;
   const auto count = static_cast<std::uint32_t>(width - 1);
@@ -135,7 +135,7 @@ bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   return !is_fan;
 }
 
-// Tells the same of one long list, in which each face begins with its number of corners.
+// Tells this for one long list, in which each face begins with its number of corners.
 bool is_padded_list(const Array& array) {
   if (array.kind == Kind::kFloat || array.shape.size() != 1) return false;
   const std::size_t size = array.element_count();
@@ -215,7 +215,7 @@ Result<MotionKind> read_kind(std::string_view bytes, const std::string& place) {
   return invalid_input(place, "it must be sequence, targets or animation, but is " + scan::quoted(text.value()));
 }
 
-// The arrays of an archive, one at a time.
+// Reads the arrays of an archive, one at a time.
 class Archive {
  public:
   Archive(std::string_view bytes, const std::string& name, std::vector<zip::Member> members, std::size_t max_expansion)
@@ -224,14 +224,14 @@ class Archive {
   [[nodiscard]] bool has(std::string_view array) const { return find(array) != nullptr; }
   [[nodiscard]] std::string place(std::string_view array) const { return name_ + ", " + std::string(array); }
 
-  // The bytes of the file of that small array; good until the next call.
+  // Returns the bytes of the file of this small array. They are valid until the next call.
   [[nodiscard]] Result<std::string_view> bytes(std::string_view array) {
     const zip::Member* const member = find(array);
     if (member == nullptr) return missing(array);
     return zip::read_member(bytes_, *member, npy::kLongestHeader + 12, storage_, name_);
   }
 
-  // Reads the array of that name into storage_, or finds it in the file; good until the next call.
+  // Reads the array of this name into storage_, or finds it in the file. It is valid until the next call.
   [[nodiscard]] Result<Array> read(std::string_view array) {
     const zip::Member* const member = find(array);
     if (member == nullptr) return missing(array);
@@ -249,7 +249,7 @@ class Archive {
     return result;
   }
 
-  // Finds where positions lie that can be read one by one: those that are stored, in C order.
+  // Finds the layout of positions that can be read one by one, which must be stored in C order.
   [[nodiscard]] Result<std::optional<CacheLayout>> find_stored(std::string_view array) {
     constexpr std::uint16_t kStored = 0;
     const zip::Member* const member = find(array);
@@ -288,14 +288,14 @@ class Archive {
     return nullptr;
   }
 
-  // Whether there may be memory for an array as bytes and as numbers, beside what was read before.
+  // Checks that there may be memory for an array as bytes and as numbers, beside what was read before.
   [[nodiscard]] Status ask_for(const zip::Member& member, const Array& array) {
     constexpr std::uint64_t kBytesPerRow = 128;  // a keyframe, or less
     const std::uint64_t rows = array.shape.size() == 3 ? array.shape[0] : 0;
     asked_ += 2 * std::min(member.size, kMost) + kBytesPerRow * std::min(rows, kMost);
     return expansion_.check(asked_, place(member.name.substr(0, member.name.find('.'))));
   }
-  // More than any file has; a few of them can be added up.
+  // This is larger than any real size; adding a few cannot overflow.
   static constexpr std::uint64_t kMost = std::uint64_t{1} << 48;
 
   std::string_view bytes_;
@@ -306,7 +306,7 @@ class Archive {
   std::string storage_;
 };
 
-// Reads a motion. With a layout, it leaves positions in the file that can be read one by one, and says where they lie.
+// Reads a motion. With a layout, it leaves positions that can be read one by one in the file, and says where they lie.
 Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, double frames_per_second,
                                std::size_t max_expansion, std::optional<CacheLayout>* layout) {
   Result<std::vector<zip::Member>> members = zip::read_directory(bytes, name);

@@ -5,15 +5,15 @@
 ///     positions   (T, V, 3)   float32 or float64         T keyframes of V vertices
 ///     faces       (F, 3)      any integer type           vertices counted from 0; (F, 4) are quads, and so on
 ///     times       (T,)        any float or integer type  seconds; optional, else k / frames_per_second
-///     kind        ()          a string                   sequence (where it is missing), targets or animation
+///     kind        ()          a string                   sequence (if it is missing), targets or animation
 ///
-///     velocities  (T, V, 3)   float32 or float64         per second, of a sequence; optional: what hermite paths need
+///     velocities  (T, V, 3)   float32 or float64         per second, of a sequence; optional, for hermite paths
 ///
 /// Targets are a base, keyframe 0, and a keyframe for each target; they have no times. In an animation, two keyframes
 /// that follow each other at one time are a jump.
 ///
-/// C and Fortran order, both byte orders, versions 1 to 3 of the array header; zip members stored or deflated
-/// (savez_compressed), zip64. Other arrays in the file are passed over. float64 positions are rounded to float32.
+/// The reader takes C and Fortran order, both byte orders, versions 1 to 3 of the array header, zip members stored or
+/// deflated (savez_compressed), and zip64. It skips other arrays in the file. float64 positions are rounded to float32.
 ///
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_NPZ_H_
@@ -37,56 +37,56 @@
 
 namespace chronormal::inline internal {
 
-/// Reads a motion, of which name is the name for messages; the result is valid (validate() in motion/motion.h).
+/// Reads a motion; name is its name for messages. The result is valid (validate() in motion/motion.h).
 ///
-/// Errors: kInvalidInput; the place begins with name and goes on with the byte of the zip file, or the array and its
+/// Errors: kInvalidInput. The place begins with name and goes on with the byte of the zip file, or the array and its
 /// element ("walk.npz, positions[3, 17, 0]"): a damaged zip file or array (its checksum is verified), shapes and types
-/// other than those above, coordinates that are not finite or too large for float32, indices of no vertex, velocities
-/// of another shape than the positions, times that do not ascend, an unknown kind. Sizes that disagree between
-/// directory, member and array header are refused before memory is taken.
-/// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller than they are; so
-/// expansion is asked first, with bytes and numbers of what is deflated, and what a keyframe takes beside its
-/// positions.
+/// other than the ones above, coordinates that are not finite or too large for float32, indices without a vertex,
+/// velocities of another shape than the positions, times that do not ascend, an unknown kind. Sizes that disagree
+/// between directory, member and array header are refused before memory is taken.
+/// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller. So expansion is asked
+/// first, with bytes and numbers of everything that is deflated, and what a keyframe takes beside its positions.
 [[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1,
                                       std::size_t max_expansion = Expansion::kUsual);
 
-/// The same, except that positions which are stored in C order stay in the file: layout says where they lie, the
-/// keyframes have none, and the checksum of the positions is not verified. Other positions are read, and layout is
-/// nothing.
+/// Reads a motion, but leaves positions that are stored in C order in the file: layout says where they lie, the
+/// keyframes have none, and the checksum of the positions is not verified. Other positions are read, and layout has no
+/// value.
 [[nodiscard]] Result<Motion> read_npz_outline(std::string_view bytes, const std::string& name, double frames_per_second,
                                               std::size_t max_expansion, std::optional<CacheLayout>& layout);
 
-/// Reads a .npy file of positions (T, V, 3), as above; sample k is at k / options.frames_per_second.
-/// Errors: as read_npz().
+/// Reads a .npy file of positions (T, V, 3), as above. Sample k is at k / options.frames_per_second. Errors: as for
+/// read_npz().
 [[nodiscard]] Result<PositionCache> read_npy(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
 /// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
-/// Errors: those of read_npy(), except for coordinates; kInvalidInput for Fortran order.
+/// Errors: errors of read_npy(), except for coordinates; kInvalidInput for Fortran order.
 [[nodiscard]] Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
 /// Writes positions (float32) as they are read, faces (int32, or uint32 for more than 2^31 vertices), times (float64)
-/// where there are any, velocities where all keyframes have them, and the kind of a motion that is no sequence. Arrays
+/// if there are any, velocities if all keyframes have them, and the kind of a motion unless it is a sequence. Arrays
 /// are stored, so that they can be mapped. The same motion gives the same bytes.
 /// Errors, without a place: kUsage for a mesh that does not move, and for faces of different numbers of corners, which
-/// no (F, k) array holds; those of the stream and of the file.
+/// no (F, k) array can hold; errors of the stream and of the file.
 [[nodiscard]] Status write_npz(MotionStream& stream, OutputFile& file);
 
-/// The bytes of a .npy file: an array in C order, little endian, that is filled from its first element to its last.
+/// Builds the bytes of a .npy file: an array in C order, little endian, that is filled from its first element to its
+/// last.
 class NpyBytes {
  public:
-  /// An array of float32.
+  /// Begins an array of float32.
   explicit NpyBytes(const std::vector<std::uint64_t>& shape);
-  /// A whole array.
+  /// Makes a whole array.
   NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values);
   NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::int64_t> values);
-  /// An array of truths, each 0 or 1.
+  /// Makes an array of booleans, each 0 or 1.
   NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::uint8_t> values);
 
   void append(std::span<const float> values);
 
-  /// The file, once all elements of the shape are there.
+  /// Returns the file, once all elements of the shape are there.
   [[nodiscard]] const std::string& bytes() const& noexcept { return bytes_; }
   [[nodiscard]] std::string bytes() && noexcept { return std::move(bytes_); }
 
@@ -94,21 +94,21 @@ class NpyBytes {
   std::string bytes_;
 };
 
-/// The faces of a mesh as write_npz() has them. Errors: kUsage for faces of different numbers of corners.
+/// Returns the faces of a mesh in the form of write_npz(). Errors: kUsage for faces of different numbers of corners.
 [[nodiscard]] Result<std::string> write_npy_faces(const Topology& topology);
 
 struct NpzMember {
-  std::string_view name;  ///< of the array: "normals"
+  std::string_view name;  ///< name of the array: "normals"
   std::string_view npy;   ///< the bytes of its .npy file
 };
 
-/// Writes a .npz file of arrays, stored.
+/// Returns a .npz file of arrays, stored.
 [[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
 
-/// The bytes of positions (V, 3) as float64, to which their origin was added.
+/// Returns the bytes of positions (V, 3) as float64, to which their origin was added.
 [[nodiscard]] std::string placed_bytes(std::span<const float> positions, const Origin& origin);
 
-/// A .npz file of stored arrays, of which some grow while it is written, all of them at the same time.
+/// Writes a .npz file of stored arrays, some of which grow while it is written, all at the same time.
 ///
 ///     NpzOutput npz(file);
 ///     const std::size_t normals = npz.add_growing("normals", {moments, outputs, 3});
@@ -125,27 +125,27 @@ class NpzOutput {
   [[nodiscard]] std::size_t add_growing(std::string_view name, const std::vector<std::uint64_t>& shape,
                                         bool is_double = false);
 
-  /// Writes the headers and the arrays that are whole; call it once all arrays are added.
+  /// Writes the headers and the whole arrays. Call it once all arrays are added.
   [[nodiscard]] Status begin();
   /// Writes the next bytes of a growing array, little endian.
   [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
-  /// Goes on with a file that another process has begun (OutputFile::join()), after the same arrays were added. skip()
-  /// passes over the bytes of a growing array that others write. The process that has called begin() calls finish(),
-  /// after add_checksum() for what each of the others, in their order, has appended to each growing array.
+  /// Continues a file that another process has begun (OutputFile::join()), after the same arrays were added. skip()
+  /// skips the bytes of a growing array that others write. The process that has called begin() calls finish(), after
+  /// calling add_checksum() for everything that each of the others, in their order, has appended to each growing array.
   void join();
   void skip(std::size_t array, std::uint64_t bytes) { members_[array].end += bytes; }
-  /// The checksum of what was appended to an array.
+  /// Returns the checksum of the bytes that were appended to an array.
   [[nodiscard]] std::uint32_t checksum(std::size_t array) const noexcept { return members_[array].checksum; }
   void add_checksum(std::size_t array, std::uint32_t checksum, std::uint64_t bytes);
 
-  /// Ends the file; call it once the growing arrays have all bytes of their shapes.
+  /// Ends the file. Call it once the growing arrays have all bytes of their shapes.
   [[nodiscard]] Status finish();
 
  private:
   struct Member {
     std::string name, start;
     std::uint64_t size = 0;
-    std::uint64_t end = 0;  // where in the file ends what is written
+    std::uint64_t end = 0;  // place in the file where the written bytes end
     std::uint32_t checksum = 0;
   };
   [[nodiscard]] zip::Frame frame() const;

@@ -1,4 +1,4 @@
-/// PC2, the point cache of 3ds Max that most programs know. Little endian:
+/// PC2, the point cache of 3ds Max that most programs know. It is little endian:
 ///
 ///     byte  0   "POINTCACHE2" and a zero byte
 ///          12   int32    version: 1
@@ -25,7 +25,7 @@
 
 namespace chronormal::inline internal {
 
-/// Reads a PC2 file, of which name is the name for messages.
+/// Reads a PC2 file; name is its name for messages.
 ///
 /// Errors: kInvalidInput with the place "NAME, byte N", followed by sample and vertex for a coordinate that is not
 /// finite: another first word or version, no vertices or samples, more or fewer bytes than the header declares (refused
@@ -34,16 +34,16 @@ namespace chronormal::inline internal {
                                              const CacheOptions& options = {});
 
 /// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
-/// Errors: those of read_pc2(), except for coordinates.
+/// Errors: errors of read_pc2(), except for coordinates.
 [[nodiscard]] Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
-/// Makes the header of a motion. PC2 keeps no list of times: they must be at equal steps, to a thousandth of a step.
+/// Makes the header of a motion. PC2 has no list of times: they must be at equal steps, to a thousandth of a step.
 /// Errors, without a place: kUsage for times at other steps, for blend shapes, and for more than 2^31 - 1 vertices or
 /// keyframes.
 [[nodiscard]] Result<std::string> pc2_header(const Motion& motion, double frames_per_second = 1);
 
-/// Writes the header, at one frame a second, and the positions as they are read. Errors: those of the header, the
+/// Writes the header, at one frame a second, and the positions as they are read. Errors: errors of the header, the
 /// stream and the file.
 [[nodiscard]] Status write_pc2(MotionStream& stream, OutputFile& file);
 

@@ -1,4 +1,4 @@
-/// What PC2 and MDD share: samples of V positions, one after the other. Private to io.
+/// The common part of PC2 and MDD: samples of V positions, one after the other. Private to io.
 #ifndef CHRONORMAL_IO_CACHE_POINT_CACHE_BODY_H_
 #define CHRONORMAL_IO_CACHE_POINT_CACHE_BODY_H_
 
@@ -16,14 +16,14 @@
 
 namespace chronormal::inline internal::point_cache {
 
-/// The counts of a header.
+/// Holds the counts of a header.
 struct Counts {
   std::int32_t vertices = 0;
   std::int32_t samples = 0;
 };
 
-/// Checks that there are vertices and samples, and as many bytes from `begin` on as they take: times_size bytes and
-/// 3 x vertices float32 for each sample. Afterwards no product of them overflows.
+/// Checks that there are vertices and samples, and from `begin` on exactly the bytes that they take: times_size bytes
+/// and 3 x vertices float32 for each sample. Afterwards no product of them overflows.
 [[nodiscard]] inline Status check_counts(std::uint64_t file_size, const std::string& name, Counts counts,
                                          std::size_t begin, std::size_t times_size) {
   const std::string place = binary::place(name, begin);
@@ -41,7 +41,7 @@ struct Counts {
   return Success{};
 }
 
-/// The layout for these counts, with all times 0. Precondition: check_counts() found no error.
+/// Returns the layout for these counts, with all times 0. check_counts() must have found no error
 [[nodiscard]] inline CacheLayout layout_of(Counts counts, std::size_t begin, std::endian order) {
   CacheLayout layout;
   layout.vertex_count = static_cast<std::size_t>(counts.vertices);
@@ -51,7 +51,7 @@ struct Counts {
   return layout;
 }
 
-/// Whether the counts of a motion fit into a header, and its segments into the format. Errors: kUsage.
+/// Checks that the counts of a motion fit into a header, and its segments into the format. Errors: kUsage.
 [[nodiscard]] inline Status check_writable(const Motion& motion) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   if (Status status = check_is_sequence(motion); !status) return status;
@@ -60,7 +60,7 @@ struct Counts {
   return Success{};
 }
 
-/// Writes a header, and the positions of all keyframes behind it. Errors: those of the header, the stream and the file.
+/// Writes a header, and after it the positions of all keyframes. Errors: errors of the header, the stream and the file.
 [[nodiscard]] inline Status write(const Result<std::string>& header, MotionStream& stream, std::endian order,
                                   OutputFile& file) {
   if (!header) return header.error();

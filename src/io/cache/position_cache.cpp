@@ -1,4 +1,4 @@
-// Makes a motion of a mesh and the samples of a cache, and hands out the coordinates of keyframes to writers.
+// Makes a motion of a mesh and the samples of a cache, and gives the coordinates of keyframes to writers.
 #include "io/cache/position_cache.h"
 
 #include <utility>

@@ -1,9 +1,8 @@
-/// Positions of vertices at several times, without faces: what point caches hold, and how a mesh gives them their
-/// faces.
+/// Positions of vertices at several times, without faces, as point caches hold them. A mesh gives them their faces:
 ///
 ///     mesh (faces, V vertices)  +  cache (V vertices at 11 times)  =  motion of 11 keyframes and 10 segments
 ///
-/// Vertex v of the cache is vertex v of the mesh: a cache does not say so, and programs that renumber vertices when
+/// Vertex v of the cache is vertex v of the mesh. A cache does not say so, and programs that renumber vertices when
 /// they export a mesh break it without a trace. The positions of the mesh itself are not used.
 ///
 /// Shapes     V = vertices; positions are (V, 3).
@@ -25,8 +24,8 @@
 
 namespace chronormal::inline internal {
 
-/// What a cache reader returns: at least one vertex and one sample, finite times and positions. The times need not
-/// ascend.
+/// Holds the result of a cache reader: at least one vertex and one sample, finite times and positions. The times need
+/// not ascend.
 struct PositionCache {
   struct Sample {
     double time = 0;               ///< seconds
@@ -35,18 +34,19 @@ struct PositionCache {
 
   std::size_t vertex_count = 0;
   std::vector<Sample> samples;
-  Origin origin = {};  ///< that positions count from
+  Origin origin = {};  ///< the point from which positions count
 };
 
-/// What a cache reader may need to know; most formats need little of it.
+/// Holds what a cache reader may need to know; most formats need little of it.
 struct CacheOptions {
   double frames_per_second = 1;  ///< finite and > 0; for formats whose times are frames (PC2, npy)
-  std::size_t vertex_count = 0;  ///< of the mesh, to choose among the channels of a Maya cache; 0 where it is not known
-  std::string channel;           ///< which channel of a Maya cache; empty: by vertex_count
+  std::size_t vertex_count = 0;  ///< of the mesh, to choose among the channels of a Maya cache; 0 if unknown
+  std::string channel;           ///< name of a channel of a Maya cache; if empty, vertex_count decides
 };
 
-/// Gives the samples of a cache the faces of a mesh, as a sequence or what else they are known to be; every keyframe
-/// takes the name of the cache. The result is valid (motion/motion.h), but that samples without positions give
+/// Gives the samples of a cache the faces of a mesh, as a sequence or another kind that is known. Every keyframe takes
+/// the name of the cache. The result is valid (motion/motion.h), except that samples without positions give keyframes
+/// without positions.
 /// keyframes without any.
 ///
 /// Errors: kInvalidInput with cache_name in the place: another number of vertices than the mesh (the message has both),
@@ -57,13 +57,12 @@ struct CacheOptions {
 /// Checks that the keyframes of a motion are a list of two samples or more. Errors: kUsage without a place.
 [[nodiscard]] Status check_keyframes(const Motion& motion);
 
-/// Whether they are one sequence besides, so that a format can hold them that knows nothing else: segments join all
-/// neighbours. Errors: kUsage without a place.
+/// Checks this, and that segments join all neighbours: such a motion is one sequence, which even the simplest format
+/// can hold. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
 /// Calls each() with the coordinates of one keyframe after the other, as bytes of float32, to which the origin of the
-/// motion was added. Errors: those of the stream
-/// and of each().
+/// motion was added. Errors: errors of the stream and of each().
 [[nodiscard]] Status each_keyframe(MotionStream& stream, std::endian order,
                                    const std::function<Status(std::string_view bytes)>& each);
 
