@@ -44,7 +44,7 @@ struct CircleFamily {
   Vec3d bisector;  ///< unit(u0 + u1): phi = pi / 2, half a turn
   enum class Kind {
     kGeneral,
-    kEqual,      ///< u0 = u1: only the axis u0 keeps it in place; the family is a point
+    kEqual,      ///< u0 = u1: every arc of the family is this point
     kAntipodal,  ///< u1 = -u0: pole is a fixed perpendicular, and every circle is a great one
   } kind;
 

@@ -19,7 +19,7 @@
 #error "chronormal promises bits, and -ffast-math takes them: compile it without"
 #endif
 
-// These are the only uses of instructions by name. Compilers do not find them by themselves without flags.
+// Only here are instructions used by name. Compilers do not find them by themselves without flags.
 #if defined(__GNUC__) && defined(__SSE2__)
 #include <emmintrin.h>
 #define CHRONORMAL_PLAIN_SSE2 1

@@ -26,7 +26,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// These are for scalars whose masks are bool.
+// The next functions are for scalars whose masks are bool.
 template <class S>
 HWY_INLINE S select(bool mask, const S& a, const S& b) {
   return mask ? a : b;

@@ -61,7 +61,7 @@ struct Format {
   Result<CacheLayout> (*find_layout)(std::string_view bytes, std::uint64_t size, const std::string& name,
                                      const CacheOptions& options) = nullptr;
 
-  // These write the format; nullptr if nothing does.
+  // Both write the format; nullptr if nothing does.
   std::string (*write_mesh)(const Topology& topology, VectorView<const float> positions,
                             const Origin& origin) = nullptr;
   Status (*write_motion)(MotionStream& stream, OutputFile& file) = nullptr;

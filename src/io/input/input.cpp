@@ -494,7 +494,7 @@ struct Input::State {
   std::size_t most_pieces = kMostPieces, kept_bytes = 0;
   std::optional<CutPath> cut;
   std::optional<Error> cut_error;
-  // These belong to the document, and are set once it was asked for them.
+  // The next members belong to the document, and are set once it was asked for them.
   bool has_motion = true, has_normals = true;
   std::vector<GltfPart> parts;
   double curve_error = 0;

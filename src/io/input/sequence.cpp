@@ -219,7 +219,7 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;
-  // The same text can only be used with positions as they stand in the file.
+  // Equal text can only be used with positions as they stand in the file.
   if (!keeps_normals && motion.origin == Origin{})
     faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
   while (motion.keyframes.size() < total) {

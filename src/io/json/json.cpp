@@ -38,7 +38,7 @@ bool is_number(std::string_view text) {
 
 // Returns whether a number is beyond the range of double. A number that is too small is not: it counts as 0.
 bool overflows(std::string_view number) {
-  constexpr std::size_t kMostDigits = 308;  // those of the largest double are one more
+  constexpr std::size_t kMostDigits = 308;  // the largest double has one more
   const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
   if (exponent_at == number.size() && number.size() <= kMostDigits) return false;
   double value = 0;

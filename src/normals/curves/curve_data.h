@@ -23,7 +23,7 @@ struct CurveData {
   struct Run {
     std::size_t first_block = 0;
     std::size_t block_count = 0;
-    std::size_t offset = 0;  ///< place of the first block, in bytes
+    std::size_t offset = 0;  ///< first byte of the first block in `blocks`
     BlockKind kind = BlockKind::kUnit;
 
     /// Returns the elements of these blocks. Only the first `count` elements of the curves exist.

@@ -44,7 +44,7 @@ class GivenNormals {
       const ControlNormals& c = normals_[elements.first + std::min(i, elements.count - 1)];
       ControlTile& tile = tiles[i / kTile];
       put(tile, i % kTile, c);
-      // These values count as exact: there are no products whose rounding could matter.
+      // Given values count as exact: there are no products whose rounding could matter.
       tile.magnitude[i % kTile] = static_cast<float>(largest_component(c));
       tile.degree[i % kTile] = degree(c);
     }

@@ -409,7 +409,7 @@ struct MeshNormals::Parts {
     return outputs.count;
   }
 
-  // Writes outputs at a time, which must not be NaN and needs a segment; otherwise writes zeros.
+  // Writes outputs at a time, or zeros if the time is NaN or there is no segment.
   template <class Output>
   std::size_t write(const LocalTime& t, IndexRange outputs, const Output& output) const noexcept {
     if (std::isnan(t.t) || curves.size == 0) return write_zeros(outputs, output);

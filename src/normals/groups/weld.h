@@ -1,4 +1,4 @@
-/// What weld_coincident() also finds on its way. Private to normals and workflow.
+/// Welds vertices, and shows what weld_coincident() finds on its way. Private to normals and workflow.
 #ifndef CHRONORMAL_NORMALS_GROUPS_WELD_H_
 #define CHRONORMAL_NORMALS_GROUPS_WELD_H_
 

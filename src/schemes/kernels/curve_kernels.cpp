@@ -58,7 +58,7 @@ HWY_INLINE void PrefetchBlock(const float* block, std::size_t plane_count) {
 template <class F>
 HWY_NOINLINE void EvaluateBlocks(const CoefficientBlocks& curves, std::size_t first_block, std::size_t block_count,
                                  const SharedValues& shared, const BlockResult& result_of_caller) {
-  // These are copies, so that the compiler sees that no store changes them.
+  // Copy both, so that the compiler sees that no store changes them.
   const BlockResult result = result_of_caller;
   const SharedValues common = shared;
 

@@ -141,7 +141,7 @@ struct State {
   HWY_INLINE void set(std::size_t plane, const S& value) const { first[plane] = value; }
 };
 
-// These specialisations read lanes from a block (curve_kernels.h).
+// The specialisations for Lanes read from a block (curve_kernels.h).
 template <>
 struct Coefficients<Lanes> {
   const float* first;

@@ -50,7 +50,7 @@ class EditLayout {
   /// possible.
   [[nodiscard]] Status run();
 
-  /// These are valid after run().
+  /// Return the results of run().
   [[nodiscard]] const JsonText& json() const noexcept { return json_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   /// Returns how many bytes of the source are left out.

@@ -25,8 +25,7 @@ struct BoundedTile : ExactTile {
 
 /// Holds sixteen faces with the longest of their edges from the first corner.
 struct EdgedTile : ExactTile {
-  /// At least as large as any component of such an edge at either end of the segment; infinity if a face is no
-  /// triangle.
+  /// Bounds every component of such an edge at either end of the segment; infinity if a face is no triangle.
   float longest[kTile];
 };
 

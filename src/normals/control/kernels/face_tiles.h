@@ -18,8 +18,8 @@ namespace chronormal::inline internal {
 /// 16) elements; faces.count > 0
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
 
-/// Also writes, for each tile, the values before rounding: the bits of face_control_normals(), and the longest edges.
-/// exact must have as many elements as tiles
+/// Writes tiles, and for each tile its values before rounding, which have the bits of face_control_normals(), and its
+/// longest edges. exact must have as many elements as tiles
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
                         std::span<EdgedTile> exact) noexcept;
 

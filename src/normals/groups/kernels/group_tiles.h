@@ -32,7 +32,7 @@ class GroupTiles {
   /// elements.count > 0; tiles must have ceil(elements.count / 16) elements
   void write(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
-  /// Also writes, for each tile, its sums in double before any correction, with bounds on their errors, for a closer
+  /// Writes tiles, and for each tile its sums in double before any correction, with bounds on their errors, for a closer
   /// look. Elements with many faces are left out of these. bounded must have as many elements as tiles
   void write(IndexRange elements, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const noexcept;
 
