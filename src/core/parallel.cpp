@@ -37,8 +37,8 @@ namespace {
 
 constexpr std::size_t kMostThreads = 64;
 
-thread_local std::size_t thread_limit = 0;          // of the innermost ThreadLimit, or of the current job; 0: none
-thread_local Interruption* interruption = nullptr;  // of the computation that this thread works for
+thread_local std::size_t thread_limit = 0;          // the limit in force for this thread; 0: none
+thread_local Interruption* interruption = nullptr;  // interruption of the computation that this thread works for
 
 constexpr std::chrono::milliseconds kBetweenQuestions(50);
 
@@ -86,7 +86,7 @@ ThreadLimit::~ThreadLimit() { thread_limit = before_; }
 namespace {
 
 struct Job;
-thread_local Job* current_job = nullptr;  // whose piece this thread runs
+thread_local Job* current_job = nullptr;  // the job whose piece this thread runs
 
 // Holds a loop that runs. The pool's mutex guards all members that are not constant or atomic.
 struct Job {
@@ -102,7 +102,7 @@ struct Job {
   std::size_t seated = 1;             // threads of the outermost job and the jobs inside it
   std::size_t helpers = 0;            // threads that run pieces of this job, beside its caller
   std::exception_ptr failure = nullptr;
-  Job* after = nullptr;  // in the pool's list
+  Job* after = nullptr;  // next job in the pool's list
 
   [[nodiscard]] bool has_pieces() const noexcept { return next.load(std::memory_order_relaxed) < count; }
   [[nodiscard]] bool is_inside(const Job& other) const noexcept {
@@ -240,7 +240,7 @@ class Pool {
         changed_.wait(lock);
       }
       --waiting_;
-      if (job.asked != nullptr) {  // by this thread, perhaps, which alone may ask whether to end
+      if (job.asked != nullptr) {  // perhaps by this thread, which alone may ask whether to end
         lock.unlock();
         try {
           check_interruption();
@@ -271,15 +271,15 @@ class Pool {
   }
 
   std::mutex mutex_;
-  std::condition_variable opened_;   // for workers: there is a job
-  std::condition_variable changed_;  // for callers: nobody helps with a job any more, or there is one to help with
+  std::condition_variable opened_;   // tells workers: there is a job
+  std::condition_variable changed_;  // tells callers: nobody helps with a job any more, or there is one to help with
   std::vector<std::thread> workers_;
   std::atomic<std::size_t> worker_count_ = 0;
   std::atomic<bool> is_forked_ = false;
   bool has_all_ = false, has_ended_ = false;
   std::size_t busy_ = 0;     // workers that help
   std::size_t waiting_ = 0;  // callers that wait for helpers
-  Job* jobs_ = nullptr;      // in the order in which they were opened
+  Job* jobs_ = nullptr;      // list of jobs in the order in which they were opened
 };
 
 // The pool is never destroyed, since a thread may use it until the very end.

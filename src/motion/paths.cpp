@@ -179,7 +179,7 @@ class PieceBounds {
 
   [[nodiscard]] PieceEdge edge(std::uint32_t a, std::uint32_t b, double start, double end) const {
     Bernstein<Vec3d, 3> e;
-    double size = 0;  // of coordinates
+    double size = 0;  // largest coordinate
     for (std::size_t k = 0; k < e.size(); ++k) {
       const Vec3d &p = cubics_.control[k][a], &q = cubics_.control[k][b];
       e[k] = q - p;
@@ -206,7 +206,7 @@ struct Pieces {
 // fewer.
 Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
   const std::size_t tried = std::max(most, kMostPieces);
-  std::vector<std::size_t> ladder, left;  // and how many faces each rung leaves
+  std::vector<std::size_t> ladder, left;  // number of pieces of each rung, and of faces that it leaves
   for (std::size_t n = 1; n <= tried; n *= 2) {
     ladder.push_back(n);
     if (n > 1 && n + n / 2 <= tried) ladder.push_back(n + n / 2);

@@ -74,7 +74,7 @@ class PolynomialPlayback final : public SchemePlayback {
   std::span<const ControlNormals> normals_;
   double start_, step_;
   std::size_t anchor_interval_;
-  std::size_t index_ = 0;  // of the current step
+  std::size_t index_ = 0;  // number of the current step
   std::vector<QuadraticState<float>> states_;
   std::vector<bool> is_played_;
 };
@@ -120,7 +120,7 @@ class Polynomial final : public Scheme {
   }
 
  private:
-  std::span<const ControlNormals> normals_;  // of the block
+  std::span<const ControlNormals> normals_;  // control normals of the block
   NormalCurves curves_;
 };
 

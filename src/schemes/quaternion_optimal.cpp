@@ -66,7 +66,7 @@ struct OptimalQuaternion : UniformArc {
   }
 
   std::size_t first_ = 0;
-  std::vector<double> phis_;  // of the elements of a block; NaN where the slower search is needed
+  std::vector<double> phis_;  // phi of each element of a block; NaN if the slower search is needed
 };
 
 }  // namespace

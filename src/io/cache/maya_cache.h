@@ -45,7 +45,7 @@ struct MayaCacheDescription {
   };
 
   bool has_file_per_frame = false;
-  std::string extension;  ///< of the files of points: ".mc" or ".mcx"
+  std::string extension;  ///< extension of the files of points: ".mc" or ".mcx"
   std::int32_t ticks_per_frame = 250;
   std::vector<Channel> channels;
 };
@@ -64,7 +64,7 @@ struct MayaCacheDescription {
 /// Reads a description and the files of points beside it. These are the files in its folder that begin with its name
 /// without ".xml"; nothing else is opened. Samples are sorted by time.
 ///
-/// Errors: errors of both readers, with the file name in the place; kFailed for files that cannot be opened;
+/// Errors: from both readers, with the file name in the place; kFailed for files that cannot be opened;
 /// kInvalidInput with the missing time and the file, if a regularly sampled channel lacks samples that the description
 /// declares. With a resolver, files are found by their paths through it; kUsage for a cache of a file per frame, whose
 /// files only a folder can list.

@@ -29,7 +29,7 @@ namespace chronormal::inline internal {
                                              const CacheOptions& options = {});
 
 /// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
-/// Errors: errors of read_mdd(), except for coordinates; kInvalidInput for times beyond these bytes.
+/// Errors: from read_mdd(), except for coordinates; kInvalidInput for times beyond these bytes.
 [[nodiscard]] Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
@@ -37,7 +37,7 @@ namespace chronormal::inline internal {
 /// 2^31 - 1 vertices or keyframes, and for times that are the same in float32.
 [[nodiscard]] Result<std::string> mdd_header(const Motion& motion);
 
-/// Writes the header, and the positions as they are read. Errors: errors of the header, the stream and the file.
+/// Writes the header, and the positions as they are read. Errors: from the header, the stream and the file.
 [[nodiscard]] Status write_mdd(MotionStream& stream, OutputFile& file);
 
 }  // namespace chronormal::inline internal

@@ -69,7 +69,7 @@ class Python {
   }
 
  private:
-  static constexpr std::size_t kMostDimensions = 32;  // as in NumPy
+  static constexpr std::size_t kMostDimensions = 32;  // the limit of NumPy
 
   std::string_view text_;
 };

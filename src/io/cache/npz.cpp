@@ -26,7 +26,7 @@ namespace {
 using npy::Array;
 using npy::Kind;
 
-constexpr std::endian kNpzOrder = std::endian::little;  // for writing
+constexpr std::endian kNpzOrder = std::endian::little;  // byte order of written files
 
 std::string element_place(const std::string& place, std::initializer_list<std::size_t> indices) {
   std::string text = place + "[";

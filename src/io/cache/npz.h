@@ -61,7 +61,7 @@ namespace chronormal::inline internal {
                                              const CacheOptions& options = {});
 
 /// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
-/// Errors: errors of read_npy(), except for coordinates; kInvalidInput for Fortran order.
+/// Errors: from read_npy(), except for coordinates; kInvalidInput for Fortran order.
 [[nodiscard]] Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 

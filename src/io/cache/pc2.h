@@ -34,7 +34,7 @@ namespace chronormal::inline internal {
                                              const CacheOptions& options = {});
 
 /// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
-/// Errors: errors of read_pc2(), except for coordinates.
+/// Errors: from read_pc2(), except for coordinates.
 [[nodiscard]] Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
@@ -43,7 +43,7 @@ namespace chronormal::inline internal {
 /// keyframes.
 [[nodiscard]] Result<std::string> pc2_header(const Motion& motion, double frames_per_second = 1);
 
-/// Writes the header, at one frame a second, and the positions as they are read. Errors: errors of the header, the
+/// Writes the header, at one frame a second, and the positions as they are read. Errors: from the header, the
 /// stream and the file.
 [[nodiscard]] Status write_pc2(MotionStream& stream, OutputFile& file);
 

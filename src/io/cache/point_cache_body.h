@@ -60,7 +60,7 @@ struct Counts {
   return Success{};
 }
 
-/// Writes a header, and after it the positions of all keyframes. Errors: errors of the header, the stream and the file.
+/// Writes a header, and after it the positions of all keyframes. Errors: from the header, the stream and the file.
 [[nodiscard]] inline Status write(const Result<std::string>& header, MotionStream& stream, std::endian order,
                                   OutputFile& file) {
   if (!header) return header.error();

@@ -40,7 +40,7 @@ struct PositionCache {
 /// Holds what a cache reader may need to know; most formats need little of it.
 struct CacheOptions {
   double frames_per_second = 1;  ///< finite and > 0; for formats whose times are frames (PC2, npy)
-  std::size_t vertex_count = 0;  ///< of the mesh, to choose among the channels of a Maya cache; 0 if unknown
+  std::size_t vertex_count = 0;  ///< vertices of the mesh, to choose among the channels of a Maya cache; 0 if unknown
   std::string channel;           ///< name of a channel of a Maya cache; if empty, vertex_count decides
 };
 
@@ -62,7 +62,7 @@ struct CacheOptions {
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
 /// Calls each() with the coordinates of one keyframe after the other, as bytes of float32, to which the origin of the
-/// motion was added. Errors: errors of the stream and of each().
+/// motion was added. Errors: from the stream and of each().
 [[nodiscard]] Status each_keyframe(MotionStream& stream, std::endian order,
                                    const std::function<Status(std::string_view bytes)>& each);
 

@@ -62,7 +62,7 @@ class Assembly {
   [[nodiscard]] Status check_memory(std::size_t keyframes, std::size_t most_bytes, std::size_t other_bytes = 0) const {
     constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kWithResiduals = 3 * (sizeof(float) + sizeof(double));
     constexpr std::size_t kBytesPerCorner = 2 * sizeof(std::uint32_t);
-    constexpr std::size_t kBytesPerKeyframe = 128;  // with its segment and its place on the heap
+    constexpr std::size_t kBytesPerKeyframe = 128;  // includes its segment and its place on the heap
     std::size_t left = most_bytes;
     bool enough = true;
     const auto take = [&](std::size_t count, std::size_t size) {
@@ -396,11 +396,11 @@ class AnimationReader {
   const GltfMotionOptions& options_;
   Assembly assembly_;
   std::vector<WeightCurve> curves_;
-  std::map<std::size_t, std::size_t> curve_of_track_;  // by same_keys_as
+  std::map<std::size_t, std::size_t> curve_of_track_;  // key: same_keys_as of a track
   std::vector<std::size_t> curve_of_part_;
   std::size_t weight_bytes_ = 0;
   std::vector<double> keys_, pieces_;       // times
-  std::vector<std::vector<double>> reach_;  // by part and target
+  std::vector<std::vector<double>> reach_;  // one for each part and target
   double size_ = 0;                         // diagonal of the bounding box
   std::vector<std::vector<double>> last_weights_;
 };

@@ -53,12 +53,12 @@ struct GltfMotion {
 /// Reads the motion that the options name. Only parts that can move take part: primitives with faces and targets, and
 /// in an animation only the ones that it drives. The result is valid (validate() in motion/motion.h).
 ///
-/// Errors: errors of GltfDocument; kInvalidInput if nothing can move, or the keyframes would take more than most_bytes;
+/// Errors: from GltfDocument; kInvalidInput if nothing can move, or the keyframes would take more than most_bytes;
 /// kUsage for an animation that does not exist.
 [[nodiscard]] Result<GltfMotion> read_gltf_motion(const GltfDocument& document, const GltfMotionOptions& options);
 
 /// Reads all primitives with faces at the default weights of their meshes, as one keyframe without a segment. (So the
-/// result is not valid by itself.) The animation of the options is not used. Errors: errors of GltfDocument;
+/// result is not valid by itself.) The animation of the options is not used. Errors: from GltfDocument;
 /// kInvalidInput if there are no primitives, or they take more than most_bytes.
 [[nodiscard]] Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotionOptions& options = {});
 

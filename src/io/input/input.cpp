@@ -53,7 +53,7 @@ Error chooses_nothing(const InputOptions& options) {
 // Holds what was opened: a document, or else a motion or a mesh.
 struct Opened {
   std::optional<GltfDocument> document;
-  std::size_t file_size = 0;  // of the document
+  std::size_t file_size = 0;  // size of the document
   ReadMotion read;            // not yet read for a document
 };
 
@@ -487,8 +487,8 @@ Status check_input(const InputOptions& options) {
 struct Input::State {
   std::string name;
   Opened opened;
-  Expansion expansion;       // of everything but documents
-  GltfMotionOptions chosen;  // of the document
+  Expansion expansion;       // limit of memory for everything but documents
+  GltfMotionOptions chosen;  // options of the document
   bool allow_mesh = false;
   Path path;
   std::size_t most_pieces = kMostPieces, kept_bytes = 0;

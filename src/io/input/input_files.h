@@ -26,7 +26,7 @@ struct ReadMotion {
   std::vector<std::string> other_files =
       {};                                 ///< of a sequence: that tell, where its first file has no more digits than
                                           ///< float32, whether others have
-  std::uint64_t bytes_read = 0;           ///< of all files
+  std::uint64_t bytes_read = 0;           ///< size of all files
   std::vector<std::string> notes = {};    ///< as Input has them
   std::optional<FileSeries> series = {};  ///< as Input has it
 };

@@ -44,8 +44,8 @@ struct Number {
 
 // The place of a number in a name.
 struct Place {
-  std::size_t begin = 0, end = 0;    // with its sign
-  std::size_t digits = 0;            // where its digits begin
+  std::size_t begin = 0, end = 0;    // range of the number with its sign
+  std::size_t digits = 0;            // place of its first digit
   std::size_t point = 0, power = 0;  // places of the decimal point and of the letter e; `end` if there is none
 };
 

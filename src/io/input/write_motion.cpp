@@ -22,7 +22,7 @@ namespace {
 struct NamePattern {
   std::string before, after;
   bool has_number = false;
-  std::size_t width = 0;  // of the number, padded with zeros
+  std::size_t width = 0;  // digits of the number, padded with zeros
 
   [[nodiscard]] std::string name(std::size_t k) const {
     if (!has_number) return before;

@@ -64,7 +64,7 @@ struct Scan {
   std::size_t too_deep = std::string_view::npos;  // first byte that is nested deeper than allowed
   struct Number {
     std::size_t begin, end;
-    std::size_t nulls;  // how many nulls come before it
+    std::size_t nulls;  // number of nulls before it
   };
   std::vector<Number> too_large;  // numbers beyond the range of double
 };
@@ -178,7 +178,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   std::size_t null_count_ = 0, next_infinity_ = 0;
   nlohmann::json root_;
   std::vector<nlohmann::json*> stack_;  // the open arrays and objects, which do not move meanwhile
-  nlohmann::json* member_ = nullptr;    // of the innermost object
+  nlohmann::json* member_ = nullptr;    // the current member of the innermost object
   bool inside_items_ = false;
   std::size_t item_count_ = 0, error_at_ = 0;
   std::string error_message_;

@@ -48,7 +48,7 @@ namespace chronormal::inline internal {
 /// A corner with the normal index 0, or an index without a vn, has no normal, and faces after an s without a word are
 /// in no group; a note counts each of these.
 ///
-/// Errors: errors of read_obj(), and vn that are not three finite numbers, reported in the same way.
+/// Errors: from read_obj(), and vn that are not three finite numbers, reported in the same way.
 [[nodiscard]] Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name,
                                                  const Origin& origin = {});
 

@@ -12,7 +12,7 @@ namespace {
 // Holds the part of a file before its first face.
 struct Head {
   std::vector<float> positions;
-  std::size_t end = 0;  // where the line of the first face begins
+  std::size_t end = 0;  // start of the line of the first face
 };
 
 std::optional<Head> read_head(std::string_view bytes, std::size_t expected) {

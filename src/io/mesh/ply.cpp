@@ -96,7 +96,7 @@ class AsciiSource {
   std::size_t left_;
   scan::Lines lines_;
   std::size_t header_lines_;
-  std::string_view row_;   // what follows next_ in the line
+  std::string_view row_;   // rest of the line after next_
   std::string_view next_;  // the word that take() returns; empty at the end of the line
   std::string message_;
 };
@@ -364,7 +364,7 @@ class BodyReader {
   const std::string& name_;
   const Header& header_;
   Source source_;
-  std::string message_;  // of an error that is not the source's
+  std::string message_;  // message of an error that is not the source's
   bool has_velocities_;
   Origin origin_;
   bool is_far_, has_more_digits_ = false;

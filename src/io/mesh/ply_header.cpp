@@ -71,7 +71,7 @@ class HeaderReader {
   Header header_;
   bool has_format_ = false;
   std::set<std::string_view> element_names_;
-  std::set<std::string_view> property_names_;  // of the last element
+  std::set<std::string_view> property_names_;  // names in the last element
 };
 
 Result<Header> HeaderReader::read() {

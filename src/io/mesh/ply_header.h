@@ -28,7 +28,7 @@ enum class Role { kX, kY, kZ, kVelocityX, kVelocityY, kVelocityZ, kIndices, kOth
 
 struct Property {
   std::string_view name;
-  Scalar type{};  ///< of the value, or of the items of the list
+  Scalar type{};  ///< type of the value, or of the items of the list
   bool is_list = false;
   Scalar count_type{};  ///< lists only; an integer
   Role role = Role::kOther;

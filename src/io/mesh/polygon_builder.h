@@ -44,7 +44,7 @@ class PolygonBuilder {
     ++face_count_;
   }
 
-  /// Makes the topology; the builder is used up. Errors: errors of Topology::polygons().
+  /// Makes the topology; the builder is used up. Errors: from Topology::polygons().
   [[nodiscard]] Result<Topology> build(std::size_t vertex_count) {
     corners_.shrink_to_fit();
     offsets_.shrink_to_fit();

@@ -13,7 +13,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kBlockOfElements = 16384;  // for a thread; whole words
+constexpr std::size_t kBlockOfElements = 16384;  // elements of a thread; whole words
 
 }  // namespace
 

@@ -41,7 +41,7 @@ struct StoredTarget {
   std::size_t moved_faces = 0, moved_corners = 0;
   double reach = 0;  ///< the largest absolute component of its deltas
   StoredTerm term;
-  std::vector<StoredPair> pairs;  ///< with later targets, ascending
+  std::vector<StoredPair> pairs;  ///< pairs with later targets, ascending
 };
 
 class BlendStorage {

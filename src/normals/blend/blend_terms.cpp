@@ -131,10 +131,10 @@ class BlendTerms::PairCounter {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   const BlendTerms& terms_;
-  std::vector<std::size_t> offsets_;  // of each face, into targets_
+  std::vector<std::size_t> offsets_;  // range of each face in targets_
   Indices targets_;
   std::vector<bool> is_moved_;
-  Indices last_element_, counts_;  // of each target
+  Indices last_element_, counts_;  // one for each target
 };
 
 BlendTerms::BlendTerms(const BlendSet& set, const NormalGroups* groups) : set_(set), groups_(groups) {

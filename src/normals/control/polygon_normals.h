@@ -22,7 +22,7 @@ inline constexpr double kLargestRounding = 0x1p-26;
 /// Holds control normals in double, and a bound of the error of any component of each.
 struct BoundedNormals {
   ControlNormals normals;
-  std::array<double, 3> errors{};  ///< of n0, m, n1
+  std::array<double, 3> errors{};  ///< errors of n0, m, n1
 
   /// Returns the largest error relative to its own control normal.
   [[nodiscard]] double largest_share() const noexcept {

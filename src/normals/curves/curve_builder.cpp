@@ -280,7 +280,7 @@ struct CurveSlices::State {
 
   struct Step {
     std::size_t count = 0;
-    double share = 0;  // of all work, approximately
+    double share = 0;  // share of all work, approximately
     std::size_t done = 0;
   };
 

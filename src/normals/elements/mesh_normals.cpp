@@ -30,7 +30,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kOutputPiece = 16384;  // for a thread
+constexpr std::size_t kOutputPiece = 16384;  // outputs of a thread
 constexpr std::size_t kSlotElements = 1024;  // 12 KiB of vectors
 constexpr std::size_t kElementsOfManyTimes = 8192;
 
@@ -423,14 +423,14 @@ struct MeshNormals::Parts {
   Topology topology;
   MeshNormalsOptions options;
   std::vector<std::uint32_t> group_of_face;  // kept until it is decided which outputs share a normal
-  std::vector<float> normal_of_corner;       // likewise
+  std::vector<float> normal_of_corner;       // kept until then, too
   std::optional<NormalGroups> groups;        // none for faces
   bool shares = false;                       // whether an output is not the element with its number
   CurveData curves, spare;                   // the present segment, and memory for the next
   double fit_bound = 0;
   Segment next;
   bool has_next = false;
-  std::optional<CurveSlices> slices;  // of the next segment; none for fits
+  std::optional<CurveSlices> slices;  // curves of the next segment; none for fits
   std::optional<BlendNormals> blend;
 };
 

@@ -13,7 +13,7 @@ struct WeldedPoints {
   Points at_start;  ///< vertices that coincide in keyframe 0 are one point
 };
 
-/// Welds at keyframe 0 and in all keyframes at once. Errors: errors of the stream.
+/// Welds at keyframe 0 and in all keyframes at once. Errors: from the stream.
 [[nodiscard]] Result<WeldedPoints> weld_from_start(MotionStream& stream);
 
 }  // namespace chronormal::inline internal

@@ -231,7 +231,7 @@ struct Scratch {
   bool vertices_are_near = true;  // whether vertices of neighbouring faces are neighbours in memory
   AlignedArray<float> pairs;      // x y z _ of both ends of each vertex, or empty
   std::size_t window = 0;         // number of face normals, a power of two; 0 for all
-  AlignedBytes normals;           // of faces, for groups
+  AlignedBytes normals;           // normals of faces, for groups
 };
 
 // Makes one evaluation.

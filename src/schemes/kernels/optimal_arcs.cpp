@@ -56,7 +56,7 @@ HWY_INLINE Real angle_of_chord(Real square) {
 // Searches for one element in each lane.
 struct Search {
   Real3 u0, pole, bisector;
-  Real cosine, tangent;  // of half the angle between the ends
+  Real cosine, tangent;  // cosine and tangent of half the angle between the ends
   Real3 exact[kIntervals - 1];
 
   HWY_INLINE Real mean_error(Real g) const {

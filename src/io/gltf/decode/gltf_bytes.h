@@ -34,11 +34,11 @@ inline constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20;
 
 /// Says where an asset and its files are.
 struct Origin {
-  std::string name;                     ///< for messages
-  std::optional<std::string> folder;    ///< of its files; none for standard input
+  std::string name;                     ///< name for messages
+  std::optional<std::string> folder;    ///< folder of its files; none for standard input
   std::optional<std::string_view> bin;  ///< the BIN chunk
   bool allow_external = false;
-  Expansion expansion;        ///< of the asset itself
+  Expansion expansion;        ///< limit of memory for the asset itself
   FileResolver resolve = {};  ///< finds its files; empty for the file system
 
   /// Returns the path that a relative URI stands for (io/gltf/gltf_uri.h); place is for messages.
@@ -60,7 +60,7 @@ class Bytes {
   [[nodiscard]] Result<View> view(std::size_t index);
 
   /// Returns the numbers of an accessor that parse_model() has checked, count x components of them. Normalised integers
-  /// become fractions (f = c / 127, at least -1, and so on), others their value. Errors: errors of the buffer; numbers
+  /// become fractions (f = c / 127, at least -1, and so on), others their value. Errors: from the buffer; numbers
   /// that are not finite; sparse indices that do not ascend.
   [[nodiscard]] Result<std::vector<float>> floats(std::size_t accessor);
 
@@ -97,7 +97,7 @@ class Bytes {
   std::map<std::size_t, FileBytes> files_;                           // by buffer
   std::map<std::size_t, std::string> embedded_;                      // by buffer: decoded data URIs
   std::map<std::size_t, std::shared_ptr<const std::string>> views_;  // by view: decompressed
-  std::size_t kept_bytes_ = 0;                                       // of views_
+  std::size_t kept_bytes_ = 0;                                       // in views_
   std::optional<Expansion> expansion_;                               // set when it was first asked for
 };
 

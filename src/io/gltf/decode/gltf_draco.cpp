@@ -98,7 +98,7 @@ std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
 // Decodes a mesh of as many vertices as its accessors declare.
 Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::size_t vertex_count,
                                                  const Expansion& expansion, const std::string& place) {
-  constexpr std::uint64_t kBytesPerFace = 64;  // for the library's tables, and ours
+  constexpr std::uint64_t kBytesPerFace = 64;  // the library's tables, and ours
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::unique_ptr<draco::Mesh> mesh;

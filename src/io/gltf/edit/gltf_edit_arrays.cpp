@@ -32,9 +32,9 @@ std::string bytes_of(std::span<const float> values) {
 
 // Holds the facts about an array that one pass over its values finds.
 struct ArraySurvey {
-  std::array<float, 3> least{}, most{};  // of each component
+  std::array<float, 3> least{}, most{};  // bounds of each component
   std::size_t used = 0, last_used = 0;   // elements that are not zero
-  std::size_t hash = 0;                  // of the bytes
+  std::size_t hash = 0;                  // hash of the bytes
 };
 
 std::string_view native_bytes(std::span<const float> values) {

@@ -45,14 +45,14 @@ class NewArrays {
   /// Takes the spool out, so that it can be cleared and used again.
   [[nodiscard]] Spool take_spool() && { return std::move(spool_); }
 
-  /// Returns whether all bytes could be put aside. Errors: errors of Spool.
+  /// Returns whether all bytes could be put aside. Errors: from Spool.
   [[nodiscard]] const Status& status() const noexcept { return spool_.status(); }
 
   [[nodiscard]] std::size_t count() const noexcept { return arrays_.size(); }
   /// Returns the number of all bytes, a multiple of 4.
   [[nodiscard]] std::uint64_t byte_count() const noexcept;
   [[nodiscard]] std::size_t view_count() const noexcept;
-  /// Gives all bytes to take, in the order of the buffer, and forgets them. Errors: errors of Spool::give_away().
+  /// Gives all bytes to take, in the order of the buffer, and forgets them. Errors: from Spool::give_away().
   [[nodiscard]] Status give_away(const Spool::Take& take);
   /// Returns all bytes, in the order of the buffer, as views, which live as long as this. The spool must be in memory
   [[nodiscard]] std::vector<std::string_view> pieces() const;

@@ -33,7 +33,7 @@ struct EditedDocument {
 };
 
 struct LayoutTarget {
-  std::string name;           ///< for messages
+  std::string name;           ///< name for messages
   bool glb = false;           ///< the container
   bool stands_alone = false;  ///< references to files beside the source would lead nowhere
   bool with_bytes = true;     ///< false if only pointers are wanted: data URIs are left empty

@@ -30,8 +30,8 @@ struct UnusedArrays {
     std::size_t begin = 0, end = 0;
   };
 
-  std::vector<std::vector<Range>> ranges;  ///< of each buffer, ascending and apart; empty if nothing is left out
-  std::vector<std::size_t> view_offsets;   ///< where each view then begins in its buffer; empty as well
+  std::vector<std::vector<Range>> ranges;  ///< ranges of each buffer, ascending and apart; empty if nothing is left out
+  std::vector<std::size_t> view_offsets;   ///< new start of each view in its buffer; empty as well
   /// Pointers, and the values that they need once these bytes are left out.
   std::vector<std::pair<std::string, std::string>> changes;
 

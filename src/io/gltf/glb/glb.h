@@ -25,7 +25,7 @@ namespace chronormal::inline internal {
 /// Holds views of the file.
 struct GlbChunks {
   std::string_view json;
-  std::size_t json_offset = 0;          ///< where the JSON begins, in bytes
+  std::size_t json_offset = 0;          ///< byte at which the JSON begins
   std::optional<std::string_view> bin;  ///< none if there is no BIN chunk
   std::string_view rest;                ///< further chunks, with their headers
 };
@@ -43,7 +43,7 @@ struct GlbChunks {
 /// Holds the headers and the padding around the chunks of a file. A file has one JSON chunk and at most one BIN chunk.
 struct GlbFrame {
   std::string before_json, behind_json, behind_bin;  ///< headers, and the padding of the chunk before
-  std::uint64_t size = 0;                            ///< of the file
+  std::uint64_t size = 0;                            ///< size of the file
 };
 
 /// Frames chunks of so many bytes. bin_size: none for no BIN chunk. rest_size: size of further chunks, with their

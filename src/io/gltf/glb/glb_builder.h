@@ -64,7 +64,7 @@ class GlbBuilder {
   /// Takes the spool out, so that it can be cleared and used again.
   [[nodiscard]] Spool take_spool() && { return std::move(arrays_).take_spool(); }
 
-  /// Returns whether all arrays could be put aside. Errors: errors of the spool.
+  /// Returns whether all arrays could be put aside. Errors: from the spool.
   [[nodiscard]] const Status& status() const noexcept { return arrays_.status(); }
   /// Returns the bytes of the arrays so far.
   [[nodiscard]] std::uint64_t byte_count() const noexcept { return indices_.size() + arrays_.byte_count(); }

@@ -15,7 +15,8 @@
 namespace chronormal::inline internal::gltf {
 namespace {
 
-constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // what a JSON number holds exactly
+constexpr std::size_t kMostBytes =
+    addressable(std::uint64_t{1} << 53);  // a JSON number holds integers up to this exactly
 
 constexpr std::array<std::string_view, 5> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
                                                          "KHR_meshopt_compression", "KHR_draco_mesh_compression",

@@ -151,7 +151,7 @@ struct Model {
   std::vector<GltfMesh> meshes;
   std::vector<std::vector<PrimitiveSource>> sources;  ///< beside meshes[m].primitives
   std::vector<GltfNode> nodes;
-  std::vector<std::pair<std::size_t, Placement>> placements;  ///< of nodes that have one, in their order
+  std::vector<std::pair<std::size_t, Placement>> placements;  ///< nodes that have one, in their order
   std::vector<SkinSource> skins;
   std::vector<GltfAnimation> animations;
   std::vector<std::vector<TrackSource>> track_sources;  ///< beside animations[a].tracks

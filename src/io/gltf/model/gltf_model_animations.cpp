@@ -71,7 +71,7 @@ Parser::Driven Parser::pointed_to(const JsonView& target) {
 
 void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std::vector<TrackSource>& sources) {
   std::set<std::string> known;
-  std::map<std::size_t, std::vector<LoneWeight>> lone;  // of each node
+  std::map<std::size_t, std::vector<LoneWeight>> lone;  // channels of single weights of each node
   const std::optional<JsonView> channels = item.array("channels"), samplers = item.array("samplers");
   if (!channels || !samplers) return item.complain("an animation has channels and samplers");
   animation.channel_count = channels->size();

@@ -38,7 +38,7 @@ void reset_points(std::span<const float> base, IndexRange vertices, float* point
 
 /// Says which rows become unit normals.
 struct UnitLimits {
-  double smallest_square, largest_square;  ///< of n
+  double smallest_square, largest_square;  ///< limits of n . n
   double largest_error;                    ///< largest allowed error of n, relative to |n|
 };
 

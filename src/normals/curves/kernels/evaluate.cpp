@@ -312,7 +312,7 @@ void ByAccess(const BlockSpan& span, const CurveWeights& w, bool stream, std::si
 
 // Holds the elements of the last block if only `part` of them exist.
 struct Tail {
-  BlockSpan block;  // as if it were whole
+  BlockSpan block;  // the block as if it were whole
   std::size_t first, part;
 };
 

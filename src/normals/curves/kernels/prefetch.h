@@ -28,7 +28,7 @@ inline constexpr std::size_t kWorkingSets = 4;
 class PrefetchRule {
  public:
   static constexpr std::array<std::size_t, 5> kDistances = {2048, 0, 4096, 8192, 16384};  // bytes; 0: no prefetch
-  static constexpr std::size_t kTrials = 16;                                              // for each distance
+  static constexpr std::size_t kTrials = 16;                                              // trials of each distance
   static constexpr std::size_t kTrialBytes = std::size_t{128} << 10;                      // bytes of curves in a trial
   static constexpr std::size_t kCallsBetween = 1024;  // calls of next() without a trial before trials are repeated
 

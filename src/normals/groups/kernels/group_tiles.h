@@ -32,8 +32,8 @@ class GroupTiles {
   /// elements.count > 0; tiles must have ceil(elements.count / 16) elements
   void write(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
-  /// Writes tiles, and for each tile its sums in double before any correction, with bounds on their errors, for a closer
-  /// look. Elements with many faces are left out of these. bounded must have as many elements as tiles
+  /// Writes tiles, and for each tile its sums in double before any correction, with bounds on their errors, for a
+  /// closer look. Elements with many faces are left out of the sums. bounded must have as many elements as tiles
   void write(IndexRange elements, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const noexcept;
 
   /// Writes the tiles of a range of elements entirely in float32, in about half the time. `magnitude` bounds the error

@@ -228,7 +228,7 @@ HWY_INLINE Lanes3 PointsOf(const float* points, const EdgeBlock& block, std::siz
 // Holds the results of exact edges for kLanes faces of a block: see "thin" in recompute_tiles.h.
 struct FineNormals {
   Lanes3 n, unit;
-  Floats square;  // of n
+  Floats square;  // n . n
   hn::Mask<FloatTag> trusted;
 };
 
