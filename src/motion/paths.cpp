@@ -1,9 +1,9 @@
 // Draws cubics through keyframes, and cuts them into straight pieces.
 //
-// Let e and f be edges of a face over one piece, as chords, and let the cubics differ from them by s (1 - s) p and s (1
-// - s) q. p is linear, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, where the derivatives are by s: both
-// sides are cubics that vanish at s = 0 and 1, with the same second derivatives. So the normal of the curve differs
-// from the normal n of the chords by
+// Let e and f be edges of a face over one piece, as chords, and let the cubics differ from them by p and q times
+// s (1 - s). p is linear, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, where the derivatives are by s:
+// both sides are cubics that vanish at s = 0 and 1, with the same second derivatives. So the normal of the curve
+// differs from the normal n of the chords by
 //
 //     d = s (1 - s) (e x q + p x f) + s^2 (1 - s)^2 p x q                                                           (1)
 //

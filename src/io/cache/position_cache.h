@@ -62,7 +62,7 @@ struct CacheOptions {
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
 /// Calls each() with the coordinates of one keyframe after the other, as bytes of float32, to which the origin of the
-/// motion was added. Errors: from the stream and of each().
+/// motion was added. Errors: from the stream and from each().
 [[nodiscard]] Status each_keyframe(MotionStream& stream, std::endian order,
                                    const std::function<Status(std::string_view bytes)>& each);
 

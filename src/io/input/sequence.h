@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 
 /// Returns the files that the options stand for, for a folder all its meshes. Does not open them. `notes` gets a
-/// sentence if listed files were sorted. Errors: from find_input_files(), and of sort_as_sequence()
+/// sentence if listed files were sorted. Errors: from find_input_files(), and from sort_as_sequence()
 /// (io/input/numbering.h); kInvalidInput for a folder without meshes, or with files of two formats.
 [[nodiscard]] Result<std::vector<std::string>> find_frames(const InputOptions& options,
                                                            std::vector<std::string>* notes = nullptr);
