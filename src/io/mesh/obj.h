@@ -34,7 +34,7 @@ namespace chronormal::inline internal {
 
 /// Reads the mesh of an OBJ file; name is its name for messages.
 ///
-/// Errors: kInvalidInput with the place "NAME, line N": coordinates that are missing, no number, joined to something
+/// Errors: kInvalidInput with the place "NAME, line N": coordinates that are missing, not numbers, joined to something
 /// else, not finite or too large for float32 (too small becomes 0); the index 0 and indices without a vertex; a file
 /// without vertices or without faces. Messages count vertices, faces and corners from 0, and quote indices as the file
 /// has them. A file that was cut off inside its last number, or between two faces, is still an OBJ file: it is read as

@@ -41,8 +41,8 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 /// Errors: kInvalidInput with the place "NAME, line N" (header, ascii) or "NAME, byte N" (binary), followed by element
 /// and row if they are known ("cube.ply, byte 310, face 17"): a header that breaks the grammar or declares something
 /// twice; no vertices, no x, y, z, or no faces with vertex_indices; triangle strips; counts for which there are too few
-/// bytes (refused before memory is taken); data that end early; coordinates that are no number, not finite or too large
-/// for float32; indices without a vertex; in ascii, a row that ends inside a line, with numbers after it. Faces of
+/// bytes (refused before memory is taken); data that end early; coordinates that are not numbers, not finite or too
+/// large for float32; indices without a vertex; in ascii, a row that ends inside a line, with numbers after it. Faces of
 /// fewer than 3 corners are left out, with a note that counts them. In ascii, a row may go over several lines. A file
 /// cut off anywhere before its end is an error, with one exception: the last number of an ascii file may lose digits
 /// and still be a number.
@@ -51,8 +51,8 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 
 /// Reads a mesh with the velocities of vertices: vx, vy, vz or velocity_x, velocity_y, velocity_z, the first of these
 /// that the vertices have, of any scalar type. A file must have all three of them or none. Errors: errors of
-/// read_ply(); kInvalidInput if only some exist, if one is a list, and for velocities that are no number, not finite or
-/// too large for float32.
+/// read_ply(); kInvalidInput if only some exist, if one is a list, and for velocities that are not numbers, not finite
+/// or too large for float32.
 [[nodiscard]] Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name,
                                                 const Origin& origin = {});
 

@@ -8,8 +8,8 @@
 ///
 /// Indices stay: an unused accessor becomes one of a single zero, and a buffer view of unused accessors a view of one
 /// byte. So a buffer of nothing but unused arrays keeps its first four bytes.
-/// An extension may refer to accessors and views in places that only its author knows. So files with an extension that
-/// is not known to do without keep all their bytes.
+/// An extension may refer to accessors and views in places that only its author knows. So a file keeps all its bytes
+/// unless all of its extensions are known to refer to none.
 #ifndef CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 #define CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 
