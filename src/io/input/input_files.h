@@ -22,13 +22,12 @@ struct ReadMotion {
   std::optional<MotionStream> stream = {};  ///< stream of the motion, or instead of it if keyframes are still in files
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
-  std::string shaded_by;  ///< as Input has it
-  std::vector<std::string> other_files =
-      {};                                 ///< of a sequence: that tell, where its first file has no more digits than
-                                          ///< float32, whether others have
-  std::uint64_t bytes_read = 0;           ///< size of all files
-  std::vector<std::string> notes = {};    ///< as Input has them
-  std::optional<FileSeries> series = {};  ///< as Input has it
+  std::string shaded_by;                      ///< as Input has it
+  std::vector<std::string> other_files = {};  ///< files of a sequence that are examined for more digits than float32 if
+                                              ///< its first file has none
+  std::uint64_t bytes_read = 0;               ///< size of all files
+  std::vector<std::string> notes = {};        ///< as Input has them
+  std::optional<FileSeries> series = {};      ///< as Input has it
 };
 
 /// Returns the files of a folder that count, in any order.

@@ -88,7 +88,7 @@ class BlendTerms {
   /// Returns the memory that is kept, in bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;
   /// Return the most memory that a call takes for a while, results included: linear() and pair() over so many faces and
-  /// corners; base_term(); and pair_elements() of so many pairs of a target and a face that it moves.
+  /// corners; base_term(); and pair_elements() with so many pairs in the results.
   [[nodiscard]] std::size_t term_bytes(std::size_t faces, std::size_t corners) const noexcept;
   [[nodiscard]] std::size_t base_bytes() const noexcept;
   [[nodiscard]] std::size_t counting_bytes(std::size_t pairs) const noexcept;

@@ -254,7 +254,7 @@ Vec3d ExactCurve::normal_at(const LocalTime& t) const noexcept {
 
 UnitNormal ExactCurve::unit_normal_at(const LocalTime& t) const noexcept {
   if (t.is_double()) return unit_normal_at_double(t.t);
-  // This goes as below for a t inside the segment.
+  // Such a t is inside the segment. The cases are the ones of unit_normal_at_double().
   const TimeFraction fraction = TimeFraction::of(t);
   auto c = in_powers();
   if (const Vec3d n = value_at(c, fraction).vector; n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
