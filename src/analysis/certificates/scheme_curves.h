@@ -10,7 +10,7 @@
 ///     slerp of slerp, each         40 e, or 20 e (1 + 1 / sin T) beyond a right angle
 ///     scaling to length 1          2 e, an angle
 ///
-/// Threads  pure: no allocation, no throw, unless a class says so.
+/// Threads    pure: no allocation, no throw, unless a class says so.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFICATES_SCHEME_CURVES_H_
 #define CHRONORMAL_ANALYSIS_CERTIFICATES_SCHEME_CURVES_H_
 

@@ -170,7 +170,7 @@ class SturmChain {
   int last_ = 0;
 };
 
-// These number the doubles 0 and [2^-200, 1] in ascending order.
+// The numbering covers the doubles 0 and [2^-200, 1] in ascending order.
 inline constexpr std::uint64_t kBelowFirstDouble = (std::uint64_t{1023 - 200} << 52) - 1;
 inline constexpr std::uint64_t kLastDouble = (std::uint64_t{1023} << 52) - kBelowFirstDouble;
 [[nodiscard]] inline double numbered_double(std::uint64_t number) noexcept {

@@ -1,10 +1,10 @@
 // Bakes a glTF file. A mesh goes through these steps, each a function of the results of the steps before it:
 //
-//     read_gltf_shading     what its vertices show, and the faces whose normals that should be      shading/
-//     plan_mesh             how it is encoded, and for exact which pairs the animations need         plan
+//     read_gltf_shading     the vertices, and the faces that determine their true normals             shading/
+//     plan_mesh             the encoding and, for exact, the pairs that the animations need           plan
 //     *_target_deltas       the terms of n(w) as arrays for each target                              terms, deltas
-//     choose_candidate      of other encodings: what is best as a whole in the viewers               chooser
-//     MeshWriter            the arrays and all that counts targets, as edits of the file             write_mesh
+//     choose_candidate      for other encodings: the best candidate in the viewers                    chooser
+//     MeshWriter            the arrays, and everything that counts targets, as edits of the file      write_mesh
 //
 // The tracks of animations may drive several meshes, so that they are extended once all meshes are done.
 #include "chronormal/workflow/bake.h"

@@ -11,7 +11,7 @@
 ///
 /// It is the median because it does not ask about the normals that an author bent by hand, as long as most are as they
 /// were computed. Normals in 8 bits, and quads that were cut into triangles afterwards, leave it well within the two
-/// thirds where weightings differ by more than a degree; where none comes close, all are about as far off.
+/// thirds where weightings differ by more than a degree; if none comes close, all have about the same distance.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
 #define CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
 

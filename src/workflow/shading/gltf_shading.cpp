@@ -25,7 +25,7 @@ std::string mesh_place(const GltfDocument& document, std::size_t mesh) {
   return (document.name() + ", /meshes/").append(std::to_string(mesh));
 }
 
-// Appends `count` vertices of `width` numbers each to those of earlier primitives; zeros if `values` is empty.
+// Appends `count` vertices of `width` numbers each to the vertices of earlier primitives; zeros if `values` is empty.
 void append(std::vector<float> values, std::size_t first_vertex, std::size_t count, std::size_t width,
             std::vector<float>& all) {
   if (values.empty()) {

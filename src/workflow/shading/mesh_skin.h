@@ -6,7 +6,7 @@
 /// surface. No target can correct this. So the error is measured between normals that L has transformed, and the error
 /// of L itself is reported apart.
 ///
-/// Copies   share the data of the file; each has its own pose.
+/// Copies     share the data of the file; each has its own pose.
 /// Threads    const functions may run at once.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
 #define CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_

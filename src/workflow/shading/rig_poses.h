@@ -29,7 +29,7 @@ namespace chronormal::inline internal {
 
 class RigPoses {
  public:
-  /// targets lists those of the target_count targets that may be active. names has target_count names, or is empty.
+  /// targets lists the targets that may be active, out of target_count. names has target_count names, or is empty.
   /// given holds poses of target_count weights each.
   RigPoses(std::span<const std::string> names, std::vector<std::size_t> targets, std::size_t target_count,
            PoseList given);

@@ -10,7 +10,7 @@
 /// up either the faces whose corners show its normal, or all faces around the point: some tools give the corners of
 /// flat faces their own normal, but still count these faces for the other corners.
 ///
-/// Which sums are right is found out by holding them against what the file stores (author_rule.h).
+/// The sums are chosen by comparing them with the normals that the file stores (author_rule.h).
 ///
 /// Shapes     elements are those of GltfShading; positions are those of all its vertices
 /// Threads    const functions may run at once
@@ -77,7 +77,7 @@ class Polygons {
   void take_apart(std::size_t polygon);
 
   const Topology* triangles_;
-  // These are empty until something is joined.
+  // All four are empty until something is joined.
   std::vector<std::uint32_t> first_, count_;  // of each triangle: its polygon; of a polygon: its triangles
   std::vector<std::uint32_t> loop_of_;        // where a larger polygon's corners are in loops_, by its first triangle
   std::vector<std::uint32_t> loops_;          // a larger polygon has two corners more than triangles

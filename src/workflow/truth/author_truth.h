@@ -59,7 +59,7 @@ class AuthorTruth {
   /// Finds what the author would see. The shading must outlive this, and keep its deltas of normals; its groups need
   /// their corners only until this returns. any_split is the result of split_by_keys().
   explicit AuthorTruth(const GltfShading& shading, bool any_split = false);
-  /// Uses sums of triangles by a weighting, and no stored normals except those of the base.
+  /// Uses sums of triangles by a weighting, and no stored normals except in the base.
   AuthorTruth(const GltfShading& shading, Weighting weighting);
 
   [[nodiscard]] const AuthorRule& rule() const noexcept { return rule_; }

@@ -1,6 +1,6 @@
 /// The normals of the author that a file stores, of the base and of each target at weight 1. Private to workflow.
 ///
-/// A bake spreads the normals of a target over the target's own deltas and those of correction targets that follow its
+/// A bake spreads the normals of a target over its own deltas and the deltas of correction targets that follow its
 /// weight. If its mark says that the sums are still the author's normals, they are added up again here.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_

@@ -1,7 +1,7 @@
 /// The weights that a viewer plays from a track of a file, which may differ from those that glTF specifies. Private to
 /// workflow.
 ///
-/// Nothing is sampled in advance: a resampled track computes the two samples around the time that is asked for.
+/// A track is not sampled in advance: a resampled track computes the two samples around the time that is asked for.
 #ifndef CHRONORMAL_WORKFLOW_VIEWERS_PLAYED_TRACK_H_
 #define CHRONORMAL_WORKFLOW_VIEWERS_PLAYED_TRACK_H_
 

@@ -27,7 +27,7 @@ namespace {
 // Triangles lie in groups of eight, as many as there are doubles in the widest vector: value k of triangle i of a group
 // is at k * kGroup + i.
 constexpr std::size_t kGroup = 8, kValues = 20;
-// The same constant as in reference_normals.cpp.
+// Equals the constant kDoubtfulShare in reference_normals.cpp.
 constexpr double kZeroShare = 1e-10;
 
 }  // namespace

@@ -34,7 +34,7 @@ class NormalTerms {
   /// Return A_i and C_ij, without their rounding noise.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
-  /// The same terms, to be looked up element by element.
+  /// Return terms whose values are looked up element by element.
   class Term;
   [[nodiscard]] Term linear_by_element(std::size_t i) const;
   [[nodiscard]] Term pair_by_element(std::size_t i, std::size_t j) const;

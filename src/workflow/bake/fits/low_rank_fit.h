@@ -1,7 +1,7 @@
 /// Fits correction targets of low rank: by singular vectors of what is missing, and by least squares of angles for each
 /// point. Private to workflow.
 ///
-/// Shapes   points, rows and stride are those of MissingNormals; extras = columns, in rows of `padded()` floats, of
+/// Shapes     points, rows and stride as in MissingNormals; extras = columns, in rows of `padded()` floats, of
 ///            which those beyond extras() are zero.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_

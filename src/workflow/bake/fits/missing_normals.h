@@ -1,7 +1,7 @@
 /// The errors of the deltas of a mesh's own targets at the instants of its file: the matrix that correction targets of
 /// low rank approximate (docs/theory.md, section 17). Private to workflow.
 ///
-/// Points   vertices that show the same normal: of one element, with the same stored base normal.
+/// Points     vertices that show the same normal: of one element, with the same stored base normal.
 /// Shapes     (points, 3, stride) floats, of which the first rows() of each run of `stride` count and the rest is zero.
 /// Units      lengths of the stored base normal.
 /// Threads    on all cores; the same bits on any number of them.

@@ -31,8 +31,8 @@ inline constexpr std::size_t kMostTerms = 160;
 
 class QuadraticFit {
  public:
-  /// own has the deltas of the mesh's own targets; only those of `vertices` are fitted that have errors with them.
-  /// rights must outlive this. Cost: the right normals in 400 poses, and all terms of n(w).
+  /// own has the deltas of the mesh's own targets; only `vertices` that have errors with them are fitted. rights must
+  /// outlive this. Cost: the right normals in 400 poses, and all terms of n(w).
   QuadraticFit(const DeltaSource& source, const RightNormals& rights, std::span<const std::uint32_t> vertices,
                const std::vector<VertexVectors>& own, const RigPoses& rig,
                std::span<const std::vector<double>> standing, std::size_t most_extras, double tolerance);

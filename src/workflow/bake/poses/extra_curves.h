@@ -96,7 +96,7 @@ struct ExtraDrivers {
   /// Returns the same pose followed by the weights of correction targets, by formulas and sums.
   [[nodiscard]] std::vector<double> with_extras(std::vector<double> own) const;
   /// Returns the poses that stand still, followed by the weights of correction targets. By curves, these weights are
-  /// zero in the expressions of an avatar, which are the poses after those of `rest`.
+  /// zero in the expressions of an avatar, which come after the poses of `rest`.
   [[nodiscard]] PoseList standing(const PoseList& poses) const;
   /// Returns a track with the weights of correction targets. Cubic splines get keys for formulas until no normal has a
   /// larger error than tolerance (radians) or spline_tolerance. If that takes more than most_keys, the result has no

@@ -1,7 +1,7 @@
 /// The skins by which the nodes of a file deform one mesh, as far as they matter to the choice of a bake. Private to
 /// workflow.
 ///
-/// Where a blended matrix turns and scales evenly, errors are the same on both sides of it. So a skin that does no more
+/// If a blended matrix turns and scales evenly, errors are the same on both sides of it. So a skin that does no more
 /// than that to any vertex in question is left out, and changes neither results nor choices.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_

@@ -43,7 +43,7 @@ struct PlayedPose {
 /// same as the one before: for each telling key, the key itself and instants up to the next one. If these are more than
 /// `most`, it takes fewer instants of each key, and then fewer keys. Each track gets a share by the number of its
 /// telling keys, and at least one pose. With each skin of its nodes, which must outlive the poses, a track is judged at
-/// its keys, those of the joints and instants between; only if these are more than `most`, at some of them and as
+/// its keys, at keys of the joints and at instants between; if these are more than `most`, at some of them, chosen as
 /// above.
 [[nodiscard]] std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Viewer& viewer, std::size_t most);
 

@@ -4,7 +4,7 @@
 /// core. Faces between two blocks are computed twice. If that would be too many, because faces and elements are in no
 /// common order, all areas are computed first.
 ///
-/// Threads  each function uses all cores (core/parallel.h); the same bits on any number of threads.
+/// Threads    each function uses all cores (core/parallel.h); the same bits on any number of threads.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_AREA_SUMS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_AREA_SUMS_H_
 

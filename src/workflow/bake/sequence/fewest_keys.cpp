@@ -49,14 +49,14 @@ std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment
   return result;
 }
 
-// Holds the keyframes that determine the directions at two instants and everything between: those of the segments that
-// the instants lie in or begin, and of the one before the first.
+// Holds the keyframes that determine the directions at two instants and everything between: the keyframes of the
+// segments that the instants lie in or begin, and of the segment before the first.
 Status hold_between(const SequenceNormals& normals, const Instant& from, const Instant& to) {
   return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
 }
 
-// Judges lines between two instants. Times are those of the sequence: keyframe k is k. If a keyframe cannot be read,
-// status() says so, and no answer is valid.
+// Judges lines between two instants. Times count keyframes: keyframe k is at k. If a keyframe cannot be read, status()
+// says so, and no answer is valid.
 class LineJudge {
  public:
   LineJudge(const Motion& motion, const SequenceNormals& normals, double tolerance)

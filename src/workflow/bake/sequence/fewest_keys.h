@@ -8,7 +8,7 @@
 /// the normal is known. Keyframes that add nothing, as in motions sampled by another program, are left out. If any part
 /// of a valid line is also valid, no choice has fewer keys.
 ///
-/// Times   of a sequence: keyframe k is k, and instants between are in steps of 1 / kKeySteps.
+/// Times      of a sequence: keyframe k is k, and instants between are in steps of 1 / kKeySteps.
 /// Threads    on all cores; the same keys on any number of them
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_FEWEST_KEYS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_FEWEST_KEYS_H_
@@ -38,7 +38,7 @@ struct SequenceKeys {
 };
 
 /// Chooses keys. tolerance is in radians, and above 0. progress gets the segment reached. Reads all keyframes three
-/// times, and holds those between two keys, with a few around them; key_pose() holds three. Errors of both: those of
+/// times, and holds those between two keys, with a few around them; key_pose() holds three. Errors of both: from
 /// reading keyframes.
 [[nodiscard]] Result<SequenceKeys> fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
                                                const std::function<void(std::size_t segment)>& progress);

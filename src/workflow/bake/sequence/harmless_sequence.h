@@ -26,11 +26,11 @@ struct HarmlessElements {
   std::vector<SequenceElement> elements;
   std::size_t without_room = 0;
 };
-/// Examines all segments. Errors: those of reading keyframes.
+/// Examines all segments. Errors: from reading keyframes.
 [[nodiscard]] Result<HarmlessElements> harmless_elements(const SequenceNormals& normals);
 
-/// The directions of all elements at both keys of a segment. An element without a direction at a key takes that of the
-/// key before.
+/// The directions of all elements at both keys of a segment. An element without a direction at a key takes the
+/// direction of the key before.
 struct SegmentEnds {
   std::vector<Vec3d> from, to;
 };
@@ -41,7 +41,8 @@ struct SegmentEnds {
 [[nodiscard]] std::vector<Vec3d> unit_key_deltas(std::span<const SequenceElement> elements,
                                                  std::span<const Vec3d> directions);
 
-/// What a segment adds if that reduces errors; and the angles, in radians, between rendered and right normals.
+/// The deltas that a segment adds if they reduce errors; and the angles, in radians, between rendered and right
+/// normals.
 struct UnitBends {
   std::vector<Vec3d> deltas;       ///< empty if no element gains
   double gain = 0;                 ///< the sum over all elements of the reduction of their worst angle

@@ -9,8 +9,8 @@
 //     fewest_keys                     the instants that need keys                                   fewest_keys
 //     SequenceFile                    the arrays, the weights that drive them, and the mark, as a GLB   sequence_file
 //
-// These are passes over the keyframes. A pass holds two keyframes at a time or, to choose keys, those between two keys.
-// The arrays go to a spool. So memory does not grow with the number of keyframes; only fits of a weighting do.
+// The steps are passes over the keyframes. A pass holds two keyframes at a time or, to choose keys, those between two
+// keys. The arrays go to a spool. So memory does not grow with the number of keyframes; only fits of a weighting do.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -24,10 +24,10 @@ struct SequenceElement {
   bool has_none = true;     ///< it has no area in the whole sequence
 };
 
-/// Examines all segments, whose deltas must have been checked. Errors: those of reading keyframes.
+/// Examines all segments, whose deltas must have been checked. Errors: from reading keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> sequence_elements(const SequenceNormals& normals);
 /// Examines the first segment alone; for almost every sequence the result is the same. Errors: kInvalidInput if a delta
-/// is too large for float32; those of reading keyframes.
+/// is too large for float32; errors from reading keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> elements_of_start(const SequenceNormals& normals);
 
 /// The targets of one segment for the encoding exact, as float32 vectors one after the other.
@@ -41,14 +41,14 @@ struct ExactSegment {
 
 /// Calls body(segment, values) for every segment, one after the other, until it returns an error. Holds the keys of one
 /// segment at a time. If the elements are not final, this returns false as soon as a segment shows that
-/// sequence_elements() would return others. Errors: kInvalidInput if a delta is too large for float32; those of body,
+/// sequence_elements() would return others. Errors: kInvalidInput if a delta is too large for float32; errors of body,
 /// and of the stream.
 [[nodiscard]] Result<bool> each_exact_segment(
     const SequenceNormals& normals, std::span<const SequenceElement> elements, bool are_final,
     const std::function<Status(std::size_t segment, const ExactSegment& values)>& body);
 
-/// What a key adds to N for the encoding endpoint, so that errors in the segment before it are smallest; and the
-/// largest remaining angle in that segment, in radians. `before` are the deltas of the key before. `bounds`, of the
+/// The deltas that a key adds to N for the encoding endpoint, so that errors in the segment before it are smallest; and
+/// the largest remaining angle in that segment, in radians. `before` are the deltas of the key before. `bounds`, of the
 /// fits, are added to the angles, and may be empty.
 struct EndDeltas {
   std::vector<Vec3d> deltas;

@@ -50,11 +50,11 @@ struct SequenceVertices {
   bool are_elements = false;   ///< vertex i shows the normal of element i, and there are no other elements
 
   [[nodiscard]] std::size_t size() const noexcept { return vertex.size(); }
-  /// Returns the position of each vertex of the file, from those of the motion, (V, 3): the given array, or a new one
-  /// in `room`.
+  /// Returns the position of each vertex of the file, from the positions of the motion, (V, 3): the given array, or a
+  /// new one in `room`.
   [[nodiscard]] std::span<const float> positions(std::span<const float> of_motion, std::vector<float>& room) const;
-  /// Returns the vector of each vertex of the file, from those of elements, (E, 3), and `none` for vertices without a
-  /// face: the given array, or a new one in `room`.
+  /// Returns the vector of each vertex of the file, from the vectors of elements, (E, 3), and `none` for vertices
+  /// without a face: the given array, or a new one in `room`.
   [[nodiscard]] std::span<const float> vectors(std::span<const float> of_elements, const Vec3f& none,
                                                std::vector<float>& room) const;
 };
@@ -72,7 +72,7 @@ struct SequenceTrack {
 class SequenceFile {
  public:
   /// Writes key 0, whose positions are `base`, with the normals of the elements, and polygons as fans of triangles
-  /// (their normals stay those of the polygons). The topology must outlive this.
+  /// (which keep the normals of the polygons). The topology must outlive this.
   SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
                std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool);
 
@@ -85,7 +85,7 @@ class SequenceFile {
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
 
   /// Adds a target for a key, with the deltas of its positions from key 0 as SequenceNormals returns them; none for key
-  /// 0 itself. normals are those of elements, (E, 3) in float32.
+  /// 0 itself. normals has one float32 vector for each element, (E, 3).
   void add_key(std::size_t key, std::span<const float> positions, std::span<const float> normals);
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
   /// Adds a target for the bend of a segment; there may be several. Bends come after all other targets, whenever they
@@ -94,10 +94,10 @@ class SequenceFile {
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
 
   /// Checks the size of the file. Errors: kInvalidInput if the file has too many bytes, or would have with `more`;
-  /// those of the spool.
+  /// errors of the spool.
   [[nodiscard]] Status check(std::uint64_t more = 0) const;
   /// Adds the animation, puts the file together and passes its bytes to `take`. Returns their number. targets must
-  /// describe what was added. Errors: those of GlbBuilder::finish().
+  /// describe what was added. Errors: see GlbBuilder::finish()
   [[nodiscard]] Result<std::size_t> finish(const SequenceTargets& targets, const std::vector<float>& times,
                                            const GlbBuilder::Take& take);
 

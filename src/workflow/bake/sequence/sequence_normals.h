@@ -27,16 +27,16 @@ class SequenceNormals {
   /// Reads key 0 and, if the weighting is not area, all keyframes to fit all segments. If `stored` has the normals of
   /// the corners at key 0, (corners, 3), their rotation from the geometry's normals there is applied at every instant.
   /// Stream and groups must outlive this. Errors: kUsage if the fits of two neighbouring segments do not agree at their
-  /// key, which a hat cannot represent; those of check_deltas(), if there are fits, and of the stream. Memory: for key
+  /// key, which a hat cannot represent; errors of check_deltas(), if there are fits, and of the stream. Memory: for key
   /// 0, and for the fits.
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting, VectorView<const float> stored = {});
 
   /// Holds the positions of keys first to last, until the next hold. The functions below need the keys and segments
-  /// that they are called for to be held. Errors: those of the stream.
+  /// that they are called for to be held. Errors: from the stream.
   [[nodiscard]] Status hold(std::size_t first, std::size_t last) const { return stream_->hold(first, last); }
 
-  /// Reads and checks the first `keys` keyframes. Errors: kInvalidInput if a delta is too large for float32; those of
+  /// Reads and checks the first `keys` keyframes. Errors: kInvalidInput if a delta is too large for float32; errors of
   /// the stream.
   [[nodiscard]] Status check_deltas(std::size_t keys) const;
   /// Checks one key in the same way, from its deltas.
@@ -49,7 +49,7 @@ class SequenceNormals {
   /// Writes them into existing memory.
   void deltas(std::size_t key, std::vector<float>& result) const;
 
-  /// Tells whether stored normals differ from those of the geometry.
+  /// Tells whether stored normals differ from the normals of the geometry.
   [[nodiscard]] bool has_offsets() const noexcept { return !turns_.empty(); }
 
   /// Return n of every element at a key, and d of every element in a segment. O(corners), on all cores; or a copy.
@@ -115,7 +115,7 @@ struct SegmentForm {
 };
 
 /// Calls body(segment, form) for the first `segments` segments, one after the other, until it returns an error. Holds
-/// the keys of one segment at a time. Errors: those of body, and of the stream.
+/// the keys of one segment at a time. Errors: from body, and from the stream.
 template <class Body>
 [[nodiscard]] Status each_segment(const SequenceNormals& normals, std::size_t segments, const Body& body) {
   SegmentForm form;

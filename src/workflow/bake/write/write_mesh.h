@@ -41,8 +41,8 @@ class MeshWriter {
   /// Tells whether the vertices of a primitive show normals of elements.
   [[nodiscard]] bool is_shaded(std::size_t primitive) const { return part_[primitive].has_value(); }
 
-  /// Replaces the base normals of some parts; normals are those of all parts, (V, 3). Errors: kInvalidInput if Draco
-  /// compresses them.
+  /// Replaces the base normals of some parts; normals has all parts, (V, 3). Errors: kInvalidInput if Draco compresses
+  /// them.
   [[nodiscard]] Status write_base(const std::vector<bool>& is_replaced, std::span<const float> normals);
   /// Gives all targets tangents, in primitives that have some.
   void add_tangents();
