@@ -38,12 +38,12 @@ class Expansion;  // how much a file may make us hold or write
 }
 
 // What a bake leaves in a glTF file about itself: how normals are encoded, and what drives the targets that it added
-// (docs/extras.md).
+// (docs/formats.md).
 //
 // Threads    values
 
 /// A target that a bake added. It moves no vertex, and its weight follows from those of the mesh's own targets
-/// (docs/extras.md):
+/// (docs/formats.md):
 ///
 ///     weight = sum of a w_i + sum of q w_i w_j
 struct GltfExtraTarget {
@@ -88,7 +88,7 @@ inline constexpr std::array<BakeEncodingName, 5> kBakeEncodings = {{{BakeEncodin
 /// Nothing where no encoding has that name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;
 
-/// What a bake leaves in extras.chronormal of a mesh (docs/extras.md), for instance
+/// What a bake leaves in extras.chronormal of a mesh (docs/formats.md), for instance
 ///     {"version": 2, "encode": "exact", "sequence": false,
 ///      "extras": [{"target": 2, "linear": [], "quadratic": [[0, 1, 1.0]]}]}
 struct GltfBakeMark {

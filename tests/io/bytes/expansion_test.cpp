@@ -12,6 +12,7 @@
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/bake.h"
 #include "io/cache/npz.h"
+#include "io/input/write_motion.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/gltf_compressed.h"
