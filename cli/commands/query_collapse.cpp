@@ -6,7 +6,8 @@ namespace chronormal::cli {
 
 Question collapse_question() {
   return {"collapse", "when faces collapse, and which turn over: decided exactly", {}, [] {
-            return Result<Ask>(query_collapse);
+            return Result<Ask>([](const Motion& motion, const QuerySpan& span, const QueryProgress& progress,
+                                  const ElementOptions&) { return query_collapse(motion, span, progress); });
           }};
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "chronormal/io/gltf_document.h"
 #include "chronormal/io/output.h"
 #include "cli/commands/query_question.h"
 #include "cli/options/command.h"
@@ -26,6 +27,7 @@ struct QueryArguments {
   CommonOptions common;
   std::string question;
   QuerySpan span;
+  ElementArguments elements{"faces"};
   bool json = false;
   std::vector<Question> questions = {cones_question(), facing_question(), contain_question(), collapse_question(),
                                      shutter_question()};
@@ -65,11 +67,36 @@ Result<Question> find_question(const QueryArguments& options) {
   return *found;
 }
 
+// Says of a mesh behind a skin that answers are about the mesh before it: joints move vertices on curves that no straight
+// segment follows. Errors: kUsage where the places in the world were asked for.
+Status check_skins(const Input& input, const InputOptions& options) {
+  if (input.document() == nullptr) return Success{};
+  for (const GltfNode& node : input.document()->nodes()) {
+    if (!node.has_skin || !node.mesh) continue;
+    if (options.world)
+      return misuse("--world",
+                    formatted("mesh {} is placed by a skin, which query does not follow: leave out --world to "
+                              "ask about the mesh before it is skinned",
+                              *node.mesh));
+    say("query",
+        formatted("mesh {} is placed by a skin, which query does not follow: the answer is about the mesh before it is "
+                  "skinned",
+                  *node.mesh),
+        Tone::kWarning);
+    return Success{};
+  }
+  return Success{};
+}
+
 Result<int> run(const QueryArguments& options) {
   const Result<Question> question = find_question(options);
   if (!question) return question.error();
   const Result<Ask> ask = question.value().understand();
   if (!ask) return ask.error();
+  const Result<ElementOptions> elements = options.elements.options();
+  if (!elements) return elements.error();
+  if (options.elements.asked && !question.value().takes_elements)
+    return misuse("--elements", formatted("query {} is about faces", question.value().name));
   const std::string& output = options.common.output;
   const bool is_file = !options.json && output != "-";
   if (const Status status =
@@ -86,6 +113,7 @@ Result<int> run(const QueryArguments& options) {
   Progress progress(options.common.quiet);
   Result<Input> input = open_input("query", options.input, progress);
   if (!input) return input.error();
+  if (const Status skins = check_skins(input.value(), options.input); !skins) return skins.error();
   const Result<const Motion*> motion = input.value().motion();
   if (!motion) return motion.error();
   QuerySpan span = options.span;
@@ -96,7 +124,8 @@ Result<int> run(const QueryArguments& options) {
     if (error.code == ErrorCode::kInvalidInput) error.place = name + ", " + error.place;
     return error;
   };
-  const Result<QueryAnswer> answer = ask.value()(*motion.value(), span, progress.callback(question.value().name));
+  const Result<QueryAnswer> answer =
+      ask.value()(*motion.value(), span, progress.callback(question.value().name), elements.value());
   progress.clear();
   if (!answer) return named(answer.error());
   const std::uint64_t bytes = options.json ? json_bytes_of_query(answer.value()) : bytes_of_query(answer.value());
@@ -117,11 +146,12 @@ std::string footer(const std::vector<Question>& questions) {
   for (const Question& question : questions) text += formatted("  {:<12}{}\n", question.name, question.summary);
   return text +
          "\nThe answer is a table for people, with --json one JSON object, and in OUT.npz arrays: a row for each\n"
-         "interval or face, with its segment. Times t are fractions of a segment. docs/uses.md says what is "
+         "interval, face or vertex, with its segment. Times t are fractions of a segment. docs/uses.md says what is "
          "guaranteed.\n"
          "\nExamples:\n"
          "  chronormal query collapse face.glb\n"
          "  chronormal query facing walk/ --eye 4,-5,2,5,-4,1 --silhouettes -o sides.npz\n"
+         "  chronormal query shutter walk/ --elements vertices --from 1 --to 1.02 -o means.npz\n"
          "  chronormal query collapse walk/ --from 1 --to 2.5 --json\n"
          "  chronormal query collapse body.obj walk.pc2 -o collapses.npz\n"
          "  chronormal query contain balloon.glb --points dust.npy -o crossings.npz\n"
@@ -140,6 +170,10 @@ Command query_command() {
       option.help = question.name + ": " + option.help;
       own.push_back(std::move(option));
     }
+  for (Option& option : options->elements.table()) {
+    option.help = "facing, shutter: " + option.help;
+    own.push_back(std::move(option));
+  }
   own.push_back({"--from T", &options->span.from,
                  "ask about what is at or after this time of the motion (of targets, this weight)"});
   own.push_back({"--to T", &options->span.to, "ask about what is at or before this time"});

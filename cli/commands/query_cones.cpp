@@ -13,9 +13,9 @@ Question cones_question() {
           {{"--meshlets N", meshlets.get(),
             "also build meshlets of up to N triangles, with bounds as meshoptimizer has them"}},
           [meshlets] {
-            return Result<Ask>([meshlets](const Motion& motion, const QuerySpan& span, const QueryProgress& progress) {
-              return query_cones(motion, *meshlets, span, progress);
-            });
+            return Result<Ask>(
+                [meshlets](const Motion& motion, const QuerySpan& span, const QueryProgress& progress,
+                           const ElementOptions&) { return query_cones(motion, *meshlets, span, progress); });
           }};
 }
 

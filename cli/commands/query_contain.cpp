@@ -19,7 +19,7 @@ Question contain_question() {
             Result<PointPaths> points = read_points_file(*file);
             if (!points) return points.error();
             return Ask([points = std::move(points).value()](const Motion& motion, const QuerySpan& span,
-                                                            const QueryProgress& progress) {
+                                                            const QueryProgress& progress, const ElementOptions&) {
               return query_contain(motion, points, span, progress);
             });
           }};

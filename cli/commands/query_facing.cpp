@@ -53,7 +53,7 @@ Result<View> view_of(const FacingOptions& options) {
 Question facing_question() {
   auto options = std::make_shared<FacingOptions>();
   return {"facing",
-          "when faces show their front to a viewer; silhouette edges over time",
+          "when faces, or normals of vertices, show their front to a viewer; silhouette edges",
           {{"--direction X,Y,Z", &options->direction, "the viewer is infinitely far away in this direction"},
            {"--eye X,Y,Z", &options->eye,
             "the viewer is here; X,Y,Z,X,Y,Z: and moves straight to the second place, from the\n"
@@ -63,10 +63,12 @@ Question facing_question() {
             const Result<View> view = view_of(*options);
             if (!view) return view.error();
             return Ask([view = view.value(), with = options->silhouettes](const Motion& motion, const QuerySpan& span,
-                                                                          const QueryProgress& progress) {
-              return query_facing(motion, view, with, span, progress);
+                                                                          const QueryProgress& progress,
+                                                                          const ElementOptions& elements) {
+              return query_facing(motion, view, with, span, progress, elements);
             });
-          }};
+          },
+          true};
 }
 
 }  // namespace chronormal::cli

@@ -12,14 +12,16 @@
 
 namespace chronormal::cli {
 
-/// Asks a motion.
-using Ask = std::function<Result<QueryAnswer>(const Motion&, const QuerySpan&, const QueryProgress&)>;
+/// Asks a motion, of the elements where the question takes any.
+using Ask =
+    std::function<Result<QueryAnswer>(const Motion&, const QuerySpan&, const QueryProgress&, const ElementOptions&)>;
 
 struct Question {
   std::string name, summary;
   std::vector<Option> options;  ///< that only this question has
   /// Reads what the options say, before any input is read. Errors: kUsage with an option as the place.
   std::function<Result<Ask>()> understand;
+  bool takes_elements = false;  ///< or is about faces alone
 };
 
 [[nodiscard]] Question collapse_question();

@@ -5,9 +5,11 @@
 namespace chronormal::cli {
 
 Question shutter_question() {
-  return {"shutter", "mean normals while a shutter is open, and how far lerp of the ends is off", {}, [] {
-            return Result<Ask>(query_shutter);
-          }};
+  return {"shutter",
+          "mean normals while a shutter is open, and how far lerp of the ends is off",
+          {},
+          [] { return Result<Ask>(query_shutter); },
+          true};
 }
 
 }  // namespace chronormal::cli

@@ -112,6 +112,8 @@ TEST_F(Stability, no_key_of_json_vanishes) {
                                       "query cones a.obj b.obj --meshlets 8",
                                       "query shutter a.obj b.obj a.obj",
                                       "report face.glb -o face.bin"}) {
+                                      "query shutter a.obj b.obj --elements vertices",
+                                      "query facing a.obj b.obj --eye 1,2,3 --elements corners",
     const ProcessResult result = run(arguments + " --json");
     const Json json = Json::parse(result.out, nullptr, false);
     ASSERT_FALSE(json.is_discarded()) << arguments << '\n' << result.err;

@@ -62,6 +62,11 @@ void normal_cones(std::span<const ControlNormals> normals, double t0, double t1,
 void face_normal_cones(const Segment& segment, IndexRange faces, double t0, double t1,
                        std::span<NormalCone> result) noexcept;
 
+/// Returns the cone of the normal of a vertex or corner, which is the sum of these faces (NormalGroups::faces()), always
+/// from integers: some microseconds for each face. The same conditions.
+[[nodiscard]] NormalCone normal_cone_of_faces(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
+                                              double t1) noexcept;
+
 /// Returns a cone that contains all of these: that of a cluster from its faces, of a node from its children, of a face
 /// from several segments. Empty ones do not count; the cone of none is empty. It is near the smallest one (a few
 /// percent wider), and each level of a hierarchy adds about 1e-7 rad of rounding. Cost: 11 passes over the cones.
@@ -139,6 +144,11 @@ struct ShutterNormal {
 /// from integers. result must have faces.count elements; faces must lie inside the topology; 0 <= t0 <= t1 <= 1
 void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, double t1,
                           std::span<ShutterNormal> result) noexcept;
+
+/// Returns the means of a vertex or corner, whose normal is the sum of these faces (NormalGroups::faces()), always from
+/// integers: some microseconds for each face. The same conditions.
+[[nodiscard]] ShutterNormal shutter_normal_of_faces(const Segment& segment, std::span<const std::uint32_t> faces,
+                                                    double t0, double t1) noexcept;
 
 }  // namespace chronormal
 

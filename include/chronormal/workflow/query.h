@@ -26,6 +26,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/normals/normal_groups.h"
 
 namespace chronormal {
 
@@ -102,10 +103,13 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///     ""           segment, face, from, from_upper, to_lower, to: the face shows its front at every t in (from_upper,
 ///                  to_lower), and at none outside of [from, to]; cut off at the ends of the span
 ///     silhouette   segment, vertices, faces, from, from_upper, to_lower, to: the two faces of an edge show different sides
-/// Silhouettes are there where they are asked for. Errors: of segment_parts(); kUsage for
+/// Silhouettes are there where they are asked for, of faces. The normals of vertices or corners, which are sums of those of
+/// faces, are decided as exactly, each seen from its vertex: the column is `vertex` or `corner` then, and without a row
+/// for those of no face. Errors: of make_groups(); of segment_parts(); kUsage for
 /// the direction (0, 0, 0).
 [[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
-                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
+                                               const QuerySpan& span = {}, const QueryProgress& progress = {},
+                                               const ElementOptions& elements = {});
 
 /// Which points are inside a closed mesh at the first instant of the span, and when, where and which way each crosses
 /// the surface (analysis/containment.h). A point moves on a straight line, at a constant speed, from the first time of
@@ -134,9 +138,11 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///               direction half way between the unit normals at both ends, which lerp and nlerp have as their mean), and
 ///               ends_off (degrees from mean_unit to it): one row for each segment and face
 ///     span      the same without segment, over all parts together, weighed by their duration; not for targets
-/// Errors: of segment_parts().
+/// Of vertices or corners, the column is `vertex` or `corner`, and all is made from integers. Errors: of make_groups();
+/// of segment_parts().
 [[nodiscard]] Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span = {},
-                                                const QueryProgress& progress = {});
+                                                const QueryProgress& progress = {},
+                                                const ElementOptions& elements = {});
 
 /// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN
 /// where the table has no name. Errors: kUsage for another extension; those of write_output().

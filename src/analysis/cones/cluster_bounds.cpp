@@ -139,7 +139,8 @@ class Cluster {
     normals_.reserve(whole.size());
     for (std::size_t i = 0; i < whole.size(); ++i) {
       normals_.push_back(part_of(whole[i], restriction));
-      if (!normals_[i].is_known()) normals_[i] = exact_part_of(segment_, segment_.topology->face(faces_[i]), t0_, t1_);
+      if (!normals_[i].is_known())
+        normals_[i] = exact_part_of(ExactCurve::of_polygon(segment_, segment_.topology->face(faces_[i])), t0_, t1_);
     }
   }
 

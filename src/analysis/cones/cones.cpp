@@ -112,9 +112,16 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
     const std::span<ControlNormals> normals(memory.data(), std::min(kBlock, faces.count - first));
     face_control_normals(segment, {faces.first + first, normals.size()}, normals);
     cones_of_block(normals, from, to, result.subspan(first, normals.size()), [&](std::size_t i) {
-      return cone_around(exact_part_of(segment, segment.topology->face(faces.first + first + i), from, to));
+      const auto face = segment.topology->face(faces.first + first + i);
+      return cone_around(exact_part_of(ExactCurve::of_polygon(segment, face), from, to));
     });
   }
+}
+
+NormalCone normal_cone_of_faces(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
+                                double t1) noexcept {
+  assert(0 <= t0 && t0 <= t1 && t1 <= 1);
+  return cone_around(exact_part_of(ExactCurve::of_faces(segment, faces), local_time(t0), local_time(t1)));
 }
 
 NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {

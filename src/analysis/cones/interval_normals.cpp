@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "normals/control/exact_curve.h"
-
 namespace chronormal::inline internal {
 
 IntervalNormals part_of(const ControlNormals& c, const Restriction& restriction) noexcept {
@@ -29,9 +27,7 @@ IntervalNormals part_of(const ControlNormals& c, const Restriction& restriction)
   return part;
 }
 
-IntervalNormals exact_part_of(const Segment& segment, std::span<const std::uint32_t> face, double t0,
-                              double t1) noexcept {
-  const ExactCurve exact = ExactCurve::of_polygon(segment, face);
+IntervalNormals exact_part_of(const ExactCurve& exact, double t0, double t1) noexcept {
   return {{exact.normal_at(t0), exact.blossom_at(t0, t1), exact.normal_at(t1)}};
 }
 

@@ -2,12 +2,9 @@
 #ifndef CHRONORMAL_ANALYSIS_CONES_INTERVAL_NORMALS_H_
 #define CHRONORMAL_ANALYSIS_CONES_INTERVAL_NORMALS_H_
 
-#include <cstdint>
-#include <span>
-
 #include "analysis/cones/kernels/cones_of_three.h"
-#include "chronormal/motion/motion.h"
 #include "chronormal/normals/control_normals.h"
+#include "normals/control/exact_curve.h"
 
 namespace chronormal::inline internal {
 
@@ -23,9 +20,8 @@ struct IntervalNormals {
 /// share of the result.
 [[nodiscard]] IntervalNormals part_of(const ControlNormals& normals, const Restriction& part) noexcept;
 
-/// Computes the control normals of a part for one face, exactly, from integers.
-[[nodiscard]] IntervalNormals exact_part_of(const Segment& segment, std::span<const std::uint32_t> face, double t0,
-                                            double t1) noexcept;
+/// Computes the control normals of a part of a face, or of the sum of several faces, from integers.
+[[nodiscard]] IntervalNormals exact_part_of(const ExactCurve& exact, double t0, double t1) noexcept;
 
 /// Returns the cone around the control normals that are not zero.
 [[nodiscard]] NormalCone cone_around(IntervalNormals part) noexcept;

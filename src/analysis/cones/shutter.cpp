@@ -133,6 +133,14 @@ ShutterNormal shutter_normal(const ControlNormals& normals, double t0, double t1
   return means_of_part(normals, part_of(normals, restriction), restriction);
 }
 
+ShutterNormal shutter_normal_of_faces(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
+                                      double t1) noexcept {
+  assert(0 <= t0 && t0 <= t1 && t1 <= 1);
+  const ControlNormals exact =
+      exact_part_of(ExactCurve::of_faces(segment, faces), local_time(t0), local_time(t1)).normals;
+  return means_of(exact, lengths_of(exact));
+}
+
 void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, double t1,
                           std::span<ShutterNormal> result) noexcept {
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
@@ -150,7 +158,7 @@ void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, d
         result[first + i] = means_of_part(normals[i], part, restriction);
       } else {
         const std::span<const std::uint32_t> face = segment.topology->face(faces.first + first + i);
-        const ControlNormals exact = exact_part_of(segment, face, from, to).normals;
+        const ControlNormals exact = exact_part_of(ExactCurve::of_polygon(segment, face), from, to).normals;
         result[first + i] = means_of(exact, lengths_of(exact));
       }
     }

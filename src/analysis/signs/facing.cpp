@@ -21,6 +21,7 @@
 #include "analysis/signs/certain_roots.h"
 #include "analysis/signs/exact_roots.h"
 #include "analysis/signs/kernels/facing_lanes.h"
+#include "analysis/signs/length_1.h"
 #include "core/rounding.h"
 #include "motion/segment_end.h"
 #include "normals/control/exact_curve.h"
@@ -250,11 +251,11 @@ Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& t
   return way;
 }
 
-// Returns f of one face, times a positive number.
+// Returns f of one normal, times a positive number.
 template <std::size_t kDegree, std::size_t kDigits>
-auto times_normal(const Segment& segment, std::span<const std::uint32_t> vertices, const Way<kDigits>& way) noexcept {
+auto times_normal(const ExactCurve& normal, const Way<kDigits>& way) noexcept {
   IntegerPolynomial<kDegree, kNormalDigits + kDigits + 1> f;
-  const auto c = ExactCurve::of_polygon(segment, vertices).in_powers();
+  const auto c = normal.in_powers();
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
       f.a[k].add_product(c[k][i], way.start[i]);
@@ -265,16 +266,20 @@ auto times_normal(const Segment& segment, std::span<const std::uint32_t> vertice
   return f;
 }
 
-// Calls body(f) with the exact f of one face. M is as in find_in_block().
+// Calls body(f) with the exact f of a normal that is seen from a vertex. M is as in find_in_block().
+template <std::size_t M, class Body>
+void in_integers(const Segment& segment, const ExactCurve& normal, std::uint32_t vertex, const View& view,
+                 const Body& body) noexcept {
+  const Place from = Place::of(SegmentEnd::from(segment), vertex), to = Place::of(SegmentEnd::to(segment), vertex);
+  if constexpr (M == 4) {
+    if (!is_whole_way(view)) return body(times_normal<3>(normal, part_of_way(view, from, to)));
+  }
+  body(times_normal<M - 1>(normal, whole_way(view, from, to)));
+}
 template <std::size_t M, class Body>
 void in_integers(const Segment& segment, std::size_t face, const View& view, const Body& body) noexcept {
   const auto vertices = segment.topology->face(face);
-  const Place from = Place::of(SegmentEnd::from(segment), vertices[0]),
-              to = Place::of(SegmentEnd::to(segment), vertices[0]);
-  if constexpr (M == 4) {
-    if (!is_whole_way(view)) return body(times_normal<3>(segment, vertices, part_of_way(view, from, to)));
-  }
-  body(times_normal<M - 1>(segment, vertices, whole_way(view, from, to)));
+  in_integers<M>(segment, ExactCurve::of_polygon(segment, vertices), vertices[0], view, body);
 }
 
 // Narrows a bracket of the only root between its ends, at which the signs are known and differ. Its middle is a good
@@ -301,17 +306,14 @@ void close_in(const Polynomial& f, int before, double& lower, double& upper) noe
 
 bool is_wide(const ExactRoot& root) noexcept { return root.upper - root.lower > kWidestBracket; }
 
-// Finds all roots of one face.
-template <std::size_t M>
-Facing facing_by_roots(const Segment& segment, std::size_t face, const View& view, const SingleRoots& from,
-                       std::size_t lane) noexcept {
-  std::array<double, M> p;
-  for (std::size_t k = 0; k < M; ++k) p[k] = from.p[k][lane];
+// Finds all roots of f, whose coefficients are known to be within error of p. decide(body) calls body with the exact f.
+template <std::size_t M, class Decide>
+Facing facing_by_roots(const std::array<double, M>& p, double error, const Decide& decide) noexcept {
   ExactRoots roots;
-  if (!CertainRoots<M>::find(p, from.error[lane], roots)) {
-    in_integers<M>(segment, face, view, [&roots](const auto& f) { roots = exact_roots(f); });
+  if (!CertainRoots<M>::find(p, error, roots)) {
+    decide([&roots](const auto& f) { roots = exact_roots(f); });
   } else if (std::any_of(roots.all().begin(), roots.all().end(), is_wide)) {
-    in_integers<M>(segment, face, view, [&roots](const auto& f) {
+    decide([&roots](const auto& f) {
       for (std::size_t k = 0; k < roots.count; ++k)
         close_in(f, roots.at[k].before, roots.at[k].lower, roots.at[k].upper);
     });
@@ -321,6 +323,59 @@ Facing facing_by_roots(const Segment& segment, std::size_t face, const View& vie
   for (const ExactRoot& root : roots.all())
     facing.at[facing.count++] = {root.lower, root.upper, side_of(root.before), side_of(root.after)};
   return facing;
+}
+
+template <std::size_t M>
+Facing facing_by_roots(const Segment& segment, std::size_t face, const View& view, const SingleRoots& from,
+                       std::size_t lane) noexcept {
+  std::array<double, M> p;
+  for (std::size_t k = 0; k < M; ++k) p[k] = from.p[k][lane];
+  return facing_by_roots<M>(p, from.error[lane], [&](const auto& body) { in_integers<M>(segment, face, view, body); });
+}
+
+// The sum of the control normals of some faces in double, how far any component may be off, and how large its terms are.
+struct SummedNormals {
+  ControlNormals normals;
+  double error = 0, size = 0;
+};
+SummedNormals sum_of(const Segment& segment, std::span<const std::uint32_t> faces) noexcept {
+  SummedNormals sum;
+  for (const std::uint32_t face : faces) {
+    ControlNormals one;
+    face_control_normals(segment, {face, 1}, {&one, 1});
+    sum.normals = {sum.normals.n0 + one.n0, sum.normals.m + one.m, sum.normals.n1 + one.n1};
+    sum.error += rounding_of(segment, face);
+    sum.size += std::max({max_abs(one.n0), max_abs(one.m), max_abs(one.n1)});
+  }
+  sum.error = 2 * (sum.error + static_cast<double>(faces.size()) * kUnitRoundoff * sum.size);
+  return sum;
+}
+
+template <std::size_t M>
+Facing facing_of_sum(const Segment& segment, std::uint32_t vertex, std::span<const std::uint32_t> faces,
+                     const View& view) noexcept {
+  const auto decide = [&](const auto& body) {
+    in_integers<M>(segment, ExactCurve::of_faces(segment, faces), vertex, view, body);
+  };
+  const SummedNormals sum = sum_of(segment, faces);
+  const auto& [n0, m, n1] = sum.normals;
+  std::array<double, M> p;
+  Vec3d at_start = view.from, at_end = view.to;
+  if constexpr (M == 4) {
+    at_start = SegmentEnd::from(segment).way_to(view.from, vertex);
+    at_end = SegmentEnd::to(segment).way_to(view.to, vertex);
+    p = {dot(n0, at_start), (dot(n0, at_end) + 2 * dot(m, at_start)) / 3, (dot(n1, at_start) + 2 * dot(m, at_end)) / 3,
+         dot(n1, at_end)};
+  } else {
+    p = {dot(n0, at_start), dot(m, at_start), dot(n1, at_start)};
+  }
+  // A place on a part of the way would be rounded, and products with tiny components may be: integers have neither.
+  const bool is_sure = fits_double(view) && is_whole_way(view);
+  // The way, products, sums of three and of two, and a third: at most 16 roundings of terms that are no larger than this.
+  constexpr double kRoundings = 16;
+  const double longest = std::max(length_1(at_start), length_1(at_end));
+  const double error = longest * (sum.error + kRoundings * kUnitRoundoff * sum.size);
+  return facing_by_roots<M>(p, is_sure ? error : std::numeric_limits<double>::infinity(), decide);
 }
 
 template <std::size_t M>
@@ -408,6 +463,11 @@ Facing find_facing(const Segment& segment, std::size_t face, const View& view) n
   ControlNormals normals;
   face_control_normals(segment, {face, 1}, {&normals, 1});
   return find_facing(segment, face, normals, view);
+}
+
+Facing find_vertex_facing(const Segment& segment, std::uint32_t vertex, std::span<const std::uint32_t> faces,
+                          const View& view) noexcept {
+  return view.is_eye ? facing_of_sum<4>(segment, vertex, faces, view) : facing_of_sum<3>(segment, vertex, faces, view);
 }
 
 void sides_over(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,

@@ -135,7 +135,9 @@ Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t>
     if (const Status status = check_meshlets(motion, *meshlets); !status) return status.error();
   }
   constexpr std::uint64_t kBytesPerRow = 2 * sizeof(std::int64_t) + 4 * sizeof(float) + sizeof(double);
-  if (const Status status = check_rows(motion, parts.value(), kBytesPerRow, span); !status) return status.error();
+  if (const Status status = check_rows(motion.topology.face_count(), "face", parts.value(), kBytesPerRow, span);
+      !status)
+    return status.error();
   const std::size_t count = motion.topology.face_count();
   const std::vector<std::vector<NormalCone>> found =
       for_parts<std::vector<NormalCone>>(parts.value(), progress, [&](const SegmentPart& part) {

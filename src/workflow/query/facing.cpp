@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,13 +18,14 @@ struct Interval {
   std::array<double, 2> from{}, to{};
 };
 
-struct FrontOfFace {
-  std::size_t face = 0;
+// Of a face, vertex or corner.
+struct Front {
+  std::size_t element = 0;
   Interval when;
 };
 
 struct Found {
-  std::vector<FrontOfFace> fronts;
+  std::vector<Front> fronts;
   std::vector<Silhouette> silhouettes;
   std::size_t always_front = 0, always_back = 0;
 };
@@ -36,11 +38,11 @@ bool cut(Interval& when, const SegmentPart& part) {
   return true;
 }
 
-void add_fronts(const Facing& facing, std::size_t face, const SegmentPart& part, std::vector<FrontOfFace>& fronts) {
+void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& part, std::vector<Front>& fronts) {
   Interval when{{0, 0}, {1, 1}};
   bool is_front = facing.first() == Side::kFront;
   const auto close = [&] {
-    if (cut(when, part)) fronts.push_back({face, when});
+    if (cut(when, part)) fronts.push_back({element, when});
   };
   for (const FacingChange& change : facing.changes()) {
     // Where it only touches edge-on, one interval ends and the next begins.
@@ -61,16 +63,33 @@ View view_in(const Segment& segment, const View& view, double first, double last
                              LocalTime::between(first, segment.end_time, last));
 }
 
+void add_facing(const Facing& facing, std::size_t element, const SegmentPart& part, Found& found) {
+  add_fronts(facing, element, part, found.fronts);
+  if (facing.count == 0) ++(facing.side == Side::kFront ? found.always_front : found.always_back);
+}
+
+// Vertices at one point have one normal, and see the viewer alike.
+Found facing_of_outputs(const Segment& segment, const View& view, const AskedOutputs& outputs,
+                        const SegmentPart& part) {
+  std::vector<std::optional<Facing>> facings(outputs.element_count());
+  Found found;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const std::size_t element = outputs.element(i);
+    if (outputs.faces(element).empty()) continue;
+    std::optional<Facing>& facing = facings[element];
+    if (!facing) facing = find_vertex_facing(segment, outputs.vertex(i), outputs.faces(element), view);
+    add_facing(*facing, i, part, found);
+  }
+  return found;
+}
+
 Found facing_of(const Segment& segment, const View& view, bool with_silhouettes, const SegmentPart& part) {
   std::vector<ControlNormals> normals(segment.topology->face_count());
   face_control_normals(segment, {0, normals.size()}, normals);
   std::vector<Facing> facings(normals.size());
   find_facings(segment, {0, normals.size()}, normals, view, facings);
   Found found;
-  for (std::size_t f = 0; f < normals.size(); ++f) {
-    add_fronts(facings[f], f, part, found.fronts);
-    if (facings[f].count == 0) ++(facings[f].side == Side::kFront ? found.always_front : found.always_back);
-  }
+  for (std::size_t f = 0; f < normals.size(); ++f) add_facing(facings[f], f, part, found);
   if (!with_silhouettes) return found;
   for (Silhouette& one : find_silhouettes(segment, normals, view)) {
     Interval when{one.from, one.to};
@@ -114,7 +133,10 @@ QueryTable table_of(const char* name, const char* meaning, std::vector<QueryColu
 }  // namespace
 
 Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool silhouettes, const QuerySpan& span,
-                                 const QueryProgress& progress) {
+                                 const QueryProgress& progress, const ElementOptions& elements) {
+  const bool are_faces = elements.kind == ElementKind::kFaces;
+  if (silhouettes && !are_faces)
+    return Error{ErrorCode::kUsage, "--silhouettes", "silhouettes are edges between faces: ask --elements faces"};
   // An eye counts from the origin of the motion, as vertices do.
   View view = placed;
   const Vec3d origin = {motion.origin[0], motion.origin[1], motion.origin[2]};
@@ -135,23 +157,30 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
     first = std::min(first, motion.segment(s).start_time);
     last = std::max(last, motion.segment(s).end_time);
   }
+  std::optional<AskedOutputs> outputs;
+  if (!are_faces) {
+    Result<AskedOutputs> made = AskedOutputs::make(motion, elements);
+    if (!made) return made.error();
+    outputs = std::move(made).value();
+  }
   const Result<std::vector<Found>> found = for_bounded_parts<Found>(
       parts.value(), span, progress,
       [&](const SegmentPart& part) {
         const Segment segment = motion.segment(part.segment);
-        return facing_of(segment, view_in(segment, view, first, last), silhouettes, part);
+        const View seen = view_in(segment, view, first, last);
+        return outputs ? facing_of_outputs(segment, seen, *outputs, part) : facing_of(segment, seen, silhouettes, part);
       },
       bytes_of_fronts);
   if (!found) return found.error();
 
   WhenColumns when, silhouette_when;
-  std::vector<std::int64_t> faces, edge_vertices, edge_faces;
+  std::vector<std::int64_t> numbers, edge_vertices, edge_faces;
   std::size_t always_front = 0, always_back = 0;
   for (std::size_t p = 0; p < found.value().size(); ++p) {
     const std::size_t s = parts.value()[p].segment;
-    for (const FrontOfFace& front : found.value()[p].fronts) {
+    for (const Front& front : found.value()[p].fronts) {
       when.add(s, front.when);
-      faces.push_back(static_cast<std::int64_t>(front.face));
+      numbers.push_back(static_cast<std::int64_t>(front.element));
     }
     for (const Silhouette& one : found.value()[p].silhouettes) {
       silhouette_when.add(s, {one.from, one.to});
@@ -162,16 +191,22 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
     always_back += found.value()[p].always_back;
   }
   const auto count = [](std::size_t value) { return static_cast<double>(value); };
-  const std::size_t pairs = motion.topology.face_count() * parts.value().size();
+  std::size_t asked = motion.topology.face_count();
+  if (outputs) {
+    asked = 0;
+    for (std::size_t i = 0; i < outputs->size(); ++i) asked += outputs->faces(outputs->element(i)).empty() ? 0U : 1U;
+  }
+  const std::size_t pairs = asked * parts.value().size();
+  const std::string one(one_element(elements.kind)), all(element_kind_name(elements.kind));
   QueryAnswer answer{
       "facing",
       {{"segments", "segments looked at", count(parts.value().size())},
-       {"faces", "faces in each", count(motion.topology.face_count())},
-       {"always_front", "times a face shows its front throughout a segment", count(always_front)},
+       {all, all + " in each", count(asked)},
+       {"always_front", "times a " + one + " shows its front throughout a segment", count(always_front)},
        {"always_back", "times it never does", count(always_back)},
        {"changing", "times it changes, or is edge-on at an instant", count(pairs - always_front - always_back)}},
       {}};
-  answer.tables.push_back(table_of("", "intervals that show the front", {{"face", std::move(faces)}}, std::move(when)));
+  answer.tables.push_back(table_of("", "intervals that show the front", {{one, std::move(numbers)}}, std::move(when)));
   if (!silhouettes) return answer;
   answer.facts.push_back({"silhouettes", "intervals in which an edge is a silhouette", count(edge_faces.size() / 2)});
   answer.tables.push_back(table_of("silhouette", "silhouette edges",

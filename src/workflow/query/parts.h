@@ -6,26 +6,60 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "chronormal/core/parallel.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/query.h"
 #include "io/bytes/expansion.h"
 #include "workflow/segments/segment_run.h"
 
 namespace chronormal::inline internal {
 
-/// How much an answer may take.
+/// Returns how much an answer may take.
 [[nodiscard]] inline Expansion expansion_of(const QuerySpan& span) {
   return span.expansion != nullptr ? *span.expansion : Expansion::unlimited();
 }
 
-/// Whether an answer may have a row of so many bytes for every face of every part. Errors: of Expansion::check().
-[[nodiscard]] inline Status check_rows(const Motion& motion, std::span<const SegmentPart> parts,
-                                       std::uint64_t bytes_per_row, const QuerySpan& span) {
-  const std::uint64_t rows = std::uint64_t{parts.size()} * motion.topology.face_count();
-  return expansion_of(span).check(bytes_per_row * rows, "the answer for every face of every segment");
+/// Checks that an answer may have a row of so many bytes for every face, vertex or corner of every part. Errors: of
+/// Expansion::check().
+[[nodiscard]] inline Status check_rows(std::size_t rows_of_part, std::string_view what,
+                                       std::span<const SegmentPart> parts, std::uint64_t bytes_per_row,
+                                       const QuerySpan& span) {
+  const std::uint64_t rows = std::uint64_t{parts.size()} * rows_of_part;
+  return expansion_of(span).check(bytes_per_row * rows, "the answer for every " + std::string(what) + " of every segment");
 }
+
+/// The vertices or corners whose normals are asked for: each with its vertex, and with the faces that its normal is the
+/// sum of.
+class AskedOutputs {
+ public:
+  /// Errors: of make_groups()
+  [[nodiscard]] static Result<AskedOutputs> make(const Motion& motion, const ElementOptions& options) {
+    Result<NormalGroups> groups = make_groups(motion, options);
+    if (!groups) return groups.error();
+    return AskedOutputs(motion.topology, std::move(groups).value());
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return groups_.element_of_output().size(); }
+  [[nodiscard]] std::size_t element_count() const noexcept { return groups_.size(); }
+  [[nodiscard]] std::size_t element(std::size_t output) const noexcept { return groups_.element_of_output()[output]; }
+  [[nodiscard]] std::uint32_t vertex(std::size_t output) const noexcept {
+    return groups_.outputs_are_vertices() ? static_cast<std::uint32_t>(output) : topology_->corners()[output];
+  }
+  /// The faces of an element; none for isolated vertices.
+  [[nodiscard]] std::span<const std::uint32_t> faces(std::size_t element) const noexcept {
+    return groups_.faces(element);
+  }
+
+ private:
+  AskedOutputs(const Topology& topology, NormalGroups groups) : topology_(&topology), groups_(std::move(groups)) {}
+
+  const Topology* topology_;
+  NormalGroups groups_;
+};
 
 /// Holds an answer whose rows are only known as they are found to what its span allows, while it grows: what is
 /// written in the end may be a little more, and is checked once more by those who write it.

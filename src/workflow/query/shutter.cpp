@@ -4,15 +4,19 @@
 #include "chronormal/analysis/cones.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "chronormal/workflow/query.h"
+#include "normals/control/exact_curve.h"
+#include "normals/control/local_time.h"
 #include "workflow/query/parts.h"
 
 namespace chronormal {
 namespace {
 
-// Of all faces over a part of a segment, or over parts that follow each other.
+// Of all faces, vertices or corners over a part of a segment, or over parts that follow each other.
 struct Means {
   std::vector<ShutterNormal> normals;
   std::vector<Vec3d> from, to;  // unit normals at both ends
@@ -30,6 +34,35 @@ Means means_of(const Motion& motion, const SegmentPart& part) {
   for (const ControlNormals& c : control) {
     means.from.push_back(unit_normal_at(c, part.t0).vector);
     means.to.push_back(unit_normal_at(c, part.t1).vector);
+  }
+  return means;
+}
+
+// Vertices at one point have one normal.
+Means means_of_outputs(const Motion& motion, const AskedOutputs& outputs, const SegmentPart& part) {
+  const Segment segment = motion.segment(part.segment);
+  struct One {
+    ShutterNormal normal;
+    NormalCone cone;
+    Vec3d from, to;
+  };
+  std::vector<One> of_elements(outputs.element_count());
+  for (std::size_t e = 0; e < of_elements.size(); ++e) {
+    const std::span<const std::uint32_t> faces = outputs.faces(e);
+    if (faces.empty()) continue;
+    const ExactCurve curve = ExactCurve::of_faces(segment, faces);
+    of_elements[e] = {shutter_normal_of_faces(segment, faces, part.t0, part.t1),
+                      normal_cone_of_faces(segment, faces, part.t0, part.t1),
+                      curve.unit_normal_at(local_time(part.t0)).vector,
+                      curve.unit_normal_at(local_time(part.t1)).vector};
+  }
+  Means means;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const One& one = of_elements[outputs.element(i)];
+    means.normals.push_back(one.normal);
+    means.cones.push_back(one.cone);
+    means.from.push_back(one.from);
+    means.to.push_back(one.to);
   }
   return means;
 }
@@ -63,7 +96,7 @@ Means whole_of(const Motion& motion, std::span<const SegmentPart> parts, std::sp
 
 // A table of means, row after row.
 struct Rows {
-  std::vector<std::int64_t> segments, faces;
+  std::vector<std::int64_t> segments, numbers;
   std::vector<double> mean, mean_unit, error, spread, half_angle, ends, ends_off;
   double sum_off = 0, largest_off = 0;
   std::size_t judged = 0;
@@ -75,7 +108,7 @@ struct Rows {
       const Vec3d between = unit(means.from[f] + means.to[f]);
       const double off = angle_between(s.mean_unit, between) * kDegreesPerRadian;
       segments.push_back(static_cast<std::int64_t>(segment));
-      faces.push_back(static_cast<std::int64_t>(f));
+      numbers.push_back(static_cast<std::int64_t>(f));
       append(mean, s.mean);
       append(mean_unit, s.mean_unit);
       error.push_back(s.error);
@@ -90,10 +123,10 @@ struct Rows {
     }
   }
 
-  [[nodiscard]] QueryTable table(std::string name, std::string meaning, bool has_segments) && {
+  [[nodiscard]] QueryTable table(std::string name, std::string meaning, ElementKind kind, bool has_segments) && {
     QueryTable table{std::move(name), std::move(meaning), {}};
     if (has_segments) table.columns.push_back({"segment", std::move(segments)});
-    table.columns.push_back({"face", std::move(faces)});
+    table.columns.push_back({std::string(one_element(kind)), std::move(numbers)});
     table.columns.push_back({"mean", std::move(mean), 3});
     table.columns.push_back({"mean_unit", std::move(mean_unit), 3});
     table.columns.push_back({"error", std::move(error)});
@@ -107,33 +140,44 @@ struct Rows {
 
 }  // namespace
 
-Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, const QueryProgress& progress) {
+Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, const QueryProgress& progress,
+                                  const ElementOptions& elements) {
+  std::optional<AskedOutputs> outputs;
+  if (elements.kind != ElementKind::kFaces) {
+    Result<AskedOutputs> made = AskedOutputs::make(motion, elements);
+    if (!made) return made.error();
+    outputs = std::move(made).value();
+  }
+  const std::size_t asked = outputs ? outputs->size() : motion.topology.face_count();
   const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
   if (!parts) return parts.error();
   constexpr std::uint64_t kBytesPerRow = 2 * sizeof(std::int64_t) + 13 * sizeof(double);
-  if (const Status status = check_rows(motion, parts.value(), kBytesPerRow, span); !status) return status.error();
-  const std::vector<Means> found =
-      for_parts<Means>(parts.value(), progress, [&](const SegmentPart& part) { return means_of(motion, part); });
+  if (const Status status = check_rows(asked, one_element(elements.kind), parts.value(), kBytesPerRow, span); !status)
+    return status.error();
+  const std::vector<Means> found = for_parts<Means>(parts.value(), progress, [&](const SegmentPart& part) {
+    return outputs ? means_of_outputs(motion, *outputs, part) : means_of(motion, part);
+  });
   Rows rows;
   for (std::size_t p = 0; p < found.size(); ++p) rows.add(found[p], parts.value()[p].segment);
   const auto number = [](std::size_t value) { return static_cast<double>(value); };
   const auto mean_off = [](const Rows& of) { return of.judged == 0 ? 0 : of.sum_off / static_cast<double>(of.judged); };
+  const std::string all(element_kind_name(elements.kind));
   QueryAnswer answer{
       "shutter",
       {{"segments", "segments looked at", number(parts.value().size())},
-       {"faces", "faces in each", number(motion.topology.face_count())},
+       {all, all + " in each", number(asked)},
        {"largest_error", "bound of the error of any mean", *std::max_element(rows.error.begin(), rows.error.end())},
        {"mean_ends_off", "degrees: lerp or nlerp of the ends is off, mean", mean_off(rows)},
        {"largest_ends_off", "degrees: largest", rows.largest_off}},
       {}};
-  answer.tables.push_back(
-      std::move(rows).table("", "mean normals while the shutter is open, and those half way between the ends", true));
+  answer.tables.push_back(std::move(rows).table(
+      "", "mean normals while the shutter is open, and those half way between the ends", elements.kind, true));
   if (parts.value().size() > 1 && motion.kind != MotionKind::kTargets) {
     Rows whole;
     whole.add(whole_of(motion, parts.value(), found), 0);
     answer.facts.push_back({"span_mean_ends_off", "degrees: the same over the whole span, mean", mean_off(whole)});
     answer.facts.push_back({"span_largest_ends_off", "degrees: largest", whole.largest_off});
-    answer.tables.push_back(std::move(whole).table("span", "mean normals over the whole span", false));
+    answer.tables.push_back(std::move(whole).table("span", "mean normals over the whole span", elements.kind, false));
   }
   return answer;
 }
