@@ -12,11 +12,14 @@
 #include "cli/options/outputs.h"
 #include "cli/options/run.h"
 #include "cli/reports/compare_report.h"
+#include "cli/reports/figure_report.h"
 #include "cli/reports/truth_report.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/text.h"
+#include "core/charconv.h"
 #include "workflow/compare/compared.h"
+#include "workflow/compare/face_figure.h"
 #include "workflow/json/json.h"
 
 namespace chronormal::cli {
@@ -30,9 +33,10 @@ struct CompareArguments {
   std::optional<std::string> schemes;  // a list; nothing: those that are usual for the elements
   std::optional<std::size_t> samples;
   ElementArguments elements{"faces"};
-  std::string weighting;  // empty: area
-  std::string access;     // empty: random
-  std::string table;      // empty: text
+  std::string weighting;            // empty: area
+  std::string access;               // empty: random
+  std::string table;                // empty: text
+  std::optional<std::string> face;  // N or N:SEGMENT
   bool each = false;
   bool json = false;
   bool csv = false;
@@ -95,6 +99,7 @@ std::string compare_footer() {
          "  chronormal compare walk/ --tolerance 0.5\n"
          "  chronormal compare face.glb --blend 100\n"
          "  chronormal compare walk/ --truth 2\n"
+         "  chronormal compare a.obj b.obj --face 12 --schemes linear,quaternion:matrix\n"
          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 no scheme is within the tolerance";
 }
 
@@ -127,7 +132,10 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
             "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
           options.blend.table(),
           options.truth.table(),
-          {{"--errors FILE", &options.errors,
+          {{"--face N", &options.face,
+            "one face, from 0, in segment 0, or in S of N:S: what each scheme makes of its normal, and\n"
+            "how; --json has all that Figures 1 to 3 of the paper are drawn from"},
+           {"--errors FILE", &options.errors,
             "write the error of every element at every sample: .npz for programs, or .ply of one\n"
             "scheme with the worst of each as its quality, for MeshLab and Blender"}},
           options.run.options("compare the Ith of N equal shares of the segments alone: OUT is a part for chronormal\n"
@@ -182,6 +190,7 @@ Result<std::optional<NamedComparison>> compare_one(Input& input, const CompareAr
 // An option that was given, and has no meaning where several ranks divide one motion.
 std::string option_of_one_process(const CompareArguments& options) {
   if (options.errors) return "--errors";
+  if (options.face) return "--face";
   if (options.blend.rows) return "--blend";
   if (options.truth.every) return "--truth";
   return options.each ? "--each" : "";
@@ -293,17 +302,70 @@ Result<int> run_truth(const CompareArguments& options) {
   return kExitDone;
 }
 
+// An option that was given, and has no meaning with --face.
+std::string option_of_all_faces(const CompareArguments& options) {
+  if (!options.access.empty()) return "--access";
+  if (options.certify) return "--certify";
+  if (options.tolerance) return "--tolerance";
+  if (options.blend.rows) return "--blend";
+  if (options.truth.every) return "--truth";
+  if (options.errors) return "--errors";
+  if (options.run.shard) return "--shard";
+  if (options.run.resume) return "--resume";
+  if (options.csv) return "--csv";
+  if (!options.table.empty()) return "--table";
+  if (!options.weighting.empty()) return "--weighting";
+  return options.each ? "--each" : "";
+}
+
+Result<FaceFigureOptions> figure_options(const CompareArguments& options) {
+  FaceFigureOptions result{0, 0, scheme_names(options), options.sample_count()};
+  const std::string_view text = *options.face;
+  const char* const end = text.data() + text.size();
+  auto read = from_chars(text.data(), end, result.face);
+  if (read.ec == std::errc{} && read.ptr != end && *read.ptr == ':')
+    read = from_chars(read.ptr + 1, end, result.segment);
+  if (read.ec != std::errc{} || read.ptr != end)
+    return misuse("--face", "it must be the number of a face, or FACE:SEGMENT; both count from 0");
+  return result;
+}
+
+Result<int> run_face(const CompareArguments& options) {
+  if (const std::string option = option_of_all_faces(options); !option.empty())
+    return misuse(option, "it does not go with --face, which looks at one face");
+  if (const auto elements = options.elements.options(); !elements || elements.value().kind != ElementKind::kFaces)
+    return misuse("--elements", "it does not go with --face, which looks at one face");
+  const Result<FaceFigureOptions> how = figure_options(options);
+  if (!how) return how.error();
+  if (const Status distinct = check_files(options); !distinct) return distinct.error();
+  if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
+  Progress progress(options.common.quiet);
+  Result<Input> input = open_input("compare", options.input, progress);
+  if (!input) return input.error();
+  const Result<const Motion*> motion = input.value().motion();
+  progress.clear();
+  if (!motion) return motion.error();
+  const Result<FaceFigure> figure = face_figure(*motion.value(), how.value());
+  if (!figure) return misuse("--face", figure.error().message);
+  const std::string text = options.json ? face_figure_json(input.value().name(), figure.value())
+                                        : figure_table(input.value().name(), figure.value());
+  if (const Status written = print_to(options.common.output, text, options.common.force); !written)
+    return written.error();
+  return kExitDone;
+}
+
 Result<int> run(const CompareArguments& options) {
   if (const Status status = options.run.check(option_of_one_process(options)); !status) return status.error();
-  if (options.blend.rows && options.truth.every)
+  if (!options.face && options.blend.rows && options.truth.every)
     return misuse("--truth", "blend shapes move straight: leave out --blend for a sequence of keyframes");
-  if (options.blend.rows) return run_blend(options);
+  if (!options.face && options.blend.rows) return run_blend(options);
   // Find out about wrong names before anything long begins.
   for (const std::string& name : scheme_names(options)) {
     if (name.empty()) return misuse("--schemes", "there is an empty name in the list");
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   }
   if (const auto elements = options.elements.options(); !elements) return elements.error();
+  if (options.face) return run_face(options);
   if (!options.weighting.empty()) {
     const auto weighting = make_weighting(options.weighting);
     if (!weighting) return misuse("--weighting", weighting.error().message);

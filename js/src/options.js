@@ -43,7 +43,7 @@ const OPTIONS = {
   },
   compare: {
     ...READ, ...MESHES, world: FLAG, schemes: LIST, samples: NUMBER, elements: TEXT, crease: NUMBER, noWeld: FLAG, access: TEXT,
-    weighting: TEXT, certify: FLAG, tolerance: NUMBER, blend: NUMBER, active: NUMBER, seed: NUMBER, truth: NUMBER, noTimes: FLAG,
+    weighting: TEXT, certify: FLAG, tolerance: NUMBER, face: NAME, blend: NUMBER, active: NUMBER, seed: NUMBER, truth: NUMBER, noTimes: FLAG,
   },
   inspect: { ...READ, ...MESHES, world: FLAG },
 };

@@ -110,6 +110,8 @@ export interface CompareOptions extends MotionOptions {
   access?: 'random' | 'sequential';
   certify?: boolean;
   tolerance?: number;
+  /** One face, by its number, or by FACE:SEGMENT: what each scheme makes of its normal. */
+  face?: number | string;
   blend?: number;
   active?: number;
   seed?: number;

@@ -385,7 +385,35 @@ export interface TruthReport extends Head<'compare', 1> {
   rows: Array<SchemeError & { path: PathName }>;
 }
 
-export type CompareReport = SchemesReport | BlendReport | TruthReport;
+/** A scheme on one face; vectors follow each other in flat arrays. */
+export interface SchemeFigure {
+  scheme: string;
+  sum_degrees: number;
+  degrees: Array<number | null>;
+  normals: number[];
+  lengths: number[] | null;
+  nodes: number[] | null;
+  points: number[] | null;
+  tangents: number[] | null;
+}
+
+/** What compare() with `face` says of one face, from which Figures 1 to 3 of the paper are drawn. */
+export interface FigureReport extends Head<'compare', 1> {
+  input: string;
+  figure: {
+    face: number;
+    segment: number;
+    from: number[][];
+    to: number[][];
+    t: number[];
+    normals: number[];
+    lengths: number[];
+    matrix: number[][] | null;
+    schemes: SchemeFigure[];
+  };
+}
+
+export type CompareReport = SchemesReport | BlendReport | TruthReport | FigureReport;
 
 // Of an inspection.
 

@@ -110,7 +110,7 @@ std::optional<FramePair> random_frames(const ElementMotion& element, std::uint64
   return FramePair{frames->at_start, turned(frames->at_end, angle)};
 }
 
-Arc shorter_arc(const FramePair& frames) {
+Rotation shorter_rotation(const FramePair& frames) {
   // R = F1 F0^T takes F0 to F1.
   const Frame& a = frames.at_start;
   const Frame& b = frames.at_end;
@@ -154,8 +154,14 @@ Arc shorter_arc(const FramePair& frames) {
     v = -v;
   }
   const double size = length(v);
-  if (size <= 1e-15 * w) return {{}, a.normal, {}, 0};
-  return arc_about((1 / size) * v, a.normal, 2 * portable::atan2(size, w));
+  if (size <= 1e-15 * w) return {};
+  return {(1 / size) * v, 2 * portable::atan2(size, w)};
+}
+
+Arc shorter_arc(const FramePair& frames) {
+  const Rotation rotation = shorter_rotation(frames);
+  if (rotation.angle == 0) return {{}, frames.at_start.normal, {}, 0};
+  return arc_about(rotation.axis, frames.at_start.normal, rotation.angle);
 }
 
 }  // namespace chronormal::inline internal

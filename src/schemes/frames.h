@@ -30,6 +30,14 @@ struct FramePair {
 /// Returns the edge frames, the second turned about its normal by an angle drawn from (seed, segment, element).
 [[nodiscard]] std::optional<FramePair> random_frames(const ElementMotion& element, std::uint64_t seed);
 
+/// A rotation about an axis.
+struct Rotation {
+  Vec3d axis;        ///< unit length, or zero where nothing turns
+  double angle = 0;  ///< radians
+};
+/// Returns the rotation that takes F0 to F1, by at most half a turn.
+[[nodiscard]] Rotation shorter_rotation(const FramePair& frames);
+
 /// Returns the path of the normal under quaternion slerp from F0 to F1 on the shorter arc (eq. 7).
 [[nodiscard]] Arc shorter_arc(const FramePair& frames);
 

@@ -269,6 +269,7 @@ const std::map<std::string, std::string> kUses = {
     {"--times", "a.obj b.obj --times 0.5"},
     {"--tolerance", "a.obj b.obj --tolerance 1"},
     {"--truth", "a.obj b.obj a.obj --truth 2"},
+    {"compare --face", "a.obj b.obj --face 0"},
     {"--weighting", "a.obj b.obj --weighting angle"},
     {"compare --weighting", "a.obj b.obj --elements vertices --weighting inverse-edges"},
     {"--tears", "shaded.glb --tears 9"},

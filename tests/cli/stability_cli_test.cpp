@@ -103,6 +103,7 @@ TEST_F(Stability, no_key_of_json_vanishes) {
                                       "compare --each --base a.obj b.obj",
                                       "compare --base a.obj b.obj --blend 2",
                                       "compare face.glb --blend 2",
+                                      "compare a.obj b.obj --face 0 --schemes linear,decasteljau:4,quaternion:matrix",
                                       "inspect a.obj b.obj",
                                       "inspect face.glb",
                                       "inspect a.obj",
@@ -111,9 +112,9 @@ TEST_F(Stability, no_key_of_json_vanishes) {
                                       "query contain closed.obj closed.obj --points points.npy",
                                       "query cones a.obj b.obj --meshlets 8",
                                       "query shutter a.obj b.obj a.obj",
-                                      "report face.glb -o face.bin"}) {
                                       "query shutter a.obj b.obj --elements vertices",
                                       "query facing a.obj b.obj --eye 1,2,3 --elements corners",
+                                      "report face.glb -o face.bin"}) {
     const ProcessResult result = run(arguments + " --json");
     const Json json = Json::parse(result.out, nullptr, false);
     ASSERT_FALSE(json.is_discarded()) << arguments << '\n' << result.err;

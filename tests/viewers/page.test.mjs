@@ -13,6 +13,7 @@ import { basename, join } from 'node:path';
 import { after, afterEach, before, test } from 'node:test';
 import { Accessor, Document } from '@gltf-transform/core';
 import { ExactNormals, exactPositions, length } from './exact.mjs';
+import { assertShown, figureByProgram } from './figures.mjs';
 import { writeStill } from './fixtures.mjs';
 import { chronormal } from './program.mjs';
 import { newIO, read } from './reader.mjs';
@@ -151,6 +152,81 @@ test('what is shown as right at weights set by hand has the pixels of a still me
   const different = still.pixels.filter((value, i) => Math.abs(value - right.pixels[i]) > 2).length;
   assert.ok(covered > 10_000, `${covered} pixels are drawn`);
   assert.ok(different < 1e-3 * covered, `${different} numbers differ in a picture of ${covered} pixels`);
+});
+
+test('a face that is clicked has the figures of the program, and they follow its corners by mouse, touch and keys', async () => {
+  writeFileSync(path('k0.obj'), 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 4 0 0\nv 5 0 1\nv 4 1 0\nf 1 2 3\nf 4 5 6\n');
+  writeFileSync(path('k1.obj'), 'v 0 0 0\nv 0 1 0\nv 0 0 1\nv 4 0 0\nv 5 2 1\nv 4 1 3\nf 1 2 3\nf 4 5 6\n');
+  await drop(path('k0.obj'), path('k1.obj'));
+  // The program has answered for the way that the panel shows.
+  const settled = async () => {
+    await page.waitForSelector('.face[data-state=done]', WAIT);
+    const way = await page.evaluate(() => globalThis.chronormal.faces.way());
+    const schemes = await page.$$eval('.face tr[data-scheme]', (rows) => rows.map((row) => row.dataset.scheme));
+    await assertShown(page, figureByProgram(way, schemes, 41));
+    return way;
+  };
+  const typed = async (number) => {
+    await page.evaluate(() => (document.querySelector('.face').open = true));
+    const input = await page.$('.number-field input');
+    await input.click({ count: 3 });
+    await input.type(String(number));
+    await page.keyboard.press('Enter');
+    return settled();
+  };
+  const first = await typed(1);
+  assert.deepEqual(first.from, [[4, 0, 0], [5, 0, 1], [4, 1, 0]]);
+  assert.deepEqual((await typed(0)).to, [[0, 0, 0], [0, 1, 0], [0, 0, 1]]);
+
+  const middleOf = async (i) => {
+    const handle = (await page.$$('.handle'))[i];
+    await handle.scrollIntoView();
+    return handle.$eval('circle:nth-of-type(2)', (circle) => {
+      const { x, y, width, height } = circle.getBoundingClientRect();
+      return [x + width / 2, y + height / 2];
+    });
+  };
+  const sums = () => page.$$eval('.face tr[data-scheme]', (rows) => rows.map((row) => row.dataset.sum).join());
+  const before = await sums(), [x, y] = await middleOf(4);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 40, y + 25, { steps: 5 });
+  await page.mouse.up();
+  const dragged = await settled();
+  assert.notDeepEqual(dragged.to[1], [0, 1, 0]);
+  assert.deepEqual([dragged.from, dragged.to[0], dragged.to[2]], [[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [0, 0, 0], [0, 0, 1]], 'one corner alone');
+  assert.notEqual(await sums(), before, 'q follows');
+  await page.$eval('.handle', (handle) => handle.focus());
+  await page.keyboard.press('ArrowUp');
+  assert.notDeepEqual((await settled()).from[0], [0, 0, 0]);
+  await page.setViewport({ width: 390, height: 844 });
+  const [tx, ty] = await middleOf(2), finger = await page.touchscreen.touchStart(tx, ty);
+  await finger.move(tx - 15, ty + 10);
+  await finger.move(tx - 30, ty + 20);
+  await finger.end();
+  assert.notDeepEqual((await settled()).from[2], [0, 1, 0]);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than a phone');
+  await page.setViewport({ width: 1280, height: 800 });
+
+  // A click in the picture takes the face that is there.
+  const spot = await page.evaluate(async () => {
+    scrollTo(0, 0);
+    for (let i = 0; i < 3; ++i) await new Promise((resolve) => requestAnimationFrame(resolve)); // the stage gets its size
+    const { view, player } = globalThis.chronormal, box = view.canvas.getBoundingClientRect(), { positions } = player.surface;
+    view.frame(true);
+    view.draw();
+    const centre = view.camera.position.clone().set(0, 0, 0);
+    for (const v of [3, 4, 5]) for (const [c, axis] of ['x', 'y', 'z'].entries()) centre[axis] += positions[3 * v + c] / 3;
+    const at = centre.project(view.camera);
+    return [box.left + ((at.x + 1) / 4) * box.width, box.top + ((1 - at.y) / 2) * box.height];
+  });
+  await page.mouse.click(...spot);
+  await page.waitForFunction(() => document.querySelector('.number-field input').value === '1', WAIT);
+  await settled();
+  rmSync(path('face-1.svg'), { force: true });
+  await press('.face .save');
+  const svg = String(await downloaded('face-1.svg'));
+  for (const part of ['<svg xmlns=', 'data-path="exact"', 'data-path="quaternion:matrix"', 'data-line="linear"']) assert.ok(svg.includes(part), part);
 });
 
 test('what cannot be used gets a message that says what to do, and the page goes on', async () => {

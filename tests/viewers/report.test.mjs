@@ -13,9 +13,11 @@ import { basename, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { fromBase64, readContainer, unzipped } from '../../web/src/data.js';
+import { faceOf, faceOfNumber, wayOf } from '../../web/src/faces.js';
 import { makePlayer } from '../../web/src/player.js';
 import { ExactNormals, exactPositions } from './exact.mjs';
 import { writeAuthored } from './authored.mjs';
+import { assertSameFigure, assertShown, figureByProgram } from './figures.mjs';
 import { writeStill } from './fixtures.mjs';
 import { chronormal } from './program.mjs';
 import { read } from './reader.mjs';
@@ -75,6 +77,24 @@ for (const [name, input] of Object.entries(inputs)) {
     });
     assert.ok(samples >= 21);
     assert.ok(Math.abs(report.worst[0].degrees - audited(...input()).worst_degrees) < NEAR);
+  });
+}
+
+for (const [name, input] of Object.entries(inputs)) {
+  test(`the figures of a report are those of the program for faces at its worst places: ${name}`, () => {
+    const report = dataOf(name, ...input()), player = makePlayer(report, () => {});
+    assert.ok(report.figures.length >= 1 && report.figures.length <= 8, `${report.figures.length} figures`);
+    for (const figure of report.figures) {
+      const vertex = player.visit(report.worst[figure.place]), face = faceOf(player.part, figure.triangle);
+      assert.ok(face.corners.includes(vertex), 'the face is at the place');
+      assert.deepEqual([face.number, face.triangle], [figure.face, figure.triangle]);
+      assert.deepEqual(faceOfNumber(player.part, figure.face), face);
+      const way = wayOf(player, face);
+      for (const end of ['from', 'to']) {
+        way[end].forEach((p, i) => p.forEach((x, c) => assert.ok(Math.abs(x - figure[end][i][c]) < 1e-6 * Math.max(1, Math.abs(x)), `${end} ${i}`)));
+      }
+      assertSameFigure(figure, figureByProgram(figure, figure.schemes.map(({ scheme }) => scheme), figure.t.length));
+    }
   });
 }
 
@@ -186,6 +206,35 @@ describe('in Chromium', () => {
     assert.ok((await worstNow(pages.page)).degrees < NEAR, 'the base is right');
     await pages.page.keyboard.press('3');
     assert.equal(await pages.page.$eval('.segmented button[aria-pressed=true]', (button) => button.textContent), 'Error');
+    assert.deepEqual(pages.faults, []);
+  });
+
+  test('a report draws the figures of the face at its worst place, and follows t, turns and colours', async () => {
+    await pages.show(pageOf('twist', '--sample', 'twist'));
+    const { page } = pages, { figures } = dataOf('twist', '--sample', 'twist');
+    await page.click('.face summary');
+    await page.waitForSelector('.face[data-face]');
+    await assertShown(page, figures[0]);
+    await page.focus('.figures input[type=range]');
+    await page.keyboard.press('ArrowRight');
+    await page.$eval('.figures > svg', (svg) => svg.focus());
+    for (const key of ['ArrowLeft', 'ArrowUp', 'ArrowUp']) await page.keyboard.press(key);
+    assert.equal(await page.evaluate(() => globalThis.chronormal.faces.look().sample), 11);
+    await assertShown(page, figures[0]);
+    await page.keyboard.press('d');
+    await page.select('.figures select', 'quaternion:matrix');
+    assert.equal(await page.$$eval('.figures [data-axis]', (axes) => axes.map((axis) => axis.dataset.axis).sort().join()), 'b,b₀,b₁,n,n₀,n₁,t,t₀,t₁');
+    await page.select('.figures select', 'decasteljau:4');
+    assert.equal(await page.$$eval('.figures [data-level]', (points) => points.length), 10, 'four nodes, three points, two and one');
+    await assertShown(page, figures[0]);
+    // A face without a figure says where there is one.
+    const input = await page.$('.number-field input');
+    await input.click({ count: 3 });
+    await input.type('7');
+    await page.keyboard.press('Enter');
+    assert.match(await page.$eval('.face [role=status]', (box) => box.textContent), /figures of face 7 are not in this file/);
+    await page.click('.face .acts:not(p) button');
+    await assertShown(page, figures[0]);
     assert.deepEqual(pages.faults, []);
   });
 

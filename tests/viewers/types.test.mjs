@@ -146,7 +146,7 @@ test('reports have the types of theirs, and every key that may be in one', () =>
   const runs = ['audit a.obj b.obj', 'audit bumps.glb --for all --tolerance 1', 'audit a.obj b.obj c.obj --path catmull-rom',
     'bake a.obj b.obj -o ab.glb', 'bake bumps.glb -o right.glb', 'bake bumps.glb -o exact.glb --encode exact', 'bake a.obj b.obj c.obj --encode keys -o keys.glb',
     'bake right.glb --no-audit -o again.glb', 'compare a.obj b.obj', 'compare twist.npz --certify --no-times', 'compare a.obj b.obj --tolerance 1 --elements corners',
-    'compare bumps.glb --blend 2', 'compare a.obj b.obj c.obj --truth 2', 'inspect a.obj b.obj', 'inspect bumps.glb', 'inspect right.glb', 'inspect a.obj'];
+    'compare bumps.glb --blend 2', 'compare a.obj b.obj --face 0', 'compare a.obj b.obj c.obj --truth 2', 'inspect a.obj b.obj', 'inspect bumps.glb', 'inspect right.glb', 'inspect a.obj'];
   const reports = runs.map((run) => {
     const { stdout, stderr } = native([...run.split(' '), '--json']);
     assert.notEqual(stdout, '', `${run}: ${stderr}`);

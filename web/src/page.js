@@ -3,6 +3,8 @@ import { readContainer } from './data.js';
 import { h, segmented } from './dom.js';
 import { EngineError, makeEngine } from './engine.js';
 import { NOTHING_MOVES, faultOf, inputsOf } from './inputs.js';
+import { FIGURE_SCHEMES } from './face_panel.js';
+import { commandOf } from './faces.js';
 import { makeBakePanel } from './bake_panel.js';
 import { logo, makeTheme } from './theme.js';
 import { makeViewer } from './viewer.js';
@@ -120,6 +122,12 @@ async function open(input) {
   show(inputs.at(-1), 'came');
 }
 
+// The figures of a face on its way, at twice the samples of a table.
+async function figureOf(way) {
+  const { args, files } = commandOf(way, FIGURE_SCHEMES, 41), { stdout } = await run(args, files, { signal: new AbortController().signal, onProgress() {} });
+  return JSON.parse(stdout).figure;
+}
+
 // A morph of our own, for those who have no file at hand.
 async function example() {
   const made = await during('Making an example', (call) => call(['convert', '--sample', 'bumps', '-o', 'out/bumps.glb'], {}));
@@ -138,7 +146,7 @@ function show(input, side) {
   more.hidden = false;
   work.querySelector('.welcome')?.remove();
   viewer?.close();
-  viewer = makeViewer(root, shown);
+  viewer = makeViewer(root, shown, figureOf);
   const bake = makeBakePanel(input, { plan: () => plan(input), bake: () => make(input) });
   root.querySelector('.verdict').after(bake);
   Object.assign(globalThis, { chronormal: viewer });

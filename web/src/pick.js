@@ -2,12 +2,12 @@
 
 /**
  * The nearest triangle that a ray meets.
- * @returns {{distance: number, vertex: number}} in lengths of the direction, Infinity where there is none; the corner of the triangle that is
- *   nearest to where it is met, or -1. Positions are (V x 3)
+ * @returns {{distance: number, vertex: number, triangle: number}} in lengths of the direction, Infinity where there is none; the triangle, and
+ *   its corner that is nearest to where it is met, or -1. Positions are (V x 3)
  */
 export function meet(positions, triangles, origin, direction) {
   const [ox, oy, oz] = origin, [dx, dy, dz] = direction;
-  let nearest = Infinity, vertex = -1;
+  let nearest = Infinity, vertex = -1, triangle = -1;
   for (let t = 0; t < triangles.length; t += 3) {
     const a = 3 * triangles[t], b = 3 * triangles[t + 1], c = 3 * triangles[t + 2];
     const ex = positions[b] - positions[a], ey = positions[b + 1] - positions[a + 1], ez = positions[b + 2] - positions[a + 2];
@@ -23,7 +23,8 @@ export function meet(positions, triangles, origin, direction) {
     const distance = (fx * qx + fy * qy + fz * qz) / determinant;
     if (!(distance > 0 && distance < nearest)) continue;
     nearest = distance;
+    triangle = t / 3;
     vertex = triangles[w >= u && w >= v ? t : u >= v ? t + 1 : t + 2];
   }
-  return { distance: nearest, vertex };
+  return { distance: nearest, vertex, triangle };
 }

@@ -1,5 +1,5 @@
 // The picture: a mesh twice with one camera, as it is shown and as it should be, side by side or with a wipe between them.
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, Mesh, PerspectiveCamera, Scene, ShaderMaterial, Sphere, Vector3, WebGLRenderer } from 'three';
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, LineBasicMaterial, LineLoop, Mesh, PerspectiveCamera, Scene, ShaderMaterial, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { VIRIDIS, degreesText } from './colors.js';
 import { ERROR, LIT, NORMALS, PLAIN, fragmentShader, vertexShader } from './shaders.js';
@@ -20,9 +20,10 @@ const element = (parent, name) => {
 
 /**
  * @param {HTMLElement} stage gets a canvas, and what lies above it
- * @param {(found: {vertex: number, x: number, y: number} | null) => void} onPoint hears which vertex is under the pointer
+ * @param {(found: {vertex: number, triangle: number, x: number, y: number} | null) => void} onPoint hears which vertex is under the pointer
+ * @param {(triangle: number) => void} onPick hears which triangle was clicked
  */
-export function makeView(stage, onPoint) {
+export function makeView(stage, onPoint, onPick) {
   const renderer = new WebGLRenderer({ antialias: true, alpha: true });
   renderer.setClearAlpha(0);
   renderer.setScissorTest(true);
@@ -38,6 +39,18 @@ export function makeView(stage, onPoint) {
   };
   const material = new ShaderMaterial({ uniforms, vertexShader, fragmentShader, side: DoubleSide });
   const plain = new ShaderMaterial({ uniforms: { ...uniforms, mode: { value: PLAIN } }, vertexShader, fragmentShader, side: DoubleSide });
+  // The face that someone has picked, seen through what is before it.
+  const outline = new LineLoop(new BufferGeometry(), new LineBasicMaterial({ color: 0xff8a00, depthTest: false }));
+  let outlined = [];
+  Object.assign(outline, { frustumCulled: false, renderOrder: 1, visible: false });
+  scene.add(outline);
+  const placeOutline = () => {
+    outline.visible = outlined.length > 0;
+    const { position } = outline.geometry.attributes;
+    if (!outline.visible || !position) return;
+    outlined.forEach((v, i) => position.setXYZ(i, surface.positions[3 * v], surface.positions[3 * v + 1], surface.positions[3 * v + 2]));
+    position.needsUpdate = true;
+  };
   const controls = new OrbitControls(camera, renderer.domElement);
   controls.enableDamping = false;
   controls.addEventListener('change', () => request());
@@ -168,11 +181,22 @@ export function makeView(stage, onPoint) {
       scene.add(mesh);
     }
     marked = -1;
+    view.outline([]);
   };
 
   /** The arrays of the surface have changed. */
   view.update = () => {
     for (const [, attribute] of attributes) attribute.needsUpdate = true;
+    placeOutline();
+    request();
+  };
+
+  /** Outlines the face with these corners; none: no face. */
+  view.outline = (corners) => {
+    outlined = corners;
+    outline.geometry.dispose();
+    outline.geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(3 * corners.length), 3));
+    placeOutline();
     request();
   };
 
@@ -259,8 +283,8 @@ export function makeView(stage, onPoint) {
     if (!pane || !surface) return null;
     aim(pane);
     const ray = new Vector3(((x - pane.x) / pane.width) * 2 - 1, 1 - ((y - pane.y) / pane.height) * 2, 0.5).unproject(camera).sub(camera.position);
-    const { vertex } = meet(surface.positions, part.triangles, camera.position.toArray(), ray.toArray());
-    return vertex < 0 ? null : { vertex, x, y };
+    const { vertex, triangle } = meet(surface.positions, part.triangles, camera.position.toArray(), ray.toArray());
+    return vertex < 0 ? null : { vertex, triangle, x, y };
   }
   let pointed;
   renderer.domElement.addEventListener('pointermove', (event) => {
@@ -273,7 +297,14 @@ export function makeView(stage, onPoint) {
     pointed = event;
   });
   renderer.domElement.addEventListener('pointerleave', () => onPoint(null));
-  renderer.domElement.addEventListener('click', (event) => onPoint(pointAt(event)));
+  // A click is no drag, which ends with one as well.
+  let pressed = [0, 0];
+  renderer.domElement.addEventListener('pointerdown', (event) => (pressed = [event.clientX, event.clientY]));
+  renderer.domElement.addEventListener('click', (event) => {
+    const found = pointAt(event);
+    onPoint(found);
+    if (found && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 5) onPick(found.triangle);
+  });
 
   const setWipe = (share) => {
     view.wipe = Math.min(Math.max(share, 0), 1);

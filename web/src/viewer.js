@@ -1,6 +1,7 @@
 // A report on the screen: the picture, the slider and the plot below it, and the panels beside it.
 import { h, panel, segmented } from './dom.js';
 import { degreesText, gradient, scaleEnd } from './colors.js';
+import { makeFacePanel } from './face_panel.js';
 import { choiceTable, choosers, viewerTable, notes, schemeTable, shownBy, shownPlaces, verdict, weightSliders, worstPlaces } from './panels.js';
 import { worstSample } from './motions.js';
 import { makePlayer } from './player.js';
@@ -26,11 +27,12 @@ function labelOf(part, vertex) {
 /**
  * @param {HTMLElement} root is filled
  * @param report from readContainer()
+ * @param compute asks the program for the figures of a face (face_panel.js); undefined where it is not at hand
  * @returns {{player, view, visit, key, restyle}} what tests and the pages around this use
  */
-export function makeViewer(root, report) {
+export function makeViewer(root, report, compute) {
   const stage = h('div', { className: 'stage' }), tip = h('div', { className: 'tip', hidden: true });
-  const view = makeView(stage, point);
+  const view = makeView(stage, point, (triangle) => faces.pick(triangle));
   const slider = h('input', { type: 'range', className: 'time', 'aria-label': 'moment of the motion', min: 0, max: 1, step: 'any' });
   const button = (className, title, onclick, text = '') => h('button', { type: 'button', className, title, 'aria-label': title, onclick }, text);
   const play = button('round', 'play, pause', () => player.toggle()), moment = h('output', { className: 'moment' });
@@ -49,6 +51,7 @@ export function makeViewer(root, report) {
   const player = makePlayer(report, changed);
   const chooser = choosers(report, player);
   const weights = report.kind === 'gltf' ? weightSliders(player) : null;
+  const faces = makeFacePanel(report, player, view, compute);
   const places = worstPlaces(report, visit);
   const stops = shownPlaces(report).length, next = () => visit((visited + 1) % stops), previous = () => visit((visited <= 0 ? stops : visited) - 1);
   const help = h('dialog', { className: 'help' }, h('h2', {}, 'Keys'),
@@ -63,7 +66,7 @@ export function makeViewer(root, report) {
         button('plain keys', 'Keys (?)', () => help.showModal(), '?')),
       stage, legend, h('div', { className: 'timeline' }, play, slider, moment),
       h('div', { className: 'here' }, now, h('span', { className: 'key', 'aria-hidden': true })), plotBox),
-    h('aside', { className: 'panels' }, h('p', { className: 'verdict' }, verdict(report)), chooser.box, places, weights?.box,
+    h('aside', { className: 'panels' }, h('p', { className: 'verdict' }, verdict(report)), chooser.box, places, faces.box, weights?.box,
       schemeTable(report, player), viewerTable(report), choiceTable(report), notes(report), aboutOf(report)),
     help);
 
@@ -100,6 +103,7 @@ export function makeViewer(root, report) {
     const { motion, part, surface } = player;
     if (what === 'part') {
       view.show(part, surface);
+      faces.leave();
       weights?.fill();
     }
     if (what === 'motion') {
@@ -182,7 +186,10 @@ export function makeViewer(root, report) {
     view.frame(true);
     if (first) view.mark(first.vertex);
   }
-  return { player, view, visit, key, setMode, setLayout, close: () => (player.pause(), view.close()), restyle: () => (plot.restyle(), view.request()) };
+  return {
+    player, view, faces, visit, key, setMode, setLayout, close: () => (player.pause(), view.close()),
+    restyle: () => (plot.restyle(), faces.restyle(), view.request()),
+  };
 }
 
 function aboutOf(report) {

@@ -15,6 +15,7 @@
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/compare.h"
+#include "workflow/compare/face_figure.h"
 #include "chronormal/workflow/inspect.h"
 #include "chronormal/workflow/query.h"
 
@@ -34,6 +35,9 @@ struct NamedComparison {
 /// `several` nests the inputs, even if there is only one. Without times the text is the same on every run.
 /// inputs must not be empty
 [[nodiscard]] std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times);
+
+/// input is the name of what the face belongs to.
+[[nodiscard]] std::string face_figure_json(const std::string& input, const FaceFigure& figure);
 
 struct NamedBlendComparison {
   std::string name;

@@ -14,6 +14,7 @@
 #include "io/bytes/binary.h"
 #include "workflow/json/object.h"
 #include "io/gltf/model/gltf_bake_mark.h"
+#include "workflow/report/worst_figures.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -203,6 +204,7 @@ std::string write_container(const std::string& head, const ReportModel& model) {
                              {"degrees", place.degrees},
                              {"label", place.label},
                              {"moment", place.moment}});
+  json["figures"] = worst_figures(model);
   const std::string own = json.dump(-1, ' ', false, Json::error_handler_t::replace), text = '{' + head + own.substr(1);
   std::string bytes = "CHRONRPT";
   binary::append(bytes, kLayout, std::endian::little);

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "chronormal/analysis/facing.h"
-#include "chronormal/normals/elements.h"
+#include "chronormal/analysis/signs.h"
+#include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/query.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/whole_polynomial.h"

@@ -1,0 +1,16 @@
+/// The figures of one face as a table.
+#ifndef CLI_REPORTS_FIGURE_REPORT_H_
+#define CLI_REPORTS_FIGURE_REPORT_H_
+
+#include <string>
+
+#include "workflow/compare/face_figure.h"
+
+namespace chronormal::cli {
+
+/// A line per scheme, and below it the matrix of the paper and the frames at both ends. input: its name.
+[[nodiscard]] std::string figure_table(const std::string& input, const FaceFigure& figure);
+
+}  // namespace chronormal::cli
+
+#endif  // CLI_REPORTS_FIGURE_REPORT_H_

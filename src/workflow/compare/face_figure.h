@@ -1,0 +1,64 @@
+/// The figures of the paper for one face: what a person needs to draw Figures 1 to 3 from a face of their own.
+///
+/// One face moves in one segment. At equally spaced times there are its exact normal with its length, which is twice the
+/// area, and for each scheme its normal, the length that it had before it was normalised (Figure 2), the angle to the
+/// exact one, and how it was made (Figure 3): the points of de Casteljau's algorithm, and the frames of quaternions.
+///
+/// Numbers    normals are those of Scheme::evaluate(), angles those of compare() at the same samples, so that their sum is
+///            q of the paper. Lengths, points and frames are computed in double from what the scheme keeps.
+/// Threads    pure.
+#ifndef CHRONORMAL_WORKFLOW_COMPARE_FACE_FIGURE_H_
+#define CHRONORMAL_WORKFLOW_COMPARE_FACE_FIGURE_H_
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chronormal/core/result.h"
+#include "chronormal/core/vec3.h"
+#include "chronormal/motion/motion.h"
+
+namespace chronormal::inline internal {
+
+struct FaceFigureOptions {
+  std::size_t face = 0, segment = 0;
+  std::vector<std::string> schemes;  ///< names; empty: default_schemes() of faces
+  std::size_t samples = 21;          ///< ends included; 2 or more
+};
+
+/// One scheme; S = samples.
+struct SchemeFigure {
+  std::string scheme;
+  double sum = 0;               ///< of the angles, radians: q of the paper
+  std::vector<Vec3d> normals;   ///< (S) unit vectors, or zero
+  std::vector<double> angles;   ///< (S) radians; NaN where the exact or this normal is zero
+  std::vector<double> lengths;  ///< (S) before the normal was made a unit vector; empty where it always is one
+  /// The exact normals that de Casteljau's algorithm begins with, (K), and at each sample the points that it comes to: K -
+  /// 1 of the first level, K - 2 of the second, ..., 1 of the last one, (S, K (K - 1) / 2). Else empty.
+  std::vector<Vec3d> nodes, points;
+  /// (S) the tangent of the frame of a quaternion at each sample; its binormal is normal x tangent. Else empty, and where
+  /// the scheme took its fallback.
+  std::vector<Vec3d> tangents;
+};
+
+struct FaceFigure {
+  std::size_t face = 0, segment = 0;
+  std::vector<std::array<Vec3d, 2>> corners;  ///< where each is at t = 0 and at t = 1
+  std::vector<double> times;                  ///< (S) t
+  std::vector<Vec3d> normals;                 ///< (S) exact unit normals, with their limits; zero where there are none
+  std::vector<double> lengths;                ///< (S) of n(t): twice the area
+  /// The paper's M (eq. 8): rows of the affine map that takes the first, the second and the last corner and the unit
+  /// normal from t = 0 to t = 1. Nothing where the face has no area at t = 0, or none at t = 1.
+  std::optional<std::array<std::array<double, 4>, 3>> matrix;
+  std::vector<SchemeFigure> schemes;
+};
+
+/// Errors: kUsage for a face, segment or scheme that does not exist, and for fewer than 2 samples.
+/// Precondition: the motion is valid (validate() in motion/motion.h)
+[[nodiscard]] Result<FaceFigure> face_figure(const Motion& motion, const FaceFigureOptions& options);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_COMPARE_FACE_FIGURE_H_

@@ -1,0 +1,15 @@
+/// The figures of one face as a JSON value, which reports hold as well. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_JSON_FACE_FIGURE_JSON_H_
+#define CHRONORMAL_WORKFLOW_JSON_FACE_FIGURE_JSON_H_
+
+#include "workflow/compare/face_figure.h"
+#include "workflow/json/object.h"
+
+namespace chronormal::inline internal {
+
+/// Vectors follow each other in flat arrays. Directions and degrees are rounded to 1e-7, which float32 cannot tell apart.
+[[nodiscard]] Json face_figure_object(const FaceFigure& figure);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_JSON_FACE_FIGURE_JSON_H_

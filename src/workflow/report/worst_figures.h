@@ -1,0 +1,26 @@
+/// The paper's figures for the faces around the worst places of a report. Private to workflow.
+#ifndef CHRONORMAL_WORKFLOW_REPORT_WORST_FIGURES_H_
+#define CHRONORMAL_WORKFLOW_REPORT_WORST_FIGURES_H_
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+#include "workflow/json/object.h"
+#include "workflow/report/report_model.h"
+
+namespace chronormal::inline internal {
+
+/// A page without the program inside shows these alone; eight take about 40 kB of it.
+inline constexpr std::size_t kMostFigures = 8, kFigureSamples = 21;
+inline constexpr std::array<std::string_view, 7> kFigureSchemes = {
+    "linear", "quadratic", "cubic", "slerp", "decasteljau:4", "quaternion:matrix", "quaternion:optimal"};
+
+/// Returns an array of figures, that of the worst place first: for each place the face around it whose normal `linear`
+/// misses most, unless another place has it. The face moves in the segment of the place; in a glTF file it moves from the
+/// base to the moment of the place, or to weight 1 where the place is found by a weight.
+[[nodiscard]] Json worst_figures(const ReportModel& model);
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_WORKFLOW_REPORT_WORST_FIGURES_H_
