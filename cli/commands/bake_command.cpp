@@ -12,6 +12,7 @@
 
 #include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
+#include "chronormal/motion/paths.h"
 #include "chronormal/workflow/audit.h"
 #include "cli/options/command.h"
 #include "cli/options/outputs.h"
@@ -267,6 +268,16 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
     return misuse("--encode", "a sequence is written harmless, exact, endpoint or keys");
   if (how.encoding == BakeEncoding::kKeys && how.tolerance.value_or(kHarmlessTolerance) < kLeastKeyTolerance)
     return misuse("--tolerance", "of --encode keys it must be 0.001 degrees or more");
+  if (how.encoding == BakeEncoding::kKeys && options.input.is_curved()) {
+    // What is promised is about the curves: the pieces that they were cut into take their share of it.
+    const double asked = how.tolerance.value_or(kHarmlessTolerance),
+                 pieces = make_path(options.input.path).value().tolerance;
+    how.tolerance = asked - pieces;
+    if (*how.tolerance < kLeastKeyTolerance)
+      return misuse("--path", formatted("pieces within {:g} degrees of the curves leave keys nothing of the "
+                                        "tolerance of {:g}: give a larger --tolerance, or a smaller angle",
+                                        pieces, asked));
+  }
   if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
   if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
   const std::string extension = std::filesystem::path(output).extension().string();

@@ -336,6 +336,12 @@ std::string lines_after(const BakeReport& report) {
   return text;
 }
 
+// Says how far what is right for straight pieces is from the curves that these stand for.
+std::string beside_curves(const SequenceBake& bake) {
+  if (!bake.cut) return "";
+  return formatted(" for the straight pieces, within {:g} degrees of the curves", bake.cut->path.tolerance);
+}
+
 }  // namespace
 
 std::string worse_text(const BeforeAndAfter& audit, bool of_animations) {
@@ -444,15 +450,18 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
     text += formatted("{}, {} of them between keyframes; {} left out; {} would do if all segments were cut alike\n",
                       counted(bake.keys->count, "key", "keys"), grouped(bake.keys->in_between),
                       counted(bake.keys->left_out, "keyframe", "keyframes"), grouped(bake.keys->even));
-    text += formatted("keys: at most {} degrees from the right normals at every instant, certified\n",
-                      four_decimals(bake.largest_error));
+    text += formatted("keys: at most {} degrees from the right normals{} at every instant, certified\n",
+                      four_decimals(bake.largest_error), bake.cut ? " of the straight pieces" : "");
+    if (bake.cut)
+      text += formatted("and at most {} from those of the curves, wherever the faces around agree\n",
+                        four_decimals(bake.largest_error + bake.cut->path.tolerance));
   } else if (encoding == BakeEncoding::kExact && bake.largest_error == 0) {
     bool are_all_known = bake.without_normals == 0;
     if (report.audit) {
       const Audit& after = report.audit->after;
       are_all_known = after.is_judged() && after.error.cancelled == 0 && after.error.unlit == 0;
     }
-    text += are_all_known ? "exact at every instant\n"
+    text += are_all_known ? "exact at every instant" + beside_curves(bake) + '\n'
                           : "exact wherever there is a right normal: around some vertices the normals of faces cancel, "
                             "or no face\nhas an area\n";
   } else

@@ -2,13 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
+#include "tests/support/curved_motion.h"
+#include "tests/support/fixtures.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/shown_glb.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::paths_cli_test {
@@ -52,6 +60,10 @@ class Paths : public testing::Test {
   }
   [[nodiscard]] ProcessResult run(const std::string& arguments) const {
     return run_shell(std::string(kProgram) + " " + arguments, folder_.path());
+  }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+  [[nodiscard]] std::string read(const std::string& name) const {
+    return test::read_whole(folder_.path() + "/" + name);
   }
   [[nodiscard]] Json json(const std::string& arguments) const {
     const ProcessResult result = run(arguments);
@@ -103,6 +115,88 @@ TEST_F(Paths, are_straight_between_two_keyframes_and_all_commands_say_so) {
     EXPECT_NE(result.err.find("two keyframes have no curve through them"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("1 segment cut into 1 straight piece"), std::string::npos) << result.err;
   }
+}
+
+// What a viewer shows at times between keyframes, against the curves through these: the tolerance is for both, the pieces of
+// curves and the keys. Faces that do not agree may cancel, and no bound on theirs holds for their sum: vertices with such
+// faces do not count.
+TEST_F(Paths, keys_of_curves_are_within_the_tolerance_of_the_curves_themselves) {
+  constexpr std::uint64_t kSeed = 20261127;
+  constexpr std::size_t kSide = 8;
+  std::cout << "  from seed " << kSeed << '\n';
+  fixtures::Random random(kSeed);
+  long double worst_of_all = 0;
+  for (int i = 0; i < 12; ++i) {
+    Motion motion;
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t v = 0; v + kSide < kSide * kSide; ++v) {
+      if (v % kSide + 1 == kSide) continue;
+      const std::uint32_t below = v + kSide;
+      corners.insert(corners.end(), {v, v + 1, below, v + 1, below + 1, below});
+    }
+    motion.topology = Topology::triangles(kSide * kSide, corners).value();
+    const double size = random.uniform(0.02, 0.3) / kSide;
+    std::vector<std::array<std::array<double, 3>, 4>> ways(kSide * kSide);
+    for (auto& way : ways)
+      for (auto& one : way) one = random.in_cube(1.7 * size);
+    for (int k = 0; k < 3; ++k) {
+      Motion::Keyframe keyframe;
+      keyframe.time = k;
+      const double t = k / 2.0, shares[4] = {1, std::sin(2 * t), t * t, std::cos(3 * t)};
+      std::ostringstream text;
+      text.precision(9);
+      for (std::size_t v = 0; v < ways.size(); ++v) {
+        const double x = static_cast<double>(v / kSide) / (kSide - 1), y = static_cast<double>(v % kSide) / (kSide - 1);
+        const double place[3] = {x, y, 0.3 * std::sin(3 * x + 2 * t)};
+        text << 'v';
+        for (std::size_t c = 0; c < 3; ++c) {
+          double p = place[c];
+          for (std::size_t j = 0; j < 4; ++j) p += shares[j] * ways[v][j][c];
+          keyframe.positions.push_back(static_cast<float>(p));
+          text << ' ' << keyframe.positions.back();
+        }
+        text << '\n';
+      }
+      for (std::size_t f = 0; f < corners.size(); f += 3)
+        text << "f " << corners[f] + 1 << ' ' << corners[f + 1] + 1 << ' ' << corners[f + 2] + 1 << '\n';
+      write("w" + std::to_string(k) + ".obj", text.str());
+      motion.keyframes.push_back(keyframe);
+    }
+    motion.connect_as_sequence();
+    const char* const options = i % 3 == 0 ? "" : i % 3 == 1 ? ":0.3" : ":0.49";
+    const ProcessResult result =
+        run(std::string("bake 'w*.obj' --encode keys --no-audit --force -o out.glb --path catmull-rom") + options);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("from those of the curves"), std::string::npos) << result.out;
+    const test::ShownGlb shown(read("out.glb"));
+    ASSERT_EQ(shown.vertices(), kSide * kSide);
+    long double worst = 0;
+    for (int step = 0; step <= 2 * 40; ++step) {
+      const double time = step / 40.0;
+      const std::size_t segment = time < 1 ? 0 : 1;
+      const auto positions =
+          test::on_curve(motion, segment, static_cast<long double>(time) - static_cast<long double>(segment));
+      const auto normals = test::normals_of(motion, positions, true),
+                 faces = test::normals_of(motion, positions, false);
+      std::vector<bool> agrees(kSide * kSide, true);
+      for (std::size_t c = 0; c < corners.size(); ++c)
+        if (test::angle_of(faces[c / 3], normals[corners[c]]) > 0.7) agrees[corners[c]] = false;
+      const std::vector<double> weights = shown.weights(time);
+      for (std::size_t v = 0; v < shown.vertices(); ++v)
+        if (agrees[v]) worst = std::max<long double>(worst, test::angle_of(normals[v], shown.normal(v, weights)));
+    }
+    worst *= 180 / std::acos(-1.0L);
+    EXPECT_LE(worst, 0.502L) << "motion " << i << options;
+    worst_of_all = std::max(worst_of_all, worst);
+  }
+  std::cout << "  worst " << worst_of_all << " degrees\n";
+  const ProcessResult refused = run("bake 'w*.obj' --encode keys --path catmull-rom:0.5 -o out.glb --force");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("leave keys nothing of the tolerance of 0.5"), std::string::npos) << refused.err;
+  const std::string exact = run("bake 'w*.obj' --path catmull-rom:0.5 -o out.glb --force").out;
+  EXPECT_NE(exact.find("exact at every instant for the straight pieces, within 0.5 degrees of the curves"),
+            std::string::npos)
+      << exact;
 }
 
 TEST_F(Paths, all_warn_of_velocities_that_are_not_those_of_the_motion) {
