@@ -67,8 +67,8 @@ Result<Question> find_question(const QueryArguments& options) {
   return *found;
 }
 
-// Says of a mesh behind a skin that answers are about the mesh before it: joints move vertices on curves that no straight
-// segment follows. Errors: kUsage where the places in the world were asked for.
+// Says of a mesh behind a skin that answers are about the mesh before it: joints move vertices on curves that no
+// straight segment follows. Errors: kUsage where the places in the world were asked for.
 Status check_skins(const Input& input, const InputOptions& options) {
   if (input.document() == nullptr) return Success{};
   for (const GltfNode& node : input.document()->nodes()) {

@@ -117,9 +117,9 @@ TEST_F(Paths, are_straight_between_two_keyframes_and_all_commands_say_so) {
   }
 }
 
-// What a viewer shows at times between keyframes, against the curves through these: the tolerance is for both, the pieces of
-// curves and the keys. Faces that do not agree may cancel, and no bound on theirs holds for their sum: vertices with such
-// faces do not count.
+// Holds what a viewer shows at times between keyframes against the curves through these: the tolerance is for both, the
+// pieces of curves and the keys. Faces that do not agree may cancel, and no bound on theirs holds for their sum:
+// vertices with such faces do not count.
 TEST_F(Paths, keys_of_curves_are_within_the_tolerance_of_the_curves_themselves) {
   constexpr std::uint64_t kSeed = 20261127;
   constexpr std::size_t kSide = 8;

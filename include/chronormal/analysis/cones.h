@@ -62,8 +62,8 @@ void normal_cones(std::span<const ControlNormals> normals, double t0, double t1,
 void face_normal_cones(const Segment& segment, IndexRange faces, double t0, double t1,
                        std::span<NormalCone> result) noexcept;
 
-/// Returns the cone of the normal of a vertex or corner, which is the sum of these faces (NormalGroups::faces()), always
-/// from integers: some microseconds for each face. The same conditions.
+/// Returns the cone of the normal of a vertex or corner, the sum of these faces (NormalGroups::faces()), always from
+/// integers: some microseconds for each face. The same conditions.
 [[nodiscard]] NormalCone normal_cone_of_faces(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
                                               double t1) noexcept;
 

@@ -145,9 +145,9 @@ void find_facings(const Segment& segment, IndexRange faces, std::span<const Cont
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const ControlNormals& normals,
                                  const View& view) noexcept;
 
-/// Decides for the normal of a vertex or corner, which is the sum of n(t) over the faces around it (NormalGroups::faces())
-/// and is seen from the vertex: f(t) = n(t) . w(t) with w(t) the way from the vertex to the viewer. As certain as for
-/// faces, however far these cancel. Cost: up to a microsecond for each face, and some tens of them where integers decide.
+/// Decides for the normal of a vertex or corner, the sum of n(t) over the faces around it (NormalGroups::faces()), seen
+/// from the vertex: f(t) = n(t) . w(t) with w(t) the way from the vertex to the viewer. As certain as for faces,
+/// however far these cancel. Cost: up to a microsecond for each face, and some tens of them where integers decide.
 /// Allocates nothing. vertex and faces must lie inside the topology
 [[nodiscard]] Facing find_vertex_facing(const Segment& segment, std::uint32_t vertex,
                                         std::span<const std::uint32_t> faces, const View& view) noexcept;

@@ -333,7 +333,7 @@ Facing facing_by_roots(const Segment& segment, std::size_t face, const View& vie
   return facing_by_roots<M>(p, from.error[lane], [&](const auto& body) { in_integers<M>(segment, face, view, body); });
 }
 
-// The sum of the control normals of some faces in double, how far any component may be off, and how large its terms are.
+// The sum of the control normals of some faces in double, how far any component may be off, and how large terms are.
 struct SummedNormals {
   ControlNormals normals;
   double error = 0, size = 0;
@@ -371,7 +371,7 @@ Facing facing_of_sum(const Segment& segment, std::uint32_t vertex, std::span<con
   }
   // A place on a part of the way would be rounded, and products with tiny components may be: integers have neither.
   const bool is_sure = fits_double(view) && is_whole_way(view);
-  // The way, products, sums of three and of two, and a third: at most 16 roundings of terms that are no larger than this.
+  // The way, products, sums of three and of two, and a third: at most 16 roundings of terms no larger than this.
   constexpr double kRoundings = 16;
   const double longest = std::max(length_1(at_start), length_1(at_end));
   const double error = longest * (sum.error + kRoundings * kUnitRoundoff * sum.size);

@@ -1,11 +1,11 @@
 /// The figures of the paper for one face: what a person needs to draw Figures 1 to 3 from a face of their own.
 ///
-/// One face moves in one segment. At equally spaced times there are its exact normal with its length, which is twice the
-/// area, and for each scheme its normal, the length that it had before it was normalised (Figure 2), the angle to the
+/// One face moves in one segment. At equally spaced times there are its exact normal with its length, twice the area,
+/// and for each scheme its normal, the length that it had before it was normalised (Figure 2), the angle to the
 /// exact one, and how it was made (Figure 3): the points of de Casteljau's algorithm, and the frames of quaternions.
 ///
-/// Numbers    normals are those of Scheme::evaluate(), angles those of compare() at the same samples, so that their sum is
-///            q of the paper. Lengths, points and frames are computed in double from what the scheme keeps.
+/// Numbers    normals are those of Scheme::evaluate(), angles those of compare() at the same samples, so that their sum
+///            is q of the paper. Lengths, points and frames are computed in double from what the scheme keeps.
 /// Threads    pure.
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_FACE_FIGURE_H_
 #define CHRONORMAL_WORKFLOW_COMPARE_FACE_FIGURE_H_
@@ -35,11 +35,11 @@ struct SchemeFigure {
   std::vector<Vec3d> normals;   ///< (S) unit vectors, or zero
   std::vector<double> angles;   ///< (S) radians; NaN where the exact or this normal is zero
   std::vector<double> lengths;  ///< (S) before the normal was made a unit vector; empty where it always is one
-  /// The exact normals that de Casteljau's algorithm begins with, (K), and at each sample the points that it comes to: K -
-  /// 1 of the first level, K - 2 of the second, ..., 1 of the last one, (S, K (K - 1) / 2). Else empty.
+  /// The exact normals that de Casteljau's algorithm begins with, (K), and at each sample the points that it comes to:
+  /// K - 1 of the first level, K - 2 of the second, ..., 1 of the last one, (S, K (K - 1) / 2). Else empty.
   std::vector<Vec3d> nodes, points;
-  /// (S) the tangent of the frame of a quaternion at each sample; its binormal is normal x tangent. Else empty, and where
-  /// the scheme took its fallback.
+  /// (S) the tangent of the frame of a quaternion at each sample; its binormal is normal x tangent. Else empty, and
+  /// where the scheme took its fallback.
   std::vector<Vec3d> tangents;
 };
 

@@ -7,7 +7,7 @@
 
 namespace chronormal::inline internal {
 
-/// Vectors follow each other in flat arrays. Directions and degrees are rounded to 1e-7, which float32 cannot tell apart.
+/// Vectors follow each other in flat arrays. Directions and degrees are rounded to 1e-7, as float32 has them.
 [[nodiscard]] Json face_figure_object(const FaceFigure& figure);
 
 }  // namespace chronormal::inline internal

@@ -17,8 +17,8 @@ inline constexpr std::array<std::string_view, 7> kFigureSchemes = {
     "linear", "quadratic", "cubic", "slerp", "decasteljau:4", "quaternion:matrix", "quaternion:optimal"};
 
 /// Returns an array of figures, that of the worst place first: for each place the face around it whose normal `linear`
-/// misses most, unless another place has it. The face moves in the segment of the place; in a glTF file it moves from the
-/// base to the moment of the place, or to weight 1 where the place is found by a weight.
+/// misses most, unless another place has it. The face moves in the segment of the place; in a glTF file it moves from
+/// the base to the moment of the place, or to weight 1 where the place is found by a weight.
 [[nodiscard]] Json worst_figures(const ReportModel& model);
 
 }  // namespace chronormal::inline internal

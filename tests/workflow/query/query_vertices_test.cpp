@@ -25,8 +25,8 @@ using test::WholeVector;
 constexpr std::uint64_t kSeed = 20261127;
 constexpr std::uint32_t kSide = 4;  // vertices
 
-// A sheet of quads and triangles at three keyframes. Small whole coordinates meet every exact coincidence: sums of faces
-// that cancel, normals that are seen edge-on at a keyframe, vertices at the eye. Two vertices are at one point.
+// A sheet of quads and triangles at three keyframes. Small whole coordinates meet every exact coincidence: sums of
+// faces that cancel, normals that are seen edge-on at a keyframe, vertices at the eye. Two vertices are at one point.
 Motion small_sheet(fixtures::Random& random, int reach) {
   Motion motion;
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -78,8 +78,8 @@ std::vector<double> numbers(const QueryTable& table, const std::string& name) {
   return {};
 }
 
-// Which faces a normal is the sum of, by coordinates alone: those with a vertex that is at this point throughout. Two fans
-// of corners that touch in a point stay apart, so corners are of their vertex alone.
+// Lists the faces that a normal is the sum of, by coordinates alone: those with a vertex at this point throughout. Two
+// fans of corners that touch in a point stay apart, so corners are of their vertex alone.
 struct Output {
   std::uint32_t vertex = 0;
   std::vector<std::uint32_t> faces;
