@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/support/places.h"
 #include "tests/support/process.h"
@@ -15,6 +18,7 @@
 namespace chronormal::compare_cli_test {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 // Three triangles move in the first of two segments: one without area, one whose normal turns over at t = 1/4, and one
@@ -42,7 +46,6 @@ class CompareFigures : public testing::Test {
   static constexpr double kMean = kSum / 12;
   static constexpr double kRms = 52.23332855092279;  // sqrt((180^2 + kLess^2) / 12)
 
- private:
   test::TemporaryFolder folder_;
 };
 
@@ -105,6 +108,124 @@ TEST_F(CompareFigures, latex_has_the_figures_of_both_tables) {
   for (const char* const wrong : {"--table pdf", "--table latex --json", "--table latex --csv",
                                   "--table latex --shard 1/1", "--table latex --truth 2"})
     EXPECT_EQ(exit_code_of(wrong), 2) << wrong;
+}
+
+// The cells of a row of LaTeX or of the text table, which begins with a name.
+std::vector<std::string> cells_after(const std::string& text, const std::string& name, char separator) {
+  const std::size_t begin = text.find('\n' + name + ' ');
+  if (begin == std::string::npos) {
+    ADD_FAILURE() << "no row " << name << " in\n" << text;
+    return {};
+  }
+  std::istringstream row(text.substr(begin + 1 + name.size(), text.find('\n', begin + 1) - begin - 1 - name.size()));
+  std::vector<std::string> cells;
+  for (std::string word; row >> word;) {
+    if (separator == ' ')
+      cells.push_back(word);
+    else if (word[0] != separator && word != "\\\\")
+      cells.push_back(word);
+  }
+  return cells;
+}
+
+std::string with_groups(double value) {
+  std::ostringstream text;
+  text.precision(1);
+  text << std::fixed << value;
+  std::string digits = text.str();
+  for (std::size_t at = digits.find('.'); at > 3; at -= 3) digits.insert(at - 3, ",");
+  return digits;
+}
+
+std::string with_decimals(double value, int digits) {
+  std::ostringstream text;
+  text.precision(digits);
+  text << std::fixed << value;
+  return text.str();
+}
+
+TEST_F(CompareFigures, latex_and_operations_have_the_numbers_of_json_each_in_its_place) {
+  const std::vector<std::pair<std::string, std::string>> names = {{"linear", "Linear"},
+                                                                  {"quadratic", "Quadratic"},
+                                                                  {"cubic", "Cubic"},
+                                                                  {"slerp", "Vector SLERP"},
+                                                                  {"decasteljau:4", "Spherical deCasteljau"},
+                                                                  {"quaternion:matrix", "Quaternion SLERP"},
+                                                                  {"lagrange:5", "\\texttt{lagrange:5}"},
+                                                                  {"circle", "\\texttt{circle}"}};
+  std::string schemes;
+  for (const auto& [scheme, name] : names) schemes += (schemes.empty() ? "" : ",") + scheme;
+  // Motions whose figures differ, the first of a name that means something to LaTeX.
+  fs::create_directory(folder_.path() + "/a_b 10%");
+  fs::copy(folder_.path() + "/1.obj", folder_.path() + "/a_b 10%/1.obj");
+  fs::copy(folder_.path() + "/2.obj", folder_.path() + "/a_b 10%/2.obj");
+  const auto compare = [&](const std::string& form) {
+    const ProcessResult result = run_shell(std::string(kProgram) +
+                                               " compare --each 'a_b 10%' --sample soup --samples 7 "
+                                               "--no-times --schemes " +
+                                               schemes + " " + form,
+                                           folder_.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  };
+  const std::string latex = compare("--table latex");
+  EXPECT_NE(latex.find("\\multicolumn{2}{r}{a\\_b 10\\%} & \\multicolumn{2}{r}{soup}"), std::string::npos) << latex;
+  EXPECT_NE(latex.find("a\\_b 10\\% with 3 in 1 segment, soup with 5,000 in 1 segment"), std::string::npos) << latex;
+  const Json random = Json::parse(compare("--json"))["inputs"],
+             played = Json::parse(compare("--json --access sequential"))["inputs"];
+  const std::string cost = latex.substr(latex.find("sequential access"));
+  const std::string text =
+      run_shell("COLUMNS=200 " + std::string(kProgram) +
+                    " compare --sample soup --samples 7 --no-times --table operations --schemes " + schemes,
+                folder_.path())
+          .out;
+  for (std::size_t r = 0; r < names.size(); ++r) {
+    const auto& [scheme, name] = names[r];
+    SCOPED_TRACE(scheme);
+    std::vector<std::string> expected;
+    for (const Json& input : random) {
+      const Json& row = input["schemes"][r];
+      expected.push_back(with_groups(row["sum_degrees"]));
+      expected.push_back(with_decimals(row["relative_to_linear"], 4));
+    }
+    EXPECT_EQ(cells_after(latex, name, '&'), expected);
+    expected.clear();
+    std::vector<std::string> of_text;
+    for (const Json* const inputs : {&random, &played}) {
+      const Json& row = (*inputs)[1]["schemes"][r];
+      const bool is_there = inputs == &random || row["access"] == "sequential";
+      for (const char* const key : {"add", "multiply", "divide", "sqrt", "trigonometric"}) {
+        const std::string count = std::to_string(row["operations"][key].get<int>());
+        expected.push_back(is_there ? count : "--");
+        if (inputs == &random) of_text.push_back(count);
+      }
+    }
+    expected.push_back(with_decimals(random[1]["schemes"][r]["bytes"], 0));
+    EXPECT_EQ(cells_after(cost, name, '&'), expected);
+    const std::vector<std::string> cells = cells_after(text, scheme, ' ');
+    ASSERT_GT(cells.size(), 5U);
+    EXPECT_EQ(std::vector<std::string>(cells.end() - 5, cells.end()), of_text);
+  }
+  EXPECT_NE(cells_after(cost, "Spherical deCasteljau", '&')[5], cells_after(cost, "Linear", '&')[5]);
+}
+
+TEST_F(CompareFigures, a_weighting_is_that_of_the_figures_and_not_of_their_name_alone) {
+  std::map<double, std::string> sums;
+  for (const std::string weighting :
+       {"area", "angle", "uniform", "area-angle", "max", "inverse-edges", "inverse-roots"}) {
+    // Two triangles of different shapes around each of two vertices, so that every weighting has its own sum.
+    folder_.write("h0.obj", "v 0 0 0\nv 3 0 0\nv 0 1 0\nv 4 2 1\nf 1 2 3\nf 3 2 4\n");
+    folder_.write("h1.obj", "v 0 0 0\nv 3 0 1\nv 0 2 0\nv 4 2 -3\nf 1 2 3\nf 3 2 4\n");
+    const std::string own =
+        " compare h0.obj h1.obj --elements vertices --samples 5 --schemes linear,quadratic --no-times --weighting " +
+        weighting;
+    const Json json = Json::parse(run_shell(std::string(kProgram) + own + " --json", folder_.path()).out);
+    EXPECT_EQ(json["weighting"], weighting);
+    const double sum = json["schemes"][1]["sum_degrees"];
+    EXPECT_TRUE(sums.emplace(sum, weighting).second) << weighting << " has the sum of " << sums[sum];
+    const std::string text = run_shell(std::string(kProgram) + own, folder_.path()).out;
+    EXPECT_EQ(cells_after(text, "quadratic", ' ').at(0), with_groups(sum)) << text;
+  }
 }
 
 TEST_F(CompareFigures, weightings_are_named_and_are_of_vertices) {

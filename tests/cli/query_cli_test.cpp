@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/support/array_file.h"
+#include "tests/support/bake_fixture.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
@@ -47,6 +48,34 @@ class QueryCli : public testing::Test {
 
   test::TemporaryFolder folder_;
 };
+
+TEST_F(QueryCli, a_mesh_behind_a_skin_is_asked_before_it_is_skinned_and_that_is_said) {
+  test::GltfBuilder builder = test::still_hills_document(1);
+  folder_.write("free.glb", builder.glb());
+  const auto joint = builder.add("nodes", {{"translation", {0, 5, 0}}});
+  builder.json["nodes"][0]["skin"] = builder.add("skins", {{"joints", {joint}}});
+  folder_.write("skinned.glb", builder.glb());
+  const ProcessResult free = run("collapse free.glb"), skinned = run("collapse skinned.glb");
+  EXPECT_EQ(free.exit_code, 0) << free.err;
+  EXPECT_EQ(free.err.find("skin"), std::string::npos) << free.err;
+  EXPECT_EQ(skinned.exit_code, 0) << skinned.err;
+  EXPECT_NE(skinned.err.find("mesh 0 is placed by a skin, which query does not follow"), std::string::npos)
+      << skinned.err;
+  expect_misuse("collapse skinned.glb --world", "leave out --world");
+  EXPECT_EQ(run("collapse free.glb --world").exit_code, 0);
+}
+
+TEST_F(QueryCli, elements_are_of_the_questions_that_take_them) {
+  expect_misuse("collapse a.obj b.obj --elements vertices", "query collapse is about faces");
+  expect_misuse("facing a.obj b.obj --direction 0,0,1 --elements edges", "--elements");
+  expect_misuse("facing a.obj b.obj --direction 0,0,1 --elements vertices --silhouettes", "--silhouettes");
+  const Json vertices = json_of("facing a.obj b.obj --direction 0,0,1 --elements vertices");
+  EXPECT_EQ(vertices["summary"]["vertices"], 4);
+  // The vertex that crosses the diagonal has the normal of face 1 alone, which turns over at t = 1/2.
+  const Json &of = vertices["arrays"]["vertex"], &to = vertices["arrays"]["to"];
+  ASSERT_EQ(of.size(), 4U);
+  expect_near(Json::array({to[3]}), {0.5});
+}
 
 TEST_F(QueryCli, collapses_are_rows_of_segment_and_face) {
   const Json json = json_of("collapse a.obj b.obj c.obj");
