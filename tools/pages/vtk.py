@@ -1,8 +1,8 @@
 """Draws the picture of docs/simulation.md, the stock filter of VTK beside ours half-way through a morph, and prints the table of
 that page, which shows how far the normals of both are off on the built-in morphs.
 
-    picture.py PROGRAM            writes the picture into docs/pictures
-    picture.py PROGRAM --check    draws it elsewhere, and exits with 1 where the picture or the table is different
+    vtk.py PROGRAM            writes the picture into docs/pictures
+    vtk.py PROGRAM --check    draws it elsewhere, and exits with 1 where the picture or the table is different
 """
 
 import subprocess
@@ -117,7 +117,7 @@ def main():
         different += 1
     before = np.asarray(Image.open(PICTURE).convert("RGB"), dtype=float)
     if before.shape != picture.shape or np.abs(before - picture).mean() > 2:
-        print(f"{PICTURE} looks different now: tools/make_vtk draws it", file=sys.stderr)
+        print(f"{PICTURE} looks different now: tools/make_page vtk draws it", file=sys.stderr)
         different += 1
     return 1 if different else 0
 

@@ -1,6 +1,6 @@
 """Writes the table of js/README.md: time and memory of the npm package beside the native program, and sizes.
 
-    CHRONORMAL_DATA=FOLDER figures.py PROGRAM PACKAGE TARBALL README
+    CHRONORMAL_DATA=FOLDER npm.py PROGRAM PACKAGE TARBALL README
 
 Each is a process of its own, and its time is that of all processors together, start included: the package has one
 thread, the program one for each processor.

@@ -1,6 +1,6 @@
-"""Draws the pictures of docs/artists.md, in a window of Blender with the add-on. Run by tools/make_blender_pictures:
+"""Draws the pictures of docs/blender.md, in a window of Blender with the add-on. Run by tools/make_page blender:
 
-    blender --factory-startup --enable-event-simulate --python pictures.py -- PROGRAM MODELS FOLDER
+    blender --factory-startup --enable-event-simulate --python blender.py -- PROGRAM MODELS FOLDER
 
 FOLDER gets blender_export.jpg and blender_check.jpg, which are pictures of the window, and blender_before_after.jpg, which is
 rendered: the same mesh at one moment with the normals of the plain file, of the corrected one, and of Blender. MODELS is an empty

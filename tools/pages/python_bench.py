@@ -1,6 +1,6 @@
 """How long normals take, against NumPy that recomputes them from positions; both are verified before they are timed.
 
-    PYTHONPATH=build/release/python python3 tools/python/bench.py [--faces 1000000]
+    PYTHONPATH=build/release/python python3 tools/pages/python_bench.py [--faces 1000000]
 """
 
 import argparse
