@@ -1,4 +1,4 @@
-/// Writes the results of a run: tables for people, and one JSON object for tools/make_benchmarks.
+/// What a run says: tables for people, one JSON object for tools/make_page benchmarks.
 #ifndef BENCH_MEASURE_REPORT_H_
 #define BENCH_MEASURE_REPORT_H_
 
