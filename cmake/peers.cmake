@@ -1,4 +1,4 @@
-# Other libraries that compute normals, to compare with (tools/make_weightings and ./run bench install and use them).
+# Other libraries that compute normals, to compare with (./run bench installs and uses them).
 find_package(OpenMesh QUIET)
 find_package(VTK QUIET COMPONENTS CommonCore CommonDataModel FiltersCore FiltersModeling)
 # CGAL would complain about build types that are not Release.

@@ -76,7 +76,7 @@ typedef struct chronormal_options {
   int elements;          /* a chronormal_elements; usually CHRONORMAL_VERTICES */
   int separate;          /* not 0: vertices at one point are not joined, so that seams show */
   double crease_angle;   /* degrees, of corners: edges that are sharper at t = 0 are hard; usually 180 */
-  const char* weighting; /* "area" (exact), or another name of docs/weightings.md; NULL: area */
+  const char* weighting; /* "area" (exact), or another name of docs/truth.md; NULL: area */
   double tolerance;      /* radians; usually 1e-6; 1e-3 needs a third of the memory */
   int all_threads;       /* not 0: work on all cores */
 } chronormal_options;

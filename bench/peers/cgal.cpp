@@ -39,15 +39,6 @@ using FaceNormals = Normals<Mesh::Face_index>;
 
 Vec3d unit_of(const Kernel::Vector_3& n) { return unit(Vec3d{n.x(), n.y(), n.z()}); }
 
-std::vector<Vec3d> compute_vertex_normals(const TriangleMesh& from) {
-  Mesh mesh = make_mesh(from);
-  const auto normals = mesh.add_property_map<Mesh::Vertex_index, Kernel::Vector_3>("v:normal", CGAL::NULL_VECTOR).first;
-  CGAL::Polygon_mesh_processing::compute_vertex_normals(mesh, normals);
-  std::vector<Vec3d> result;
-  for (const Mesh::Vertex_index v : mesh.vertices()) result.push_back(unit_of(normals[v]));
-  return result;
-}
-
 struct KeptMesh : LibraryMesh {
   explicit KeptMesh(const TriangleMesh& from) : mesh(make_mesh(from)) {}
 
@@ -64,8 +55,6 @@ std::string version() {
 
 }  // namespace
 
-std::vector<Method> cgal_methods() { return {{"CGAL " + version(), "compute_vertex_normals", compute_vertex_normals}}; }
-
 Library cgal_library() {
   Library library{"CGAL", version(), {}, nullptr};
   library.make_mesh = [](const TriangleMesh& from) -> std::unique_ptr<LibraryMesh> {
@@ -81,7 +70,7 @@ Library cgal_library() {
     return unit_of(static_cast<const KeptMesh&>(kept).of_faces[Mesh::Face_index(static_cast<Mesh::size_type>(f))]);
   };
   Call vertices{"compute_vertex_normals", true, Rule::kOther};
-  vertices.note = "another normal than a sum, see weightings.md";
+  vertices.note = "another normal than a sum";
   vertices.slow_in_random_order = true;
   vertices.compute = [](LibraryMesh& kept) {
     auto& [mesh, of_vertices, of_faces] = static_cast<KeptMesh&>(kept);

@@ -7,14 +7,11 @@
 namespace chronormal::peers {
 namespace {
 
-// Normals are compared in double and timed in float, the default of the library.
-using Mesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraitsDouble>;
-using FloatMesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraits>;
+using Mesh = OpenMesh::TriMesh_ArrayKernelT<OpenMesh::DefaultTraits>;
 
-template <class M>
-void fill(M& mesh, const TriangleMesh& from) {
+void fill(Mesh& mesh, const TriangleMesh& from) {
   mesh.reserve(from.vertex_count(), from.vertex_count() + from.face_count(), from.face_count());
-  std::vector<typename M::VertexHandle> vertices;
+  std::vector<Mesh::VertexHandle> vertices;
   for (std::size_t v = 0; v < from.vertex_count(); ++v) {
     const auto p = from.positions.subspan(3 * v, 3);
     vertices.push_back(mesh.add_vertex({p[0], p[1], p[2]}));
@@ -28,56 +25,21 @@ void fill(M& mesh, const TriangleMesh& from) {
   mesh.update_face_normals();
 }
 
-template <class Compute>
-std::vector<Vec3d> each_vertex(const TriangleMesh& from, Compute compute) {
-  Mesh mesh;
-  fill(mesh, from);
-  std::vector<Vec3d> result;
-  for (const auto vertex : mesh.vertices()) {
-    Mesh::Normal n;
-    compute(mesh, vertex, n);
-    result.push_back(unit(Vec3d{n[0], n[1], n[2]}));
-  }
-  return result;
-}
-
-std::vector<Vec3d> fast(const TriangleMesh& from) {
-  return each_vertex(
-      from, [](const Mesh& mesh, Mesh::VertexHandle v, Mesh::Normal& n) { mesh.calc_vertex_normal_fast(v, n); });
-}
-
-std::vector<Vec3d> correct(const TriangleMesh& from) {
-  return each_vertex(
-      from, [](const Mesh& mesh, Mesh::VertexHandle v, Mesh::Normal& n) { mesh.calc_vertex_normal_correct(v, n); });
-}
-
-std::vector<Vec3d> loop(const TriangleMesh& from) {
-  return each_vertex(
-      from, [](const Mesh& mesh, Mesh::VertexHandle v, Mesh::Normal& n) { mesh.calc_vertex_normal_loop(v, n); });
-}
-
 struct KeptMesh : LibraryMesh {
-  FloatMesh mesh;
+  Mesh mesh;
 };
 
-FloatMesh& mesh_of(LibraryMesh& kept) { return static_cast<KeptMesh&>(kept).mesh; }
+Mesh& mesh_of(LibraryMesh& kept) { return static_cast<KeptMesh&>(kept).mesh; }
 
 template <class Handle>
 Vec3d kept_normal(const LibraryMesh& kept, std::size_t element) {
-  const FloatMesh::Normal n = static_cast<const KeptMesh&>(kept).mesh.normal(Handle(static_cast<int>(element)));
+  const Mesh::Normal n = static_cast<const KeptMesh&>(kept).mesh.normal(Handle(static_cast<int>(element)));
   return unit(Vec3d{n[0], n[1], n[2]});
 }
 
 std::string version() { return std::to_string(OM_VERSION >> 16) + "." + std::to_string(OM_VERSION >> 8 & 255); }
 
 }  // namespace
-
-std::vector<Method> openmesh_methods() {
-  const std::string library = "OpenMesh " + version();
-  return {{library, "calc_vertex_normal_fast", fast},
-          {library, "calc_vertex_normal_correct", correct},
-          {library, "calc_vertex_normal_loop", loop}};
-}
 
 Library openmesh_library() {
   Library library{"OpenMesh", version(), {}, nullptr};
@@ -89,25 +51,25 @@ Library openmesh_library() {
   };
   Call faces{"update_face_normals"};
   faces.compute = [](LibraryMesh& kept) { mesh_of(kept).update_face_normals(); };
-  faces.normal = kept_normal<FloatMesh::FaceHandle>;
+  faces.normal = kept_normal<Mesh::FaceHandle>;
   Call of_given_faces{"update_vertex_normals", true, Rule::kUniform};
   of_given_faces.note = "unit normals of faces are given";
   of_given_faces.compute = [](LibraryMesh& kept) { mesh_of(kept).update_vertex_normals(); };
-  of_given_faces.normal = kept_normal<FloatMesh::VertexHandle>;
+  of_given_faces.normal = kept_normal<Mesh::VertexHandle>;
   Call both{"update_normals", true, Rule::kUniform};
   both.note = "of faces, then of vertices";
   both.compute = [](LibraryMesh& kept) { mesh_of(kept).update_normals(); };
-  both.normal = kept_normal<FloatMesh::VertexHandle>;
+  both.normal = kept_normal<Mesh::VertexHandle>;
   Call by_area{"calc_vertex_normal_correct", true, Rule::kArea};
   by_area.compute = [](LibraryMesh& kept) {
-    FloatMesh& mesh = mesh_of(kept);
+    Mesh& mesh = mesh_of(kept);
     for (const auto vertex : mesh.vertices()) {
-      FloatMesh::Normal n;
+      Mesh::Normal n;
       mesh.calc_vertex_normal_correct(vertex, n);
       mesh.set_normal(vertex, n.normalize_cond());
     }
   };
-  by_area.normal = kept_normal<FloatMesh::VertexHandle>;
+  by_area.normal = kept_normal<Mesh::VertexHandle>;
   library.calls = {faces, of_given_faces, both, by_area};
   return library;
 }

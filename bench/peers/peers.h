@@ -3,8 +3,7 @@
 /// Positions go in as the float32 that files hold. A library computes in its own way and precision, and returns one
 /// normal for each element, in the order of the elements, scaled to length 1.
 ///
-/// A Method builds the mesh, computes once and forgets it: tools/weightings compares its results. A LibraryMesh is
-/// built once and computes again and again, in place: ./run bench times it.
+/// A LibraryMesh is built once and computes again and again, in place: ./run bench looks at how long that takes.
 #ifndef PEERS_PEERS_H_
 #define PEERS_PEERS_H_
 
@@ -28,16 +27,6 @@ struct TriangleMesh {
   [[nodiscard]] std::size_t vertex_count() const { return positions.size() / 3; }
   [[nodiscard]] std::size_t face_count() const { return corners.size() / 3; }
 };
-
-struct Method {
-  std::string library;  ///< with its version
-  std::string call;
-  std::vector<Vec3d> (*normals)(const TriangleMesh&);
-};
-
-[[nodiscard]] std::vector<Method> openmesh_methods();
-[[nodiscard]] std::vector<Method> vtk_methods();
-[[nodiscard]] std::vector<Method> cgal_methods();
 
 /// A mesh in the structure of a library, as its own users would build it, with normals that it keeps or returns.
 class LibraryMesh {

@@ -12,7 +12,6 @@
 #include <vtkVersion.h>
 
 #include <memory>
-#include <stdexcept>
 
 #include "peers/peers.h"
 
@@ -31,35 +30,6 @@ vtkNew<vtkPolyData> make_mesh(const TriangleMesh& from) {
   mesh->SetPoints(points);
   mesh->SetPolys(faces);
   return mesh;
-}
-
-template <class Filter>
-std::vector<Vec3d> filtered(const TriangleMesh& from, Filter& filter) {
-  const vtkNew<vtkPolyData> mesh = make_mesh(from);
-  filter.SetInputData(mesh);
-  filter.Update();
-  vtkDataArray* const normals = filter.GetOutput()->GetPointData()->GetNormals();
-  if (normals == nullptr || static_cast<std::size_t>(normals->GetNumberOfTuples()) != from.vertex_count())
-    throw std::runtime_error("VTK gave other than one normal for each vertex");
-  std::vector<Vec3d> result;
-  for (vtkIdType v = 0; v < normals->GetNumberOfTuples(); ++v) {
-    const double* const n = normals->GetTuple3(v);
-    result.push_back(unit(Vec3d{n[0], n[1], n[2]}));
-  }
-  return result;
-}
-
-// Computes normals as for smooth shading: the filter splits no vertex and reverses no face.
-std::vector<Vec3d> poly_data_normals(const TriangleMesh& from) {
-  vtkNew<vtkPolyDataNormals> filter;
-  filter->SplittingOff();
-  filter->ConsistencyOff();
-  return filtered(from, *filter);
-}
-
-std::vector<Vec3d> triangle_mesh_point_normals(const TriangleMesh& from) {
-  vtkNew<vtkTriangleMeshPointNormals> filter;
-  return filtered(from, *filter);
 }
 
 struct KeptMesh : LibraryMesh {
@@ -99,12 +69,6 @@ std::string version() {
 }
 
 }  // namespace
-
-std::vector<Method> vtk_methods() {
-  const std::string library = "VTK " + version();
-  return {{library, "vtkPolyDataNormals", poly_data_normals},
-          {library, "vtkTriangleMeshPointNormals", triangle_mesh_point_normals}};
-}
 
 std::vector<bool> vtk_enclosed(const TriangleMesh& mesh, std::span<const float> points) {
   vtkNew<vtkPoints> places;
