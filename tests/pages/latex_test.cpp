@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "tests/support/generated_page.h"
 #include "tests/support/places.h"
 #include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace chronormal::latex_test {
 namespace {

@@ -1,6 +1,6 @@
-// Tests docs/rigs.md, from the file to the line of code: an avatar is baked and loaded by three-vrm, whose expressions
-// set the weights of targets; and a tracker of faces sets them by name. Runs in Node.js; viewers.test.mjs tests by
-// pixels what is drawn with such weights.
+// Avatars of docs/viewers.md, from the file to the line of code: one is baked and loaded by three-vrm, whose expressions set
+// the weights of targets; and a tracker of faces sets them by name. Run in Node.js; what is drawn with such weights is tested
+// by pixels in viewers.test.mjs.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

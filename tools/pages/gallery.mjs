@@ -1,8 +1,8 @@
-// Draws the pictures of docs/gallery.md and of README.md by the page of `chronormal report`, in headless Chromium, and writes that page
-// from gallery.md.in.
+// Draws the pictures of docs/viewers.md and README.md that a page of `chronormal report` shows, in headless Chromium, and prints the figures
+// of their captions.
 //
-//   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_DATA=FOLDER node tools/gallery/pictures.mjs docs
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+//   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_DATA=FOLDER node tools/pages/gallery.mjs docs
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chronormal } from '../../tests/viewers/program.mjs';
@@ -54,7 +54,6 @@ function drawPicture({ from, near, at, scale }) {
 }
 
 const out = process.argv[2], folder = mkdtempSync(join(tmpdir(), 'chronormal-gallery-')), pages = await openPages(), { page } = pages;
-const found = {}; // the numbers of each subject
 mkdirSync(join(out, 'pictures'), { recursive: true });
 const save = (name, address) => writeFileSync(join(out, 'pictures', `gallery_${name}.jpg`), Buffer.from(address.split(',')[1], 'base64'));
 try {
@@ -67,7 +66,7 @@ try {
     await new Promise((resolve) => setTimeout(resolve, 300));
     const { picture, ...numbers } = await page.evaluate(drawPicture, how);
     save(name, picture);
-    found[name] = numbers;
+    console.log(name, numbers);
     if (name !== 'face') continue;
     await page.setViewport({ width: 1280, height: 800 });
     await pages.show(report);
@@ -86,7 +85,4 @@ try {
   rmSync(folder, { recursive: true, force: true });
 }
 
-const template = readFileSync(new URL('gallery.md.in', import.meta.url), 'utf8');
-const numberOf = (value) => (value < 10 ? value.toFixed(2) : value.toFixed(1)).replace(/\.?0+$/, '');
-writeFileSync(join(out, 'gallery.md'), template.replace(/\{(\w+)\.(\w+)\}/g, (_, name, number) => numberOf(found[name][number])));
 if (pages.faults.length > 0) throw new Error(pages.faults.join('\n'));
