@@ -21,8 +21,8 @@ exact       20  -                 ^tests/support/exact_|^src/normals/control/exa
 faults      20  -                 ^tests/faults/
 embedding   28  embedding,node    ^(capi|tests/install)/|^cmake/(install|product)|^python/setup
 everywhere  30  web,node,wasm     ^tests/viewers/same_bytes
-pages       15  latex,plots,python  ^tools/(pages|uses)/|^bench/results/|^cli/reports/compare
-scale       28  vtk,plots         ^(vtk|cli/ranks|tools/scale|tools/pages/vtk)
+pages       15  latex,plots,python  ^tools/pages/|^bench/results/|^cli/reports/compare
+scale       28  vtk,plots         ^(vtk|cli/ranks|tests/(ranks|streams)|tools/pages/vtk)
 peers       20  bench,peers       ^bench/
 dist        16  dist,python,node,site  ^tools/(dist|site)|^tests/dist/|^packaging/|^cmake/(sources|install|product)|^\.github/|^run$
 '
