@@ -9,18 +9,13 @@ thread, the program one for each processor.
 import gzip
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
-import threading
-import time
 
 DATA = pathlib.Path(os.environ["CHRONORMAL_DATA"])
-SUZANNE = DATA / "rigs/blender_suzanne_two_keys.glb"
-STRESS = DATA / "gltf/MorphStressTest/glTF/MorphStressTest.gltf"
-DANCE = DATA / "sequences/rumba_13"
-FACE = DATA / "rigs/ict_capture.glb"
+SUZANNE, FACE = DATA / "rigs/blender_suzanne_two_keys.glb", DATA / "rigs/ict_capture.glb"
+STRESS, DANCE = DATA / "gltf/MorphStressTest/glTF/MorphStressTest.gltf", DATA / "sequences/rumba_13"
 OUT = ["-o", "out.glb"]
 
 # What is measured: its words, the arguments, and how often; the least time counts.
@@ -36,31 +31,21 @@ CASES = [
 ]
 
 
-def peak_memory(process, peak):
-    """Looks at the most memory that a process has used, until it has ended. (What wait4() says begins with our own.)"""
-    while True:
-        try:
-            found = re.search(r"VmHWM:\s+(\d+) kB", pathlib.Path(f"/proc/{process.pid}/status").read_text())
-        except OSError:
-            return
-        if not found:
-            return
-        peak[0] = max(peak[0], int(found[1]) * 1024)
-        time.sleep(0.02)
+# A process of its own starts the command, since a process counts the memory of the one that it was forked from as its own.
+MEASURE = """
+import os, sys
+nothing = os.open(os.devnull, os.O_WRONLY)
+quiet = [(os.POSIX_SPAWN_DUP2, nothing, 1), (os.POSIX_SPAWN_DUP2, nothing, 2)]
+_, status, used = os.wait4(os.posix_spawnp(sys.argv[1], sys.argv[1:], os.environ, file_actions=quiet), 0)
+if status: sys.exit(f"{sys.argv[1:]} ended with {status}")
+print(used.ru_utime + used.ru_stime, 1024 * used.ru_maxrss)
+"""
 
 
 def measured(command, folder):
     """Seconds of all processors and bytes of memory at most that a command takes."""
-    peak = [0]
-    child = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    watcher = threading.Thread(target=peak_memory, args=(child, peak))
-    watcher.start()
-    _, status, used = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    watcher.join()
-    if child.returncode != 0:
-        raise SystemExit(f"{command}: exit code {child.returncode}")
-    return used.ru_utime + used.ru_stime, peak[0]
+    words = [sys.executable, "-S", "-E", "-c", MEASURE, *map(str, command)]
+    return [float(word) for word in subprocess.run(words, cwd=folder, check=True, capture_output=True, text=True).stdout.split()]
 
 
 def least(command, times):
@@ -71,10 +56,6 @@ def least(command, times):
     return min(seconds for seconds, _ in results), max(memory for _, memory in results)
 
 
-def seconds_text(seconds):
-    return f"{seconds:.2f}" if seconds < 10 else f"{seconds:.0f}"
-
-
 def main():
     program, package, tarball, readme = (pathlib.Path(word).resolve() for word in sys.argv[1:])
     script = package / "bin/chronormal.js"
@@ -82,7 +63,8 @@ def main():
     for words, arguments, times in CASES:
         native = least([program, *arguments], times)
         wasm = least(["node", script, *arguments], times)
-        rows.append((words, seconds_text(native[0]), seconds_text(wasm[0]), f"{wasm[0] / native[0]:.1f}",
+        seconds = [f"{value:.2f}" if value < 10 else f"{value:.0f}" for value in (native[0], wasm[0])]
+        rows.append((words, *seconds, f"{wasm[0] / native[0]:.1f}",
                      f"{native[1] / 1e6:.0f}", f"{wasm[1] / 1e6:.0f}"))
         print(*rows[-1], sep=" | ", flush=True)
     module = (package / "src/program.wasm").read_bytes()

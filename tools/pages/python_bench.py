@@ -4,7 +4,6 @@
 """
 
 import argparse
-import statistics
 import time
 
 import numpy as np
@@ -48,49 +47,39 @@ def add_by_bincount(faces, normals, count):
 def seconds(work, repeats):
     """The fastest and the median of some runs, after one that warms up."""
     work()
-    times = []
+    times = [time.perf_counter()]
     for _ in range(repeats):
-        start = time.perf_counter()
         work()
-        times.append(time.perf_counter() - start)
-    return min(times), statistics.median(times)
+        times.append(time.perf_counter())
+    return np.diff(times).min(), np.median(np.diff(times))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--faces", type=int, default=1_000_000)
     p0, p1, faces = sheet(parser.parse_args().faces)
-    t = np.float32(0.3)
-
-    start = time.perf_counter()
+    t, start = np.float32(0.3), time.perf_counter()
     curves = cn.curves(p0, p1, faces, weld=False, threads=1)
-    prepare = time.perf_counter() - start
-    out = np.empty_like(p0)
+    prepare, out = time.perf_counter() - start, np.empty_like(p0)
     truth = recompute(p0.astype(np.float64), p1.astype(np.float64), faces, np.float64(t), add_by_bincount)
-    rows = [("NumPy, np.add.at", lambda: recompute(p0, p1, faces, t, add_at), 5),
-            ("NumPy, np.bincount", lambda: recompute(p0, p1, faces, t, add_by_bincount), 15),
-            ("curves.unit_normals", lambda: curves.unit_normals(t, out=out), 201),
-            ("the same, all cores", lambda: curves.unit_normals(t, out=out, threads=0), 201)]
-    for name, work, _ in rows:
+    rows = {"NumPy, np.add.at": (lambda: recompute(p0, p1, faces, t, add_at), 5),
+            "NumPy, np.bincount": (lambda: recompute(p0, p1, faces, t, add_by_bincount), 15),
+            "curves.unit_normals": (lambda: curves.unit_normals(t, out=out), 201),
+            "the same, all cores": (lambda: curves.unit_normals(t, out=out, threads=0), 201)}
+    for name, (work, _) in rows.items():
         worst = np.abs(work() - truth).max()
         assert worst < 1e-3, f"{name} is off by {worst}"
-    measured = [(name, seconds(work, repeats)) for name, work, repeats in rows]
-    rival = min(measured[0][1][0], measured[1][1][0])
+    measured = {name: seconds(*row) for name, row in rows.items()}
+    baseline = min(fastest for name, (fastest, _) in measured.items() if "NumPy" in name)
     print(f"{len(faces):,} faces, {len(p0):,} vertices; prepared once in {1e3 * prepare:.0f} ms, {curves.bytes / 1e6:.1f} MB\n")
     print("| normals of all vertices | fastest, ms | median, ms | times NumPy |\n|---|---|---|---|")
-    for name, (fastest, median) in measured:
-        print(f"| {name} | {1e3 * fastest:.2f} | {1e3 * median:.2f} | {rival / fastest:.1f} |")
+    for name, (fastest, median) in measured.items():
+        print(f"| {name} | {1e3 * fastest:.2f} | {1e3 * median:.2f} | {baseline / fastest:.1f} |")
 
-    ring = np.arange(16)
-    small = np.random.default_rng(1).random((16, 3), dtype=np.float32)
+    ring, small = np.arange(16), np.random.default_rng(1).random((16, 3), dtype=np.float32)
     curves = cn.curves(small, 2 * small[::-1], np.stack([ring, (ring + 1) % 16, (ring + 5) % 16], axis=1))
     out, call = np.empty((16, 3), dtype=np.float32), curves.unit_normals
-
-    def calls():
-        for _ in range(10_000):
-            call(0.3, out)
-
-    fastest, median = seconds(calls, 51)
+    fastest, median = seconds(lambda: [call(0.3, out) for _ in range(10_000)], 51)
     print(f"\na call for 16 vertices: {1e2 * fastest:.2f} microseconds, median {1e2 * median:.2f}")
 
 

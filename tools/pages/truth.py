@@ -1,7 +1,7 @@
 """Measures for docs/truth.md what normals between keyframes are worth where the motion between is known, by `compare --truth`.
 
 Sequences by other people are measured where CHRONORMAL_DATA names their folder; else their tables stay as they are. The right normals
-of the tables about the screen and about keyframes are computed here, in double, from positions alone.
+of the table about the screen are computed here, in double, from positions alone.
 """
 
 import io
@@ -19,8 +19,7 @@ IN_EACH = 8  # steps of each segment are known, and compared but for its ends
 ROWS = {"linear": "`linear` (nlerp)", "slerp": "`slerp`", "quadratic": "`quadratic`", "decasteljau:4": "`decasteljau:4`",
         "quaternion:optimal": "`quaternion:optimal`", "polynomial": "`polynomial`: exact on straight paths",
         "catmull-rom": "exact on curves through the keyframes (`catmull-rom`)", "hermite": "exact on curves with known velocities (`hermite`)"}
-CURVES = ["catmull-rom", "hermite"]
-SCHEMES = [name for name in ROWS if name not in CURVES]
+SCHEMES = [name for name in ROWS if name not in ("catmull-rom", "hermite")]
 
 
 def grid(around, up, place):
@@ -101,9 +100,8 @@ def as_sequence(folder, path, *moments):
 
 
 def shown(path, name, times):
-    """What a scheme has at these times, or what is exact on a curved path: (times, vertices, 3)."""
-    words = ["--path", name] if name in CURVES else ["--scheme", name]
-    out = run("sample", path, *words, "--no-weld", "-o", "-", "--times", ",".join(map(repr, map(float, times))))
+    """What a scheme has at these times: (times, vertices, 3)."""
+    out = run("sample", path, "--scheme", name, "--no-weld", "-o", "-", "--times", ",".join(map(repr, map(float, times))))
     return np.load(io.BytesIO(out)).astype(float)
 
 
@@ -178,30 +176,6 @@ def screens(page, data):
     page.table("screen", ["", "average, degrees", "99 %, degrees", "90 % of pixels, levels", "99 % of pixels, levels"], rows)
 
 
-def jumps(path, name, times, step=1 / 128):
-    """The jump of dn/dt at the keyframes between, as a share of its average size there."""
-    moments = np.array([0, step, 2 * step, 1 - 2 * step, 1 - step])
-    lengths = np.diff(times)
-    n = shown(path, name, np.append((times[:-1, None] + lengths[:, None] * moments).ravel(), times[-1]))
-    slope = lambda at, h: (-3 * n[at[0]] + 4 * n[at[1]] - n[at[2]]) / (2 * h)  # noqa: E731
-    before = [slope((5 * s + 5, 5 * s + 4, 5 * s + 3), -step * lengths[s]) for s in range(len(lengths) - 1)]
-    after = [slope((5 * s, 5 * s + 1, 5 * s + 2), step * lengths[s]) for s in range(1, len(lengths))]
-    size = lambda v: np.linalg.norm(v, axis=-1).sum()  # noqa: E731
-    return f"{100 * size(np.array(after) - before) / ((size(np.array(before)) + size(np.array(after))) / 2):.1f}"
-
-
-def keyframes(page, data):
-    with tempfile.TemporaryDirectory() as folder:
-        paths = []
-        for name in MOTIONS:
-            paths.append((Path(folder) / f"{name}.npz", np.linspace(0, 1, 9)))
-            write_motion(paths[-1][0], name, paths[-1][1])
-        file, _, times, _ = as_sequence(folder, data / "sequences/rumba_13", "--times", "keys")
-        names = ["linear", "decasteljau:4", "polynomial", "catmull-rom"]
-        page.table("keyframes", ["jump of dn/dt, %", "the turn, 8 segments", "the twist, 8 segments", "the dance"],
-                   [[ROWS[name], *(jumps(path, name, times) for path, times in [*paths, (file, times)])] for name in names])
-
-
 def sequences(page, data):
     with tempfile.TemporaryDirectory() as folder:
         face = as_sequence(folder, data / "rigs/ict_capture.glb", "--animation", "0", "--times", "keys")[0]
@@ -225,7 +199,7 @@ def main():
     for name in MOTIONS:
         known(page, name)
     data = os.environ.get("CHRONORMAL_DATA")
-    for measure in (sequences, screens, keyframes, table_1) if data else ():
+    for measure in (sequences, screens, table_1) if data else ():
         measure(page, Path(data))
     page.finish()
 
