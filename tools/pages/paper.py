@@ -141,9 +141,9 @@ def measure_table1(page):
               f"`quaternion:matrix` gains {percent(1 - matrix[1])} and {percent(1 - matrix[2])}",
               f"The paper gains {100 * (1 - theirs[MATRIX].max()):.1f} % to {percent(1 - theirs[MATRIX].min(), 1)}",
               f"({ratio(ours['quadratic'][2])} against {ratio(casteljau[2])})")
-    page.says(f"theirs is {1 / theirs['quadratic'].max():.1f} to {1 / theirs['quadratic'].min():.1f} times better; ours"
+    page.says(f"It is {1 / theirs['quadratic'].max():.1f} to {1 / theirs['quadratic'].min():.1f} times better there, and"
               + f" {1 / ours['quadratic'][0]:.1f}, {1 / ours['quadratic'][1]:.1f} and {1 / ours['quadratic'][2]:.1f} times",
-              f"theirs gains {percent(1 - theirs[MATRIX].mean(), 1)} on average; ours {percent(1 - matrix[0], 1)}, {percent(1 - matrix[1])}, "
+              f"There it gains {percent(1 - theirs[MATRIX].mean(), 1)} on average, and here {percent(1 - matrix[0], 1)}, {percent(1 - matrix[1])}, "
               f"{percent(1 - matrix[2])} and {percent(1 - matrix[3])}")
     page.requires((slerp > 1).all() and ours["quadratic"][3] > slerp[3] and matrix[0] > slerp[0], "slerp is not always the worst")
     measure_parts(page, ours)
