@@ -55,4 +55,8 @@ Result<Topology> Topology::triangles(std::size_t vertex_count, std::vector<std::
   return topology;
 }
 
+Result<Topology> Topology::triangles(std::size_t vertex_count, std::span<const std::uint16_t> corners) {
+  return triangles(vertex_count, std::vector<std::uint32_t>(corners.begin(), corners.end()));
+}
+
 }  // namespace chronormal

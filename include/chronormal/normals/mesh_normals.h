@@ -88,6 +88,11 @@ class MeshNormals {
   /// valid, or stand still. Errors: also those of make_groups().
   [[nodiscard]] static Result<MeshNormals> make(const Motion& motion, const MeshNormalsOptions& options = {});
 
+  /// Another object of the same mesh, as for each of many characters: without positions and targets, with the topology
+  /// and, as soon as it is known, who shares a normal in the memory of this one, at no cost. The two may be used at the
+  /// same time.
+  [[nodiscard]] MeshNormals another() const;
+
   MeshNormals(MeshNormals&&) noexcept;
   MeshNormals& operator=(MeshNormals&&) noexcept;
   ~MeshNormals();

@@ -346,20 +346,33 @@ std::size_t bytes_of(ControlFormat format) noexcept {
 
 struct MeshNormals::Parts {
   Parts(Topology of_topology, const MeshNormalsOptions& of_options)
-      : topology(std::move(of_topology)),
+      : mesh(std::make_shared<const Topology>(std::move(of_topology))),
         options(of_options),
         group_of_face(options.elements.group_of_face.begin(), options.elements.group_of_face.end()),
         normal_of_corner(packed_copy(options.elements.normal_of_corner)) {
     options.elements.group_of_face = group_of_face;
     options.elements.normal_of_corner = VectorView<const float>::packed(normal_of_corner);
   }
+  // Another object of the same mesh, without positions.
+  Parts(const Parts& other, std::shared_ptr<const Topology> of_mesh)
+      : mesh(std::move(of_mesh)),
+        options(other.options),
+        group_of_face(other.group_of_face),
+        normal_of_corner(other.normal_of_corner),
+        groups(other.groups),
+        shares(other.shares) {
+    options.elements.group_of_face = group_of_face;
+    options.elements.normal_of_corner = VectorView<const float>::packed(normal_of_corner);
+  }
+
+  [[nodiscard]] const Topology& topology() const noexcept { return *mesh; }
 
   [[nodiscard]] bool are_faces() const noexcept { return options.elements.kind == ElementKind::kFaces; }
-  [[nodiscard]] bool knows_elements() const noexcept { return are_faces() || groups.has_value(); }
-  [[nodiscard]] const NormalGroups* elements() const noexcept { return groups ? &*groups : nullptr; }
+  [[nodiscard]] bool knows_elements() const noexcept { return are_faces() || groups != nullptr; }
+  [[nodiscard]] const NormalGroups* elements() const noexcept { return groups.get(); }
   [[nodiscard]] std::size_t size() const noexcept {
-    if (are_faces()) return topology.face_count();
-    return options.elements.kind == ElementKind::kVertices ? topology.vertex_count() : topology.corner_count();
+    if (are_faces()) return topology().face_count();
+    return options.elements.kind == ElementKind::kVertices ? topology().vertex_count() : topology().corner_count();
   }
   [[nodiscard]] IndexRange clamped(IndexRange outputs) const noexcept {
     const std::size_t first = std::min(outputs.first, size());
@@ -370,7 +383,7 @@ struct MeshNormals::Parts {
   Status share(const Motion& motion) {
     Result<NormalGroups> made = make_groups(motion, options.elements);
     if (!made) return made.error();
-    groups = std::move(made).value();
+    groups = std::make_shared<const NormalGroups>(std::move(made).value());
     shares = !are_the_outputs(*groups);
     group_of_face = {}, normal_of_corner = {};
     options.elements.group_of_face = {}, options.elements.normal_of_corner = {};
@@ -378,11 +391,11 @@ struct MeshNormals::Parts {
   }
 
   Status check(VectorView<const float> from, VectorView<const float> to) {
-    if (Status status = check_positions(topology, from, 0); !status) return status;
-    if (Status status = check_positions(topology, to, 1); !status) return status;
+    if (Status status = check_positions(topology(), from, 0); !status) return status;
+    if (Status status = check_positions(topology(), to, 1); !status) return status;
     if (knows_elements()) return Success{};
     Motion motion;
-    motion.topology = topology;
+    motion.topology = topology();
     motion.keyframes = {{packed_copy(from), 0, "from"}, {packed_copy(to), 1, "to"}};
     motion.connect_as_sequence();
     return share(motion);
@@ -420,13 +433,13 @@ struct MeshNormals::Parts {
     return access_of_pass(curves.blocks.size(), size() * bytes_of_result);
   }
 
-  Topology topology;
+  std::shared_ptr<const Topology> mesh;  // of all objects that another() has made
   MeshNormalsOptions options;
-  std::vector<std::uint32_t> group_of_face;  // kept until it is decided which outputs share a normal
-  std::vector<float> normal_of_corner;       // kept until then, too
-  std::optional<NormalGroups> groups;        // none for faces
-  bool shares = false;                       // whether an output is not the element with its number
-  CurveData curves, spare;                   // the present segment, and memory for the next
+  std::vector<std::uint32_t> group_of_face;    // kept until it is decided which outputs share a normal
+  std::vector<float> normal_of_corner;         // kept until then, too
+  std::shared_ptr<const NormalGroups> groups;  // of all such objects, as soon as they are known; none for faces
+  bool shares = false;                         // whether an output is not the element with its number
+  CurveData curves, spare;                     // the present segment, and memory for the next
   double fit_bound = 0;
   Segment next;
   bool has_next = false;
@@ -453,15 +466,17 @@ Result<MeshNormals> MeshNormals::make(const Motion& motion, const MeshNormalsOpt
   return made;
 }
 
+MeshNormals MeshNormals::another() const { return MeshNormals(std::make_unique<Parts>(*parts_, parts_->mesh)); }
+
 Status MeshNormals::set_segment(VectorView<const float> from, VectorView<const float> to) {
-  return set_segment(Segment{&parts_->topology, from, to});
+  return set_segment(Segment{parts_->mesh.get(), from, to});
 }
 
 Status MeshNormals::set_segment(const Segment& given) {
   Parts& parts = *parts_;
   if (Status status = parts.check(given.from, given.to); !status) return status;
   Segment segment = given;
-  segment.topology = &parts.topology;
+  segment.topology = parts.mesh.get();
   parts.slices.reset();
   parts.has_next = false;
   const CurveOptions options{parts.options.tolerance};
@@ -477,7 +492,7 @@ Status MeshNormals::set_segment(const Segment& given) {
 Status MeshNormals::begin_segment(VectorView<const float> from, VectorView<const float> to) {
   Parts& parts = *parts_;
   if (Status status = parts.check(from, to); !status) return status;
-  parts.next = {&parts.topology, from, to};
+  parts.next = {parts.mesh.get(), from, to};
   parts.has_next = true;
   parts.slices.reset();
   if (parts.options.weighting == Weighting::kArea)
@@ -555,7 +570,7 @@ Status MeshNormals::set_targets(BlendSet set, const BlendNormalsOptions& options
   Parts& parts = *parts_;
   if (parts.options.weighting != Weighting::kArea)
     return Error{ErrorCode::kUsage, "weighting", "blend shapes are weighted by area"};
-  if (!(set.topology == parts.topology)) return invalid_input("", "the blend shapes are those of another mesh");
+  if (!(set.topology == parts.topology())) return invalid_input("", "the blend shapes are those of another mesh");
   if (Status status = validate(set); !status) return status;
   if (!parts.knows_elements()) {
     if (Status status = parts.share(star_of(set)); !status) return status;
@@ -600,7 +615,7 @@ std::size_t MeshNormals::element_count() const noexcept {
   return parts_->groups ? parts_->groups->size() : parts_->size();
 }
 
-const Topology& MeshNormals::topology() const noexcept { return parts_->topology; }
+const Topology& MeshNormals::topology() const noexcept { return parts_->topology(); }
 const MeshNormalsOptions& MeshNormals::options() const noexcept { return parts_->options; }
 double MeshNormals::fit_bound() const noexcept { return parts_->fit_bound; }
 

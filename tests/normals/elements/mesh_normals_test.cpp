@@ -9,6 +9,7 @@
 #include <cstring>
 #include <iostream>
 #include <limits>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -155,6 +156,41 @@ TEST(MeshNormals, a_fitted_weighting_states_its_bound) {
   ASSERT_TRUE(normals.value().begin_segment(view(kFrom), view(kTo)));
   normals.value().finish_segment();
   EXPECT_EQ(normals_at(normals.value(), 0), shown);
+}
+
+// What is shared is decided by the first segment, in which 4 and 5 lie where 1 and 2 do; the others may be elsewhere.
+TEST(MeshNormals, another_object_knows_who_shares_a_normal_and_nothing_of_where_vertices_are) {
+  std::vector<float> apart = kTo;
+  apart[3 * 4] += 0.25F;
+  for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices, ElementKind::kCorners}) {
+    const std::vector<std::uint32_t> groups = {1, 2};  // hard between the two faces, of corners
+    MeshNormalsOptions options{.elements = {kind}};
+    if (kind == ElementKind::kCorners) options.elements.group_of_face = groups;
+    MeshNormals first = MeshNormals::make(pair_of_triangles(), options).value();
+    MeshNormals early = first.another();
+    ASSERT_TRUE(first.set_segment(view(kFrom), view(kTo)).ok());
+    MeshNormals late = first.another();
+    EXPECT_EQ(&late.topology(), &first.topology());
+    EXPECT_EQ(late.element_count(), first.element_count());
+    EXPECT_EQ(late.bytes(), 0U);
+    std::vector<float> nothing(3 * late.size(), 7.0F);
+    EXPECT_EQ(late.unit_normals(0.5, VectorView<float>::packed(nothing.data(), late.size())), late.size());
+    ASSERT_TRUE(early.set_segment(view(kFrom), view(kTo)).ok());
+    EXPECT_EQ(normals_at(early, 0.25), normals_at(first, 0.25));
+    ASSERT_TRUE(late.set_segment(view(apart), view(kFrom)).ok());
+    MeshNormals anew = MeshNormals::make(pair_of_triangles(), options).value();
+    ASSERT_TRUE(anew.set_segment(view(kFrom), view(kTo)).ok());
+    ASSERT_TRUE(anew.set_segment(view(apart), view(kFrom)).ok());
+    EXPECT_EQ(normals_at(late, 0.75), normals_at(anew, 0.75));
+    first = MeshNormals::make(pair_of_triangles()).value();  // the mesh stays as long as anybody has it
+    EXPECT_EQ(normals_at(late, 0.75), normals_at(anew, 0.75));
+  }
+}
+
+TEST(MeshNormals, indices_of_16_bits_make_the_same_mesh) {
+  const std::vector<std::uint16_t> corners(kCorners.begin(), kCorners.end());
+  EXPECT_EQ(Topology::triangles(6, std::span(corners)).value(), pair_of_triangles());
+  EXPECT_EQ(Topology::triangles(5, std::span(corners)).error().text(), Topology::triangles(5, kCorners).error().text());
 }
 
 TEST(MeshNormals, what_does_not_fit_is_refused_with_its_place) {
