@@ -61,13 +61,14 @@ double angle_in_degrees(const Vec3d& right, const Vec3d& shown) noexcept {
 
 constexpr std::size_t kPacked = 3 * sizeof(float);
 
-// Errors: kUsage for no memory, or a stride that is no multiple of 4.
+// Errors: kUsage for no memory, and for a stride that is no multiple of 4 or makes vectors overlap.
 template <class T>
 Result<VectorView<T>> view_of(T* data, std::size_t stride, std::size_t count, const char* place) {
   if (count == 0) return VectorView<T>{};
   if (data == nullptr) return Error{ErrorCode::kUsage, place, "the pointer is NULL"};
   if (stride == 0) stride = kPacked;
   if (stride % sizeof(float) != 0) return Error{ErrorCode::kUsage, place, "the stride is not a multiple of 4 bytes"};
+  if (stride < kPacked) return Error{ErrorCode::kUsage, place, "the stride is less than the 12 bytes of a vector"};
   return VectorView<T>{data, data + 1, data + 2, count, stride / sizeof(float)};
 }
 
@@ -93,14 +94,27 @@ Result<Topology> topology_of(const chronormal_mesh* mesh) {
                             {mesh->corners, mesh->corners + offsets.back()});
 }
 
+// Checks a structure that begins with its size: one of a newer header may have more fields, of which this library knows
+// nothing, so that they must be 0.
+template <class Struct>
+Status check_size(const Struct& given, const char* name) {
+  const std::string place = std::string(name) + ".size";
+  if (given.size < sizeof(Struct))
+    return Error{ErrorCode::kUsage, place,
+                 std::string("it is not sizeof(chronormal_") + name + "); chronormal_" + name + "_init() sets it"};
+  constexpr std::size_t kMost = 4096;
+  if (given.size > kMost) return Error{ErrorCode::kUsage, place, "it is no size of a structure"};
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(&given);
+  if (std::any_of(bytes + sizeof(Struct), bytes + given.size, [](unsigned char byte) { return byte != 0; }))
+    return Error{ErrorCode::kUsage, place, "a field is set that only a newer library knows"};
+  return Success{};
+}
+
 // Errors: kUsage with the name of the field.
 Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
   MeshNormalsOptions options;
   if (given == nullptr) return options;
-  if (given->size < sizeof(chronormal_options)) {
-    return Error{ErrorCode::kUsage, "options.size",
-                 "it is not sizeof(chronormal_options); chronormal_options_init() sets it"};
-  }
+  if (const Status status = check_size(*given, "options"); !status) return status.error();
   if (given->elements < CHRONORMAL_FACES || given->elements > CHRONORMAL_CORNERS)
     return Error{ErrorCode::kUsage, "options.elements", "it must be faces (0), vertices (1) or corners (2)"};
   if (!std::isfinite(given->tolerance) || given->tolerance <= 0)
@@ -116,6 +130,30 @@ Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
   options.tolerance = given->tolerance;
   options.threads = given->all_threads != 0 ? Threads::kAll : Threads::kOne;
   return options;
+}
+
+// Calls write(result, range) with what an output stands for: a view of vectors, or a span of four bytes each. Returns
+// the number of zeros. Errors: kUsage.
+template <class Write>
+Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, const Write& write) {
+  if (given == nullptr) return Error{ErrorCode::kUsage, "output", "the pointer is NULL"};
+  if (const Status status = check_size(*given, "output"); !status) return status.error();
+  const IndexRange range{given->first, given->count};
+  if (range.first > size || (range.count != CHRONORMAL_ALL && range.count > size - range.first))
+    return Error{ErrorCode::kUsage, "output.count", "there are fewer normals"};
+  if (given->format == CHRONORMAL_FLOAT32) {
+    const auto view = view_of(static_cast<float*>(given->data), given->stride, size, "output");
+    if (!view) return view.error();
+    return write(view.value(), range);
+  }
+  if (given->format != CHRONORMAL_OCTAHEDRAL && given->format != CHRONORMAL_RGB10A2)
+    return Error{ErrorCode::kUsage, "output.format", "it must be float32 (0), octahedral (1) or 10-10-10-2 (2)"};
+  if (given->data == nullptr && size > 0) return Error{ErrorCode::kUsage, "output", "the pointer is NULL"};
+  if (given->stride != 0 && given->stride != sizeof(std::uint32_t))
+    return Error{ErrorCode::kUsage, "output.stride", "normals of 4 bytes lie one after the other: it must be 0 or 4"};
+  if (given->format == CHRONORMAL_OCTAHEDRAL)
+    return write(std::span(static_cast<Octahedral*>(given->data), size), range);
+  return write(std::span(static_cast<Rgb10A2*>(given->data), size), range);
 }
 
 }  // namespace
@@ -147,6 +185,10 @@ const char* chronormal_last_message(void) { return last_message.c_str(); }
 void chronormal_options_init(chronormal_options* options) {
   if (options != nullptr)
     *options = {sizeof(chronormal_options), CHRONORMAL_VERTICES, 0, 180, nullptr, kExactTolerance, 0};
+}
+
+void chronormal_output_init(chronormal_output* output, void* data) {
+  if (output != nullptr) *output = {sizeof(chronormal_output), data, 0, CHRONORMAL_FLOAT32, 0, CHRONORMAL_ALL};
 }
 
 chronormal_status chronormal_curves_create(const chronormal_mesh* mesh, chronormal_vectors from, chronormal_vectors to,
@@ -195,6 +237,30 @@ chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, doub
     if (!view) return fail(view.error());
     const std::size_t count = curves->curves.unit_normals(t, view.value(), curves->threads);
     if (zeros != nullptr) *zeros = count;
+    return CHRONORMAL_DONE;
+  });
+}
+
+chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
+                                          const chronormal_output* outputs, size_t count, size_t* zeros) {
+  if (curves == nullptr) return misuse("curves", "the pointer is NULL");
+  if (count > 0 && times == nullptr) return misuse("times", "the pointer is NULL");
+  if (count > 0 && outputs == nullptr) return misuse("outputs", "the pointer is NULL");
+  return guarded([&] {
+    const MeshNormals& normals = curves->curves;
+    const auto write = [&](std::size_t k, bool is_real) {
+      return write_to(&outputs[k], normals.size(), [&](const auto& result, IndexRange range) -> std::size_t {
+        return is_real ? normals.unit_normals(times[k], result, range) : 0;
+      });
+    };
+    // Nothing is written where anything is wrong.
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!(times[k] >= 0 && times[k] <= 1)) return misuse("times", "t lies between 0 and 1, the two ends");
+      if (const auto checked = write(k, false); !checked) return fail(checked.error());
+    }
+    std::size_t all = 0;
+    for (std::size_t k = 0; k < count; ++k) all += write(k, true).value();
+    if (zeros != nullptr) *zeros = all;
     return CHRONORMAL_DONE;
   });
 }
@@ -272,6 +338,31 @@ chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const d
     const std::size_t count =
         blend->blend.unit_normals(std::span(weights, blend->targets), view.value(), blend->threads);
     if (zeros != nullptr) *zeros = count;
+    return CHRONORMAL_DONE;
+  });
+}
+
+chronormal_status chronormal_blend_set_weights(chronormal_blend* blend, const double* weights) {
+  if (blend == nullptr) return misuse("blend", "the pointer is NULL");
+  if (weights == nullptr && blend->targets > 0) return misuse("weights", "the pointer is NULL");
+  return guarded([&] {
+    const std::span<const double> all(weights, blend->targets);
+    if (!std::all_of(all.begin(), all.end(), [](double weight) { return std::isfinite(weight); }))
+      return misuse("weights", "a weight is not finite");
+    blend->blend.set_weights(all, blend->threads);
+    return CHRONORMAL_DONE;
+  });
+}
+
+chronormal_status chronormal_blend_write(const chronormal_blend* blend, const chronormal_output* output,
+                                         size_t* zeros) {
+  if (blend == nullptr) return misuse("blend", "the pointer is NULL");
+  return guarded([&] {
+    const auto written = write_to(output, blend->blend.size(), [&](const auto& result, IndexRange range) {
+      return blend->blend.unit_normals(result, range);
+    });
+    if (!written) return fail(written.error());
+    if (zeros != nullptr) *zeros = written.value();
     return CHRONORMAL_DONE;
   });
 }

@@ -8,14 +8,18 @@
  *     chronormal_curves_destroy(curves);
  *
  * Shapes     Vectors are three float32, one after the other; a stride in bytes leads from one vector to the next, and 0
- *            stands for 12. Strides are multiples of 4.
+ *            stands for 12. Strides are multiples of 4, and 12 or more.
+ * Times      t is a fraction of a segment, 0 to 1. The functions that end in _write refuse any other; the older ones move
+ *            it to the nearer end, and write zeros where it is NaN.
  * Ownership  All arrays belong to the caller and are read or written during the call alone. What a function creates is
  *            destroyed by the function whose name ends in _destroy, which takes NULL as well.
  * Errors     A function that can fail returns a chronormal_status and changes nothing when it fails. The message for a
  *            person, with the place, is chronormal_last_message(), of the calling thread. Nothing throws.
- * Threads    Different objects may be used at the same time; one object by one thread at a time.
+ * Threads    Different objects may be used at the same time; one object by one thread at a time. But the functions that
+ *            take a const object may run on any number of threads on one object.
  * Growth     Structures of options begin with their size, so that a program that was compiled with an older header
- *            keeps working: call the _init function, or set the size and every field.
+ *            keeps working: call the _init function, or set the size and every field. A library that is older than the
+ *            header refuses fields that it does not know, unless their bytes are 0.
  */
 #ifndef CHRONORMAL_C_H_
 #define CHRONORMAL_C_H_
@@ -83,6 +87,26 @@ typedef struct chronormal_options {
 
 CHRONORMAL_API void chronormal_options_init(chronormal_options* options);
 
+/* How a normal lies in memory. */
+typedef enum chronormal_format {
+  CHRONORMAL_FLOAT32 = 0,    /* three float32 */
+  CHRONORMAL_OCTAHEDRAL = 1, /* 4 bytes: two int16, the octahedral encoding as snorm; (0, 0, 0) becomes (0, 0, 1) */
+  CHRONORMAL_RGB10A2 = 2     /* 4 bytes: x, y, z as snorm of 10 bits, from the lowest on */
+} chronormal_format;
+
+#define CHRONORMAL_ALL ((size_t)-1)
+
+/* Where normals are written, and which of them: normal i lies at data + i * stride, whatever the range is. */
+typedef struct chronormal_output {
+  size_t size;         /* sizeof(chronormal_output) */
+  void* data;          /* of normal 0 */
+  size_t stride;       /* bytes; 0: as many as the format has, which is all that packed formats may have */
+  int format;          /* a chronormal_format; usually CHRONORMAL_FLOAT32 */
+  size_t first, count; /* the normals that are written; usually 0 and CHRONORMAL_ALL */
+} chronormal_output;
+
+CHRONORMAL_API void chronormal_output_init(chronormal_output* output, void* data);
+
 /* Normals between two arrays of positions, exact for every t in [0, 1]. */
 typedef struct chronormal_curves chronormal_curves;
 
@@ -100,6 +124,11 @@ CHRONORMAL_API size_t chronormal_curves_bytes(const chronormal_curves* curves);
 /* Writes a unit normal each, and (0, 0, 0) where there is none; zeros, if it is not NULL, gets the number of those. */
 CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t,
                                                                 chronormal_result normals, size_t* zeros);
+/* Writes the unit normals at many t, each to an output of its own; zeros, if it is not NULL, gets the number of (0, 0, 0)
+ * among all. On the calling thread, without taking memory: jobs of an engine write ranges of one output. */
+CHRONORMAL_API chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
+                                                         const chronormal_output* outputs, size_t count,
+                                                         size_t* zeros);
 /* Writes the angle in degrees, float32, between each normal that is given (of any length) and the exact one at t: how
  * wrong an interpolation is. 180 where one of the two has no direction and the other has. */
 CHRONORMAL_API chronormal_status chronormal_curves_errors(chronormal_curves* curves, double t,
@@ -124,6 +153,10 @@ CHRONORMAL_API size_t chronormal_blend_size(const chronormal_blend* blend);
 /* There is one weight for each target. */
 CHRONORMAL_API chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const double* weights,
                                                                chronormal_result normals, size_t* zeros);
+/* Moves the shapes to these weights, once for a frame; then ranges of the normals there are written by any threads. */
+CHRONORMAL_API chronormal_status chronormal_blend_set_weights(chronormal_blend* blend, const double* weights);
+CHRONORMAL_API chronormal_status chronormal_blend_write(const chronormal_blend* blend, const chronormal_output* output,
+                                                        size_t* zeros);
 CHRONORMAL_API void chronormal_blend_destroy(chronormal_blend* blend);
 
 /* A motion in files, of every format that the program reads. */

@@ -88,6 +88,96 @@ static int check_curves(int elements, size_t size) {
   return 0;
 }
 
+/* What an octahedral normal stands for, decoded here. */
+static void decode(const int16_t word[2], double n[3]) {
+  const double x = word[0] / 32767.0, y = word[1] / 32767.0, z = 1 - fabs(x) - fabs(y);
+  n[0] = z < 0 ? (1 - fabs(y)) * (x < 0 ? -1 : 1) : x;
+  n[1] = z < 0 ? (1 - fabs(x)) * (y < 0 ? -1 : 1) : y;
+  n[2] = z;
+  const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (int c = 0; c < 3; ++c) n[c] /= length;
+}
+
+/* Ranges and many t have the bits of one call; packed normals are near them. */
+static int check_outputs(void) {
+  const chronormal_mesh mesh = {5, 4, kCorners, NULL};
+  const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)}, to = {kTo[0].position, sizeof(vertex)};
+  chronormal_curves* curves = NULL;
+  EXPECT(chronormal_curves_create(&mesh, from, to, NULL, &curves) == CHRONORMAL_DONE);
+  const double times[3] = {0, 0.375, 1};
+  float whole[3][15], ranges[3][15];
+  int16_t octahedral[5][2];
+  uint32_t bits[5];
+  size_t zeros = 99;
+  for (int k = 0; k < 3; ++k) EXPECT(chronormal_curves_unit_normals(curves, times[k], (chronormal_result){whole[k], 0}, NULL) == CHRONORMAL_DONE);
+  chronormal_output outputs[3];
+  for (size_t first = 0; first < 5; first += 2) { /* 0 and 1, 2 and 3, 4 */
+    for (int k = 0; k < 3; ++k) {
+      chronormal_output_init(&outputs[k], ranges[k]);
+      outputs[k].first = first;
+      outputs[k].count = first + 2 <= 5 ? 2 : CHRONORMAL_ALL;
+    }
+    EXPECT(chronormal_curves_write(curves, times, outputs, 3, &zeros) == CHRONORMAL_DONE && zeros == 0);
+  }
+  EXPECT(memcmp(whole, ranges, sizeof whole) == 0);
+  chronormal_output_init(&outputs[0], octahedral);
+  outputs[0].format = CHRONORMAL_OCTAHEDRAL;
+  chronormal_output_init(&outputs[1], bits);
+  outputs[1].format = CHRONORMAL_RGB10A2;
+  const double twice[2] = {times[1], times[1]};
+  EXPECT(chronormal_curves_write(curves, twice, outputs, 2, NULL) == CHRONORMAL_DONE);
+  for (int v = 0; v < 5; ++v) {
+    double n[3];
+    decode(octahedral[v], n);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT(fabs(n[c] - whole[1][3 * v + c]) < 1e-4);
+      const int word = (int)(bits[v] >> (10 * c)) & 1023;
+      EXPECT(fabs((word < 512 ? word : word - 1024) / 511.0 - whole[1][3 * v + c]) < 2e-3);
+    }
+  }
+  /* What is wrong is said, and nothing is written. */
+  const double beyond[2] = {0.5, 1.5}, none[1] = {NAN};
+  memset(ranges, 0, sizeof ranges);
+  for (int k = 0; k < 2; ++k) chronormal_output_init(&outputs[k], ranges[k]);
+  EXPECT(chronormal_curves_write(curves, beyond, outputs, 2, NULL) == CHRONORMAL_USAGE && ranges[0][2] == 0);
+  EXPECT(chronormal_curves_write(curves, none, outputs, 1, NULL) == CHRONORMAL_USAGE);
+  for (size_t stride = 1; stride < 12; ++stride) {
+    outputs[0].stride = stride;
+    EXPECT(chronormal_curves_write(curves, times, outputs, 1, NULL) == CHRONORMAL_USAGE);
+    EXPECT(chronormal_curves_unit_normals(curves, 0, (chronormal_result){ranges[0], stride}, NULL) == CHRONORMAL_USAGE);
+    EXPECT(chronormal_curves_next(curves, (chronormal_vectors){ranges[0], stride}, to) == CHRONORMAL_USAGE);
+  }
+  outputs[0].stride = 0;
+  outputs[0].first = 3;
+  outputs[0].count = 3;
+  EXPECT(chronormal_curves_write(curves, times, outputs, 1, NULL) == CHRONORMAL_USAGE);
+  outputs[0].format = 3;
+  EXPECT(chronormal_curves_write(curves, times, outputs, 1, NULL) == CHRONORMAL_USAGE);
+  chronormal_curves_destroy(curves);
+  return 0;
+}
+
+/* Options of a newer header: what this library does not know must be 0. */
+static int check_newer_options(void) {
+  const chronormal_mesh mesh = {5, 4, kCorners, NULL};
+  const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)};
+  struct {
+    chronormal_options options;
+    double sharper;
+  } newer;
+  memset(&newer, 0, sizeof newer);
+  chronormal_options_init(&newer.options);
+  newer.options.size = sizeof newer;
+  chronormal_curves* curves = NULL;
+  EXPECT(chronormal_curves_create(&mesh, from, from, &newer.options, &curves) == CHRONORMAL_DONE);
+  chronormal_curves_destroy(curves);
+  newer.sharper = 0.5;
+  curves = NULL;
+  EXPECT(chronormal_curves_create(&mesh, from, from, &newer.options, &curves) == CHRONORMAL_USAGE && curves == NULL);
+  EXPECT(strstr(chronormal_last_message(), "newer") != NULL);
+  return 0;
+}
+
 static int check_blend(void) {
   const chronormal_mesh mesh = {5, 4, kCorners, NULL};
   float deltas[15];
@@ -108,6 +198,15 @@ static int check_blend(void) {
     truth(CHRONORMAL_VERTICES, v, 0.375, n);
     for (int c = 0; c < 3; ++c) EXPECT(fabs(normals[3 * v + c] - n[c]) < 2e-6);
   }
+  float ranges[15];
+  chronormal_output output;
+  chronormal_output_init(&output, ranges);
+  EXPECT(chronormal_blend_set_weights(blend, weights) == CHRONORMAL_DONE);
+  for (output.first = 0, output.count = 1; output.first < 5; ++output.first)
+    EXPECT(chronormal_blend_write(blend, &output, &zeros) == CHRONORMAL_DONE && zeros == 0);
+  EXPECT(memcmp(normals, ranges, sizeof ranges) == 0);
+  const double infinite[2] = {0, INFINITY};
+  EXPECT(chronormal_blend_set_weights(blend, infinite) == CHRONORMAL_USAGE);
   chronormal_blend_destroy(blend);
   return 0;
 }
@@ -209,5 +308,5 @@ int main(int count, char** arguments) {
   EXPECT(count == 3 && strcmp(chronormal_version(), arguments[1]) == 0);
   EXPECT(strcmp(chronormal_last_message(), "") == 0);
   if (check_curves(CHRONORMAL_FACES, 4) || check_curves(CHRONORMAL_VERTICES, 5) || check_curves(CHRONORMAL_CORNERS, 12)) return 1;
-  return check_blend() || check_motion(arguments[2]) || check_misuse();
+  return check_outputs() || check_newer_options() || check_blend() || check_motion(arguments[2]) || check_misuse();
 }

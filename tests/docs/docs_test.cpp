@@ -282,22 +282,23 @@ INSTANTIATE_TEST_SUITE_P(Documents, RealFaces,
 TEST(Documents, with_commands_are_found) { EXPECT_GE(documents_with_commands().size(), 5u); }
 
 TEST(Documents, quoted_code_is_the_example_that_is_built_and_run) {
-  int quotes_of_cpp = 0, quotes_of_js = 0;
+  std::map<std::string, int> quotes;  // by language
   for (const fs::path& path : documents()) {
     const Lines lines = lines_of(read(path));
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (lines[i] != "```cpp" && lines[i] != "```js") continue;
       const std::string example = i == 0 ? "" : between(lines[i - 1], "<!-- ", " -->");
+      const std::string language = lines[i].starts_with("```") ? lines[i].substr(3) : "";
+      const bool may_be_a_part = language == "c" || language == "python";  // of a page, which others run
+      if (language != "cpp" && language != "js" && !(may_be_a_part && example.starts_with("examples/"))) continue;
       EXPECT_TRUE(example.starts_with("examples/"))
           << path << ":" << i + 1 << ": code without <!-- examples/NAME --> above it";
-      ++(lines[i] == "```cpp" ? quotes_of_cpp : quotes_of_js);
+      ++quotes[language];
       Lines block;
       while (++i < lines.size() && lines[i] != "```") block.push_back(lines[i]);
       EXPECT_EQ(joined(block), read(kRoot / example)) << path;
     }
   }
-  EXPECT_GT(quotes_of_cpp, 0);
-  EXPECT_GT(quotes_of_js, 0);
+  for (const char* const language : {"cpp", "js", "c", "python"}) EXPECT_GT(quotes[language], 0) << language;
 }
 
 // Returns the anchors of a document's headings, as GitHub and the site make them: letters, digits and dashes.
