@@ -26,7 +26,7 @@ target_link_options(_chronormal PRIVATE -Wl,--exclude-libs,ALL)
 # A package that can be imported from the build tree: PYTHONPATH=build/.../python.
 set(python_package ${PROJECT_BINARY_DIR}/python/chronormal)
 set_target_properties(_chronormal PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${python_package} CXX_STANDARD 20)
-foreach(file __init__.py __init__.pyi py.typed)
+foreach(file __init__.py _chronormal.pyi py.typed)
   configure_file(${PROJECT_SOURCE_DIR}/python/chronormal/${file} ${python_package}/${file} COPYONLY)
 endforeach()
 

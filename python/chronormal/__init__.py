@@ -8,24 +8,36 @@
 Arrays   Positions are (V, 3) float32, C-contiguous: such arrays are read where they are, also read-only ones, and not kept.
          Everything else that holds numbers is converted once, to the nearest float32 (float64 too).
 Faces    (F, k) of int32, int64, uint32 or any other integers; a list of lists for polygons of different sizes; or a tuple
-         (offsets, corners) of two rows: face f has corners[offsets[f]:offsets[f + 1]].
+         (offsets, corners) of two rows: face f has corners[offsets[f]:offsets[f + 1]]. A tuple of two faces is two faces.
 Errors   ValueError says where: "face 3, corner 1: ...". OSError is for files.
 Threads  Everything that takes long releases the GIL. One object works for one thread at a time; others wait.
 Signals  Their handlers run during a call that takes long. What one raises, as Ctrl-C does, ends the call.
 Forks    A child of fork() may use all objects of its parent; where that had several threads at work, the child has one.
 """
 
+from __future__ import annotations
+
 import dataclasses as _dataclasses
 import json as _json
 import os as _os
+from collections.abc import Iterable, Sequence
+from typing import Any, Literal, Union
 
 import numpy as _np
+from numpy.typing import ArrayLike, NDArray
 
 from ._chronormal import Blend, Curves, Motion, __version__
 from . import _chronormal
 
 __all__ = ["Blend", "Curves", "ErrorTable", "Motion", "audit", "bake", "blend", "certify", "collapse", "compare",
-           "cones", "contain", "curves", "cut", "errors", "facing", "inspect", "read", "shutter"]
+           "cones", "contain", "curves", "cut", "errors", "facing", "inspect", "interpolate", "motion", "read", "schemes",
+           "shutter"]
+
+_Path = Union[str, "_os.PathLike[str]"]
+_Source = Union[_Path, Iterable[_Path], bytes, bytearray, memoryview, Motion, None]
+_Faces = Union[ArrayLike, Sequence[Sequence[int]], "tuple[ArrayLike, ArrayLike]"]
+_Elements = Literal["vertices", "faces", "corners"]
+_Weighting = Literal["area", "angle", "uniform", "area-angle", "max"]
 
 
 def _vectors(array, place):
@@ -53,9 +65,25 @@ def _indices(array, place):
     return _np.ascontiguousarray(array, dtype=_np.uint32).reshape(-1)
 
 
+def _are_offsets(faces):
+    """Whether a tuple is (offsets, corners) and not two faces: arrays, or rows of which the first can be offsets only.
+
+    Offsets begin with 0, end with the number of corners, and rise by 3 or more; two faces of one size never do.
+    """
+    if not isinstance(faces, tuple) or len(faces) != 2 or not all(_np.ndim(part) == 1 for part in faces):
+        return False
+    if any(isinstance(part, _np.ndarray) for part in faces):
+        return True
+    offsets, corners = faces
+    if len(offsets) == 0:
+        return True
+    steps = [b - a for a, b in zip(offsets[:-1], offsets[1:])]
+    return offsets[0] == 0 and offsets[-1] == len(corners) and all(step >= 3 for step in steps)
+
+
 def _polygons(faces):
     """(offsets, corners) in uint32; offsets are empty for triangles."""
-    if isinstance(faces, tuple) and len(faces) == 2 and all(_np.ndim(part) == 1 for part in faces):
+    if _are_offsets(faces):
         offsets = _indices(faces[0], "offsets")
         if offsets.size == 0:
             raise ValueError("offsets: there must be one more than there are faces")
@@ -119,12 +147,20 @@ def _floats(array, place):
     return _np.ascontiguousarray(array, dtype=_np.float64)
 
 
-def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False, path="linear", velocities=False):
+def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False, path="linear", velocities=False,
+            loop=False, strict=False):
     """What to open, as the extension wants it."""
     if (source is None) == (sample is None):
-        raise ValueError("source: give files or bytes, or the name of a built-in sample")
-    data, files = None, []
-    if isinstance(source, (bytes, bytearray, memoryview)):
+        raise ValueError("source: give files, bytes or a Motion, or the name of a built-in sample")
+    data, files, motion = None, [], None
+    if isinstance(source, Motion):
+        motion = source
+        for name, given in {"base": base is not None, "fps": fps != 1, "animation": animation is not None,
+                            "world": world, "path": path != "linear", "loop": loop, "strict": strict}.items():
+            if given:
+                raise ValueError(f"{name}: it says how files are read, and this is a Motion"
+                                 + ("; cut() makes straight pieces" if name == "path" else ""))
+    elif isinstance(source, (bytes, bytearray, memoryview)):
         data = bytes(source)
     elif isinstance(source, (str, _os.PathLike)):
         files = [_file(source, "source")]
@@ -132,19 +168,21 @@ def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False
         try:
             files = list(source)
         except TypeError:
-            raise TypeError(f"source: it must be files or bytes, not {type(source).__name__}") from None
+            raise TypeError(f"source: it must be files, bytes or a Motion, not {type(source).__name__}") from None
         files = [_file(file, f"source[{i}]") for i, file in enumerate(files)]
-    return {"files": files, "bytes": data, "samples": [_text(sample, "sample")] if sample is not None else [],
+    return {"files": files, "bytes": data, "motion": motion,
+            "samples": [_text(sample, "sample")] if sample is not None else [],
             "base": _file(base, "base") if base is not None else b"", "fps": _float(fps, "fps"),
             "animation": _text(str(animation), "animation") if animation is not None else "", "world": bool(world),
-            "path": _text(path, "path"), "velocities": bool(velocities)}
+            "path": _text(path, "path"), "velocities": bool(velocities), "loop": bool(loop), "strict": bool(strict)}
 
 
 def _names(given):
     return given if isinstance(given, str) else ",".join(given)
 
 
-def curves(p0, p1, faces, elements="vertices", crease=None, weighting="area", tolerance=1e-6, weld=True, threads=0):
+def curves(p0: ArrayLike, p1: ArrayLike, faces: _Faces, elements: _Elements = "vertices", crease: float | None = None,
+           weighting: _Weighting = "area", tolerance: float = 1e-6, weld: bool = True, threads: int = 0) -> Curves:
     """Prepare the unit normals between two arrays of positions; return Curves.
 
     p0, p1     (V, 3) positions at t = 0 and t = 1; vertices move on straight lines between them
@@ -161,7 +199,8 @@ def curves(p0, p1, faces, elements="vertices", crease=None, weighting="area", to
                   threads)
 
 
-def cut(positions, faces, times=None, path="catmull-rom", velocities=None):
+def cut(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, path: str = "catmull-rom",
+        velocities: ArrayLike | None = None) -> tuple[NDArray[_np.float32], NDArray[_np.float64]]:
     """Cut curves through keyframes into straight pieces; return positions (P, V, 3) and times (P,) of these keyframes.
 
     positions   (T, V, 3), the keyframes
@@ -178,7 +217,8 @@ def cut(positions, faces, times=None, path="catmull-rom", velocities=None):
     return _chronormal.cut(*_keyframes(positions, faces, times), _text(path, "path"), velocities)
 
 
-def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
+def blend(base: ArrayLike, deltas: ArrayLike | Sequence[ArrayLike | tuple[ArrayLike, ArrayLike]], faces: _Faces,
+          elements: _Elements = "vertices", crease: float | None = None, weld: bool = True) -> Blend:
     """Prepare the unit normals of blend shapes, base + sum of weights times deltas; return Blend.
 
     base    (V, 3) positions
@@ -195,7 +235,8 @@ def blend(base, deltas, faces, elements="vertices", crease=None, weld=True):
     return Blend(_vectors(base, "base"), targets, offsets, corners, elements, crease, weld)
 
 
-def certify(p0, p1, faces, scheme="linear", threads=0):
+def certify(p0: ArrayLike, p1: ArrayLike, faces: _Faces, scheme: str = "linear",
+            threads: int = 0) -> dict[str, NDArray[_np.float64]]:
     """Bound the largest error of a scheme over the whole of a segment, for each face; return a dict of arrays (F,).
 
     p0, p1, faces, threads  as for curves()
@@ -208,7 +249,8 @@ def certify(p0, p1, faces, scheme="linear", threads=0):
     return _chronormal.certify(_vectors(p0, "p0"), _vectors(p1, "p1"), offsets, corners, scheme, threads)
 
 
-def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False, path="linear"):
+def read(source: _Source = None, *, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
+         animation: str | int | None = None, world: bool = False, path: str = "linear", loop: bool = False, strict: bool = False) -> Motion:
     """Read a motion; return Motion, whose arrays curves() takes.
 
     source     a file, a pattern, a folder, a list of these, or the bytes of one file, of every format of the program
@@ -219,57 +261,106 @@ def read(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=
     world      vertices of a glTF file are where its nodes put them
     path       how vertices of a sequence move: "linear", "catmull-rom" or "hermite", as `--path` of the program. Curves are
                cut into straight pieces: the keyframes of the motion are the ends of these, as cut() makes them
+    loop       the first keyframe of a sequence follows the last one again
+    strict     what could only be read in part is a ValueError
     """
-    return Motion(_source(source, sample, base, fps, animation, world, path, velocities=True))
+    return Motion(_source(source, sample, base, fps, animation, world, path, velocities=True, loop=loop, strict=strict))
 
 
-def inspect(source=None, *, sample=None, base=None, fps=1.0, animation=None, world=False):
+def motion(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None) -> Motion:
+    """Make a Motion of arrays, which audit(), compare(), errors() and bake() take in place of files.
+
+    positions  (T, V, 3), two keyframes or more; between two of them vertices move on straight lines
+    faces      as for curves()
+    times      (T,) seconds, ascending; None: 0, 1, 2 ...
+    """
+    return Motion(*_keyframes(positions, faces, times))
+
+
+def _motion_of_state(state):
+    made = Motion.__new__(Motion)
+    made.__setstate__(state)
+    return made
+
+
+# The protocols 0 and 1 of pickle would make an object of the base class, for which the extension ends the process.
+Motion.__reduce_ex__ = lambda self, protocol: (_motion_of_state, (self.__getstate__(),))
+Motion.__reduce__ = lambda self: self.__reduce_ex__(0)
+
+
+def schemes() -> dict[str, str]:
+    """Return the ways to interpolate that interpolate(), compare() and certify() know: names, and a line about each."""
+    return _chronormal.schemes()
+
+
+def interpolate(scheme: str, p0: ArrayLike, p1: ArrayLike, faces: _Faces, t: float | ArrayLike,
+                elements: _Elements = "faces", crease: float = 180.0, weld: bool = True) -> NDArray[_np.float32]:
+    """Return the unit normals that a scheme makes between the exact ones at t = 0 and t = 1: (n, 3), or (T, n, 3) for T t.
+
+    scheme  a name of schemes()
+    p0, p1, faces, elements, crease, weld  as for curves(); some schemes need faces
+    t       in [0, 1]
+    """
+    times = _floats(t, "t")
+    normals = motion([_vectors(p0, "p0"), _vectors(p1, "p1")], faces, [0, 1]).unit_normals(
+        times.reshape(-1) if times.ndim == 0 else times, elements=elements, crease=crease, weld=weld, scheme=scheme)
+    return normals[0] if _np.ndim(t) == 0 else normals
+
+
+def inspect(source: _Source = None, *, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
+            animation: str | int | None = None, world: bool = False, loop: bool = False, strict: bool = False) -> dict[str, Any]:
     """Return what a file holds and what may cause wrong normals: the dict of `chronormal inspect --json`."""
-    return _json.loads(_chronormal.inspect(_source(source, sample, base, fps, animation, world)))
+    return _json.loads(_chronormal.inspect(_source(source, sample, base, fps, animation, world, loop=loop, strict=strict)))
 
 
-def audit(source=None, *, rule=None, weighting=None, viewers=None, samples=None, tolerance=None, weld=True, sample=None,
-          base=None, fps=1.0, animation=None, path="linear"):
+def audit(source: _Source = None, *, rule: str | None = None, weighting: _Weighting | None = None,
+          viewers: str | Iterable[str] | None = None, samples: int | None = None, tolerance: float | None = None,
+          weld: bool = True, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
+          animation: str | int | None = None, path: str = "linear", loop: bool = False, strict: bool = False) -> dict[str, Any]:
     """Return how wrong the normals are that a file makes viewers show: the dict of `chronormal audit --json`.
 
     rule, weighting, viewers, samples, tolerance  as the options of the program; viewers may be a list
-    source, sample, base, fps, animation        as for read()
-    path  as for read()
+    source  as for read(); or a Motion, of which viewers compute normals at keyframes: it has no stored ones
+    sample, base, fps, animation, path, loop, strict  as for read()
     """
-    opened = _source(source, sample, base, fps, animation, path=path)
+    opened = _source(source, sample, base, fps, animation, path=path, loop=loop, strict=strict)
     text, _ = _chronormal.audit(opened, rule or "", weighting or "", _names(viewers or ""), samples, tolerance, weld, False)
     return _json.loads(text)
 
 
-def compare(source=None, *, schemes=(), samples=21, access="random", elements="faces", crease=180.0, weld=True,
-            times=False, certify=False, tolerance=None, sample=None, base=None, fps=1.0, animation=None, world=False,
-            path="linear"):
+def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int = 21,
+            access: Literal["random", "sequential"] = "random", elements: _Elements = "faces", crease: float = 180.0,
+            weld: bool = True, times: bool = False, certify: bool = False, tolerance: float | None = None,
+            sample: str | None = None, base: _Path | None = None, fps: float = 1.0, animation: str | int | None = None,
+            world: bool = False, path: str = "linear", loop: bool = False, strict: bool = False) -> dict[str, Any]:
     """Return ways to interpolate normals held against the exact ones: the dict of `chronormal compare --json`.
 
     schemes    names; empty: the usual ones
     times      whether measured times are in it, which differ from run to run
     certify    whether to bound the largest error of each scheme at any time
     tolerance  degrees: certify, and find the cheapest scheme that is never off by more
-    path       as for read()
+    source     as for read(), or a Motion; sample, base, fps, animation, world, path, loop, strict: as for read()
     """
     if access not in ("random", "sequential"):
         raise ValueError("access: it must be random or sequential")
-    opened = _source(source, sample, base, fps, animation, world, path)
+    opened = _source(source, sample, base, fps, animation, world, path, loop=loop, strict=strict)
     text, _ = _chronormal.compare(opened, list(schemes), samples, access == "sequential", elements, crease, weld, times,
                                   False, certify, tolerance)
     return _json.loads(text)
 
 
-def bake(source=None, *, encode=None, viewers=None, weighting=None, tolerance=None, smooth=False, recompute_base=False,
-         sample=None, fps=1.0, path="linear"):
+def bake(source: _Source = None, *, encode: Literal["smallest", "harmless", "exact", "endpoint", "keys"] | None = None,
+         viewers: str | Iterable[str] | None = None, weighting: _Weighting | None = None, tolerance: float | None = None,
+         smooth: bool = False, recompute_base: bool = False, sample: str | None = None,
+         fps: float = 1.0, path: str = "linear", loop: bool = False, strict: bool = False) -> tuple[bytes, dict[str, Any]]:
     """Write right normals into a glTF file, or make one of a sequence; return (glb, report).
 
     viewers   the viewers that it is made for; None: those that add up deltas, and none worse in the others
-    path    as for read()
+    source  as for read(), or a Motion that is a sequence; sample, fps, path, loop, strict: as for read()
     glb     bytes of a GLB
     report  the dict of `chronormal bake --json`, but for its audit: audit(glb) has that
     """
-    opened = _source(source, sample, None, fps, path=path)
+    opened = _source(source, sample, None, fps, path=path, loop=loop, strict=strict)
     glb, text = _chronormal.bake(opened, encode or "", _names(viewers or ""), weighting or "", tolerance, smooth, recompute_base)
     return glb, _json.loads(text)
 
@@ -294,15 +385,17 @@ class ErrorTable:
         return f"<chronormal.ErrorTable {self.name}: {rows} samples of {columns}, {worst}>".replace(" :", ":")
 
 
-def errors(source=None, *, scheme=None, samples=None, elements="vertices", rule=None, weighting=None, weld=True,
-           sample=None, base=None, fps=1.0, animation=None, path="linear"):
+def errors(source: _Source = None, *, scheme: str | None = None, samples: int | None = None,
+           elements: _Elements = "vertices", rule: str | None = None, weighting: _Weighting | None = None,
+           weld: bool = True, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
+           animation: str | int | None = None, path: str = "linear", loop: bool = False, strict: bool = False) -> list[ErrorTable]:
     """Return every error, for each vertex at each sample: a list of ErrorTable, one for each mesh.
 
     scheme  None: the errors of an audit, of the stored normals; or a name, such as "linear": those of a way to
             interpolate, for any elements
-    path    as for read()
+    source  as for audit() and compare(); sample, base, fps, animation, path, loop, strict: as for read()
     """
-    opened = _source(source, sample, base, fps, animation, path=path)
+    opened = _source(source, sample, base, fps, animation, path=path, loop=loop, strict=strict)
     if scheme is None:
         if elements != "vertices":
             raise ValueError("elements: an audit judges vertices")
@@ -322,7 +415,8 @@ def _keyframes(positions, faces, times):
     return positions, *_polygons(faces), times
 
 
-def collapse(positions, faces, times=None, *, start=None, end=None):
+def collapse(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, start: float | None = None,
+             end: float | None = None) -> dict[str, NDArray[Any]]:
     """Return when faces have no area, decided exactly: a dict of arrays with a row for each collapse.
 
     positions   (T, V, 3) keyframes; between two of them vertices move on straight lines
@@ -338,7 +432,9 @@ def collapse(positions, faces, times=None, *, start=None, end=None):
     return _chronormal.query_collapse(*_keyframes(positions, faces, times), start, end)
 
 
-def facing(positions, faces, times=None, *, direction=None, eye=None, eye_to=None, silhouettes=False, start=None, end=None):
+def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, direction: ArrayLike | None = None,
+           eye: ArrayLike | None = None, eye_to: ArrayLike | None = None, silhouettes: bool = False,
+           start: float | None = None, end: float | None = None) -> dict[str, NDArray[Any]]:
     """Return when faces show their front to a viewer: a dict of arrays with a row for each interval.
 
     positions, faces, times, start, end   as for collapse()
@@ -363,7 +459,8 @@ def facing(positions, faces, times=None, *, direction=None, eye=None, eye_to=Non
                                     silhouettes)
 
 
-def contain(positions, faces, points, times=None, *, start=None, end=None):
+def contain(positions: ArrayLike, faces: _Faces, points: ArrayLike, times: ArrayLike | None = None, *,
+            start: float | None = None, end: float | None = None) -> dict[str, NDArray[Any]]:
     """Return which points are inside a closed mesh that deforms, and when each crosses its surface: a dict of arrays.
 
     positions, faces, times, start, end   as for collapse(); a mesh that is not closed is a ValueError
@@ -377,7 +474,8 @@ def contain(positions, faces, points, times=None, *, start=None, end=None):
     return _chronormal.query_contain(*_keyframes(positions, faces, times), start, end, _floats(points, "points"))
 
 
-def cones(positions, faces, times=None, *, meshlets=None, start=None, end=None):
+def cones(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, meshlets: int | None = None,
+          start: float | None = None, end: float | None = None) -> dict[str, NDArray[Any]]:
     """Return cones that contain every normal of a face: a dict of arrays with a row for each segment and face.
 
     positions, faces, times, start, end   as for collapse()
@@ -395,7 +493,8 @@ def cones(positions, faces, times=None, *, meshlets=None, start=None, end=None):
     return _chronormal.query_cones(*_keyframes(positions, faces, times), start, end, meshlets)
 
 
-def shutter(positions, faces, times=None, *, start=None, end=None):
+def shutter(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, start: float | None = None,
+            end: float | None = None) -> dict[str, NDArray[Any]]:
     """Return mean normals while a shutter is open: a dict of arrays with a row for each segment and face.
 
     positions, faces, times, start, end   as for collapse()

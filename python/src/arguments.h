@@ -53,6 +53,15 @@ struct Numbers {
     if (many) *many = kept_from(std::move(*many), out);
   }
 
+  // Refuses what is no fraction of a segment.
+  void check_fractions(const char* place) const {
+    for (std::size_t i = 0; i < count(); ++i) {
+      if (const double t = data()[i]; t >= 0 && t <= 1) continue;
+      refuse(is_one ? place : place + ("[" + std::to_string(i) + "]"),
+             "it must lie between 0 and 1, the two ends, and is " + py::str(py::float_(data()[i])).cast<std::string>());
+    }
+  }
+
   [[nodiscard]] std::size_t count() const { return is_one ? 1 : static_cast<std::size_t>(many->size()); }
   [[nodiscard]] const double* data() const { return is_one ? &one : many->data(); }
   [[nodiscard]] std::optional<std::size_t> rows() const {

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "chronormal/chronormal.h"
+#include "chronormal/chronormal_io.h"
 
 namespace chronormal::python {
 

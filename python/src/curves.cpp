@@ -56,6 +56,7 @@ class Curves : public ZeroedObject {
 
   py::array unit_normals(const py::object& t, const py::object& out, int threads) {
     Numbers times(t, "t");
+    times.check_fractions("t");
     const ChosenThreads chosen(threads);
     py::array result = result_array(out, times.rows(), size());
     times.keep_from(out);
@@ -65,6 +66,7 @@ class Curves : public ZeroedObject {
 
   py::array errors(const py::object& t, const AnyArray<float>& normals, int threads) {
     const Numbers times(t, "t");
+    times.check_fractions("t");
     const ChosenThreads chosen(threads);
     const auto n = static_cast<py::ssize_t>(size()), rows = static_cast<py::ssize_t>(times.count());
     const bool fits = times.is_one ? normals.ndim() == 2 && normals.shape(0) == n && normals.shape(1) == 3
@@ -87,6 +89,14 @@ class Curves : public ZeroedObject {
       }
     }
     return times.is_one ? array_of(std::move(degrees), {n}) : array_of(std::move(degrees), {rows, n});
+  }
+
+  // n(t) = (1-t)^2 n0 + 2t(1-t) m + t^2 n1, before it is normalised.
+  [[nodiscard]] py::array control_normals() const {
+    const std::size_t count = size();
+    std::vector<float> values(9 * count);
+    value_or_raise(curves().fill_vertex_buffer(ControlFormat::kFloat32, std::as_writable_bytes(std::span(values))));
+    return array_of(std::move(values), {static_cast<py::ssize_t>(count), 3, 3});
   }
 
   [[nodiscard]] std::size_t size() const { return curves().size(); }
@@ -168,6 +178,8 @@ class Blend : public ZeroedObject {
     float* const data = static_cast<float*>(result.mutable_data());
     const Array<double> kept = kept_from(weights, out);
     const double* const values = kept.data();
+    for (std::size_t i = 0; i < rows * targets_; ++i)
+      if (!std::isfinite(values[i])) refuse("weights", "weight " + std::to_string(i % targets_) + " is not finite");
     const Computation computing(turns_);
     for (std::size_t r = 0; r < rows; ++r) {
       check_interruption();
@@ -244,7 +256,7 @@ Made by chronormal.curves(). len() is the number of normals n: faces, vertices o
       .def("unit_normals", &Curves::unit_normals, py::arg("t"), py::arg("out") = py::none(), py::arg("threads") = 1,
            R"(Return the unit normals at t, (0, 0, 0) where there is none.
 
-t        a float in [0, 1]: the result is (n, 3) float32; or T of them: (T, n, 3)
+t        a float in [0, 1], else ValueError: the result is (n, 3) float32; or T of them: (T, n, 3)
 out      where to write, a C-contiguous float32 array of that shape, which is returned
 threads  1: the calling thread; 0: all cores where there is enough to do; k: at most k
 
@@ -256,6 +268,11 @@ normals  (n, 3) or (T, n, 3) float32, of any length: what something shows at t
 NaN      where the exact normal or the given one has no direction)")
       .def("next", &Curves::next, py::arg("p0"), py::arg("p1"),
            R"(Prepare the next segment of the same mesh in the same memory; p0 and p1 are (V, 3) float32.)")
+      .def_property_readonly(
+          "control_normals", &Curves::control_normals,
+          R"((n, 3, 3) float32, made anew each time: n0, m and n1 of each normal, of a tolerance of 1e-6.
+
+n(t) is (1 - t)**2 * n0 + 2 * t * (1 - t) * m + t**2 * n1; the unit normal is n(t) / |n(t)|.)")
       .def_property_readonly("bytes", &Curves::bytes, "Memory that the curves keep, in bytes.")
       .def_property_readonly("elements", &Curves::elements, "\"faces\", \"vertices\" or \"corners\".")
       .def_property_readonly("fit_bound", &Curves::fit_bound,

@@ -5,17 +5,12 @@
 
 #include "computation.h"
 #include "io/bytes/expansion.h"
+#include "workflow/json/json.h"
 
 namespace chronormal::python {
 namespace {
 
 constexpr const char* kBytes = "<bytes>";  // the name of a file that was given as bytes
-
-// An input that was opened, and what its bytes lie in.
-struct Opened {
-  Input input;
-  py::object bytes;
-};
 
 // The source is what python/chronormal makes of its arguments: a dict with the names of InputOptions.
 InputOptions options_of(const py::dict& source) {
@@ -28,6 +23,8 @@ InputOptions options_of(const py::dict& source) {
   options.world = source["world"].cast<bool>();
   options.velocities = source["velocities"].cast<bool>();
   options.path = source["path"].cast<std::string>();
+  options.loop = source["loop"].cast<bool>();
+  options.strict = source["strict"].cast<bool>();
   if (const py::object bytes = source["bytes"]; !bytes.is_none()) {
     const std::string_view view = bytes.cast<std::string_view>();  // of the object, which outlives the input
     options.files = {kBytes};
@@ -39,160 +36,48 @@ InputOptions options_of(const py::dict& source) {
   return options;
 }
 
-Opened open(const py::dict& source, bool allow_mesh, KeepShading shading) {
+// Opens files, and refuses those that have no such path.
+Input open_files(const py::dict& source, bool allow_mesh, KeepShading shading) {
   InputOptions options = options_of(source);
   options.allow_mesh = allow_mesh;
   options.shading = shading;
   if (const Status status = check_input(options); !status) raise(status.error());
-  Opened opened{without_gil([&] { return open_input(options); }), source["bytes"]};
-  if (options.is_curved()) (void)without_gil([&] { return opened.input.stream(); });  // refuses what has no such path
-  return opened;
+  Input input = without_gil([&] { return open_input(options); });
+  if (options.is_curved()) (void)without_gil([&] { return input.stream(); });
+  return input;
 }
 
-py::list dicts_of(std::vector<ErrorTable> tables) {
-  py::list list;
-  for (ErrorTable& table : tables) {
-    const auto rows = static_cast<py::ssize_t>(table.rows()), columns = static_cast<py::ssize_t>(table.columns());
-    py::dict dict;
-    dict["name"] = string_of(table.name);
-    dict["errors"] = array_of(std::move(table.degrees), {rows, columns});
-    dict["subjects"] = array_of(std::move(table.subjects), {rows});
-    dict["times"] = array_of(std::move(table.times), {rows});
-    dict["weights"] = array_of(std::move(table.weights), {rows});
-    dict["positions"] = array_of(std::move(table.positions), {py::ssize_t(table.topology.vertex_count()), 3});
-    if (!table.primitives.empty()) {
-      dict["primitives"] = array_of(std::move(table.primitives), {columns});
-      dict["vertices"] = array_of(std::move(table.vertices), {columns});
-    }
-    list.append(dict);
-  }
-  return list;
+constexpr int kStateVersion = 1;
+
+// The bytes of a text that string_of() has made.
+std::string bytes_of_text(const py::handle& text) {
+  PyObject* const made = PyUnicode_AsEncodedString(text.ptr(), "utf-8", "surrogateescape");
+  if (made == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::bytes>(made);
 }
 
-py::tuple audit_source(const py::dict& source, const std::string& rule, const std::string& weighting,
-                       const std::string& viewers, std::optional<std::size_t> samples, std::optional<double> tolerance,
-                       bool weld, bool keep_errors) {
-  AuditOptions options;
-  if (!rule.empty()) options.rule = value_or_raise(make_audit_rule(rule));
-  if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
-  if (!viewers.empty()) options.viewers = value_or_raise(find_viewers(viewers));
-  require(!tolerance || *tolerance >= 0, "tolerance", "it must be an angle in degrees, 0 or more");
-  options.samples = samples;
-  options.weld = weld;
-  options.keep_errors = keep_errors;
-  Opened opened = open(source, false, KeepShading::kAll);
-  Input& input = opened.input;
-  options.animation = source["animation"].cast<std::string>();
-  Audit found = without_gil([&]() -> Result<Audit> {
-    if (input.document() != nullptr) return audit(*input.document(), options);
-    const Result<const Motion*> motion = input.motion();
-    if (!motion) return motion.error();
-    const Result<const StoredNormals*> normals = input.normals();
-    if (!normals) return normals.error();
-    return audit(*motion.value(), *normals.value(), options);
-  });
-  if (input.cut_path().path.is_curved()) found.cut = input.cut_path();
-  return py::make_tuple(audit_json(input.name(), found, {tolerance}), dicts_of(std::move(found.errors)));
-}
-
-py::tuple compare_source(const py::dict& source, const std::vector<std::string>& schemes, std::size_t samples,
-                         bool sequential, const std::string& elements, double crease, bool weld, bool with_times,
-                         bool keep_errors, bool certified, std::optional<double> tolerance) {
-  CompareOptions options;
-  options.schemes = schemes;
-  options.samples = samples;
-  options.access = sequential ? Access::kSequential : Access::kRandom;
-  options.elements.kind = value_or_raise(make_element_kind(elements));
-  options.elements.crease_angle = crease;
-  options.elements.weld = weld;
-  options.keep_errors = keep_errors;
-  options.certify = certified;
-  options.tolerance = tolerance;
-  Opened opened = open(source, false, KeepShading::kNone);
-  NamedComparison found = without_gil([&]() -> Result<NamedComparison> {
-    const Result<const Motion*> motion = opened.input.motion();
-    if (!motion) return motion.error();
-    Result<Comparison> comparison = compare(*motion.value(), options);
-    if (!comparison) return comparison.error();
-    if (opened.input.cut_path().path.is_curved()) comparison.value().cut = opened.input.cut_path();
-    return NamedComparison{opened.input.name(), std::move(comparison).value()};
-  });
-  std::vector<ErrorTable> tables = std::move(found.comparison.errors);
-  return py::make_tuple(compare_json({std::move(found)}, false, with_times), dicts_of(std::move(tables)));
-}
-
-std::string inspect_source(const py::dict& source) {
-  Opened opened = open(source, true, KeepShading::kNone);
-  const std::string animation = source["animation"].cast<std::string>();
-  return inspect_json(without_gil([&] { return inspect_input(std::move(opened.input), animation); }));
-}
-
-// Bakes a glTF document; the file is written as a GLB.
-std::string bake_document(const Input& input, const BakeOptions& options, std::string& json) {
-  const GltfDocument& document = *input.document();
-  GltfEdit edit(document);
-  const GltfBake baked = without_gil([&] { return bake(document, options, edit); });
-  json = bake_json(baked, {input.name(), kBytes, std::nullopt, std::nullopt});
-  return without_gil([&] { return edit.bytes("baked.glb"); });
-}
-
-std::string bake_sequence_of(Input& input, BakeOptions options, std::string& json) {
-  std::string glb;
-  SequenceBake baked = without_gil([&]() -> Result<SequenceBake> {
-    const Result<const Motion*> motion = input.motion();
-    if (!motion) return motion.error();
-    if (motion.value()->kind == MotionKind::kTargets)
-      return invalid_input(input.name(), "these are targets and no sequence: put them into a glTF file, and bake that");
-    if (motion.value()->segments.size() + 1 != motion.value()->keyframes.size())
-      return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
-    const Result<const StoredNormals*> stored = input.normals();
-    if (!stored) return stored.error();
-    if (!stored.value()->of_keyframes.empty()) {
-      const std::vector<float>& first = stored.value()->of_keyframes.front();
-      options.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
-    }
-    const Expansion allowed = input.expansion();
-    options.expansion = &allowed;
-    return bake_sequence(*motion.value(), options, glb);
-  });
-  if (input.cut_path().path.is_curved()) baked.cut = input.cut_path();
-  json = bake_json(baked, options.encoding.value_or(BakeEncoding::kExact),
-                   {input.name(), kBytes, std::nullopt, std::nullopt});
-  return glb;
-}
-
-py::tuple bake_source(const py::dict& source, const std::string& encode, const std::string& viewers,
-                      const std::string& weighting, std::optional<double> tolerance, bool smooth, bool recompute_base) {
-  BakeOptions options;
-  if (!encode.empty()) {
-    options.encoding = find_bake_encoding(encode);
-    require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact, endpoint or keys");
-  }
-  if (!viewers.empty()) options.viewers = value_or_raise(find_viewers(viewers));
-  if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
-  require(!tolerance || (*tolerance >= 0 && *tolerance <= 90), "tolerance", "it must be an angle from 0 to 90 degrees");
-  options.tolerance = tolerance;
-  options.smooth = smooth;
-  options.recompute_base = recompute_base;
-  Opened opened = open(source, false, KeepShading::kAll);
-  const bool is_document = opened.input.document() != nullptr;
-  if (!is_document) {
-    require(options.encoding != BakeEncoding::kHarmless && options.encoding != BakeEncoding::kSmallest, "encode",
-            "a sequence is written exact, endpoint or keys");
-    require(!smooth && !recompute_base, "smooth, recompute_base", "they are for glTF files");
-  }
-  std::string json;
-  const std::string glb =
-      is_document ? bake_document(opened.input, options, json) : bake_sequence_of(opened.input, options, json);
-  return py::make_tuple(py::bytes(glb), json);
-}
-
-// A motion that was read, its arrays, and its normals at chosen moments.
+// A motion that was read or made of arrays, its arrays, and its normals at chosen moments.
 class ReadMotion : public ZeroedObject {
  public:
-  explicit ReadMotion(const py::dict& source) : opened_(open(source, true, KeepShading::kNone)) {
-    motion_ = without_gil([&] { return opened_.input.motion(); });
+  explicit ReadMotion(const py::dict& source) : bytes_(source["bytes"]) {
+    input_.emplace(open_files(source, true, KeepShading::kNone));
+    motion_ = without_gil([&] { return input_->motion(); });
+    name_ = input_->name();
   }
+  ReadMotion(const Array<float>& positions, const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners,
+             const Array<double>& times)
+      : own_(std::make_unique<Motion>(motion_of(positions, offsets, corners, times))),
+        motion_(own_.get()),
+        name_("arrays") {}
+  // Of what state() has put into a pickle.
+  explicit ReadMotion(const py::tuple& state);
+  [[nodiscard]] py::tuple state() const;
+
+  [[nodiscard]] const Motion& motion() const {
+    require_made(motion_ != nullptr);
+    return *motion_;
+  }
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
   // Makes the array of all keyframes once.
   py::array positions() {
@@ -258,8 +143,10 @@ class ReadMotion : public ZeroedObject {
   }
 
   py::array unit_normals(const std::optional<Array<double>>& times, const std::optional<Array<double>>& weights,
-                         const std::string& elements, double crease, const std::string& weighting, bool weld) {
+                         const std::string& elements, double crease, const std::string& weighting, bool weld,
+                         const std::string& scheme) {
     SampleOptions options;
+    options.scheme = scheme;
     options.elements.kind = value_or_raise(make_element_kind(elements));
     options.elements.crease_angle = crease;
     options.elements.weld = weld;
@@ -306,22 +193,246 @@ class ReadMotion : public ZeroedObject {
 
   [[nodiscard]] py::str text() const {
     require_made(motion_ != nullptr);
-    return string_of("<chronormal.Motion " + opened_.input.name() + ": " + kind() + ", " +
-                     std::to_string(motion().keyframes.size()) + " keyframes of " +
-                     std::to_string(motion().topology.vertex_count()) + " vertices, " +
+    return string_of("<chronormal.Motion " + name_ + ": " + kind() + ", " + std::to_string(motion().keyframes.size()) +
+                     " keyframes of " + std::to_string(motion().topology.vertex_count()) + " vertices, " +
                      std::to_string(motion().topology.face_count()) + " faces>");
   }
 
  private:
-  [[nodiscard]] const Motion& motion() const {
-    require_made(motion_ != nullptr);
-    return *motion_;
-  }
-
-  Opened opened_;
-  const Motion* motion_ = nullptr;  // of the input
+  py::object bytes_;  // of the input
+  std::optional<Input> input_;
+  std::unique_ptr<Motion> own_;
+  const Motion* motion_ = nullptr;  // of one of the two
+  std::string name_;
   std::optional<py::array> positions_;
 };
+
+// Everything but where it was read from.
+py::tuple ReadMotion::state() const {
+  const Motion& m = motion();
+  py::list keyframes;
+  for (const Motion::Keyframe& keyframe : m.keyframes) {
+    const auto bytes = [](const auto& values) {
+      return py::bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+    };
+    keyframes.append(py::make_tuple(bytes(keyframe.positions), keyframe.time, string_of(keyframe.name),
+                                    bytes(keyframe.velocities), bytes(keyframe.end_velocities),
+                                    bytes(keyframe.residuals)));
+  }
+  std::vector<std::uint32_t> offsets = {0};
+  for (std::size_t f = 0; f < m.topology.face_count(); ++f)
+    offsets.push_back(offsets.back() + static_cast<std::uint32_t>(m.topology.face(f).size()));
+  std::vector<std::pair<std::size_t, std::size_t>> segments;
+  for (const auto& [from, to] : m.segments) segments.emplace_back(from, to);
+  const auto corners = m.topology.corners();
+  return py::make_tuple(kStateVersion, string_of(name_), m.topology.vertex_count(), offsets,
+                        std::vector<std::uint32_t>(corners.begin(), corners.end()), keyframes, segments,
+                        m.body_of_vertex, static_cast<int>(m.kind), m.origin);
+}
+
+ReadMotion::ReadMotion(const py::tuple& state) {
+  require(state.size() == 10 && state[0].cast<int>() == kStateVersion, "state", "it is that of another version");
+  name_ = bytes_of_text(state[1]);
+  Motion m;
+  const auto offsets = state[3].cast<std::vector<std::uint32_t>>();
+  m.topology = value_or_raise(
+      Topology::polygons(state[2].cast<std::size_t>(), offsets, state[4].cast<std::vector<std::uint32_t>>()));
+  for (const py::handle each : state[5].cast<py::list>()) {
+    const auto parts = each.cast<py::tuple>();
+    require(parts.size() == 6, "state", "a keyframe has six parts");
+    const auto read = [&](std::size_t i, auto& values) {
+      const auto bytes = parts[i].cast<std::string_view>();
+      values.resize(bytes.size() / sizeof(values[0]));
+      std::memcpy(values.data(), bytes.data(), values.size() * sizeof(values[0]));
+    };
+    Motion::Keyframe& keyframe = m.keyframes.emplace_back();
+    read(0, keyframe.positions);
+    keyframe.time = parts[1].cast<double>();
+    keyframe.name = bytes_of_text(parts[2]);
+    read(3, keyframe.velocities);
+    read(4, keyframe.end_velocities);
+    read(5, keyframe.residuals);
+  }
+  for (const auto& [from, to] : state[6].cast<std::vector<std::pair<std::size_t, std::size_t>>>()) {
+    require(from < m.keyframes.size() && to < m.keyframes.size(), "state", "a segment has no such keyframe");
+    m.segments.push_back({from, to});
+  }
+  m.body_of_vertex = state[7].cast<std::vector<std::uint32_t>>();
+  m.kind = static_cast<MotionKind>(std::clamp(state[8].cast<int>(), 0, 2));
+  m.origin = state[9].cast<std::array<double, 3>>();
+  if (!m.segments.empty()) value_or_raise(validate(m));
+  own_ = std::make_unique<Motion>(std::move(m));
+  motion_ = own_.get();
+}
+
+// What a call is about: files that were opened, or a Motion of Python, and the object in which its bytes lie.
+struct Opened {
+  std::optional<Input> input;
+  const ReadMotion* made = nullptr;
+  py::object kept;
+
+  [[nodiscard]] const GltfDocument* document() const { return input ? input->document() : nullptr; }
+  [[nodiscard]] std::string name() const { return input ? input->name() : made->name(); }
+  [[nodiscard]] Result<const Motion*> motion() { return input ? input->motion() : &made->motion(); }
+  [[nodiscard]] Result<const StoredNormals*> normals() {
+    static const StoredNormals none;  // a Motion has none
+    return input ? input->normals() : &none;
+  }
+  [[nodiscard]] std::optional<CutPath> cut() const {
+    return input && input->cut_path().path.is_curved() ? std::optional(input->cut_path()) : std::nullopt;
+  }
+  [[nodiscard]] Expansion expansion() const { return input ? input->expansion() : Expansion::unlimited(); }
+};
+
+Opened open(const py::dict& source, KeepShading shading) {
+  Opened opened;
+  if (const py::object motion = source["motion"]; !motion.is_none()) {
+    opened.made = &motion.cast<const ReadMotion&>();
+    require(!opened.made->motion().segments.empty(), "source", "a mesh that does not move has nothing to judge");
+    opened.kept = motion;
+  } else {
+    opened.input.emplace(open_files(source, false, shading));
+    opened.kept = source["bytes"];
+  }
+  return opened;
+}
+
+py::list dicts_of(std::vector<ErrorTable> tables) {
+  py::list list;
+  for (ErrorTable& table : tables) {
+    const auto rows = static_cast<py::ssize_t>(table.rows()), columns = static_cast<py::ssize_t>(table.columns());
+    py::dict dict;
+    dict["name"] = string_of(table.name);
+    dict["errors"] = array_of(std::move(table.degrees), {rows, columns});
+    dict["subjects"] = array_of(std::move(table.subjects), {rows});
+    dict["times"] = array_of(std::move(table.times), {rows});
+    dict["weights"] = array_of(std::move(table.weights), {rows});
+    dict["positions"] = array_of(std::move(table.positions), {py::ssize_t(table.topology.vertex_count()), 3});
+    if (!table.primitives.empty()) {
+      dict["primitives"] = array_of(std::move(table.primitives), {columns});
+      dict["vertices"] = array_of(std::move(table.vertices), {columns});
+    }
+    list.append(dict);
+  }
+  return list;
+}
+
+py::tuple audit_source(const py::dict& source, const std::string& rule, const std::string& weighting,
+                       const std::string& viewers, std::optional<std::size_t> samples, std::optional<double> tolerance,
+                       bool weld, bool keep_errors) {
+  AuditOptions options;
+  if (!rule.empty()) options.rule = value_or_raise(make_audit_rule(rule));
+  if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
+  if (!viewers.empty()) options.viewers = value_or_raise(find_viewers(viewers));
+  require(!tolerance || *tolerance >= 0, "tolerance", "it must be an angle in degrees, 0 or more");
+  options.samples = samples;
+  options.weld = weld;
+  options.keep_errors = keep_errors;
+  Opened input = open(source, KeepShading::kAll);
+  options.animation = source["animation"].cast<std::string>();
+  Audit found = without_gil([&]() -> Result<Audit> {
+    if (input.document() != nullptr) return audit(*input.document(), options);
+    const Result<const Motion*> motion = input.motion();
+    if (!motion) return motion.error();
+    const Result<const StoredNormals*> normals = input.normals();
+    if (!normals) return normals.error();
+    return audit(*motion.value(), *normals.value(), options);
+  });
+  found.cut = input.cut();
+  return py::make_tuple(audit_json(input.name(), found, {tolerance}), dicts_of(std::move(found.errors)));
+}
+
+py::tuple compare_source(const py::dict& source, const std::vector<std::string>& schemes, std::size_t samples,
+                         bool sequential, const std::string& elements, double crease, bool weld, bool with_times,
+                         bool keep_errors, bool certified, std::optional<double> tolerance) {
+  CompareOptions options;
+  options.schemes = schemes;
+  options.samples = samples;
+  options.access = sequential ? Access::kSequential : Access::kRandom;
+  options.elements.kind = value_or_raise(make_element_kind(elements));
+  options.elements.crease_angle = crease;
+  options.elements.weld = weld;
+  options.keep_errors = keep_errors;
+  options.certify = certified;
+  options.tolerance = tolerance;
+  Opened input = open(source, KeepShading::kNone);
+  NamedComparison found = without_gil([&]() -> Result<NamedComparison> {
+    const Result<const Motion*> motion = input.motion();
+    if (!motion) return motion.error();
+    Result<Comparison> comparison = compare(*motion.value(), options);
+    if (!comparison) return comparison.error();
+    comparison.value().cut = input.cut();
+    return NamedComparison{input.name(), std::move(comparison).value()};
+  });
+  std::vector<ErrorTable> tables = std::move(found.comparison.errors);
+  return py::make_tuple(compare_json({std::move(found)}, false, with_times), dicts_of(std::move(tables)));
+}
+
+std::string inspect_source(const py::dict& source) {
+  require(source["motion"].is_none(), "source", "inspect() looks at what files hold: give files or bytes");
+  Input input = open_files(source, true, KeepShading::kNone);
+  const std::string animation = source["animation"].cast<std::string>();
+  return inspect_json(without_gil([&] { return inspect_input(std::move(input), animation); }));
+}
+
+// Bakes a glTF document; the file is written as a GLB.
+std::string bake_document(const Opened& input, const BakeOptions& options, std::string& json) {
+  const GltfDocument& document = *input.document();
+  GltfEdit edit(document);
+  const GltfBake baked = without_gil([&] { return bake(document, options, edit); });
+  json = bake_json(baked, {input.name(), kBytes, std::nullopt, std::nullopt});
+  return without_gil([&] { return edit.bytes("baked.glb"); });
+}
+
+std::string bake_sequence_of(Opened& input, BakeOptions options, std::string& json) {
+  std::string glb;
+  SequenceBake baked = without_gil([&]() -> Result<SequenceBake> {
+    const Result<const Motion*> motion = input.motion();
+    if (!motion) return motion.error();
+    if (motion.value()->kind == MotionKind::kTargets)
+      return invalid_input(input.name(), "these are targets and no sequence: put them into a glTF file, and bake that");
+    if (motion.value()->segments.size() + 1 != motion.value()->keyframes.size())
+      return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
+    const Result<const StoredNormals*> stored = input.normals();
+    if (!stored) return stored.error();
+    if (!stored.value()->of_keyframes.empty()) {
+      const std::vector<float>& first = stored.value()->of_keyframes.front();
+      options.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
+    }
+    const Expansion allowed = input.expansion();
+    options.expansion = &allowed;
+    return bake_sequence(*motion.value(), options, glb);
+  });
+  baked.cut = input.cut();
+  json = bake_json(baked, options.encoding.value_or(BakeEncoding::kExact),
+                   {input.name(), kBytes, std::nullopt, std::nullopt});
+  return glb;
+}
+
+py::tuple bake_source(const py::dict& source, const std::string& encode, const std::string& viewers,
+                      const std::string& weighting, std::optional<double> tolerance, bool smooth, bool recompute_base) {
+  BakeOptions options;
+  if (!encode.empty()) {
+    options.encoding = find_bake_encoding(encode);
+    require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact, endpoint or keys");
+  }
+  if (!viewers.empty()) options.viewers = value_or_raise(find_viewers(viewers));
+  if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
+  require(!tolerance || (*tolerance >= 0 && *tolerance <= 90), "tolerance", "it must be an angle from 0 to 90 degrees");
+  options.tolerance = tolerance;
+  options.smooth = smooth;
+  options.recompute_base = recompute_base;
+  Opened input = open(source, KeepShading::kAll);
+  const bool is_document = input.document() != nullptr;
+  if (!is_document) {
+    require(options.encoding != BakeEncoding::kHarmless && options.encoding != BakeEncoding::kSmallest, "encode",
+            "a sequence is written exact, endpoint or keys");
+    require(!smooth && !recompute_base, "smooth, recompute_base", "they are for glTF files");
+  }
+  std::string json;
+  const std::string glb = is_document ? bake_document(input, options, json) : bake_sequence_of(input, options, json);
+  return py::make_tuple(py::bytes(glb), json);
+}
 
 }  // namespace
 
@@ -330,10 +441,20 @@ void add_files(py::module_& module) {
   module.def("compare", &compare_source);
   module.def("inspect", &inspect_source);
   module.def("bake", &bake_source);
-  py::class_<ReadMotion> motion(module, "Motion",
-                                R"(A motion that chronormal.read() read: T keyframes of V vertices.)");
-  refuse_to_be_pickled(motion);
+  module.def("schemes", [] {
+    py::dict all;
+    for (const SchemeDescription& scheme : scheme_descriptions())
+      all[string_of(scheme.name)] = string_of(scheme.summary);
+    return all;
+  });
+  py::class_<ReadMotion> motion(
+      module, "Motion",
+      R"(A motion that chronormal.read() read or chronormal.motion() made: T keyframes of V vertices.)");
   motion.def(py::init<const py::dict&>())
+      .def(py::init<const Array<float>&, const Array<std::uint32_t>&, const Array<std::uint32_t>&,
+                    const Array<double>&>())
+      .def(py::pickle([](const ReadMotion& self) { return self.state(); },
+                      [](const py::tuple& state) { return std::make_unique<ReadMotion>(state); }))
       .def_property_readonly("positions", &ReadMotion::positions, "(T, V, 3) float32; the same array each time.")
       .def_property_readonly("origin", &ReadMotion::origin,
                              "[x, y, z] from which positions count: 0, but where a file has more digits than float32 "
@@ -350,11 +471,12 @@ void add_files(py::module_& module) {
       .def_property_readonly("kind", &ReadMotion::kind, "\"sequence\", \"targets\", \"animation\" or \"mesh\".")
       .def("unit_normals", &ReadMotion::unit_normals, py::arg("times") = py::none(), py::arg("weights") = py::none(),
            py::arg("elements") = "vertices", py::arg("crease") = 180.0, py::arg("weighting") = "area",
-           py::arg("weld") = true,
+           py::arg("weld") = true, py::arg("scheme") = "",
            R"(Return the unit normals at chosen moments: (T, n, 3) float32, the bits of `chronormal sample`.
 
 times    (T,) seconds of a sequence or an animation
 weights  (T, K) of K targets
+scheme   a name of schemes(), which interpolates between the exact normals at keyframes; "": exact at every time
 A mesh that does not move takes neither.)")
       .def("__repr__", &ReadMotion::text);
 }

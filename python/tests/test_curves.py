@@ -275,9 +275,14 @@ class ErrorsTest(unittest.TestCase):
                     pass
             with self.assertRaisesRegex(ValueError, "self: it was never made"):
                 unmade.unit_normals([0.5])
-        for t in (np.nan, np.inf, -np.inf, 1e300, -5.0):
-            self.assertEqual(curves.unit_normals(t).shape, (12, 3))
-            self.assertEqual(blend.unit_normals([t]).shape, (12, 3))
+        for t in (np.nan, np.inf, -np.inf, 1e300, -5.0):  # fractions and weights that are none are said
+            with self.assertRaisesRegex(ValueError, "^t: "):
+                curves.unit_normals(t)
+            if np.isfinite(t):
+                self.assertEqual(blend.unit_normals([t]).shape, (12, 3))
+            else:
+                with self.assertRaisesRegex(ValueError, "^weights: "):
+                    blend.unit_normals([t])
 
 
 if __name__ == "__main__":

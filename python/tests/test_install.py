@@ -40,7 +40,7 @@ class InstallTest(unittest.TestCase):
                                     text=True, cwd=folder).stdout
             self.assertIn(str(place), output)
             self.assertIn("(7700, 3)", output)
-            for name in ("__init__.pyi", "py.typed", "LICENSE"):
+            for name in ("_chronormal.pyi", "py.typed", "LICENSE"):
                 self.assertTrue(list(place.glob(f"lib/python3*/site-packages/chronormal/{name}")), name)
 
 
