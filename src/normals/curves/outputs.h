@@ -32,7 +32,12 @@ struct PackedOutput {
   void write(const BlockSpan& span, const CurveWeights& weights, std::size_t first) const {
     evaluate_blocks(span, weights, PackedResult{result.x + 3 * first, access});
   }
-  void set(std::size_t i, const Vec3f& v) const { result.set(i, v); }
+  void set(std::size_t i, const Vec3f& v) const {
+    float* const to = result.x + 3 * i;
+    to[0] = v.x;
+    to[1] = v.y;
+    to[2] = v.z;
+  }
 
   VectorView<float> result;
   MemoryAccess access;

@@ -145,7 +145,8 @@ Rgb10A2Output form_of(std::span<Rgb10A2> view) { return {view, MemoryAccess{}}; 
 
 // Evaluates a segment at one t.
 struct AtTime {
-  static constexpr std::size_t kTileElements = kTile;
+  // As large as the bits of write_tile() allow: to begin an evaluation takes as long as to evaluate some elements.
+  static constexpr std::size_t kTileElements = 64;
   template <class Output>
   using Values = typename ValuesOf<Output>::type;
 
@@ -257,16 +258,18 @@ std::size_t write_shared(const Source& source, std::span<const std::uint32_t> el
   std::array<std::uint64_t, kSlots> none;
   tile_in.fill(kEmpty);
   std::size_t zeros = 0;
+  std::uint64_t any_none = 0;
   for (std::size_t i = outputs.first; i < outputs.end(); ++i) {
     const std::size_t element = element_of_output[i], tile = element / kElements, slot = tile % kSlots;
     const std::size_t inside = element % kElements;
     if (tile_in[slot] != tile) {
       const IndexRange elements = tile_of(source, tile);
       none[slot] = source.write_tile(elements, values.view(kElements * slot, elements.count));
+      any_none |= none[slot];
       tile_in[slot] = tile;
     }
-    put(output, i, values[kElements * slot + inside]);
-    zeros += none[slot] >> inside & 1;
+    put(output, i, values[element % kSlotElements]);
+    if (any_none != 0) zeros += none[slot] >> inside & 1;
   }
   return zeros;
 }
