@@ -251,7 +251,7 @@ class ArgumentTest(unittest.TestCase):
                 (lambda: cn.read(sample="\ud800"), ValueError, "sample: .* is no text"),
                 (lambda: cn.read("a.glb", animation="\udcff"), ValueError, "animation: .* is no text"),
                 (lambda: cn.read("a.glb", base=5), TypeError, "base: it must be the name of a file, not int"),
-                (lambda: cn.read(5), TypeError, "source: it must be files or bytes, not int"),
+                (lambda: cn.read(5), TypeError, "source: it must be files, bytes or a Motion, not int"),
                 (lambda: cn.read(["a.obj", 5]), TypeError, r"source\[1\]: it must be the name of a file, not int"),
                 (lambda: cn.read(sample="twist", fps=huge), ValueError, "fps: it is too large"),
                 (lambda: cn.read(sample="twist", fps=[1]), TypeError, "fps: it must be a number, not list")):
