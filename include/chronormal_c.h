@@ -127,8 +127,7 @@ CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curve
 /* Writes the unit normals at many t, each to an output of its own; zeros, if it is not NULL, gets the number of (0, 0, 0)
  * among all. On the calling thread, without taking memory: jobs of an engine write ranges of one output. */
 CHRONORMAL_API chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
-                                                         const chronormal_output* outputs, size_t count,
-                                                         size_t* zeros);
+                                                         const chronormal_output* outputs, size_t count, size_t* zeros);
 /* Writes the angle in degrees, float32, between each normal that is given (of any length) and the exact one at t: how
  * wrong an interpolation is. 180 where one of the two has no direction and the other has. */
 CHRONORMAL_API chronormal_status chronormal_curves_errors(chronormal_curves* curves, double t,
