@@ -1,4 +1,4 @@
-/// Numbers as bytes, in either byte order: what the binary formats share. Private to io.
+/// Reads and writes numbers as bytes in either byte order, for all binary formats. Private to io.
 #ifndef CHRONORMAL_IO_BYTES_BINARY_H_
 #define CHRONORMAL_IO_BYTES_BINARY_H_
 
@@ -42,7 +42,7 @@ void append(std::string& text, T value, std::endian order) {
   text.append(raw.data(), raw.size());
 }
 
-/// What is wrong with a coordinate that is to be a float32; nullptr for nothing.
+/// Says what is wrong with a coordinate that is to be a float32; nullptr where it is fine.
 [[nodiscard]] inline const char* coordinate_fault(double value) noexcept {
   if (!std::isfinite(value)) return "the coordinate is not a finite number";
   if (std::fabs(value) > std::numeric_limits<float>::max()) return "the coordinate is too large";
@@ -50,8 +50,8 @@ void append(std::string& text, T value, std::endian order) {
 }
 
 /// Reads count coordinates of the type Real, float or double, from the bytes at `at`, rounded to float32. Returns how
-/// many were read: fewer than count where the next one has a coordinate_fault(). The origin is taken away before they
-/// are rounded; the first of them is coordinate `first` of a list (V, 3).
+/// many were read: fewer than count where the next one has a coordinate_fault(). The origin is subtracted before a
+/// coordinate is rounded; the first one is coordinate `first` of a list (V, 3).
 template <class Real>
 [[nodiscard]] std::size_t load_coordinates(const char* at, std::size_t count, std::endian order, float* result,
                                            const std::array<double, 3>& origin = {}, std::size_t first = 0) noexcept {
@@ -64,8 +64,8 @@ template <class Real>
   return count;
 }
 
-/// The bytes of numbers in this order: those of the array itself, or a copy in storage where the machine has another
-/// order.
+/// Returns the bytes of numbers in this order: those of the array itself, or a copy in storage where the machine has
+/// another order.
 [[nodiscard]] inline std::string_view bytes_of(std::span<const float> values, std::endian order, std::string& storage) {
   if (order == std::endian::native) return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
   storage.resize(values.size_bytes());
@@ -73,12 +73,12 @@ template <class Real>
   return storage;
 }
 
-/// Whether count items of item_size bytes fit into so many bytes.
+/// Returns true if count items of item_size bytes fit into the bytes that are left.
 [[nodiscard]] constexpr bool fits(std::uint64_t count, std::uint64_t item_size, std::uint64_t bytes_left) noexcept {
   return item_size == 0 || count <= bytes_left / item_size;
 }
 
-/// The place of a byte: "NAME, byte N".
+/// Returns the place of a byte for messages: "NAME, byte N".
 [[nodiscard]] inline std::string place(const std::string& name, std::uint64_t at) {
   return name + ", byte " + std::to_string(at);
 }

@@ -1,4 +1,4 @@
-/// A file descriptor that is closed when its time is over. Private to io.
+/// A file descriptor that its destructor closes. Private to io.
 #ifndef CHRONORMAL_IO_BYTES_DESCRIPTOR_H_
 #define CHRONORMAL_IO_BYTES_DESCRIPTOR_H_
 
@@ -37,14 +37,14 @@ class Descriptor {
   [[nodiscard]] int number() const noexcept { return number_; }
   [[nodiscard]] bool is_open() const noexcept { return number_ >= 0; }
 
-  /// Closes now. False, with errno, where the system could not write what was left.
+  /// Closes now. Returns false, with errno, where the system could not write what was left.
   [[nodiscard]] bool close() noexcept { return ::close(std::exchange(number_, -1)) == 0 || errno == EINTR; }
 
  private:
   int number_;
 };
 
-/// Opens a path, again where a signal came between; -1 with errno where it can not be opened.
+/// Opens a path, and tries again after a signal; returns -1 with errno where it can not be opened.
 [[nodiscard]] inline int open_descriptor(const std::string& path, int flags, mode_t mode = 0) {
   int descriptor = -1;
   do descriptor = ::open(path.c_str(), flags | O_CLOEXEC, mode);
@@ -52,7 +52,7 @@ class Descriptor {
   return descriptor;
 }
 
-/// What the system says about a path. errno is not looked at.
+/// Builds the error for a path from the system's own number for it; errno is not looked at.
 [[nodiscard]] inline Error failure(const std::string& path, int system_error) {
   return Error{ErrorCode::kFailed, path, std::generic_category().message(system_error)};
 }

@@ -1,13 +1,14 @@
-/// How much a file may make us hold or write: a few bytes can declare, unpack to, or be cut into very many.
+/// Limits the memory and the output that a file may ask for: a few bytes can declare, unpack to, or be cut into very
+/// many.
 ///
 ///     Expansion expansion(100);                     // --max-expansion
 ///     expansion.add_read(file.size());              // whatever is read counts
 ///     if (Status s = expansion.check(wanted, place); !s) return s;      // before memory is taken
 ///
-/// What a file asks for is at most 32 MiB, or `times` the bytes that were read, whichever is larger. What the user asks
-/// for (times to sample, poses) is no matter of this.
+/// A file may ask for 32 MiB, or for `times` the bytes that were read, whichever is larger. Requests of the user (times
+/// to sample, poses) do not count.
 ///
-/// Threads    a value: as any other.
+/// Threads    a plain value; no thread needs care.
 #ifndef CHRONORMAL_IO_BYTES_EXPANSION_H_
 #define CHRONORMAL_IO_BYTES_EXPANSION_H_
 
@@ -29,17 +30,17 @@ class Expansion {
 
   explicit Expansion(std::size_t times = kUsual, std::uint64_t bytes_read = 0) noexcept
       : times_(times), read_(bytes_read) {}
-  /// Allows everything: of what did not come from a file.
+  /// Allows everything, for input that did not come from a file.
   [[nodiscard]] static Expansion unlimited() noexcept { return Expansion(static_cast<std::size_t>(-1), kAlways); }
 
   void add_read(std::uint64_t bytes) noexcept { read_ += bytes; }
   /// Returns how many bytes were read.
   [[nodiscard]] std::uint64_t bytes_read() const noexcept { return read_; }
 
-  /// The most bytes that may be asked for.
+  /// Returns the most bytes that may be asked for.
   [[nodiscard]] std::uint64_t most() const noexcept;
-  /// Whether so many bytes may be asked for; 2^64 - 1 stands for more than can be counted.
-  /// Errors: kInvalidInput; the message says how much it would be, and which --max-expansion allows it.
+  /// Checks that so many bytes may be asked for; 2^64 - 1 stands for more than can be counted. Errors: kInvalidInput;
+  /// the message gives the number of bytes, and the --max-expansion that allows it.
   [[nodiscard]] Status check(std::uint64_t bytes, const std::string& place) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace chronormal::inline internal {
 
-/// In lower case and with the dot (".obj"); empty where there is none.
+/// Returns the extension in lower case and with the dot (".obj"); empty where there is none.
 [[nodiscard]] inline std::string lower_extension(std::string_view path) {
   const std::size_t slash = path.rfind('/');
   if (slash != std::string_view::npos) path.remove_prefix(slash + 1);

@@ -21,7 +21,7 @@ namespace {
 // Says what to do where there is nothing to read yet.
 enum class OnWait { kWait, kFail };
 
-// Reads to the end, or until there are more than `most` bytes. False, with errno, on failure.
+// Reads to the end, or until there are more than `most` bytes. Returns false, with errno, on failure.
 bool read_all(int descriptor, OnWait on_wait, std::size_t most, std::string& bytes) {
   constexpr std::size_t kFirstBlock = std::size_t{1} << 16;
   std::size_t size = 0;
@@ -75,7 +75,8 @@ Status check_holes(int descriptor, std::uint64_t size, const std::string& place)
                                   " were ever written: the rest are holes, and no data");
 }
 
-// Whether reading would come to an end: not that of devices, of which /dev/zero is one; terminals end with a key.
+// Returns true for devices that reading may never end on, such as /dev/zero. Terminals are not among them: a key ends
+// their input.
 bool may_have_no_end(int descriptor, const struct stat& status) {
   return S_ISBLK(status.st_mode) || (S_ISCHR(status.st_mode) && ::isatty(descriptor) == 0);
 }
@@ -144,7 +145,7 @@ FileBytes& FileBytes::operator=(FileBytes&& other) noexcept {
   return *this;
 }
 
-// What is mapped is mapped by us, so that it may be written to as far as the system calls want it.
+// A mapping is ours alone (MAP_PRIVATE, read only), so the const_cast that madvise() needs does no harm.
 void FileBytes::release() const noexcept {
   if (is_mapped_) (void)::madvise(const_cast<char*>(view_.data()), view_.size(), MADV_DONTNEED);
 }

@@ -1,5 +1,5 @@
-/// Whole files as bytes: in by memory mapping, or from memory where a caller has them there. Private to io and the
-/// program; the way out is chronormal/io/output.h.
+/// Whole files as bytes, read by memory mapping, or from memory where the caller has them there. Private to io and the
+/// program; chronormal/io/output.h writes files.
 ///
 /// Threads    functions on different paths may run at the same time.
 #ifndef CHRONORMAL_IO_BYTES_FILE_H_
@@ -14,11 +14,11 @@
 
 namespace chronormal::inline internal {
 
-/// The most bytes that are read of a pipe or a terminal, or of a file that says no size: they are held in memory.
+/// The most bytes that are read of a pipe, a terminal, or a file without a size, since these are held in memory.
 inline constexpr std::size_t kMostOfStream = std::size_t{1} << 30;
 
-/// The bytes of a file, as long as the object lives. Regular files are mapped: where another program shortens one
-/// meanwhile, or its disk fails, looking at what is gone raises SIGBUS, and the program ends (cli/terminal/process.h).
+/// Holds the bytes of a file as long as the object lives. A regular file is mapped: if another program shortens it
+/// meanwhile, or its disk fails, reading the lost part raises SIGBUS, and the program ends (cli/terminal/process.h).
 /// Pipes and terminals are read to their end.
 class FileBytes {
  public:
@@ -27,7 +27,7 @@ class FileBytes {
   /// stream of more than most_of_stream bytes.
   [[nodiscard]] static Result<FileBytes> open(const std::string& path, std::size_t most_of_stream = kMostOfStream);
 
-  /// The same of bytes that a resolver finds by the path, which are not copied; without a resolver as above.
+  /// Opens bytes that a resolver finds by the path, without a copy; without a resolver it opens the file, as above.
   [[nodiscard]] static Result<FileBytes> open(
       const std::string& path, const std::function<Result<std::string_view>(const std::string& name)>& resolve);
 
@@ -37,8 +37,8 @@ class FileBytes {
   FileBytes& operator=(const FileBytes&) = delete;
   ~FileBytes();
 
-  /// Gives memory back that holds what was read of a mapped file. Its bytes stay valid: who looks at them again makes
-  /// the system read them again.
+  /// Releases the memory that holds what was read of a mapped file. Its bytes stay valid: the system reads them again
+  /// when they are looked at again.
   void release() const noexcept;
 
   /// All bytes; valid until the object is destroyed or moved from.
@@ -47,9 +47,9 @@ class FileBytes {
  private:
   FileBytes() = default;
 
-  std::string_view view_;   // of what is mapped, or somebody else's
-  bool is_mapped_ = false;  // else view_ is somebody else's
-  std::string owned_;       // where there is no view
+  std::string_view view_;   // the mapping, or the memory of a resolver's owner
+  bool is_mapped_ = false;  // where false, view_ belongs to the resolver's owner
+  std::string owned_;       // the bytes where there is no view
 };
 
 }  // namespace chronormal::inline internal

@@ -40,7 +40,7 @@ Result<Journal> Journal::open(const std::string& path, std::string_view run) {
   const Error foreign{ErrorCode::kFailed, path,
                       "this is no journal of an interrupted run: remove it, or write to another output"};
   if (!S_ISREG(status.st_mode)) return foreign;
-  // Where the file system has no locks, two runs of one output are not found out.
+  // If the file system has no locks, two runs that write the same output are not noticed.
   const bool is_taken = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   if (is_taken || ::fstat(file, &status) != 0 || status.st_nlink == 0)
     return Error{ErrorCode::kFailed, path, "another run is writing this output now"};

@@ -1,11 +1,12 @@
-/// What a run has done so far, in a file, so that a later run can go on where this one was interrupted. Private to io,
-/// workflow and the program.
+/// A file that lists the finished work of a run, so that a later run can go on where this one was interrupted. Private
+/// to io, workflow and the program.
 ///
 ///     1a2b3c4d {"chronormal": "0.2.0", ...}       the run: what decides its result, as a text that the caller chooses
 ///     5e6f7081 {"segment": 0, ...}                a record for each piece of work that was done, in order
 ///
-/// A line is the CRC-32 of a text in hexadecimal, a blank, the text, and a line feed. So a record that was written only
-/// in part is found out and dropped, with all that follow it; the line of the run itself is written all or nothing.
+/// A line is the CRC-32 of a text in hexadecimal, a blank, the text, and a line feed. A record that was written only in
+/// part is noticed by that, and dropped with all records behind it; the line of the run itself is written all or
+/// nothing.
 ///
 /// Threads    one journal belongs to one thread at a time, and to one process: it is locked.
 #ifndef CHRONORMAL_IO_BYTES_JOURNAL_H_
@@ -24,36 +25,37 @@ namespace chronormal::inline internal {
 
 class Journal {
  public:
-  /// Opens the journal that is at path, of whatever run it is, or begins one of this run. A text has no line feeds.
+  /// Opens the journal at path, whichever run it belongs to, or begins one for this run. A text has no line feeds.
   /// Errors: kFailed with the path as the place, where it is no journal, another process has it, or the system refuses.
   [[nodiscard]] static Result<Journal> open(const std::string& path, std::string_view run);
 
-  /// The text of the run that began it, and those of the records.
+  /// The text of the run that began the journal, and the texts of its records.
   [[nodiscard]] const std::string& run() const noexcept { return run_; }
   [[nodiscard]] const std::vector<std::string>& records() const noexcept { return records_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
-  /// Whether there is no record, neither of an earlier run nor of this one.
+  /// Returns true if there is no record, neither of an earlier run nor of this one.
   [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
 
-  /// Writes a record behind the last one, at once. records() does not get it. Errors: kFailed with the path
+  /// Writes a record behind the last one at once; records() does not list it. Errors: kFailed with the path
   [[nodiscard]] Status append(std::string_view record);
-  /// Drops all records but the first ones that there were when the journal was opened. Errors: kFailed with the path
+  /// Keeps the first `count` of the records that there were when the journal was opened, and drops all others. Errors:
+  /// kFailed with the path
   [[nodiscard]] Status keep_first(std::size_t count);
   /// Removes the file. Errors: kFailed with the path
   [[nodiscard]] Status remove();
 
  private:
   Journal(std::string path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {}
-  // Reads the lines up to the first that is damaged. False where that is the line of the run.
+  // Reads the lines up to the first damaged one. Returns false if that is the line of the run.
   [[nodiscard]] bool read(std::string_view bytes);
 
   std::string path_;
   Descriptor file_;
   std::string run_;
   std::vector<std::string> records_;
-  std::size_t count_ = 0;            // of all records
-  std::vector<std::uint64_t> ends_;  // of the line of the run, and of those of the records
+  std::size_t count_ = 0;            // all records, new ones included
+  std::vector<std::uint64_t> ends_;  // where the line of the run ends, and then each record
 };
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// The one table of kinds of files that people hand over by mistake.
+// Lists the kinds of files that people hand over by mistake.
 #include "io/bytes/known_kinds.h"
 
 #include <algorithm>
@@ -111,7 +111,7 @@ const KnownKind* find_kind(std::string_view bytes) noexcept {
   return found == kKnownKinds.end() ? nullptr : found;
 }
 
-// "gltf" -> "glTF", "obj" -> "OBJ"
+// Returns the title of a format: "glTF" for "gltf", "OBJ" for "obj".
 std::string title_of(std::string_view format) {
   if (format == "gltf") return "glTF";
   if (format == "target") return "a target of MakeHuman";

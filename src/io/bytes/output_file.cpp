@@ -23,7 +23,7 @@
 namespace chronormal {
 namespace {
 
-// Writes one piece after the other, and small pieces together. Returns false, with errno, on failure.
+// Writes the pieces in order, and joins small ones into one call. Returns false, with errno, on failure.
 bool write_pieces(int descriptor, std::span<const std::string_view> pieces) {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   std::string block;
@@ -40,7 +40,7 @@ bool write_pieces(int descriptor, std::span<const std::string_view> pieces) {
   return write_bytes(descriptor, block);
 }
 
-// Writes everything at a place of a file. Returns false, with errno, on failure.
+// Writes all bytes at a position of a file. Returns false, with errno, on failure.
 bool write_all_at(int descriptor, std::uint64_t at, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(at));
@@ -52,7 +52,7 @@ bool write_all_at(int descriptor, std::uint64_t at, std::string_view bytes) {
   return true;
 }
 
-// The descriptor that a path stands for where it names a stream of this process.
+// Returns the descriptor of a path that names a stream of this process; nothing for other paths.
 std::optional<int> stream_descriptor(std::string_view path) {
   if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
   if (path == "/dev/stderr") return STDERR_FILENO;

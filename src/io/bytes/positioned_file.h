@@ -1,7 +1,7 @@
-/// A file of which parts are read, wherever they lie, by a descriptor and without a mapping: the file may be larger
-/// than memory, and may be shortened while it is read. Private to io.
+/// A file whose parts are read wherever they lie, by a descriptor and without a mapping: it may be larger than memory,
+/// and may be shortened while it is read. Private to io.
 ///
-/// Threads    read() may be called from several at the same time.
+/// Threads    several may call read() at the same time.
 #ifndef CHRONORMAL_IO_BYTES_POSITIONED_FILE_H_
 #define CHRONORMAL_IO_BYTES_POSITIONED_FILE_H_
 

@@ -1,4 +1,4 @@
-// Parses numbers: a fast path for plain digits, and the strict functions for all others.
+// Parses numbers: by a fast path for plain digits, and by strict functions for all others.
 #include "io/bytes/scan.h"
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 namespace chronormal::inline internal::scan {
 namespace {
 
-// std::from_chars takes no plus sign.
+// Drops a plus sign, which std::from_chars does not take.
 std::string_view without_plus(std::string_view word) noexcept {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
   return word;
 }
 
-// Whether a number that from_chars found out of range is too large (true) or too small (false): by the decimal
-// exponent of its first digit that is not 0. Such numbers are far from 1, so the sign of that exponent decides.
+// Returns true if a number that from_chars found out of range is too large, and false if it is too small. The decimal
+// exponent of its first digit other than 0 decides: such numbers are far from 1, so its sign suffices.
 bool is_large(std::string_view number) noexcept {
   constexpr std::int64_t kFar = std::int64_t{1} << 40;
   const std::size_t exponent_at = number.find_first_of("eE");
@@ -79,7 +79,7 @@ NumberFault parse_double(std::string_view word, double& value, double& last_digi
   const NumberFault fault = parse_float(word, rounded);
   if (fault != NumberFault::kNone) return fault;
   word = without_plus(word);
-  value = double{rounded};  // of a number that is too small for a double
+  value = double{rounded};  // for a number that is too small for a double
   double wide = 0;
   if (from_chars(word.data(), word.data() + word.size(), wide).ec == std::errc{}) value = wide;
   const std::size_t power = std::min(word.find_first_of("eE"), word.size()), point = word.substr(0, power).find('.');
@@ -92,8 +92,8 @@ NumberFault parse_double(std::string_view word, double& value, double& last_digi
   return NumberFault::kNone;
 }
 
-// With an integer w of at most 53 bits and p up to 22, w / 10^p and w 10^p are correctly rounded doubles (Clinger
-// 1990). Rounded again to float, such a double gives the right result, unless it lies in the middle between two floats:
+// If w is an integer of at most 53 bits and p is up to 22, w / 10^p and w 10^p are correctly rounded doubles (Clinger
+// 1990). Rounding such a double to float gives the right result, unless it lies in the middle between two floats, since
 // it may have been rounded to that middle.
 bool take_plain_float(std::string_view& line, float& value) noexcept {
   static constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,

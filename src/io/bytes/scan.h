@@ -1,4 +1,4 @@
-/// Lines, words and numbers of text: what the text formats share. Private to io.
+/// Lines, words and numbers of text, for all text formats. Private to io.
 #ifndef CHRONORMAL_IO_BYTES_SCAN_H_
 #define CHRONORMAL_IO_BYTES_SCAN_H_
 
@@ -12,16 +12,16 @@
 
 namespace chronormal::inline internal::scan {
 
-/// Blank inside a line; CR too, so that CRLF needs no care.
+/// Returns true for a blank inside a line. CR counts as one, so that CRLF needs no care.
 [[nodiscard]] constexpr bool is_blank(char c) noexcept {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
 [[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-/// Checks that bytes may be text, before lines are looked for in them: text has no page of zero bytes, which is what
-/// files have where nothing was ever written. Such a file may seem to be a terabyte long. Errors: kInvalidInput with
-/// the place "NAME, byte N"
+/// Checks that bytes may be text, before lines are looked for in them. A text has no page of zero bytes, but a file has
+/// such pages where nothing was ever written, and may then seem to be a terabyte long. Errors: kInvalidInput with the
+/// place "NAME, byte N"
 [[nodiscard]] Status check_text(std::string_view bytes, const std::string& name);
 
 /// Hands out the lines of a text without their ends, counted from 1.
@@ -30,7 +30,7 @@ class Lines {
   /// separator ends a line: '\n' (which includes CRLF) or '\r'.
   Lines(std::string_view text, char separator) noexcept : text_(text), separator_(separator) {}
 
-  /// Moves to the next line; false at the end of the text.
+  /// Moves to the next line; returns false at the end of the text.
   [[nodiscard]] bool next() noexcept {
     if (position_ >= text_.size()) return false;
     const std::size_t end = text_.find(separator_, position_);
@@ -52,7 +52,7 @@ class Lines {
   char separator_;
 };
 
-/// Takes the next word off the front of a line; empty at its end.
+/// Takes the next word off the front of a line; returns an empty one at its end.
 [[nodiscard]] inline std::string_view take_word(std::string_view& line) noexcept {
   std::size_t first = 0;
   while (first < line.size() && is_blank(line[first])) ++first;
@@ -65,23 +65,23 @@ class Lines {
 
 enum class NumberFault { kNone, kNotANumber, kNotFinite, kTooLarge };
 
-/// Reads the whole word as a float32, rounded to nearest; too small a number becomes a denormal or 0.
+/// Reads the whole word as a float32, rounded to nearest. A number that is too small becomes a denormal or 0.
 [[nodiscard]] NumberFault parse_float(std::string_view word, float& value) noexcept;
 
-/// Reads the whole word as a double that a float32 can stand for; last_digit gets the unit of its last decimal digit.
+/// Reads the whole word as a double in the range of float32; last_digit gets the unit of its last decimal digit.
 [[nodiscard]] NumberFault parse_double(std::string_view word, double& value, double& last_digit);
 
-/// Takes the next word off a line where it is a number in plain digits that two exact operations can convert. The float
-/// is that of parse_float(), in less time. Otherwise the line stays as it is.
+/// Takes the next word off a line if it is a number in plain digits that two exact operations can convert. The result
+/// is the one of parse_float(), in less time. Otherwise the line stays as it is.
 [[nodiscard]] bool take_plain_float(std::string_view& line, float& value) noexcept;
 
 /// Reads the whole word as an integer.
 [[nodiscard]] NumberFault parse_integer(std::string_view word, std::int64_t& value) noexcept;
 
-/// The word in quotes, cut short and without control characters: fit for a message.
+/// Returns the word in quotes, cut short and without control characters, for a message.
 [[nodiscard]] std::string quoted(std::string_view word);
 
-/// "'abc' is not a number": what is wrong with a word that did not parse.
+/// Says what is wrong with a word that did not parse: "'abc' is not a number".
 [[nodiscard]] std::string describe(NumberFault fault, std::string_view word);
 
 /// Appends the fewest digits that read back as the same number.

@@ -58,7 +58,7 @@ Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) 
     if (file_) {
       const auto wanted = std::span(part).first(static_cast<std::size_t>(std::min(end - at, kPart)));
       const std::optional<std::span<char>> missing = read_at(file_->number(), at, wanted);
-      // The file has all that was added, unless somebody else cut it.
+      // The file has all bytes that were added, unless somebody else cut it.
       if (!missing || !missing->empty()) return failure(place_, missing ? EIO : errno);
       bytes = {wanted.data(), wanted.size()};
     } else {
@@ -78,7 +78,7 @@ Status Spool::give_away(std::uint64_t at, std::uint64_t size, const Take& take) 
     const std::uint64_t part = std::min(size - given, kForgotten);
     if (Status status = hand_over(at + given, part, take); !status) return status;
 #ifdef __linux__
-    // Pages that were freed just now are those that take gets next, and none of their bytes goes to the disk.
+    // Pages that are freed here are the next ones that take gets, and their bytes never go to the disk.
     if (file_) {
       (void)::fallocate(file_->number(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(at + given),
                         static_cast<off_t>(part));

@@ -1,4 +1,4 @@
-/// Bytes that are put aside until it is known where they go: in memory, or in a file without a name.
+/// Bytes that are put aside until their place is known: in memory, or in a file without a name.
 ///
 ///     Result<Spool> spool = Spool::beside(path, path);
 ///     const std::uint64_t at = spool.value().size();
@@ -6,8 +6,8 @@
 ///     if (Status status = spool.value().status(); !status) ...        // once, after many of these
 ///     spool.value().hand_over(at, size, take);                        // take(bytes) gets them, in parts
 ///
-/// Memory     that of the bytes; of a file none, however many there are. The file is gone with the object, and with the
-///            process, however that ends.
+/// Memory     the bytes themselves, or none at all where a file holds them. The file is gone with the object, and with
+///            the process, however that ends.
 /// Threads    one spool belongs to one thread at a time.
 ///
 /// Private to io and workflow.
@@ -28,7 +28,7 @@ namespace chronormal::inline internal {
 
 class Spool {
  public:
-  /// Takes bytes that follow those that it took before.
+  /// Takes bytes that follow the bytes of the call before.
   using Take = std::function<Status(std::string_view bytes)>;
 
   /// Puts bytes aside in memory.
@@ -38,23 +38,23 @@ class Spool {
 
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-  /// Puts bytes behind all others. Where that fails, status() has the error from then on, and nothing more is added.
+  /// Puts bytes behind all others. If that fails, status() has the error from then on, and nothing more is added.
   void add(std::string bytes);
-  /// The same of bytes that remain with the caller: a file needs no copy of them.
+  /// Adds bytes that remain with the caller; a file needs no copy of them.
   void append(std::string_view bytes);
   /// Forgets all bytes.
   void clear();
   [[nodiscard]] const Status& status() const noexcept { return status_; }
 
   /// Gives the bytes from `at` on to take, until it returns an error. Bytes in memory live as long as the spool.
-  /// Errors: that of status(), and those of take. at + size must not exceed size()
+  /// Errors: status(), and those of take. at + size must not exceed size()
   [[nodiscard]] Status hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const;
 
-  /// The same, and forgets each part when take has it: its room on the disk is free again where the system can do that.
-  /// Nobody may ask for these bytes again.
+  /// Hands bytes over and forgets each part when take has it; its room on the disk becomes free again where the system
+  /// can do that. Nobody may ask for these bytes again.
   [[nodiscard]] Status give_away(std::uint64_t at, std::uint64_t size, const Take& take);
 
-  /// Whether these bytes lie at `at`. Where they cannot be read, status() has the error from then on.
+  /// Returns true if these bytes lie at `at`. If they cannot be read, status() has the error from then on.
   [[nodiscard]] bool has(std::uint64_t at, std::string_view bytes);
 
  private:
@@ -65,8 +65,8 @@ class Spool {
 
   std::uint64_t size_ = 0;
   Status status_ = Success{};
-  std::deque<Block> blocks_ = {};        // in memory, none of them empty
-  std::optional<Descriptor> file_ = {};  // in place of them
+  std::deque<Block> blocks_ = {};        // in memory; none is empty
+  std::optional<Descriptor> file_ = {};  // in place of blocks
   std::string place_ = {};
 };
 

@@ -1,5 +1,5 @@
-// The list has a place for every temporary file that is there at the same time. A name in it belongs to whoever takes
-// it out: the file's owner, when it is done, or remove_temporaries(), which never gives it back.
+// The list has a place for every temporary file that exists at the same time. A name in it belongs to whoever takes it
+// out: the file's owner, when it is done, or remove_temporaries(), which never gives it back.
 #include "io/bytes/temporary_file.h"
 
 #include <sys/random.h>
@@ -24,7 +24,7 @@ std::array<std::atomic<char*>, kMostFiles>
     removed{};  // by remove_temporaries(): who owned these may still look at them
 static_assert(std::atomic<char*>::is_always_lock_free, "a signal handler may not wait");
 
-// 16 hexadecimal digits.
+// Makes 16 hexadecimal digits.
 std::string random_digits() {
   std::uint64_t number = 0;
   if (::getentropy(&number, sizeof number) != 0)
@@ -34,13 +34,13 @@ std::string random_digits() {
   return digits;
 }
 
-// A name in the folder of target. It is free of anything that the name of target has, so that it is never too long.
+// Makes a name in the folder of target. It does not depend on the name of target, so that it is never too long.
 std::string name_beside(const std::string& target) {
   const std::filesystem::path folder = std::filesystem::path(target).parent_path();
   return (folder / (".chronormal-" + random_digits() + ".tmp")).string();
 }
 
-// The first free place, or kMostFiles where there is none: then the file is written all the same.
+// Takes the first free place of the list. Returns kMostFiles if there is none; the file is written all the same.
 std::size_t enter(char* name) noexcept {
   for (std::size_t i = 0; i < kMostFiles; ++i) {
     char* nobody = nullptr;
@@ -49,7 +49,7 @@ std::size_t enter(char* name) noexcept {
   return kMostFiles;
 }
 
-// Renames without replacing a file that somebody else made meanwhile, where system and file system can do that.
+// Renames without replacing a file that somebody else made meanwhile, if the system and the file system can do that.
 bool rename_to_new(const char* from, const char* to) noexcept {
 #ifdef RENAME_NOREPLACE
   if (::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return true;
@@ -78,7 +78,7 @@ Error TemporaryFile::not_opened(const std::string& place) {
   return error;
 }
 
-// The object, which removes the name, ends here, and the descriptor does not.
+// Moves the descriptor out before the object ends here and removes the name.
 Descriptor TemporaryFile::nameless(const std::string& target) {
   TemporaryFile file;
   file.open(name_beside(target), O_RDWR | O_CREAT | O_EXCL, 0600);
@@ -112,7 +112,8 @@ bool TemporaryFile::rename_to(const std::string& target, bool replace) noexcept 
   return renamed;
 }
 
-// Takes the name out of the list. A handler that has it already ends the process; it may still look at it.
+// Takes the name out of the list. If a handler has taken it already, the process is about to end, and the handler may
+// still read the name: it is not freed.
 void TemporaryFile::forget() noexcept {
   const int system_error = errno;
   char* own = name_;

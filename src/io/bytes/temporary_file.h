@@ -1,8 +1,8 @@
-/// A new file beside the one that it is to become, which is gone when its time is over or the process is told to end.
-/// Private to io.
+/// A new file beside the one that it is to become. It is removed when its object or the process ends. Private to io.
 ///
-/// All that there are stand in one list, from before they exist, so that remove_temporaries() (chronormal/io/output.h)
-/// misses none. Their names are random: nobody else has a file of that name, whenever it is removed.
+/// All temporary files are entered into one list before they exist, so that remove_temporaries()
+/// (chronormal/io/output.h) misses none. Their names are random: nobody else has a file of that name, whenever it is
+/// removed.
 ///
 /// Threads    every thread may have temporary files of its own.
 #ifndef CHRONORMAL_IO_BYTES_TEMPORARY_FILE_H_
@@ -20,21 +20,20 @@ namespace chronormal::inline internal {
 
 class TemporaryFile {
  public:
-  /// Opens a file in the folder of target; is_open() says whether that went well, and errno why not.
+  /// Opens a file in the folder of target; is_open() says whether that succeeded, and errno why not.
   TemporaryFile(const std::string& target, mode_t mode);
-  /// Opens the file `name`, which may be there already. It stays where it is when its time is over and when the process
-  /// is told to end, so that a later run can go on with it.
+  /// Opens the file `name`, which may exist already. It stays when the object ends and when the process is told to end,
+  /// so that a later run can go on with it.
   struct Kept {
     std::string name;
   };
   TemporaryFile(const Kept& kept, mode_t mode);
-  /// Opens the temporary file that another process has opened, by the name that it has there. Each of the two removes
-  /// it.
+  /// Opens a temporary file that another process has opened, by its name there. Each of the two processes removes it.
   [[nodiscard]] static std::unique_ptr<TemporaryFile> of_peer(const std::string& name);
-  /// Opens a file in the folder of target, to be read and written, whose name is gone when this returns: the file is
-  /// there as long as its descriptor, however the process ends. Closed, with errno, on failure.
+  /// Opens a file in the folder of target for reading and writing, and removes its name at once: the file exists as
+  /// long as its descriptor, however the process ends. Returns a closed descriptor, with errno, on failure.
   [[nodiscard]] static Descriptor nameless(const std::string& target);
-  /// The error of a file that could not be opened, from errno: kFailed with `place` as the place.
+  /// Returns the error of a file that could not be opened, from errno: kFailed with `place` as the place.
   [[nodiscard]] static Error not_opened(const std::string& place);
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -44,11 +43,11 @@ class TemporaryFile {
   [[nodiscard]] bool is_open() const noexcept { return file_.is_open(); }
   [[nodiscard]] int descriptor() const noexcept { return file_.number(); }
   [[nodiscard]] const char* name() const noexcept { return name_; }
-  /// As Descriptor has it.
+  /// Closes the descriptor; returns false, with errno, where the system could not write what was left.
   [[nodiscard]] bool close() noexcept { return file_.close(); }
 
-  /// Gives the file its name; with replace in place of what has that name already. False, with errno, on failure:
-  /// EEXIST where something has that name and must not be replaced.
+  /// Gives the file its name; with replace, it takes the place of what has that name already. Returns false, with
+  /// errno, on failure: EEXIST if something has that name and must not be replaced.
   [[nodiscard]] bool rename_to(const std::string& target, bool replace) noexcept;
 
   /// Leaves the file to the other process, which has renamed it.
@@ -60,7 +59,7 @@ class TemporaryFile {
 
   char* name_ = nullptr;   // on the heap, for the list; nullptr where there is no file
   std::size_t place_ = 0;  // in the list
-  bool stays_ = false;     // then it is in no list
+  bool stays_ = false;     // not in the list then
   Descriptor file_{-1};
 };
 

@@ -38,7 +38,7 @@ std::uint64_t load64(std::string_view text, std::size_t at) {
   return binary::load<std::uint64_t>(text.data() + at, kOrder);
 }
 
-// Where the record at the very end of the file begins: the comment after it has the length that it declares.
+// Finds the record at the very end of the file: the one whose comment has the length that it declares.
 std::optional<std::size_t> find_end(std::string_view file) {
   constexpr std::size_t kLongestComment = 0xFFFF;
   for (std::size_t comment = 0; comment <= kLongestComment && comment + kEndSize <= file.size(); ++comment) {
@@ -52,7 +52,8 @@ struct Directory {
   std::uint64_t begin = 0, size = 0, count = 0;
 };
 
-// Replaces what does not fit into the last record by what the zip64 record before it says. False where there is none.
+// Replaces numbers that do not fit into the last record by those of the zip64 record before it. Returns false if there
+// is none.
 bool read_end64(std::string_view file, std::size_t end, Directory& directory) {
   if (end < kLocator64Size || load32(file, end - kLocator64Size) != kLocator64Word) return false;
   const std::uint64_t at = load64(file, end - kLocator64Size + 8);
@@ -63,7 +64,7 @@ bool read_end64(std::string_view file, std::size_t end, Directory& directory) {
   return true;
 }
 
-// Takes the 64-bit numbers for those of the entry that are saturated, in their fixed order. False where one is missing.
+// Replaces the saturated numbers of the entry by 64-bit numbers, in their fixed order. Returns false if one is missing.
 bool read_zip64_field(std::string_view extra, Member& member) {
   const bool needs_any = member.size == kSaturated || member.packed_size == kSaturated || member.header == kSaturated;
   if (!needs_any) return true;
@@ -85,8 +86,8 @@ bool read_zip64_field(std::string_view extra, Member& member) {
   return false;
 }
 
-// Unpacks at most `most` bytes. The result has fewer where the data are damaged; at_end is whether they ended well.
-// Where zlib gets no memory, this ends as it does where anything else gets none.
+// Unpacks at most `most` bytes. The result has fewer if the data are damaged; at_end tells whether they ended well.
+// Throws std::bad_alloc if zlib gets no memory.
 std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max();
   std::string result(most, '\0');
@@ -209,7 +210,7 @@ Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from) 
   const auto put64 = [](std::string& text, std::uint64_t value) { binary::append(text, value, kOrder); };
   const auto short_form = [&](std::uint64_t value) { return value >= zip64_from ? std::uint64_t{kSaturated} : value; };
 
-  // The fields that both headers of a member have, from "version needed" on.
+  // Writes the fields that both headers of a member have, from "version needed" on.
   const auto put_common = [&](std::string& text, const StoredMember& member, bool is_large) {
     put16(text, is_large ? 45 : 20);  // version needed
     put16(text, 0);                   // flags

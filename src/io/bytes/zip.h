@@ -1,7 +1,7 @@
 /// Zip files: members stored or deflated, with zip64. Private to io.
 ///
-/// The directory at the end of the file says where each member is and how large; it is believed only where the member
-/// agrees. (The layout is that of PKWARE's APPNOTE.)
+/// The directory at the end of the file says where each member is and how large. It is believed only if the member
+/// agrees. (PKWARE's APPNOTE defines the layout.)
 #ifndef CHRONORMAL_IO_BYTES_ZIP_H_
 #define CHRONORMAL_IO_BYTES_ZIP_H_
 
@@ -30,9 +30,9 @@ struct Member {
 /// directory that does not lie inside it, the same name twice.
 [[nodiscard]] Result<std::vector<Member>> read_directory(std::string_view file, const std::string& name);
 
-/// The first `most` bytes of a member, or all where it has fewer: a view into file, or into storage where they had to
-/// be unpacked. The checksum is verified where they are all. Takes no more memory than that, and none for a size that
-/// deflate can not have reached.
+/// Reads the first `most` bytes of a member, or all of a shorter one: a view into file, or into storage if they had to
+/// be unpacked. The checksum is verified if all bytes are read. Takes no more memory than `most` bytes, and none for a
+/// size that deflate can not have reached.
 /// Errors: kInvalidInput with the place "NAME, MEMBER": encrypted, another method, data that are damaged or of another
 /// size than the directory says.
 [[nodiscard]] Result<std::string_view> read_member(std::string_view file, const Member& member, std::uint64_t most,
@@ -45,8 +45,8 @@ struct StoredMember {
   std::uint32_t checksum = 0;
 };
 
-/// A zip file without the bytes of its members: the place of each header, which its bytes follow, and the records
-/// behind the last member. Checksums do not change any place, so they may be 0 until they are known.
+/// A zip file without the bytes of its members: the place of each header, which its member's bytes follow, and the
+/// records behind the last member. Checksums do not move any place, so they may be 0 until they are known.
 struct Frame {
   struct Header {
     std::uint64_t at = 0;
@@ -64,8 +64,8 @@ struct Part {
   std::string_view bytes;
 };
 
-/// Writes a zip file of stored members, dated 1980-01-01. Sizes and offsets from `zip64_from` on take zip64 fields
-/// (tests make it small).
+/// Writes a zip file of stored members, dated 1980-01-01. Sizes and offsets from `zip64_from` on take zip64 fields;
+/// tests make it small.
 [[nodiscard]] std::string write(std::span<const Part> parts, std::uint64_t zip64_from = 0xFFFFFFFF);
 
 }  // namespace chronormal::inline internal::zip
