@@ -1,5 +1,5 @@
-// The C interface: each function checks what C cannot express, calls its counterpart of the library, and turns errors
-// and exceptions into a status with a message.
+// Implements the C interface: each function checks what C cannot express, calls its counterpart of the library, and
+// turns errors and exceptions into a status with a message.
 #include "chronormal_c.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ chronormal_status misuse(const char* place, const char* message) noexcept {
   }
 }
 
-// Calls what may throw.
+// Calls a body that may throw, and turns its exception into a status.
 template <class Body>
 chronormal_status guarded(const Body& body) noexcept {
   try {
@@ -161,7 +161,7 @@ Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, c
 struct chronormal_curves {
   MeshNormals curves;
   Threads threads;
-  std::vector<float> exact;  // (size, 3), of chronormal_curves_errors()
+  std::vector<float> exact;  // (size, 3), for chronormal_curves_errors()
 };
 
 struct chronormal_blend {
@@ -175,7 +175,7 @@ struct chronormal_motion {
   const Motion* motion;
   SampleOptions options;
   NormalSampler sampler;
-  std::unique_ptr<Motion> pieces = {};  // of curves
+  std::unique_ptr<Motion> pieces = {};  // straight pieces of curves; empty without curves
 };
 
 const char* chronormal_version(void) { return CHRONORMAL_VERSION; }
