@@ -63,16 +63,16 @@ struct CertifyOptions {
   std::size_t most_pieces = 256;  // at most 256
 };
 
-/// How far each component of n0, m and n1 of an element may be from the true one.
+/// The largest distance of each component of n0, m and n1 of an element from the true one.
 using ControlErrors = std::array<double, 3>;
 
-/// Bounds the errors of all elements of a block. An element without a normal in the whole segment has no error: 0, 0.
-/// scheme must be prepared from this block, and result have as many elements. `errors` has one for each element, or is
-/// empty: then every control normal is within 2^-26 of its length, as face_control_normals() promises.
+/// Bounds the errors of all elements of a block. An element without a normal in the whole segment has the error 0, 0.
+/// scheme must be prepared from this block, and result must have as many elements. `errors` has one entry for each
+/// element, or is empty: then every control normal is within 2^-26 of its length, as face_control_normals() promises.
 void certify(const Scheme& scheme, const ElementBlock& block, std::span<ErrorBounds> result,
              const CertifyOptions& options = {}, std::span<const ControlErrors> errors = {});
 
-/// The same for all faces of a segment and a scheme by its name. Errors: those of make_scheme().
+/// Bounds the errors of all faces of a segment for a scheme that is given by its name. Errors: those of make_scheme().
 [[nodiscard]] Result<std::vector<ErrorBounds>> certify(std::string_view scheme, const Segment& segment,
                                                        const CertifyOptions& options = {},
                                                        Threads threads = Threads::kOne);

@@ -35,8 +35,8 @@
 
 namespace chronormal {
 
-/// A set of directions around an axis. What is not one of the two special cones has an axis of length 1, as near as
-/// float32 can be; the direction of these very floats is what the cone is around.
+/// A set of directions around an axis. Except for the two special cones, the axis has a length of 1, as near as float32
+/// can be; the cone is around the direction of these very floats.
 struct NormalCone {
   Vec3f axis;
   float sine = 0;  ///< of the half-angle, from 0 to 1
@@ -48,7 +48,7 @@ struct NormalCone {
   friend constexpr bool operator==(const NormalCone&, const NormalCone&) = default;
 };
 
-/// The half-angle in radians: up to pi / 2, pi for the whole sphere, and 0 for the empty cone.
+/// Returns the half-angle in radians: up to pi / 2, pi for the whole sphere, and 0 for the empty cone.
 [[nodiscard]] double half_angle(const NormalCone& cone) noexcept;
 
 /// Writes the cone of each element over [t0, t1]. Where a control normal of a part of the segment nearly vanishes, so

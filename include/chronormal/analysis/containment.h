@@ -44,7 +44,7 @@
 
 namespace chronormal {
 
-/// Where a point goes through the surface.
+/// A passage of a point through the surface.
 struct Crossing {
   std::uint32_t point = 0;  ///< index of the point
   std::uint32_t face = 0;   ///< of an edge or a vertex, one of its faces
@@ -68,14 +68,14 @@ class Containment {
   Containment& operator=(Containment&&) noexcept;
   ~Containment();
 
-  /// The winding number of each point at t, which is rounded to a multiple of 2^-48. Points move on straight lines as
-  /// the segment does; one that rests has the same position twice.
+  /// Returns the winding number of each point at t, which is rounded to a multiple of 2^-48. Points move on straight
+  /// lines as the segment does; a point that rests has the same position twice.
   /// The segment must be of the topology that this was made of; from and to must have one position for each point
   [[nodiscard]] std::vector<std::int32_t> winding_numbers(const Segment& segment, double t,
                                                           VectorView<const float> from,
                                                           VectorView<const float> to) const;
 
-  /// All crossings in the segment, ordered by point and t.
+  /// Finds all crossings in the segment, ordered by point and t.
   /// Cost: O(log F) for each point, and a cubic for each face that comes near it.
   [[nodiscard]] std::vector<Crossing> crossings(const Segment& segment, VectorView<const float> from,
                                                 VectorView<const float> to) const;

@@ -1,4 +1,4 @@
-/// How far interpolated normals are from exact ones: the measure of the paper's Table 1.
+/// Measures the errors of interpolated normals against exact ones, as the paper's Table 1 does.
 ///
 /// For one element, the angles to the exact normal at N equidistant t = i / (N - 1) of a segment are summed; for a
 /// mesh, so are those sums over elements and segments. A (element, sample) pair whose exact normal is zero is
@@ -28,18 +28,19 @@ namespace chronormal {
 /// result must have faces.count elements; t in [0, 1]
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept;
 
-/// Returns n(t) of a vertex or corner in the same way: the sum of those of the faces that it belongs to, however far
-/// these cancel. Threads: pure. t in [0, 1]
+/// Returns n(t) of a vertex or corner in the same way: the sum of the normals of its faces, however far they cancel.
+/// Threads: pure. t in [0, 1]
 [[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept;
 
-/// n(t) of a face in double, and the size of the products that it is the sum of, by which its rounding is judged.
+/// The normal n(t) of a face in double, and the size of the products that it is the sum of, by which its rounding is
+/// judged.
 struct ReferenceArea {
   Vec3d n;
   double products = 0;
 };
 [[nodiscard]] ReferenceArea reference_area(const Segment& segment, std::uint32_t face, double t) noexcept;
 
-/// Where an angular error was found.
+/// The place of an angular error.
 struct ErrorPlace {
   std::size_t segment = 0;
   std::size_t element = 0;

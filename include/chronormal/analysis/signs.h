@@ -1,9 +1,9 @@
-/// When a face collapses: the instants at which its normal vanishes, decided exactly.
+/// Finds the instants at which a face collapses, so that its normal vanishes; decided exactly.
 ///
 /// n(t) vanishes for no t, at one or two instants, or in the whole segment. At a simple zero the face turns over: the
 /// directions before and after are antipodal. At a double zero it does not: the face shrinks to nothing and comes back
-/// as it was. That is a question about integers, for positions in float32 are integers times a power of two, and it is
-/// answered as one: no threshold decides, and no rounding.
+/// as it was. Since positions in float32 are integers times a power of two, this is a question about integers, and it
+/// is answered as one, without a threshold and without rounding.
 ///
 ///     const Collapses found = find_collapses(segment, face);
 ///     for (const Collapse& one : found.instants()) ...       // one.lower <= t <= one.upper
@@ -48,11 +48,12 @@ struct Collapses {
   void instants() && = delete;  ///< a loop over a temporary would outlive it
 };
 
-/// Decides for one face, from its positions. Cost: three dot products for most faces; where those do not prove that
-/// n(t) stays away from zero, a few microseconds of integers.
+/// Finds the collapses of one face, from its positions. Cost: three dot products for most faces; if they do not prove
+/// that n(t) stays away from zero, a few microseconds of integers.
 [[nodiscard]] Collapses find_collapses(const Segment& segment, std::size_t face) noexcept;
 
-/// The same where the control normals of the face, as face_control_normals() makes them of this segment, are at hand.
+/// Finds them with control normals that the caller has already; they must be those of face_control_normals() for this
+/// segment.
 [[nodiscard]] Collapses find_collapses(const Segment& segment, std::size_t face,
                                        const ControlNormals& normals) noexcept;
 
@@ -66,8 +67,8 @@ struct FaceCollapses {
 [[nodiscard]] std::vector<FaceCollapses> find_collapses(const Segment& segment, IndexRange faces,
                                                         std::span<const ControlNormals> normals);
 
-// From which side a face is seen, at every instant of a segment: for culling, silhouettes and visibility over a
-// shutter.
+// Finds the side from which a face is seen at every instant of a segment, for culling, silhouettes and visibility over
+// a shutter.
 //
 // A face shows its front where
 //     f(t) = n(t) . w(t) > 0,   w(t) the way to the viewer
@@ -90,14 +91,14 @@ struct FaceCollapses {
 // Source     docs/theory.md, section 2; Munkberg, Akenine-Moller, Backface Culling for Motion Blur and Depth of Field
 //            (2011), have the cubic and the test of its Bernstein coefficients, which is the first stage here.
 
-/// Who looks. Coordinates are doubles and count as they are; none may be beyond the range of float32.
+/// The viewpoint of a question. Coordinates are doubles and count as they are; none may be beyond the range of float32.
 struct View {
   bool is_eye = false;
   Vec3d from, to;  ///< the eye where its way begins and ends; of a direction both are the same
   /// The eye's place on its way at t = 0 and at t = 1, for a way that is longer than the segment.
   LocalTime start = 0.0, end = 1.0;
 
-  /// A viewer infinitely far away in this direction: what has a normal along it is seen from its front.
+  /// Makes a viewer infinitely far away in this direction; it sees the front of a face whose normal points that way.
   [[nodiscard]] static View of_direction(const Vec3d& to_viewer) noexcept { return {false, to_viewer, to_viewer}; }
   [[nodiscard]] static View of_eye(const Vec3d& eye) noexcept { return {true, eye, eye}; }
   [[nodiscard]] static View of_moving_eye(const Vec3d& from, const Vec3d& to, const LocalTime& start = 0.0,
@@ -133,14 +134,14 @@ struct Facing {
   [[nodiscard]] Side last() const noexcept { return count == 0 ? side : at[count - 1].after; }
 };
 
-/// Decides for a range of faces. normals are theirs, as face_control_normals() makes them of this segment; result has an
-/// element for each face.
+/// Decides the sides for a range of faces. normals are the control normals of these faces, as face_control_normals()
+/// makes them of this segment; result has an element for each face.
 /// Cost: about that of unit_normal_at() for each face; several times that where it changes sides twice or more, and some
 /// microseconds of integers where it touches edge-on, or is so at 0, 1/2 or 1.
 void find_facings(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                   std::span<Facing> result) noexcept;
 
-/// The same for one face, which costs several times what it costs among others.
+/// Decides the sides of one face, which costs several times what it costs among others.
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const View& view) noexcept;
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const ControlNormals& normals,
                                  const View& view) noexcept;
@@ -159,9 +160,10 @@ enum class ShutterSide : std::int8_t {
   kFront = 1,  ///< never its back
 };
 
-/// Decides it for a range of faces: kBack and kFront are certain, and kBoth is right but for changes within a bracket
-/// of t0 and t1. A face that is edge-on or without area throughout is kBack. normals are those of the range. Cost: as
-/// above, and nearly always the cheap case. result has an element for each face; 0 <= t0 <= t1 <= 1
+/// Decides the ShutterSide for a range of faces: kBack and kFront are certain, and kBoth is right except for changes
+/// within a bracket of t0 and t1. A face that is edge-on or without area throughout is kBack. normals are those of the
+/// range. Cost: that of find_facings(), and nearly always its cheap case. result has an element for each face; 0 <= t0
+/// <= t1 <= 1
 void sides_over(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                 double t0, double t1, std::span<ShutterSide> result) noexcept;
 
@@ -172,9 +174,9 @@ struct Silhouette {
   std::array<double, 2> from{}, to{};
 };
 
-/// Finds all silhouette edges over time: of the edges that exactly two faces share, by their vertices. Ordered by
-/// vertices, then by time. Where the two faces change so close to each other that their brackets meet, both changes
-/// count as one. normals are those of all faces. Memory: 88 bytes a face, 12 a corner, and the result.
+/// Finds all silhouette edges over time, among the edges that exactly two faces share, ordered by vertices and then by
+/// time. If the two faces change so close to each other that their brackets meet, both changes count as one. normals
+/// are those of all faces. Memory: 88 bytes a face, 12 a corner, and the result.
 [[nodiscard]] std::vector<Silhouette> find_silhouettes(const Segment& segment, std::span<const ControlNormals> normals,
                                                        const View& view);
 

@@ -1,4 +1,4 @@
-/// What a mesh is made of, apart from how it moves: doubled vertices, edges, pieces, faces that lie on each other.
+/// Describes a mesh apart from its motion: doubled vertices, edges, pieces, faces that lie on each other.
 ///
 /// Files double vertices, for texture seams or hard edges, and a surface that is whole then looks torn. So everything
 /// here counts points (normals/normal_groups.h) and not vertices. An edge has two of them, and is
@@ -24,7 +24,7 @@
 
 namespace chronormal {
 
-/// How many were found, and the lowest index among them.
+/// A count of things that were found, and the lowest index among them.
 struct Found {
   std::size_t count = 0;
   std::size_t first = 0;  ///< 0 where there are none
@@ -36,10 +36,10 @@ struct Found {
   friend bool operator==(const Found&, const Found&) = default;
 };
 
-/// The vertices that are copies: those at the point of a lower one.
+/// Finds the vertices that are copies: those at the point of a lower one.
 [[nodiscard]] Found find_copies(const Points& points);
 
-/// The numbers that the page above explains. The first of an edge, or of a pair, is the lowest face that has one.
+/// The counts that the text above explains. The first of an edge, or of a pair, is the lowest face that has one.
 struct Surface {
   std::size_t edges = 0;
   Found open_edges, non_manifold_edges, turned_edges, seam_edges;
@@ -52,7 +52,7 @@ struct Surface {
   std::size_t most_corners = 0;  ///< of one face
 };
 
-/// Looks at a mesh of which these vertices are one point.
+/// Surveys a mesh; points says which of its vertices are one.
 [[nodiscard]] Surface survey(const Topology& topology, const Points& points);
 
 }  // namespace chronormal

@@ -57,10 +57,10 @@ void check_interruption();
 /// Order      a result must not depend on it: write to slot i, and combine the slots in order afterwards.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Whether a function runs on the thread that calls it, or on all cores where there is enough to do.
+/// Selects the thread that calls a function, or all cores where there is enough to do.
 enum class Threads { kOne, kAll };
 
-/// How many threads parallel_for may use.
+/// Returns the number of threads that parallel_for may use.
 [[nodiscard]] std::size_t thread_count() noexcept;
 
 /// While it lives, parallel_for on this thread uses this many threads, also more than there are cores (64 at

@@ -64,8 +64,8 @@ template <class T, std::size_t M>
   return split(split(p, t1).before, t0 / t1).after;
 }
 
-/// The product of two polynomials, of the sum of their degrees. `product` multiplies two coefficients: the number that
-/// two vectors have as their dot product makes a scalar polynomial of two vector ones.
+/// Returns the product of two polynomials; its degree is the sum of theirs. `product` multiplies two coefficients: with
+/// a dot product, two vector polynomials give a scalar one.
 template <class P, std::size_t M, class Q, std::size_t N, class Product = std::multiplies<>>
 [[nodiscard]] constexpr auto multiply(const std::array<P, M>& p, const std::array<Q, N>& q, Product product = {}) {
   std::array<decltype(product(p[0], q[0])), M + N - 1> result{};
@@ -78,7 +78,7 @@ template <class P, std::size_t M, class Q, std::size_t N, class Product = std::m
   return result;
 }
 
-/// The same polynomial in power form. Cancels near t = 1: evaluate the Bernstein form where digits matter.
+/// Converts a polynomial to power form. Cancels near t = 1: evaluate the Bernstein form where digits matter.
 template <class T, std::size_t M>
 [[nodiscard]] constexpr Power<T, M - 1> to_power(const std::array<T, M>& p) {
   Power<T, M - 1> power;
@@ -90,7 +90,7 @@ template <class T, std::size_t M>
   return power;
 }
 
-/// The same polynomial in Bernstein form.
+/// Converts a polynomial to Bernstein form.
 template <class T, std::size_t N>
 [[nodiscard]] constexpr Bernstein<T, N> to_bernstein(const Power<T, N>& p) {
   Bernstein<T, N> b;
@@ -119,8 +119,8 @@ struct Roots {
 
 namespace detail {
 
-/// The only root of p, which changes its sign, by false position with the Illinois rule (Dowell, Jarratt 1971) and a
-/// bisection wherever that gains too little.
+/// Finds the only root of p, where p changes its sign, by false position with the Illinois rule (Dowell, Jarratt 1971),
+/// and by bisection wherever that gains too little.
 template <std::size_t M>
 [[nodiscard]] double only_root(const std::array<double, M>& p) {
   double a = 0, b = 1, fa = p[0], fb = p[M - 1];
@@ -143,8 +143,8 @@ template <std::size_t M>
   return a + (b - a) / 2;
 }
 
-/// Isolates by the variation of signs (Descartes), subdividing until there is one or an interval is as wide as
-/// rounding.
+/// Isolates the roots by the variation of signs (Descartes), subdividing until there is one or an interval is as wide
+/// as rounding.
 template <std::size_t M>
 void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 1>& roots) {
   std::size_t variations = 0;

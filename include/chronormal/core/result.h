@@ -1,4 +1,4 @@
-/// Errors as values: what every function that meets data from outside returns.
+/// Errors as values, which every function that meets data from outside returns.
 ///
 /// An Error has a code (the exit code of the program follows from it), a place and a message. The place says where
 /// to look ("walk_3.obj, line 17" or "frame 2, vertex 5"); the message says what is wrong and, where it helps, what
@@ -17,7 +17,7 @@
 
 namespace chronormal {
 
-/// What kind of failure it was. The values are the exit codes of the program.
+/// The kind of a failure. The values are the exit codes of the program.
 enum class ErrorCode {
   kFailed = 1,        ///< reading, writing, or an internal failure
   kUsage = 2,         ///< the caller asked for something that does not exist

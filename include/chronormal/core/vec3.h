@@ -48,7 +48,8 @@ template <class S>
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
 }
 
-/// The larger of two numbers; of a number and NaN, the number. This is std::fmax in two instructions instead of a call.
+/// Returns the larger of two numbers, or the number if the other is NaN. This is std::fmax in two instructions instead
+/// of a call.
 [[nodiscard]] inline double maximum_number(double a, double b) noexcept {
   const double larger = b > a ? b : a;  // a where one is NaN
   if (larger == larger) [[likely]]
@@ -66,7 +67,7 @@ template <class S>
   return maximum_number(y, z);
 }
 
-/// Whether no component is infinite or NaN.
+/// Returns true if no component is infinite or NaN.
 [[nodiscard]] inline bool is_finite(const Vec3d& a) noexcept {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
@@ -79,8 +80,8 @@ template <class S>
   return scale * std::sqrt(dot(b, b));
 }
 
-/// a scaled to length 1, and (0, 0, 0) for the zero vector. Goes through the largest component, so that vectors of
-/// any finite length are scaled right.
+/// Scales a to length 1; returns (0, 0, 0) for the zero vector. Divides by the largest component first, so that vectors
+/// of any finite length are scaled right.
 [[nodiscard]] inline Vec3d unit(const Vec3d& a) noexcept {
   const double scale = max_abs(a);
   if (scale == 0) return {};

@@ -20,7 +20,7 @@
 
 namespace chronormal {
 
-/// So many bytes, or all that the machine can address where that is less: its addresses may have 32 bits.
+/// Returns so many bytes, or all that the machine can address if that is less: its addresses may have 32 bits.
 [[nodiscard]] constexpr std::size_t addressable(std::uint64_t bytes) noexcept {
   return bytes < static_cast<std::size_t>(-1) ? static_cast<std::size_t>(bytes) : static_cast<std::size_t>(-1);
 }
@@ -49,7 +49,7 @@ struct VectorView {
     if (count == 0) return {};
     return {xyz, xyz + 1, xyz + 2, count, 3};
   }
-  /// Of a whole array or std::vector, with three scalars for each vector.
+  /// Names all vectors of an array or std::vector that has three scalars for each.
   [[nodiscard]] static VectorView packed(std::span<T> xyz) noexcept {
     assert(xyz.size() % 3 == 0);
     return packed(xyz.data(), xyz.size() / 3);
@@ -75,7 +75,7 @@ struct VectorView {
     z[i * stride] = value.z;
   }
 
-  /// Whether it is one array of shape (n, 3).
+  /// Returns true if the vectors are one array of shape (n, 3).
   [[nodiscard]] bool is_packed() const noexcept { return stride == 3 && y == x + 1 && z == x + 2; }
 
   /// The vectors of a range, as a view of their own.

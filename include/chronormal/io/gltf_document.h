@@ -8,8 +8,8 @@
 /// is not read (materials, textures, the bounds of accessors) is not. Skins, and animations of nodes, are read by those who
 /// look through skins, and what is wrong with them is an error for those alone.
 ///
-/// A file that requires another extension is refused by the name of that, but for those of materials, textures and
-/// lights, which do not touch geometry.
+/// A file that requires another extension is refused, and the message names the extension. Extensions of materials,
+/// textures and lights are allowed, since they do not touch geometry.
 ///
 /// Errors     kInvalidInput with the file and a JSON pointer as the place ("walk.gltf, /accessors/3/count"), or a byte
 ///            for what is no JSON.
@@ -62,16 +62,16 @@ struct GltfExtraTarget {
   std::vector<LinearTerm> linear;
   std::vector<QuadraticTerm> quadratic;
 
-  /// The weight, where those of the mesh's own targets are given; weights has one for each target.
+  /// Returns the weight for given weights of the mesh's own targets; weights has one for each target.
   [[nodiscard]] double weight(std::span<const double> weights) const noexcept;
-  /// Whether the weight is other than zero where w_i alone is.
+  /// Returns true if the weight is other than zero where w_i alone is.
   [[nodiscard]] bool follows(std::size_t i) const noexcept;
 
   friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
 };
 
-/// How a bake encodes the normals of targets (workflow/bake.h).
-/// kKeys is for sequences; what it writes is marked as harmless.
+/// Selects how a bake encodes the normals of targets (workflow/bake.h). kKeys is for sequences; its results are marked
+/// as harmless.
 enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest, kKeys };
 
 /// The encodings by name, for the command line, for JSON and for the mark in a file.
@@ -85,7 +85,7 @@ inline constexpr std::array<BakeEncodingName, 5> kBakeEncodings = {{{BakeEncodin
                                                                     {BakeEncoding::kSmallest, "smallest"},
                                                                     {BakeEncoding::kKeys, "keys"}}};
 [[nodiscard]] std::string_view name_of(BakeEncoding encoding) noexcept;
-/// Nothing where no encoding has that name.
+/// Finds an encoding by its name; returns nothing for an unknown name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;
 
 /// What a bake leaves in extras.chronormal of a mesh (docs/formats.md), for instance
@@ -104,11 +104,11 @@ class FileBytes;
 class GltfSkin;
 }
 
-/// Finds the bytes of a file by its name, in place of the file system. They must stay as long as what was opened with
-/// it. Errors: what the caller is to be told.
+/// Finds the bytes of a file by its name, in place of the file system. The bytes must stay as long as what was opened
+/// with them. Errors: whatever the caller is to be told.
 using FileResolver = std::function<Result<std::string_view>(const std::string& name)>;
 
-/// How weights go from one key to the next.
+/// Selects how weights go from one key to the next.
 enum class GltfInterpolation { kLinear, kStep, kCubicSpline };
 
 struct GltfPrimitive {
@@ -116,7 +116,7 @@ struct GltfPrimitive {
   std::size_t vertex_count = 0;   ///< 0 where there is no POSITION
   std::size_t element_count = 0;  ///< indices, or vertices where there are none
   bool has_normals = false, has_tangents = false, has_draco = false;
-  /// What each target moves.
+  /// The attributes that each target moves.
   struct Target {
     bool positions = false, normals = false, tangents = false;
   };
@@ -205,7 +205,7 @@ struct GltfOptions {
   std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
   std::size_t max_expansion = 100;  ///< as in InputOptions
   bool strict = false;              ///< refuse what GltfDocument::notes() would tell
-  /// Where buffers and images come from, by their path below the folder of the asset; empty: the file system.
+  /// Finds buffers and images by their path below the folder of the asset; empty: the file system does.
   FileResolver resolve = {};
 };
 
@@ -219,12 +219,12 @@ class GltfDocument {
   [[nodiscard]] static Result<GltfDocument> read(std::string_view bytes, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
-  /// The same of an open file (io/bytes/file.h), which the document keeps.
+  /// Reads an open file (io/bytes/file.h), which the document keeps.
   [[nodiscard]] static Result<GltfDocument> read(FileBytes file, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
 
-  /// Whether bytes look like a glTF file: GLB, or JSON with an object.
+  /// Returns true if bytes look like a glTF file: GLB, or JSON with an object.
   [[nodiscard]] static bool recognises(std::string_view first_bytes) noexcept;
 
   GltfDocument(GltfDocument&&) noexcept;
@@ -237,15 +237,15 @@ class GltfDocument {
   [[nodiscard]] const std::vector<GltfMesh>& meshes() const noexcept;
   [[nodiscard]] const std::vector<GltfNode>& nodes() const noexcept;
   [[nodiscard]] const std::vector<GltfAnimation>& animations() const noexcept;
-  /// Where a node puts its mesh: its matrix, or its scale, rotation and translation, and those of its ancestors, as
-  /// they stand in the file. O(ancestors).
+  /// Returns where a node puts its mesh: its matrix, or its scale, rotation and translation, joined with its ancestors'
+  /// as the file has them. O(ancestors).
   [[nodiscard]] AffineTransform world_transform(std::size_t node) const noexcept;
-  /// Extensions that the file uses, as it names them.
+  /// Lists the extensions that the file uses, as it names them.
   [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
-  /// Faults of parts of the file that nobody needs for the others, in the order of the file: these parts are
-  /// passed over. Also extensions that the file requires, and that change nothing of a mesh, but where it is shown.
+  /// Lists faults in parts of the file that the other parts do not need, in the order of the file; such parts are
+  /// passed over. Also lists required extensions that change nothing of a mesh but where it is shown.
   [[nodiscard]] const std::vector<Error>& notes() const noexcept;
-  /// How much the document may ask for, by its size and that of the files that hold its buffers.
+  /// Returns the limit of what the document may ask for, by its size and the sizes of the files that hold its buffers.
   [[nodiscard]] Expansion expansion() const;
 
   /// The part of a geometry that is wanted beside faces and positions.
@@ -263,7 +263,7 @@ class GltfDocument {
   /// Reads the keys of a track.
   [[nodiscard]] Result<GltfKeys> keys(std::size_t animation, std::size_t track) const;
 
-  /// The animation that a person names: by its name, or else by its index.
+  /// Finds an animation that a person names: by its name, or else by its index.
   /// Errors: kUsage, with the animations that there are.
   [[nodiscard]] Result<std::size_t> find_animation(const std::string& name_or_index) const;
 
@@ -302,7 +302,7 @@ class GltfDocument {
 //            memory.
 // Threads    an edit and its document belong to one thread at a time.
 
-/// How an accessor of new numbers is written.
+/// Selects how an accessor of new numbers is written.
 struct GltfVectors {
   bool bounds = false;  ///< min and max, which positions and times need
   /// Write all zeros as bytes too. Otherwise arrays that are mostly zero become a sparse accessor where that is
@@ -320,12 +320,13 @@ class GltfEdit {
   GltfEdit& operator=(const GltfEdit&) = delete;
   ~GltfEdit();
 
-  /// Replaces the value at a pointer, or adds the member that its last token names; objects that are missing on the way
-  /// are made. json is the text of a value. What is wrong with either, bytes() and write() say.
+  /// Replaces the value at a pointer, or adds the member that its last token names; missing objects on the way are
+  /// made. json is the text of a value. bytes() and write() report what is wrong with either.
   void set(std::string pointer, std::string json);
   /// Adds a value to the end of an array, which is made where it is missing.
   void append(std::string pointer, std::string json);
-  /// Whether the source, without changes, has a value at a pointer; and its text, empty where there is none.
+  /// Tells whether the source, without changes, has a value at a pointer; text() returns the value, empty where there
+  /// is none.
   [[nodiscard]] bool has(const std::string& pointer) const;
   [[nodiscard]] std::string text(const std::string& pointer) const;
 
@@ -334,23 +335,26 @@ class GltfEdit {
   [[nodiscard]] std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   [[nodiscard]] std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
 
-  /// From now on leaves out what the changes leave unused: the bytes of arrays that the source refers to and its result
-  /// does not, in buffers that the result holds itself (BIN chunk, data URIs). What follows them moves towards the
-  /// front; all indices stay. Files with extensions that may refer to arrays in ways of their own keep all their bytes.
+  /// Leaves out what the changes leave unused, from now on: the bytes of arrays that the source refers to and the
+  /// result does not, in buffers that the result holds itself (BIN chunk, data URIs). The bytes behind them move
+  /// towards the front; all indices stay. Files with extensions that may refer to arrays in ways of their own keep all
+  /// their bytes.
   void leave_out_unused();
 
-  /// What a file at this path has otherwise than the source: pointers that are replaced or added, as they are in the
-  /// result, sorted; /accessors/N, /buffers/N and so on of what is new among them. Of what was added together, the
-  /// outermost. Without a path: in the container and the folder of the source. Errors: as of write(), but for the file.
+  /// Lists how a file at this path differs from the source: pointers that are replaced or added, as they are in the
+  /// result, sorted, with /accessors/N, /buffers/N and so on for new ones. If several were added together, the
+  /// outermost is listed. Without a path, the container and the folder of the source count. Errors: as of write(), but
+  /// for the file.
   [[nodiscard]] Result<std::vector<std::string>> pointers(const std::string& path = "") const;
-  /// What a file at this path can not take along: images that are not there. A sentence each.
+  /// Lists what a file at this path can not take along, images that are missing, in one sentence each.
   [[nodiscard]] std::vector<std::string> warnings(const std::string& path) const;
-  /// How many bytes of arrays were added.
+  /// Returns the number of bytes of arrays that were added.
   [[nodiscard]] std::size_t added_bytes() const noexcept;
-  /// How many bytes of the source a file at this path is without, by leave_out_unused(). Errors: as of pointers().
+  /// Returns the number of bytes of the source that a file at this path lacks, by leave_out_unused(). Errors: as of
+  /// pointers().
   [[nodiscard]] Result<std::size_t> unused_bytes(const std::string& path = "") const;
 
-  /// The whole new file in memory, as write() would write it to path.
+  /// Returns the whole new file, as write() would write it to path.
   [[nodiscard]] Result<std::string> bytes(const std::string& path) const;
   /// Writes the new file, by write_output() (io/output.h).
   /// Errors: of write_output(); kUsage for another extension; kInvalidInput with the pointer as the place where the

@@ -1,4 +1,4 @@
-/// What is read: one input of any format, from files or from memory.
+/// Opens one input of any format, from files or from memory.
 ///
 ///     walk_0.obj walk_1.obj         several meshes: the keyframes of a sequence, in the order given
 ///     'walk_*.obj'  walk/           a pattern with * ? [..], or %d (where no file has that very name), or a folder
@@ -43,7 +43,7 @@ inline namespace internal {
 class Expansion;  // how much a file may make us hold or write
 }
 
-/// Which of the normals and smoothing groups are kept that meshes store beside their positions.
+/// Selects the normals and smoothing groups to keep that meshes store beside their positions.
 enum class KeepShading {
   kNone,
   kFirst,  ///< of the first keyframe: of the base, or of the mesh of a cache
@@ -68,7 +68,7 @@ struct InputOptions {
   /// The velocities that mesh files of a sequence store are kept, and then all of them are read at once. Formats that
   /// hold a whole motion always keep theirs.
   bool velocities = false;
-  /// Where the bytes of files come from; empty: the file system. With a resolver, files are names and not patterns or
+  /// Finds the bytes of files; empty: the file system does. With a resolver, files are names and not patterns or
   /// folders, and a glTF file's buffers are asked for by their paths below its folder.
   FileResolver resolve = {};
   /// Called after each file that was read.
@@ -81,9 +81,9 @@ struct InputOptions {
   bool loop = false;
   /// Refuses what could be read but for a part of it, with the first of the notes that Input::notes() would have.
   bool strict = false;
-  /// How vertices move between these keyframes, as make_path() reads it. Curves are those of the whole sequence: up to
-  /// three keyframes beyond the first and the last one are read for them. They are cut into straight pieces
-  /// (motion/paths.h), of which a segment has max_expansion at the most, and the motion is that of the pieces.
+  /// The path of vertices between these keyframes, as make_path() reads it. Curves run through the whole sequence: up
+  /// to three keyframes beyond the first and the last one are read for them. They are cut into straight pieces
+  /// (motion/paths.h), at most max_expansion for a segment, and the motion consists of the pieces.
   std::string path = "linear";
   /// Leaves positions in the files until they are asked for: in mesh files, .pc2 and .mdd, and in .npy and .npz that
   /// are stored and in C order. A caller that sets it should ask for Input::stream(). Other inputs are read at once,
@@ -97,19 +97,19 @@ struct InputOptions {
   [[nodiscard]] bool is_curved() const noexcept { return path != path_name(PathKind::kLinear); }
 };
 
-/// Whether the options go together, before anything is opened. Errors: kUsage, with the option as the place.
+/// Checks that the options go together, before anything is opened. Errors: kUsage, with the option as the place.
 [[nodiscard]] Status check_input(const InputOptions& options);
 
-/// The glTF files that inputs stand for, where each is an input of its own: names, patterns, and folders, of which all
-/// glTF files in them and in the folders in them count, but for names that begin with a dot and links to folders. A
-/// folder whose own files are meshes is a sequence. Patterns and folders are sorted by number. Empty where no input
-/// stands for a glTF file. Nothing is opened, so that a name may be one of no file. Errors: kUsage for glTF files
-/// beside other inputs, and beside meshes in one folder.
+/// Finds the glTF files that inputs stand for if each is an input of its own: names, patterns, and folders. A folder
+/// stands for all glTF files in it and in its folders, except for names that begin with a dot and links to folders; a
+/// folder whose own files are meshes is a sequence. Patterns and folders are sorted by number. The result is empty if
+/// no input stands for a glTF file. Nothing is opened, so that a name need not be that of a file. Errors: kUsage for
+/// glTF files beside other inputs, and beside meshes in one folder.
 [[nodiscard]] Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>& inputs);
 
 /// Normals that files store beside a motion, (corners, 3) each, of any length.
 struct StoredNormals {
-  /// For every keyframe, or of keyframe 0 alone, which then only says which edges are hard; or empty.
+  /// Normals for every keyframe; or for keyframe 0 alone, which then only say which edges are hard; or empty.
   std::vector<std::vector<float>> of_keyframes;
   bool has_more = false;  ///< with KeepShading::kRead: other keyframes may store some, which were left in files
 };
@@ -132,33 +132,34 @@ class Input {
   Input& operator=(Input&&) noexcept;
   ~Input();
 
-  /// What a person calls it: the only file, "first ... last", the base, or the built-in morph.
+  /// Returns the name that a person gives the input: the only file, "first ... last", the base, or the built-in morph.
   [[nodiscard]] const std::string& name() const noexcept;
   /// Bytes of the file, where the input is a document.
   [[nodiscard]] std::size_t file_size() const noexcept;
 
-  /// How much the input may ask for, by the bytes that were read of it; a built-in morph is not limited.
+  /// Returns the limit of what the input may ask for, by the bytes that were read of it; a built-in morph is not
+  /// limited.
   [[nodiscard]] Expansion expansion() const;
 
-  /// The glTF file that the input is; nullptr where it is none. It lives as long as the input.
+  /// Returns the glTF file that the input is; nullptr for other inputs. It lives as long as the input.
   [[nodiscard]] const GltfDocument* document() const noexcept;
 
-  /// Returns what a person should know of how the input was read, in whole sentences: that listed files were
-  /// sorted, that parts of a file were passed over. Of a document, what is known so far.
+  /// Returns what a person should know of how the input was read, in whole sentences: that listed files were sorted,
+  /// that parts of a file were passed over. For a document it is what is known so far.
   [[nodiscard]] std::vector<std::string> notes() const;
-  /// The numbers of the files of a sequence; nothing where their names do not tell them.
+  /// Returns the numbers of the files of a sequence; nothing if their names do not tell them.
   [[nodiscard]] const std::optional<FileSeries>& series() const noexcept;
 
-  /// What moves: of a document what the options chose (and read now, when it is asked for the first time); with
-  /// allow_mesh it may be a mesh that does not, one keyframe without a segment. Else it is valid (motion/motion.h). All
-  /// keyframes are in memory, as most callers want them; callers that need them one by one should ask for stream().
-  /// Errors: of a document, those of GltfDocument; kUsage for an animation that is not there; kInvalidInput where
-  /// nothing moves, or keyframes would take more than 4 GiB; where keyframes were left in files, those of reading them;
-  /// of curves, those of cut_into_segments().
+  /// Returns the motion. For a document it is the one that the options chose, and is read when it is asked for the
+  /// first time. With allow_mesh it may be a mesh that does not move, one keyframe without a segment; otherwise it is
+  /// valid (motion/motion.h). All keyframes are in memory, as most callers want them; callers that need them one by one
+  /// should ask for stream(). Errors: for a document, those of GltfDocument; kUsage for an animation that is not there;
+  /// kInvalidInput if nothing moves, or keyframes would take more than 4 GiB; if keyframes were left in files, those of
+  /// reading them; for curves, those of cut_into_segments().
   [[nodiscard]] Result<const Motion*> motion();
 
-  /// The same motion as a stream, which reads keyframes when they are asked for and lives as long as the input. Errors:
-  /// those of motion(), except those of reading keyframes.
+  /// Returns the motion as a stream, which reads keyframes when they are asked for and lives as long as the input.
+  /// Errors: those of motion(), except those of reading keyframes.
   [[nodiscard]] Result<MotionStream*> stream();
 
   /// The path that was cut, once motion() or stream() was asked for.
@@ -169,21 +170,21 @@ class Input {
   [[nodiscard]] Result<const Motion::Keyframe*> keyframe(std::size_t k);
   [[nodiscard]] Result<std::size_t> keyframe_count();
 
-  /// The times of the keyframes, each once and ascending; of an animation of a document those of the keys of its
-  /// weights, without the cuts of cubic splines. Errors: those of motion().
+  /// Returns the times of the keyframes, each once and ascending; for an animation of a document, the times of the keys
+  /// of its weights, without the cuts of cubic splines. Errors: those of motion().
   [[nodiscard]] Result<std::vector<double>> key_times();
 
-  /// The normals that the input stores, as far as the options keep them; of a document those of its base, in the space
-  /// of the meshes. Where curves are cut, those of keyframe 0 alone. Errors: those of motion().
+  /// Returns the normals that the input stores, as far as the options keep them; for a document those of its base, in
+  /// the space of the meshes. If curves are cut, it has those of keyframe 0 alone. Errors: those of motion().
   [[nodiscard]] Result<const StoredNormals*> normals();
-  /// The smoothing group of each face, as the first keyframe has them (io/mesh/mesh_frame.h); empty where there are
-  /// none.
+  /// Returns the smoothing group of each face, as the first keyframe has them (io/mesh/mesh_frame.h); empty if there
+  /// are none.
   [[nodiscard]] std::span<const std::uint32_t> group_of_face() const noexcept;
-  /// The file of these; empty where its format is read without normals and groups.
+  /// Returns the file of the normals and groups; empty where its format is read without them.
   [[nodiscard]] const std::string& shaded_by() const noexcept;
 
-  /// Of a document, once motion() was asked for: where vertices and faces came from, and a bound of the distance
-  /// between the cut cubic splines of an animation and the true ones, in units of the file.
+  /// Tells where the vertices and faces of a document came from, and bounds the distance between the cut cubic splines
+  /// of an animation and the true ones, in units of the file; both once motion() was asked for.
   [[nodiscard]] std::span<const GltfPart> parts() const noexcept;
   [[nodiscard]] double curve_error() const noexcept;
 
@@ -195,7 +196,7 @@ class Input {
   std::unique_ptr<State> state_;
 };
 
-/// Opens what the options name, and reads it, but for a glTF document, of which nothing but its JSON is read.
+/// Opens what the options name and reads it. Of a glTF document nothing but its JSON is read.
 ///
 /// Errors: those of check_input(); kUsage where the chosen keyframes are not there, or the input is no sequence;
 /// kFailed for files that are not there or cannot be read; those of the readers, with
@@ -204,17 +205,17 @@ class Input {
 /// together.
 [[nodiscard]] Result<Input> open_input(const InputOptions& options);
 
-// Morphs that need no file: to try things on, and to publish figures that anyone can measure again.
+// Morphs that need no file, to try things on, and to publish figures that anyone can measure again.
 
 struct BuiltinMorph {
   std::string_view name;
   std::string_view summary;  ///< one line
 };
 
-/// The morphs there are that are sequences, from mild to dramatic.
+/// Lists the built-in morphs that are sequences, from mild to dramatic.
 [[nodiscard]] std::span<const BuiltinMorph> builtin_morphs() noexcept;
 
-/// Blend shapes, whose keyframes are targets over a base.
+/// Lists the built-in blend shapes, whose keyframes are targets over a base.
 [[nodiscard]] std::span<const BuiltinMorph> builtin_blend_shapes() noexcept;
 
 /// Makes one of either by name: the same positions on every call. Errors: kUsage with the names that there are.
@@ -231,15 +232,15 @@ struct BuiltinMorph {
 /// The names of each target, in the order of the targets. A target without a name has none here.
 using TargetNames = std::vector<std::vector<std::string>>;
 
-/// The names of the targets that the motion of an input has; empty where it is no set of targets. Errors: of
+/// Returns the names of the targets that the motion of an input has; empty if it is no set of targets. Errors: of
 /// Input::motion()
 [[nodiscard]] Result<TargetNames> target_names(Input& input);
 
-/// The target of a name, or else of a number in digits, counted from 0. Errors: kUsage for a name that no target has,
-/// with the nearest one, and for a name that several have, with their numbers.
+/// Finds the target of a name, or else of a number in digits, counted from 0. Errors: kUsage for a name that no target
+/// has, with the nearest one, and for a name that several have, with their numbers.
 [[nodiscard]] Result<std::size_t> find_target(const TargetNames& names, const std::string& name_or_number);
 
-/// "3 (smile)", or "3" for a target without a name: what tables and messages call target 3.
+/// Returns what tables and messages call target 3: "3 (smile)", or "3" for a target without a name.
 [[nodiscard]] std::string target_label(const TargetNames& names, std::size_t target);
 
 // Points that rest or move on straight lines, from a NumPy array: a .npy file of float32 or float64.
@@ -251,7 +252,7 @@ using TargetNames = std::vector<std::vector<std::string>>;
 //            type, coordinates that are not finite or too large for float32; kFailed where the file cannot be read.
 // Threads    pure
 
-/// The ends of n straight lines, (n, 3) each; the same where points rest.
+/// The ends of n straight lines, (n, 3) each; both ends are the same for points that rest.
 struct PointPaths {
   std::vector<double> from, to;
 
@@ -260,7 +261,7 @@ struct PointPaths {
 
 [[nodiscard]] Result<PointPaths> read_points_file(const std::string& path);
 
-/// The same of its bytes; name is for messages.
+/// Reads points from the bytes of such a file; name is for messages.
 [[nodiscard]] Result<PointPaths> parse_points(std::string_view bytes, const std::string& name);
 
 // Poses of a rig from a JSON file: the weights that a program or a person gives its morph targets.
@@ -284,10 +285,10 @@ struct RigPose {
   std::string place;
 };
 
-/// Reads a file of poses. One at least, each with finite weights.
+/// Reads a file of poses: one at least, each with finite weights.
 [[nodiscard]] Result<std::vector<RigPose>> read_poses_file(const std::string& path);
 
-/// The same of its text; name is for messages.
+/// Reads poses from the text of such a file; name is for messages.
 [[nodiscard]] Result<std::vector<RigPose>> parse_poses(std::string_view text, const std::string& name);
 
 }  // namespace chronormal

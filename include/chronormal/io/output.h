@@ -21,29 +21,29 @@
 
 namespace chronormal {
 
-/// Refuses now what write_output() would refuse later: a folder, or an existing file without force. Asks before a long
-/// computation, and before the first of many files.
+/// Refuses now what write_output() would refuse later: a folder, or an existing file without force. Meant to be called
+/// before a long computation, and before the first of many files.
 [[nodiscard]] Status check_output(const std::string& path, bool force);
 
-/// Whether write_output() would write to a pipe, a device or a stream of this process, rather than make a file.
+/// Returns true if write_output() would write to a pipe, a device or a stream of this process, rather than make a file.
 [[nodiscard]] bool is_stream(const std::string& path);
 
 /// Writes a whole file.
 /// Errors: kFailed with the path as the place: an existing file without force (the message says: --force), a folder,
 /// and whatever the system refuses (no space left on device).
 [[nodiscard]] Status write_output(const std::string& path, std::string_view bytes, bool force);
-/// The same of a file in pieces, which come one after the other: what lies elsewhere already needs no copy.
+/// Writes a file in pieces, which come one after the other, so that bytes in different places need no copy.
 [[nodiscard]] Status write_output(const std::string& path, std::span<const std::string_view> pieces, bool force);
 
-/// Removes all temporary files that write_output() is writing now, in any thread: for a handler of a signal that ends
-/// the process, which must end it then. Safe to call from there.
+/// Removes all temporary files that write_output() is writing now, in any thread: for the handler of a signal that ends
+/// the process, which must end it then. It is safe to call from a handler.
 void remove_temporaries() noexcept;
 
-/// The names of `count` numbered files. In the file name of pattern, one %d or %0Nd stands for the number, from 0; it
-/// may be missing where count is at most 1. Errors: kUsage for a pattern of another form.
+/// Returns the names of `count` numbered files. In the file name of pattern, one %d or %0Nd stands for the number, from
+/// 0; it may be missing if count is at most 1. Errors: kUsage for a pattern of another form.
 [[nodiscard]] Result<std::vector<std::string>> numbered_names(const std::string& pattern, std::size_t count);
 
-/// Whether the extension of path names a format that write_motion() writes.
+/// Returns true if the extension of path names a format that write_motion() writes.
 [[nodiscard]] bool is_motion_file(const std::string& path) noexcept;
 
 /// Writes a motion in the format that the extension of path names:

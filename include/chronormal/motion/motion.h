@@ -33,7 +33,7 @@
 
 namespace chronormal {
 
-// Which vertices make which face: the part of a mesh that does not move.
+// The faces of a mesh as lists of vertices: the part of a mesh that does not move.
 //
 // Faces are polygons of three or more corners, counter-clockwise seen from the side to which the normal points. Two
 // triangles and a quad are kept as
@@ -63,10 +63,10 @@ class Topology {
   [[nodiscard]] std::size_t face_count() const noexcept {
     return offsets_.empty() ? corners_.size() / 3 : offsets_.size() - 1;
   }
-  /// Whether every face is a triangle.
+  /// Returns true if every face is a triangle.
   [[nodiscard]] bool all_triangles() const noexcept { return offsets_.empty(); }
 
-  /// The vertices of one face, in order.
+  /// Returns the vertices of one face, in order.
   [[nodiscard]] std::span<const std::uint32_t> face(std::size_t f) const noexcept {
     assert(f < face_count());
     if (offsets_.empty()) return {corners_.data() + 3 * f, 3};
@@ -83,8 +83,8 @@ class Topology {
   std::vector<std::uint32_t> corners_;
 };
 
-/// One straight piece of a motion, as a view: what control normals and schemes are prepared from.
-/// The Motion that it comes from must outlive it.
+/// One straight piece of a motion, as a view, from which control normals and schemes are prepared. The Motion that it
+/// comes from must outlive it.
 struct Segment {
   const Topology* topology = nullptr;
   VectorView<const float> from;  ///< positions at t = 0, one per vertex
@@ -97,14 +97,14 @@ struct Segment {
   VectorView<const double> from_residuals = {}, to_residuals = {};
 };
 
-/// What the segments of a motion are.
+/// Tells what the segments of a motion are.
 enum class MotionKind {
   kSequence,   ///< keyframes that follow each other: one segment between every two neighbours
   kTargets,    ///< morph targets over a base: segment k leads from keyframe 0, the base, to keyframe k + 1
   kAnimation,  ///< weights of targets over time: as a sequence, but without a segment where weights jump
 };
 
-/// "sequence", "targets" or "animation".
+/// Returns "sequence", "targets" or "animation".
 [[nodiscard]] std::string_view motion_kind_name(MotionKind kind) noexcept;
 
 struct Motion {
@@ -132,8 +132,8 @@ struct Motion {
   Topology topology;
   std::vector<Keyframe> keyframes;
   std::vector<SegmentKeys> segments;
-  /// (V), which of several separate objects each vertex belongs to: those of two are never one point, wherever they
-  /// are. Empty: all are one.
+  /// (V), the number of the separate object that each vertex belongs to: vertices of two objects are never one point,
+  /// wherever they are. Empty: all belong to one object.
   std::vector<std::uint32_t> body_of_vertex = {};
   MotionKind kind = MotionKind::kSequence;
   /// The point that positions count from, the same at all keyframes: (0, 0, 0) but where a file has coordinates far
@@ -180,7 +180,7 @@ struct LocalTime {
   [[nodiscard]] bool is_double() const noexcept { return start == 0 && end == 1; }
 };
 
-/// Where a time lies in a motion.
+/// The segment of a motion and the local t in it that a time stands for.
 struct Instant {
   std::size_t segment = 0;
   LocalTime t;
@@ -215,16 +215,16 @@ class MotionStream {
   /// thread at a time, not always from the same.
   using Reader = std::function<Status(const Motion& motion, std::size_t keyframe, std::span<float> positions)>;
 
-  /// Is told of the positions of a keyframe, as the reader has written them.
+  /// Receives the positions of a keyframe, as the reader has written them.
   using Watcher = std::function<Status(std::size_t keyframe, std::span<const float> positions)>;
 
   static constexpr std::size_t kUsuallyKept = std::size_t{64} << 20;
 
-  /// A motion that is in memory and stays there; it must outlive the stream, and it may stand still.
+  /// Wraps a motion that is in memory and stays there; it must outlive the stream, and it may stand still.
   explicit MotionStream(const Motion& whole);
 
-  /// A motion whose keyframes have no positions yet; the first one may have some. Everything else of the outline must
-  /// be valid (motion/motion.h).
+  /// Wraps a motion whose keyframes have no positions yet; the first one may have some. Everything else of the outline
+  /// must be valid (motion/motion.h).
   MotionStream(Motion outline, Reader read, std::size_t kept = kUsuallyKept);
 
   MotionStream(MotionStream&& other) noexcept;
@@ -233,21 +233,22 @@ class MotionStream {
 
   [[nodiscard]] const Motion& motion() const noexcept;
 
-  /// Makes the positions of keyframes first to last be there, until the next hold. Errors: those of the reader.
+  /// Makes sure that the positions of keyframes first to last are there, until the next hold. Errors: those of the
+  /// reader.
   /// first <= last, and last must be a keyframe
   [[nodiscard]] Status hold(std::size_t first, std::size_t last);
-  /// The same of both ends of segments first to last.
+  /// Holds both ends of segments first to last.
   [[nodiscard]] Status hold_segments(std::size_t first, std::size_t last);
   [[nodiscard]] Status hold_segment(std::size_t segment) { return hold_segments(segment, segment); }
-  /// The same of all keyframes: the motion is in memory then.
+  /// Holds all keyframes: the motion is in memory then.
   [[nodiscard]] Status hold_all();
 
-  /// Tells the watcher at once of every keyframe that is there, and from now on of each that is read, before anybody
-  /// else sees it and by the thread that reads it. There is one watcher at a time; an empty one ends this. Errors:
-  /// those of the watcher, here and for each hold.
+  /// Tells the watcher at once of every keyframe that is there, and from now on of each one that is read, before
+  /// anybody else sees it and by the thread that reads it. There is one watcher at a time; an empty one ends this.
+  /// Errors: those of the watcher, here and for each hold.
   [[nodiscard]] Status watch(Watcher watcher);
 
-  /// Whether keyframes stay where they are once they were held: to hold all is no more than to read them.
+  /// Returns true if keyframes stay in memory once they were held: to hold all costs no more memory than to read them.
   [[nodiscard]] bool keeps_all() const noexcept;
 
  private:
@@ -282,9 +283,9 @@ struct BlendSet {
   std::vector<BlendTarget> targets;
 };
 
-/// The blend shapes of a star of segments (targets in io/input.h): its base, and a target for each segment
-/// from keyframe 0, named as the keyframe at its end. Deltas are differences of positions, rounded to float32. The
-/// motion must be valid. Errors, with the place "target K": kUsage for a segment that does not begin at keyframe 0,
+/// Returns the blend shapes of a star of segments (targets in io/input.h): its base, and a target for each segment from
+/// keyframe 0, named as the keyframe at its end. Deltas are differences of positions, rounded to float32. The motion
+/// must be valid. Errors, with the place "target K": kUsage for a segment that does not begin at keyframe 0,
 /// kInvalidInput for a delta beyond the range of float32.
 [[nodiscard]] Result<BlendSet> blend_set_of(const Motion& star);
 
@@ -293,7 +294,7 @@ struct BlendSet {
 /// Errors: kInvalidInput with the place "base, vertex V" or "target K, entry N".
 [[nodiscard]] Status validate(const BlendSet& set);
 
-/// The same of one target that is to become number k of a set over this topology.
+/// Checks one target that is to become number k of a set over this topology.
 [[nodiscard]] Status validate(const BlendTarget& target, const Topology& topology, std::size_t k);
 
 /// Writes the positions at some weights, (V, 3) in double, without a rounding to float32 in between.

@@ -36,7 +36,7 @@
 
 namespace chronormal {
 
-/// How the vertices of a sequence move between its keyframes.
+/// Tells how the vertices of a sequence move between its keyframes.
 enum class PathKind {
   kLinear,      ///< straight, as players do
   kCatmullRom,  ///< on cubics whose velocities follow from the keyframes: CubicSegment
@@ -54,7 +54,7 @@ struct Path {
   [[nodiscard]] bool is_curved() const noexcept { return kind != PathKind::kLinear; }
 };
 
-/// The name of a kind: "linear", "catmull-rom" or "hermite".
+/// Returns the name of a kind: "linear", "catmull-rom" or "hermite".
 [[nodiscard]] std::string_view path_name(PathKind kind) noexcept;
 /// Reads a path: the name of its kind, and after a colon the tolerance of a curve, "catmull-rom:0.1". Errors: kUsage
 /// for another name, with all names, and for a tolerance that is no number above 0 and up to 45.
@@ -72,9 +72,9 @@ struct VelocityShares {
   /// Adds up positions, (V, 3) each: one for each share, all of one size.
   [[nodiscard]] std::vector<float> velocities(std::span<const std::span<const float>> positions) const;
 };
-/// The velocity is that of the parabola through the keyframe and its two neighbours, and at the first and the last
-/// keyframe that of the cubic through the nearest four: of as many as there are, so that between two keyframes the
-/// motion is straight. times must ascend; at < times.size()
+/// Computes the shares of keyframe `at`. The velocity there is that of the parabola through the keyframe and its two
+/// neighbours, and at the first and the last keyframe that of the cubic through the nearest four, or through as many as
+/// there are, so that between two keyframes the motion is straight. times must ascend; at < times.size()
 [[nodiscard]] VelocityShares velocity_shares(std::span<const double> times, std::size_t at);
 
 /// The cubics of all vertices from one keyframe to the next, in Bernstein form.
@@ -87,10 +87,10 @@ struct CubicSegment {
   /// Returns the positions of all vertices, rounded to float32: (V, 3).
   [[nodiscard]] std::vector<float> positions(double t) const;
 };
-/// The cubics from keys[i] to keys[i + 1], straight ones too, through their float32 positions: a curve is drawn through
-/// keyframes of files, which have no residuals. A key that has end_velocities (motion/motion.h) has these.
-/// keys must ascend in time, all with as many positions; i + 1 < keys.size(). Only those are looked at from which the
-/// velocities follow.
+/// Returns the cubics from keys[i] to keys[i + 1], straight ones too, through their float32 positions: a curve is drawn
+/// through keyframes of files, which have no residuals. A key that has end_velocities (motion/motion.h) keeps them.
+/// keys must ascend in time, all with as many positions; i + 1 < keys.size(). Only keys from which the velocities
+/// follow are looked at.
 [[nodiscard]] CubicSegment cubic_segment(std::span<const Motion::Keyframe* const> keys, std::size_t i, PathKind kind);
 
 /// Measures how far the paths through every `every`-th keyframe of a sequence are from straight. For every three
@@ -114,14 +114,15 @@ struct VelocityFit {
   /// are reversed.
   double direction = 1;
 
-  /// Whether a turn of up to about 200 degrees from keyframe to keyframe, or an acceleration from rest, explains both.
+  /// Returns true if a turn of up to about 200 degrees from keyframe to keyframe, or an acceleration from rest,
+  /// explains both.
   [[nodiscard]] bool is_plausible() const noexcept { return length >= 1.0 / 3 && length <= 3 && direction >= 0; }
 };
 /// Looks at up to 64 segments, evenly spread, whose keyframes both have velocities. Where there is none, or where no
 /// vertex moves, the result is as if all velocities fitted. Errors: those of the stream.
 [[nodiscard]] Result<VelocityFit> velocity_fit(MotionStream& stream);
 
-/// What curves became.
+/// The result of cutting curves into pieces.
 struct CutPath {
   Path path;
   std::size_t segments = 0;  ///< between the keyframes that there were
@@ -132,7 +133,7 @@ struct CutPath {
   VelocityFit velocities;    ///< velocity_fit() of these, on kHermite
 };
 
-/// Pieces of one segment at the most, where none are asked for.
+/// The largest number of pieces of one segment, where none is asked for.
 inline constexpr std::size_t kMostPieces = 100;
 
 /// The pieces of a motion, in memory. A motion on kLinear stays as it is.
@@ -143,14 +144,14 @@ struct CutMotion {
 [[nodiscard]] Result<CutMotion> cut_into_segments(const Motion& motion, const Path& path,
                                                   std::size_t most_pieces = kMostPieces);
 
-/// The same for a stream: its keyframes are read once to find out how many pieces there are, and again where pieces are
+/// The pieces of a stream. Its keyframes are read once to find out how many pieces there are, and again when pieces are
 /// asked for, four at a time. Pieces that take no more bytes together than `kept` stay in memory once they were made.
 struct CutStream {
   MotionStream stream;
   CutPath cut;
 };
-/// Errors: those of check_path() and of the stream; kUsage for a motion that stands still, and for curves that leave
-/// the range of float32.
+/// Cuts the curves of a stream. Errors: those of check_path() and of the stream; kUsage for a motion that stands still,
+/// and for curves that leave the range of float32.
 [[nodiscard]] Result<CutStream> cut_into_segments(MotionStream stream, const Path& path,
                                                   std::size_t most_pieces = kMostPieces,
                                                   std::size_t kept = MotionStream::kUsuallyKept);
