@@ -45,9 +45,10 @@ typedef enum chronormal_status {
   CHRONORMAL_INVALID_INPUT = 3 /* the data are wrong */
 } chronormal_status;
 
-/* MAJOR.MINOR.PATCH of the library that runs, as in "0.2.0". */
+/* Returns the version of the library that runs, MAJOR.MINOR.PATCH, as in "0.2.0". */
 CHRONORMAL_API const char* chronormal_version(void);
-/* One sentence about the last call on this thread that failed; it stays until the next one that does. "" before that. */
+/* Returns one sentence about the last call on this thread that failed; it stays until the next call that fails. ""
+ * before that. */
 CHRONORMAL_API const char* chronormal_last_message(void);
 
 /* Polygons over vertices. With offsets, face f has the corners offsets[f] to offsets[f + 1] - 1, and there are
@@ -110,18 +111,20 @@ CHRONORMAL_API void chronormal_output_init(chronormal_output* output, void* data
 /* Normals between two arrays of positions, exact for every t in [0, 1]. */
 typedef struct chronormal_curves chronormal_curves;
 
-/* Options may be NULL. There is one position at each end for each vertex. */
+/* Prepares a segment. Options may be NULL. There is one position at each end for each vertex. */
 CHRONORMAL_API chronormal_status chronormal_curves_create(const chronormal_mesh* mesh, chronormal_vectors from,
                                                           chronormal_vectors to, const chronormal_options* options,
                                                           chronormal_curves** result);
-/* The next segment of the same mesh, in the memory of the one before. Who shares a normal stays as it was. */
+/* Prepares the next segment of the same mesh, in the memory of the one before. The vertices that share a normal stay
+ * the same. */
 CHRONORMAL_API chronormal_status chronormal_curves_next(chronormal_curves* curves, chronormal_vectors from,
                                                         chronormal_vectors to);
-/* How many normals there are: faces, vertices or corners. */
+/* Returns the number of normals: faces, vertices or corners. */
 CHRONORMAL_API size_t chronormal_curves_size(const chronormal_curves* curves);
-/* Bytes that the curves keep. */
+/* Returns the bytes that the curves keep. */
 CHRONORMAL_API size_t chronormal_curves_bytes(const chronormal_curves* curves);
-/* Writes a unit normal each, and (0, 0, 0) where there is none; zeros, if it is not NULL, gets the number of those. */
+/* Writes the unit normals at t, (0, 0, 0) for elements without one; zeros, if it is not NULL, gets the number of (0,
+ * 0, 0). */
 CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t,
                                                                 chronormal_result normals, size_t* zeros);
 /* Writes the unit normals at many t, each to an output of its own; zeros, if it is not NULL, gets the number of (0, 0, 0)
@@ -134,7 +137,7 @@ CHRONORMAL_API chronormal_status chronormal_curves_errors(chronormal_curves* cur
                                                           chronormal_vectors normals, float* degrees);
 CHRONORMAL_API void chronormal_curves_destroy(chronormal_curves* curves);
 
-/* One morph target: what it adds to the vertices that it names, which ascend; with NULL, to every vertex. */
+/* One morph target: the deltas that it adds to the vertices that it names, which ascend; with NULL, to every vertex. */
 typedef struct chronormal_target {
   size_t count;             /* of deltas */
   const uint32_t* vertices; /* count of them, or NULL */
@@ -144,12 +147,12 @@ typedef struct chronormal_target {
 /* Normals of blend shapes, exact at any weights. */
 typedef struct chronormal_blend chronormal_blend;
 
-/* Of options, tolerance must be 1e-6 and the weighting area. */
+/* Prepares blend shapes. In the options, tolerance must be 1e-6 and the weighting area. */
 CHRONORMAL_API chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronormal_vectors base,
                                                          const chronormal_target* targets, size_t target_count,
                                                          const chronormal_options* options, chronormal_blend** result);
 CHRONORMAL_API size_t chronormal_blend_size(const chronormal_blend* blend);
-/* There is one weight for each target. */
+/* Writes the unit normals at some weights, one weight for each target. */
 CHRONORMAL_API chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const double* weights,
                                                                chronormal_result normals, size_t* zeros);
 /* Moves the shapes to these weights, once for a frame; then ranges of the normals there are written by any threads. */
@@ -161,17 +164,18 @@ CHRONORMAL_API void chronormal_blend_destroy(chronormal_blend* blend);
 /* A motion in files, of every format that the program reads. */
 typedef struct chronormal_motion chronormal_motion;
 
-/* Files as on the command line of `chronormal sample`; of options, the tolerance does not count. */
+/* Reads files as on the command line of `chronormal sample`; the tolerance of the options does not count. */
 CHRONORMAL_API chronormal_status chronormal_motion_read(const char* const* files, size_t file_count,
                                                         const chronormal_options* options, chronormal_motion** result);
-/* How vertices of a sequence move from now on, as `chronormal sample --path` has it: "linear" (at first), "catmull-rom",
- * on curves through the keyframes, or "hermite", with the velocities of the file. Curves are cut into straight pieces,
- * whose normals are within 0.01 degrees of those of the curve, or of the tolerance in "catmull-rom:0.1", and what the
- * rounding of positions to float adds. Usage where it has no such paths. */
+/* Sets how vertices of a sequence move from now on, as `chronormal sample --path` does: "linear" (at first),
+ * "catmull-rom", on curves through the keyframes, or "hermite", with the velocities of the file. Curves are cut into
+ * straight pieces, whose normals are within 0.01 degrees (or the tolerance in "catmull-rom:0.1") of those of the
+ * curve, plus what the rounding of positions to float adds. Errors: CHRONORMAL_USAGE if the motion has no such
+ * paths. */
 CHRONORMAL_API chronormal_status chronormal_motion_follow(chronormal_motion* motion, const char* path);
-/* How many normals there are: faces, vertices or corners. */
+/* Returns the number of normals: faces, vertices or corners. */
 CHRONORMAL_API size_t chronormal_motion_size(const chronormal_motion* motion);
-/* The first and the last time, in seconds; 0 and 0 for targets. */
+/* Gives the first and the last time, in seconds; 0 and 0 for targets. */
 CHRONORMAL_API void chronormal_motion_times(const chronormal_motion* motion, double* first, double* last);
 CHRONORMAL_API chronormal_status chronormal_motion_unit_normals(chronormal_motion* motion, double time,
                                                                 chronormal_result normals);

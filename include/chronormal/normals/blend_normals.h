@@ -51,25 +51,25 @@ enum class BlendPath {
   kWhole,    ///< blended positions, and rings around all elements
 };
 
-/// "terms", "touched" or "whole".
+/// Returns "terms", "touched" or "whole".
 [[nodiscard]] std::string_view name_of(BlendPath path) noexcept;
 
 /// The default limit, a gigabyte: the terms of many dense targets take more, and would hardly ever be the cheapest way.
 inline constexpr std::size_t kUsualBlendBytes = std::size_t{1} << 30;
 
 struct BlendNormalsOptions {
-  /// Of BlendCost::bytes. What is kept beside the terms, least_bytes, is kept in any case.
+  /// The limit of BlendCost::bytes. What is kept beside the terms, least_bytes, is kept in any case.
   std::size_t max_bytes = kUsualBlendBytes;
   /// Takes this path whatever it costs.
   std::optional<BlendPath> forced = {};
-  /// Blends positions and makes normals of them in float32 on the path kWhole, as FloatRecompute does. That takes about
-  /// half as long, so that it is the cheapest way more often, and promises nothing: positions are off by a unit in
-  /// their last place, which turns a normal by as much as that is of an edge. Enough for shading; the other paths are
-  /// as exact as ever. Without effect where an element has a ring of more than 64 points.
+  /// Blends positions and makes normals of them in float32 on the path kWhole, as FloatRecompute does. This takes about
+  /// half as long, so that it is the cheapest way more often, but promises nothing: positions are wrong by a unit in
+  /// their last place, which turns a normal by the ratio of that unit to an edge. It is enough for shading; the other
+  /// paths are as exact as ever. It has no effect where an element has a ring of more than 64 points.
   bool in_float32 = false;
 };
 
-/// What the normals of a set take, from counts alone. Bytes are beyond those of the set and the groups.
+/// The cost of the normals of a set, from counts alone. Bytes come on top of the bytes of the set and the groups.
 struct BlendCost {
   std::size_t target_elements = 0;    ///< that targets touch, added up over targets
   std::size_t overlapping_pairs = 0;  ///< of targets that move a face in common
@@ -83,13 +83,13 @@ struct BlendCost {
   friend bool operator==(const BlendCost&, const BlendCost&) = default;
 };
 
-/// Pure; lists the faces of each target and the rings around elements, and nothing else. set must be valid, groups those
-/// of its topology, with their corners.
+/// Predicts the cost from the faces of each target and the rings around elements, and makes nothing else. Pure. set
+/// must be valid, and groups must be groups of its topology that keep their corners.
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const BlendNormalsOptions& options = {});
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const NormalGroups& groups,
                                            const BlendNormalsOptions& options = {});
 
-/// How the normals at some weights are made, and why.
+/// The path by which the normals at some weights are made, and the expected costs that decide it.
 struct BlendChoice {
   BlendPath path = BlendPath::kTerms;
   std::size_t active_targets = 0;     ///< of weight other than 0
@@ -106,8 +106,8 @@ struct BlendEvaluation : BlendChoice {
 
 class BlendNormals {
  public:
-  /// Of the faces of a set, or of the elements of groups. The set must be valid (motion/motion.h), the groups must be
-  /// of its topology and keep their corners. Throws std::bad_alloc only.
+  /// Prepares the normals of the faces of a set, or of the elements of groups. The set must be valid (motion/motion.h),
+  /// and the groups must be groups of its topology that keep their corners. Throws std::bad_alloc only.
   [[nodiscard]] static BlendNormals of_faces(BlendSet set, const BlendNormalsOptions& options = {});
   [[nodiscard]] static BlendNormals of_groups(BlendSet set, NormalGroups groups,
                                               const BlendNormalsOptions& options = {});
@@ -115,8 +115,8 @@ class BlendNormals {
   BlendNormals& operator=(BlendNormals&&) noexcept;
   ~BlendNormals();
 
-  /// Chooses the path of some weights, and moves points where it needs any: what all elements share. On one thread it
-  /// does not allocate or throw. At first all weights are 0.
+  /// Chooses the path of some weights, and moves points if the path needs them: the work that all elements share. On
+  /// one thread it does not allocate or throw. At first all weights are 0.
   /// weights must have one for each target
   BlendChoice set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
   /// Writes n(w) / |n(w)| of a range of elements at the weights that are set, and counts what it did. Does not
@@ -124,20 +124,20 @@ class BlendNormals {
   /// elements.first must be a multiple of 64, result have as many elements as the range
   BlendEvaluation unit_normals(IndexRange elements, VectorView<float> result) const noexcept;
 
-  /// Does both for all elements. On one thread it does not allocate or throw.
+  /// Sets the weights and writes the normals of all elements. On one thread it does not allocate or throw.
   /// weights must have one for each target, result size() elements
   BlendEvaluation unit_normals(std::span<const double> weights, VectorView<float> result,
                                Threads threads = Threads::kOne);
-  /// The same of many weight vectors, an animation: weights is (n, targets), results[k] is for row k. On all threads
-  /// they are divided among them; each beyond the first takes scratch of its own meanwhile, which cost() does not
-  /// count.
+  /// Writes the normals of many weight vectors, an animation: weights is (n, targets), and results[k] is for row k.
+  /// With Threads::kAll the rows are divided among the threads; each thread beyond the first takes scratch of its own
+  /// meanwhile, which cost() does not count.
   std::vector<BlendEvaluation> unit_normals(std::span<const double> weights, std::span<const VectorView<float>> results,
                                             Threads threads = Threads::kOne);
-  /// Which path these weights take.
+  /// Predicts the path that these weights take.
   [[nodiscard]] BlendChoice choose(std::span<const double> weights) const;
 
-  /// Appends a target; makes its terms and those of pairs with it, as far as max_bytes goes, and none anew. Errors:
-  /// those of validate(), with nothing changed.
+  /// Appends a target; makes its terms and the terms of its pairs, as far as max_bytes goes, and makes no other terms
+  /// anew. Errors: those of validate(), with nothing changed.
   Status add_target(BlendTarget target);
 
   [[nodiscard]] std::size_t size() const noexcept;

@@ -45,17 +45,18 @@ struct ControlNormals {
 /// result must have faces.count elements; faces must lie inside the topology
 void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
-/// The true degree of n(t) in t: 0, 1 or 2. A translated face has degree 0, a face of which two vertices move alike
-/// has at most 1, and so have others (shear within the plane), so the coefficients are tested, not the motion. A
-/// coefficient below 2^-28 of the largest control normal counts as zero: leaving it out turns no direction by more than
-/// 1e-8 rad times that control normal / |n(t)|. (A translation that float32 had to round is not exactly one, and may
-/// have degree 1 or 2.)
+/// Returns the true degree of n(t) in t: 0, 1 or 2. A translated face has degree 0, and a face of which two vertices
+/// move alike has at most 1, but so have others (shear within the plane): therefore the coefficients are tested, not
+/// the motion. A coefficient below 2^-28 of the largest control normal counts as zero: leaving it out turns no
+/// direction by more than 1e-8 rad times that control normal / |n(t)|. (A translation that float32 had to round is not
+/// exactly one, and may have degree 1 or 2.)
 [[nodiscard]] int degree(const ControlNormals& normals) noexcept;
 
-/// n(t) itself, by eq. 5. A convex combination: its error is a few rounding errors of the largest control normal.
+/// Returns n(t) itself, by eq. 5. It is a convex combination: its error is a few rounding errors of the largest control
+/// normal.
 [[nodiscard]] Vec3d normal_at(const ControlNormals& normals, double t) noexcept;
 
-/// Whether a direction could be given, and how.
+/// Tells whether a direction could be given, and how.
 enum class Direction {
   kRegular,        ///< n(t) is not zero
   kLimit,          ///< n(t) = 0, and both sides (or the only side, at an end) agree on the limit
@@ -68,10 +69,9 @@ struct UnitNormal {
   Direction direction = Direction::kRegular;
 };
 
-/// n(t) / |n(t)| in double, with every degenerate case defined as named by Direction. At t = 0 the limit is taken from
-/// after, elsewhere from before. Inside a segment n(t) counts as zero below 8 rounding errors of its control normals:
-/// who has positions and must know better asks MeshNormals or NormalCurves, which decide it
-/// exactly.
+/// Returns n(t) / |n(t)| in double; Direction names how every degenerate case is defined. At t = 0 the limit is taken
+/// from after, elsewhere from before. Inside a segment n(t) counts as zero below 8 rounding errors of its control
+/// normals. Callers who have positions and must know better ask MeshNormals or NormalCurves, which decide it exactly.
 [[nodiscard]] UnitNormal unit_normal_at(const ControlNormals& normals, double t) noexcept;
 
 // Normals of meshes that move as a whole: rigid and affine motion.
@@ -95,7 +95,7 @@ struct AffineTransform {
   }
 };
 
-/// first, then second: x -> second(first(x)).
+/// Applies first, then second: x -> second(first(x)).
 [[nodiscard]] AffineTransform composed(const AffineTransform& second, const AffineTransform& first) noexcept;
 
 /// A node of glTF and its like: scaled, then rotated, then moved.
@@ -107,12 +107,12 @@ struct NodeTransform {
 
 [[nodiscard]] AffineTransform affine_transform(const NodeTransform& node) noexcept;
 
-/// The node between two keyframes, as the LINEAR interpolation of glTF has it: translation and scale on straight lines,
-/// rotation by quaternion slerp on the shorter arc (from q towards itself where the two are opposite to the last bit).
+/// Returns the node between two keyframes by the LINEAR interpolation of glTF: translation and scale on straight lines,
+/// rotation by quaternion slerp on the shorter arc (from q towards itself if the two are opposite to the last bit).
 /// t in [0, 1]
 [[nodiscard]] NodeTransform interpolated(const NodeTransform& from, const NodeTransform& to, double t) noexcept;
 
-/// What takes normals along with a transform.
+/// The matrix that takes normals along with a transform.
 struct NormalMatrix {
   std::array<Vec3d, 3> columns;
   bool mirrored =
@@ -123,22 +123,22 @@ struct NormalMatrix {
   }
 };
 
-/// |det| times the inverse transpose of the linear part, by cofactors: no division. Where det = 0 (flattened to a
-/// plane) normals become the two sides of that plane, and those along it vanish.
+/// Returns |det| times the inverse transpose of the linear part, by cofactors, without a division. If det = 0
+/// (flattened to a plane), normals become the two sides of that plane, and normals along it vanish.
 [[nodiscard]] NormalMatrix normal_matrix(const AffineTransform& transform) noexcept;
 
-/// A curve of normals under a transform that stands still: the matrix of each control normal.
+/// Transforms a curve of normals by a transform that stands still: applies the matrix to each control normal.
 [[nodiscard]] ControlNormals transformed(const NormalMatrix& matrix, const ControlNormals& normals) noexcept;
 
-/// Writes the unit normals of a mesh under a transform: of each normal, of any length, its image scaled to length 1,
-/// and (0, 0, 0) where that is zero; returns how many of those there are. normals and result may be the same memory.
+/// Writes the unit normals of a mesh under a transform. The image of each normal, which may have any length, is scaled
+/// to length 1; it is (0, 0, 0) if the image is zero, and the number of such zeros is returned. normals and result may
+/// be the same memory.
 /// result must have as many elements as normals
 std::size_t transform_unit_normals(const NormalMatrix& matrix, VectorView<const float> normals,
                                    VectorView<float> result) noexcept;
 
-/// Turns v by the smallest rotation that takes the unit vector `from` to the unit vector `to`; where these are opposite
-/// there are many, and one half turn is chosen. What keeps a normal by hand apart from the geometry's, as the mesh
-/// moves.
+/// Turns v by the smallest rotation that takes the unit vector `from` to the unit vector `to`; if the two are opposite,
+/// one of many half turns is chosen. It keeps the offset of an author's normal from the geometry's as the mesh moves.
 [[nodiscard]] Vec3d turned(const Vec3d& from, const Vec3d& to, const Vec3d& v) noexcept;
 
 }  // namespace chronormal

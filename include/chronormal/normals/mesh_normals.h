@@ -54,8 +54,8 @@
 namespace chronormal {
 
 /// The number of evaluations of a segment from which on preparing it is cheaper than recomputing its normals within
-/// 1e-6 rad. Measured: curves are ahead from the first or the second frame on, on all meshes of docs/benchmarks.md,
-/// "Frames of a segment".
+/// 1e-6 rad. It was measured: curves are ahead from the first or the second frame on, on all meshes of
+/// docs/benchmarks.md, "Frames of a segment".
 inline constexpr double kCurvesFrom = 2;
 
 struct MeshNormalsOptions {
@@ -76,7 +76,7 @@ enum class ControlFormat {
   kSnorm11,  ///< 12 bytes: a word each for x, y, z; n0 in its lowest 11 bits, then n1 in 11, m in 10: off by up to 1e-3
 };
 
-/// The bytes of one output: 36, 20 or 12.
+/// Returns the bytes of one output: 36, 20 or 12.
 [[nodiscard]] std::size_t bytes_of(ControlFormat format) noexcept;
 
 class MeshNormals {
@@ -84,8 +84,8 @@ class MeshNormals {
   /// Makes an object that knows no positions yet. Errors: kInvalidInput for a mesh without faces; kUsage for faces with
   /// another weighting than area.
   [[nodiscard]] static Result<MeshNormals> make(Topology topology, const MeshNormalsOptions& options = {});
-  /// Makes one for the segments of a motion, all of whose keyframes say which vertices are one. The motion must be
-  /// valid, or stand still. Errors: also those of make_groups().
+  /// Makes an object for the segments of a motion, all of whose keyframes say which vertices are one. The motion must
+  /// be valid, or stand still. Errors: also those of make_groups().
   [[nodiscard]] static Result<MeshNormals> make(const Motion& motion, const MeshNormalsOptions& options = {});
 
   /// Another object of the same mesh, as for each of many characters: without positions and targets, with the topology
@@ -101,7 +101,7 @@ class MeshNormals {
   /// for another number of positions than there are vertices, or one that is not finite (the place is "keyframe 0,
   /// vertex V"); at first also those of make_groups().
   [[nodiscard]] Status set_segment(VectorView<const float> from, VectorView<const float> to);
-  /// The same for a segment of a motion of the same mesh, whose residuals count too.
+  /// Prepares a segment of a motion of the same mesh; its residuals count too.
   [[nodiscard]] Status set_segment(const Segment& segment);
 
   /// Prepares the next segment a little at a time, while the present one is evaluated. begin_segment() does no work
@@ -117,15 +117,15 @@ class MeshNormals {
   /// result must have size() elements
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// The same in four bytes each; see encodings.h for what becomes of (0, 0, 0).
+  /// Writes them in four bytes each; normals/normal_curves.h says what becomes of (0, 0, 0).
   std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// The same at many t, in one pass over what is prepared. results[k] is for times[k], and there are as many.
+  /// Writes them at many t, in one pass over what is prepared. results[k] is for times[k], and there are as many.
   std::size_t unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// The same on all cores, by the pool of parallel.h, which may allocate.
+  /// Writes them on all cores, by the pool of parallel.h, which may allocate.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) const;
 
   /// Writes the control normals of a segment for every output, one after the other. The tolerance must be
@@ -135,8 +135,8 @@ class MeshNormals {
   /// Prepares blend shapes, at weights of 0. Errors: kUsage for another weighting than area; kInvalidInput for a set of
   /// another mesh; those of validate() for a set, and at first of make_groups().
   [[nodiscard]] Status set_targets(BlendSet set, const BlendNormalsOptions& options = {});
-  /// Chooses how the normals at these weights are made, and moves positions where that takes some. Does not allocate or
-  /// throw on one thread. Targets must be set, and weights must have one for each
+  /// Chooses how the normals at these weights are made, and moves positions if that is needed. On one thread it does
+  /// not allocate or throw. Targets must be set, and weights must have one for each
   BlendChoice set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
   /// Writes the unit normals at the weights that are set; returns the number of (0, 0, 0).
   /// result must have size() elements
@@ -152,9 +152,10 @@ class MeshNormals {
   [[nodiscard]] std::size_t element_count() const noexcept;
   [[nodiscard]] const Topology& topology() const noexcept;
   [[nodiscard]] const MeshNormalsOptions& options() const noexcept;
-  /// Radians: the largest angle by which a fit of the weighting may be off, over all elements; 0 for area.
+  /// Returns the largest angle, in radians, between a fit of the weighting and the weighted normal, over all elements;
+  /// 0 for area.
   [[nodiscard]] double fit_bound() const noexcept;
-  /// What the segment and the targets take, in bytes.
+  /// Returns the bytes that the segment and the targets take.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:

@@ -57,7 +57,7 @@ namespace chronormal {
 // A component c of snorm N bits is the integer nearest to c (2^(N-1) - 1), in two's complement. (0, 0, 0), the normal
 // of an element that has none, is 0 in Rgb10A2; Octahedral cannot say it, and 0 there is (0, 0, 1).
 
-/// A type of its own for each encoding, so that one cannot be taken for the other; nothing but the four bytes.
+/// A separate type for each encoding, so that one cannot be taken for the other; it holds nothing but the four bytes.
 struct Octahedral {
   std::uint32_t bits = 0;
   friend bool operator==(const Octahedral&, const Octahedral&) = default;
@@ -67,11 +67,11 @@ struct Rgb10A2 {
   friend bool operator==(const Rgb10A2&, const Rgb10A2&) = default;
 };
 
-/// v must have length 1, or be zero. Pure.
+/// Encodes v, which must have length 1 or be zero. Pure.
 [[nodiscard]] Octahedral encode_octahedral(const Vec3f& v) noexcept;
 [[nodiscard]] Rgb10A2 encode_rgb10a2(const Vec3f& v) noexcept;
 
-/// Of length 1, but for the zero of Rgb10A2.
+/// Decodes to length 1, except for the zero of Rgb10A2.
 [[nodiscard]] Vec3f decode(Octahedral encoded) noexcept;
 [[nodiscard]] Vec3f decode(Rgb10A2 encoded) noexcept;
 
@@ -79,14 +79,14 @@ inline namespace internal {
 struct CurveData;
 }
 
-/// What float32 promises: blocks of 36, 24 and 16 bytes, with lengths.
+/// The accuracy that float32 promises: blocks of 36, 24 and 16 bytes, with lengths.
 inline constexpr double kExactTolerance = 1e-6;  // radians
 /// A good choice for shading: a twentieth of a degree. Most blocks take 12 or 20 bytes.
 inline constexpr double kCompactTolerance = 1e-3;  // radians
 
 struct CurveOptions {
-  /// The largest angle, in radians, by which a unit normal may be off. At least kExactTolerance, at most 0.2; what is
-  /// beyond counts as these.
+  /// The largest angle, in radians, by which a unit normal may be wrong: at least kExactTolerance, at most 0.2. Values
+  /// beyond these count as these.
   double tolerance = kExactTolerance;
 };
 
@@ -102,12 +102,12 @@ class NormalCurves {
   /// Prepares the curves of all elements. Reads `normals` once and does not keep it. Throws std::bad_alloc only.
   explicit NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options = {});
 
-  /// Prepares those of all faces of a segment, or of all elements of groups, straight from positions, without an array
-  /// of control normals in between. (Meshes in no order need 32 bytes a vertex more for a while.) The first curves of
-  /// some groups also make the paths around their elements, 33 bytes a vertex of a grid, which the groups keep for those
-  /// that follow. Where many segments are prepared one after the other, name the curves of the one before as `reuse`:
-  /// they are emptied and their memory is used again, which spares asking the system for new pages; the 32 bytes a
-  /// vertex are then kept for the next one.
+  /// Prepares the curves of all faces of a segment, or of all elements of groups, straight from positions, without an
+  /// array of control normals in between. (Meshes in no order need 32 bytes a vertex more for a while.) The first
+  /// curves of some groups also make the paths around their elements, 33 bytes a vertex of a grid, which the groups
+  /// keep for later curves. If many segments are prepared one after the other, name the curves before as `reuse`: they
+  /// are emptied and their memory is used again, which spares asking the system for new pages; the 32 bytes a vertex
+  /// are then kept for the next curves.
   ///     curves = NormalCurves::of_faces(motion.segment(i), options, Threads::kAll, &curves);
   [[nodiscard]] static NormalCurves of_faces(const Segment& segment, const CurveOptions& options = {},
                                              Threads threads = Threads::kOne, NormalCurves* reuse = nullptr);
@@ -115,12 +115,12 @@ class NormalCurves {
                                               const CurveOptions& options = {}, Threads threads = Threads::kOne,
                                               NormalCurves* reuse = nullptr);
 
-  /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 that is the limit direction (see Direction), or (0, 0, 0)
-  /// where n is zero throughout. Returns the number of (0, 0, 0) written, usually 0. What other t than those in [0, 1]
-  /// mean is said in control_normals.h.
+  /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 it is the limit direction (see Direction), or (0, 0, 0)
+  /// where n is zero throughout. Returns the number of (0, 0, 0) written, usually 0. control_normals.h says what t
+  /// outside [0, 1] means.
   /// result must have size() elements
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne) const;
-  /// The same in four bytes each; see normals/normal_curves.h for what becomes of (0, 0, 0).
+  /// Writes them in four bytes each; see above for what becomes of (0, 0, 0).
   std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result, Threads threads = Threads::kOne) const;
   std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result, Threads threads = Threads::kOne) const;
 
@@ -138,17 +138,19 @@ class NormalCurves {
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] bool keeps_lengths() const noexcept;
-  /// How many elements have true degree 0, 1 and 2. A tolerance of 2^-12 or more may count those that bend by less than
-  /// their rounding errors in float32 as straight, which is how they are kept then, within the tolerance.
+  /// Counts the elements of true degree 0, 1 and 2. A tolerance of 2^-12 or more may count elements as straight that
+  /// bend by less than their rounding errors in float32; they are kept as straight then, within the tolerance.
   [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept;
-  /// How many elements at t are uncertain: n(t) is so small a part of what it is the sum of, in double, that 1e-6 rad
-  /// is not promised there. Only where control normals are all that is known; curves made from positions have none.
+  /// Counts the elements that are uncertain at t: n(t) is so small a part of the terms that it is the sum of, in
+  /// double, that 1e-6 rad is not promised there. It happens only if control normals are all that is known; curves made
+  /// from positions have none.
   [[nodiscard]] std::size_t uncertain_count(double t) const noexcept;
-  /// How many elements are evaluated in double.
+  /// Counts the elements that are evaluated in double.
   [[nodiscard]] std::size_t flagged_count() const noexcept;
-  /// Memory that is kept, in bytes (8 an index), but for what fills up the last block, or the next `reuse` needs.
+  /// Returns the memory that is kept, in bytes (8 an index), except for what fills up the last block or what the next
+  /// `reuse` needs.
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// How many elements are kept in blocks of each number of bytes.
+  /// The number of elements that are kept in blocks of some number of bytes.
   struct ByteCount {
     std::size_t bytes = 0;  ///< for each element
     std::size_t elements = 0;

@@ -1,4 +1,4 @@
-/// Which corners of faces share one normal, and the control normals of those that do.
+/// Finds the corners of faces that share one normal, and the control normals of such groups of corners.
 ///
 /// The normal of a vertex is a sum over the faces around it, and that of a corner is a sum over some of them: those
 /// across edges that are smooth. Both are a partition of the corners into *elements*; each element has one normal. Two
@@ -53,7 +53,7 @@
 
 namespace chronormal {
 
-/// Which vertices are one point of the surface. Points are numbered in the order of their first vertices.
+/// Tells which vertices are one point of the surface. Points are numbered in the order of their first vertices.
 struct Points {
   std::vector<std::uint32_t> point_of_vertex;
   std::size_t count = 0;
@@ -64,11 +64,11 @@ struct Points {
 
 /// Makes one point of the vertices of one body (motion/motion.h) whose coordinates are equal in all keyframes. Equal
 /// means equal float32, to the last bit, but -0 equals 0: there is no tolerance, since vertices that are merely close
-/// may belong to two sides of a slit. Where two sheets lie back to back, each face of the one with the points of a face
+/// may belong to two sides of a slit. If two sheets lie back to back, so that each face of one has the points of a face
 /// of the other the other way round, the vertices of each sheet are points of their own. O(V log V + F), and the number
-/// of keyframes times as much where vertices coincide. The motion must be valid.
+/// of keyframes times as much if vertices coincide. The motion must be valid.
 [[nodiscard]] Points weld_coincident(const Motion& motion);
-/// The same for a stream, whose keyframes are read until no two vertices coincide. Errors: those of the stream.
+/// Does the same for a stream, whose keyframes are read until no two vertices coincide. Errors: those of the stream.
 [[nodiscard]] Result<Points> weld_coincident(MotionStream& stream);
 
 /// Stored normals closer than this are one normal that was rounded twice.
@@ -89,8 +89,8 @@ class NormalGroups {
   /// Makes an element of each point, with all of its corners. Outputs are vertices; elements are numbered as points.
   /// The points must be of this topology. O(corners log corners), as are all builders unless they say otherwise.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points);
-  /// Leaves some corners out of the elements of their points. Those of each point become an element of their own, which
-  /// no vertex shows. left_out has one value for each corner.
+  /// Leaves some corners out of the elements of their points. The corners that are left out of a point become an
+  /// element of their own, which no vertex shows. left_out has one value for each corner.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points,
                                                 const std::vector<bool>& left_out);
 
@@ -121,11 +121,12 @@ class NormalGroups {
                                                              VectorView<const float> normal_of_corner,
                                                              double degrees = kSplitNormalTolerance);
 
-  /// How many elements, and so different normals, there are.
+  /// Returns the number of elements, and so of different normals.
   [[nodiscard]] std::size_t size() const noexcept { return offsets_.size() - 1; }
-  /// The corners that share the normal of element e, as indices into Topology::corners(); none for an isolated vertex.
+  /// Returns the corners that share the normal of element e, as indices into Topology::corners(); none for an isolated
+  /// vertex.
   [[nodiscard]] std::span<const std::uint32_t> corners(std::size_t e) const noexcept { return part(corners_, e); }
-  /// The faces of these corners, one for one.
+  /// Returns the face of each of the element's corners, in their order.
   [[nodiscard]] std::span<const std::uint32_t> faces(std::size_t e) const noexcept { return part(faces_, e); }
 
   /// The element of each corner.
@@ -136,12 +137,12 @@ class NormalGroups {
   }
   [[nodiscard]] bool outputs_are_vertices() const noexcept { return outputs_are_vertices_; }
 
-  /// How many elements have no corner: isolated vertices. Their normal is (0, 0, 0).
+  /// Returns the number of elements without a corner: isolated vertices. Their normal is (0, 0, 0).
   [[nodiscard]] std::size_t isolated_count() const noexcept;
 
-  /// Frees what only sums by angle and curves need. From then on corners(e), element_of_corner() and, where outputs are
-  /// corners, element_of_output() must not be called, and neither curves nor anything that recomputes normals may be made
-  /// for these groups.
+  /// Frees what only sums by angle and curves need. From then on corners(e), element_of_corner() and, if outputs are
+  /// corners, element_of_output() must not be called, and neither curves nor anything that recomputes normals may be
+  /// made for these groups.
   void forget_corners() noexcept;
 
   /// Copies the normal of each element to every output that shows it.
@@ -152,8 +153,8 @@ class NormalGroups {
   // Lists the corners of each element. element_of_corner has values below element_count.
   NormalGroups(const Topology& topology, std::vector<std::uint32_t> element_of_corner, std::size_t element_count);
 
-  // Numbers sets of corners, named by any of their members, in the order of their first corners; those of the two sides
-  // of a sheet come apart.
+  // Numbers sets of corners, named by any of their members, in the order of their first corners. The corners of the two
+  // sides of a sheet come apart.
   [[nodiscard]] static NormalGroups of_corner_sets(const Topology& topology, const Points& points,
                                                    std::vector<std::uint32_t> set_of_corner);
 
@@ -173,38 +174,39 @@ class NormalGroups {
   friend const Rings& internal::rings_around(const Topology& topology, const NormalGroups& groups);
 };
 
-/// Writes the control normals of a range of elements as the sums of those that are given: nine additions per corner. A
-/// component of a sum that is smaller than the rounding error of its own terms is written as exactly zero. What the
-/// faces themselves are off by stays, however far they cancel. Pure: no allocation, no throw.
+/// Writes the control normals of a range of elements as sums of the given ones: nine additions per corner. A component
+/// of a sum that is smaller than the rounding error of its own terms is written as exactly zero. Errors of the face
+/// normals themselves remain, however far they cancel. Pure: no allocation, no throw.
 /// of_faces must have the control normals of all faces, result as many elements as the range
 void group_control_normals(const NormalGroups& groups, std::span<const ControlNormals> of_faces, IndexRange elements,
                            std::span<ControlNormals> result) noexcept;
 
-/// Writes those of a range of elements of a segment, of which of_faces has the faces, within 2^-24 of their lengths of
-/// the exact ones: where faces cancel, so that the rounding of double could be more, they are made of integers. Pure.
+/// Writes the control normals of a range of elements of a segment from the control normals of its faces, within 2^-24
+/// of their lengths of the exact ones. Where faces cancel, so that the rounding of double could be more, integers
+/// compute them. Pure.
 void group_control_normals(const Segment& segment, const NormalGroups& groups, std::span<const ControlNormals> of_faces,
                            IndexRange elements, std::span<ControlNormals> result) noexcept;
 
-/// Returns the control normals of all faces of a segment, or of all elements, as precise as those. On all cores.
+/// Returns the control normals of all faces of a segment, or of all elements, as precisely. Runs on all cores.
 [[nodiscard]] std::vector<ControlNormals> all_face_control_normals(const Segment& segment);
 [[nodiscard]] std::vector<ControlNormals> all_group_control_normals(const Segment& segment, const NormalGroups& groups);
 
-// What has a normal: each face, each vertex, or each corner of a face; and who shares one.
+// Selects what has a normal: each face, each vertex, or each corner of a face; and who shares one.
 //
 // Threads    everything here is pure.
 
 enum class ElementKind { kFaces, kVertices, kCorners };
 
-/// faces, vertices, corners
+/// Returns "faces", "vertices" or "corners".
 [[nodiscard]] std::string_view element_kind_name(ElementKind kind) noexcept;
 
-/// face, vertex, corner
+/// Returns "face", "vertex" or "corner".
 [[nodiscard]] std::string_view one_element(ElementKind kind) noexcept;
 
 /// Finds a kind by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<ElementKind> make_element_kind(std::string_view name);
 
-/// Which normals. Corners share theirs across smooth edges; which edges are hard comes from one of three sources: the
+/// Selects the normals. Corners share theirs across smooth edges; the hard edges come from one of three sources: the
 /// crease angle, or else what a file says (Input in io/input.h), which the caller keeps alive.
 struct ElementOptions {
   ElementKind kind = ElementKind::kFaces;
@@ -214,11 +216,13 @@ struct ElementOptions {
   VectorView<const float> normal_of_corner = {};      ///< split normals, where not empty
 };
 
-/// The groups of corners that vertices or corners of a motion stand for. Errors: kUsage for a crease angle outside
-/// [0, 180]; kInvalidInput where there is not one smoothing group for each face, or one finite normal for each corner.
-/// The motion may stand still: a keyframe without segments. Preconditions: it is valid else, and the kind is not faces
+/// Makes the groups of corners that vertices or corners of a motion stand for. Errors: kUsage for a crease angle
+/// outside [0, 180]; kInvalidInput if there is not one smoothing group for each face, or one finite normal for each
+/// corner. The motion may stand still: a keyframe without segments. Preconditions: the motion is otherwise valid; the
+/// kind is not kFaces
 [[nodiscard]] Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options);
-/// The same for a stream, of which it reads keyframes as weld_coincident() does. Errors: also those of the stream.
+/// Makes the groups for a stream, of which it reads keyframes as weld_coincident() does. Errors: also those of the
+/// stream.
 [[nodiscard]] Result<NormalGroups> make_groups(MotionStream& stream, const ElementOptions& options);
 
 }  // namespace chronormal

@@ -1,7 +1,7 @@
 /// Unit normals from positions, made anew at every t: eq. 1 and eq. 2 as they stand, as fast as we can write them.
 ///
-/// The rival of NormalCurves, and what wins for one evaluation or two. Nothing is prepared but scratch memory;
-/// positions and topology are read at every call, must stay alive, and positions may change between calls.
+/// The baseline of NormalCurves, which is faster for one evaluation or two. Nothing is prepared but scratch memory;
+/// positions and topology are read at every call and must stay alive, and positions may change between calls.
 ///
 /// Accuracy   within 1e-6 rad of the exact n(t) of the positions at the double t, whatever they are: edges in
 ///            float32 and all that follows in double where a bound on the rounding shows that it suffices (edges are
@@ -47,15 +47,16 @@ class NormalRecompute {
   ~NormalRecompute();
   /// Makes the normals of the faces of a segment. Throws std::bad_alloc only.
   explicit NormalRecompute(const Segment& segment);
-  /// Makes those of the elements of groups, which must be of the topology of the segment and outlive the object.
+  /// Makes the normals of the elements of groups, which must be groups of the segment's topology and outlive the
+  /// object.
   NormalRecompute(const Segment& segment, const NormalGroups& groups);
 
-  /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 that is the limit direction (see Direction), or (0, 0, 0)
+  /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 it is the limit direction (see Direction), or (0, 0, 0)
   /// where n is zero throughout. Returns the number of (0, 0, 0) written.
   /// result must have size() elements
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne);
 
-  /// How many elements there are.
+  /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept;
   /// Scratch memory, in bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -101,15 +102,15 @@ class FloatRecompute {
   ~FloatRecompute();
   /// Prepares for the normals of all faces of a mesh. Throws std::bad_alloc only.
   explicit FloatRecompute(const Topology& topology);
-  /// Prepares for those of the elements of groups, which must be groups of the topology that keep their corners.
+  /// Prepares for the normals of the elements of groups, which must be groups of the topology that keep their corners.
   /// O(corners).
   FloatRecompute(const Topology& topology, const NormalGroups& groups);
 
-  /// Writes n / |n| of every element at t of a segment, and returns the number of (0, 0, 0) written. What t outside
-  /// [0, 1] and NaN mean is said in control_normals.h.
+  /// Writes n / |n| of every element at t of a segment, and returns the number of (0, 0, 0) written. control_normals.h
+  /// says what t outside [0, 1] and NaN mean.
   /// the segment must have as many vertices as the topology; result must have size() elements
   std::size_t unit_normals(const Segment& segment, double t, VectorView<float> result, Threads threads = Threads::kOne);
-  /// The same from given positions, for example of blend shapes.
+  /// Writes the normals of given positions, for example of blend shapes.
   std::size_t unit_normals(VectorView<const float> positions, VectorView<float> result,
                            Threads threads = Threads::kOne);
 

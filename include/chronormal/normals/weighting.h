@@ -1,4 +1,4 @@
-/// The ways in which tools weigh the faces around a vertex, and quadratics in place of the sums that are none.
+/// The ways in which tools weigh the faces around a vertex, and quadratics in place of sums that are not quadratic.
 ///
 /// The normal of an element (normals/normal_groups.h) is a sum over its corners: face normal times weight. With the
 /// vector area n of the face (length: twice its area), its unit normal u, and the edges e to the next and f to the
@@ -74,7 +74,7 @@ inline constexpr std::array<WeightingInfo, 7> kAllWeightings = {{
     {Weighting::kInverseRoots, "inverse-roots", "the square roots of these reciprocals"},
 }};
 
-/// The first of them, by which tools shade: those among which the weighting of stored normals is looked for.
+/// The first weightings, by which tools shade. The weighting of stored normals is looked for among them.
 inline constexpr std::array<WeightingInfo, 5> kWeightings = {kAllWeightings[0], kAllWeightings[1], kAllWeightings[2],
                                                              kAllWeightings[3], kAllWeightings[4]};
 
@@ -83,8 +83,8 @@ inline constexpr std::array<WeightingInfo, 5> kWeightings = {kAllWeightings[0], 
 /// Finds a weighting by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<Weighting> make_weighting(std::string_view name);
 
-/// Writes n of a range of faces at t: twice the vector area, within 2^-30 of its length, and zero where it is exactly
-/// zero. (What other t than those in [0, 1] mean is said in control_normals.h.)
+/// Writes n of a range of faces at t: twice the vector area, within 2^-30 of its length, and zero if it is exactly
+/// zero. (control_normals.h says what t outside [0, 1] means.)
 /// result must have as many elements as the range
 void face_normals_at(const Segment& segment, const LocalTime& t, IndexRange faces, std::span<Vec3d> result) noexcept;
 
@@ -94,7 +94,7 @@ void face_normals_at(const Segment& segment, const LocalTime& t, IndexRange face
 void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 
-/// Returns those of all elements. Runs on all cores.
+/// Returns the weighted normals of all elements. Runs on all cores.
 [[nodiscard]] std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups,
                                                          Weighting weighting, const LocalTime& t);
 

@@ -1,4 +1,4 @@
-/// Ways to interpolate normals over a segment: those of the paper, and better ones.
+/// Ways to interpolate normals over a segment: the schemes of the paper, and better ones.
 ///
 /// A scheme is prepared from a block of elements and then fills unit normals at any t, in any order of t. It works on
 /// whole blocks: one virtual call per block and t, none per element.
@@ -37,20 +37,20 @@ inline namespace internal {
 struct FittedCurves;
 }
 
-/// What a scheme is prepared from: some elements of one segment, and their control normals.
+/// The input that a scheme is prepared from: some elements of one segment, and their control normals.
 struct ElementBlock {
   const Segment* segment = nullptr;
   IndexRange elements;                      ///< which; schemes that need faces look at those of these indices
   std::span<const ControlNormals> normals;  ///< one per element; `recompute` does not read them
   bool are_faces = true;                    ///< or vertices or corners, which have no edges
-  /// Returns the exact normal of the i-th of these elements at t, of any length, where it is no quadratic and control
-  /// normals are only fitted to it; empty: that of the control normals. These are exact at both ends and at t = 1/2.
+  /// Returns the exact normal of the i-th of these elements at t, of any length, if it is no quadratic and control
+  /// normals are only fitted to it, exactly at both ends and at t = 1/2. Empty: the control normals are exact.
   std::function<Vec3d(std::size_t i, double t)> exact = {};
 };
 
-/// Elementary operations of one evaluation of one element. What all elements of a block share at one t
-/// (powers of t, Bernstein or Lagrange weights) is computed once per block and not counted. A sine with its cosine
-/// counts as one trigonometric operation, and so does an arc tangent.
+/// The elementary operations of one evaluation of one element. Work that all elements of a block share at one t (powers
+/// of t, Bernstein or Lagrange weights) is done once per block and not counted. A sine with its cosine counts as one
+/// trigonometric operation, and so does an arc tangent.
 struct OperationCounts {
   int add = 0;
   int multiply = 0;
@@ -66,7 +66,7 @@ struct OperationCounts {
 /// vector, as linear does between nearly antipodal ends, drifts by as much more as that vector is shorter than 1.
 inline constexpr std::size_t kDefaultAnchorInterval = 64;
 
-/// Sequential access: a scheme that is played at equal steps of t, each made from the one before.
+/// Plays a scheme at equal steps of t, each made from the one before (sequential access).
 class SchemePlayback {
  public:
   SchemePlayback() = default;
@@ -94,10 +94,10 @@ class Scheme {
   /// result must have as many vectors as the block has elements
   virtual std::size_t evaluate(double t, VectorView<float> result) const noexcept = 0;
 
-  /// Whether prepare() reads the control normals of the block.
+  /// Returns true if prepare() reads the control normals of the block.
   [[nodiscard]] virtual bool uses_control_normals() const noexcept { return true; }
-  /// Whether it looks at the faces themselves, so that elements can be nothing else; others take the control normals of
-  /// vertices and corners just as well, and read of the segment nothing but its index.
+  /// Returns true if the scheme looks at the faces themselves, so that elements can be nothing else. Other schemes take
+  /// the control normals of vertices and corners just as well, and read of the segment nothing but its index.
   [[nodiscard]] virtual bool needs_faces() const noexcept { return false; }
   /// Begins to play the block at t = start, start + step, ... in [0, 1]: polynomials by forward differences, arcs by a
   /// rotation per step. The state drifts with every step and is made anew every anchor_interval steps (0: never).
@@ -108,15 +108,15 @@ class Scheme {
     return nullptr;
   }
 
-  /// How many elements of the block needed a stated fallback when they were prepared.
+  /// Counts the elements of the block that needed a stated fallback when they were prepared.
   [[nodiscard]] virtual std::size_t fallback_count() const noexcept = 0;
-  /// How many elements of the block are evaluated in double, to keep the promised accuracy.
+  /// Counts the elements of the block that are evaluated in double, to keep the promised accuracy.
   [[nodiscard]] virtual std::size_t flagged_count() const noexcept { return 0; }
-  /// Memory that an evaluation of the block reads, in bytes.
+  /// Returns the memory that an evaluation of the block reads, in bytes.
   [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;
-  /// Operations per element and evaluation at random t, counted on the code that runs.
+  /// Returns the operations per element and evaluation at random t, counted on the code that runs.
   [[nodiscard]] virtual OperationCounts operations() const = 0;
-  /// Operations per element and step of a playback, counted likewise; nothing where there is no incremental form.
+  /// Returns the operations per element and step of a playback, counted likewise; nothing without an incremental form.
   [[nodiscard]] virtual std::optional<OperationCounts> sequential_operations() const { return std::nullopt; }
 
   /// Returns true if every normal that evaluate() writes is promised to be within kExactTolerance of the exact one.
@@ -134,7 +134,7 @@ struct SchemeDescription {
   std::string_view summary;  ///< one line
 };
 
-/// All schemes, in the order of docs/theory.md.
+/// Lists all schemes, in the order of docs/theory.md.
 [[nodiscard]] std::span<const SchemeDescription> scheme_descriptions() noexcept;
 
 }  // namespace chronormal
