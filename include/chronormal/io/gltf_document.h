@@ -48,12 +48,12 @@ class Expansion;  // how much a file may make us hold or write
 ///     weight = sum of a w_i + sum of q w_i w_j
 struct GltfExtraTarget {
   struct LinearTerm {
-    std::size_t i = 0;  ///< a target that is no extra one
+    std::size_t i = 0;  ///< a target of the mesh's own
     double a = 1;
     friend bool operator==(const LinearTerm&, const LinearTerm&) = default;
   };
   struct QuadraticTerm {
-    std::size_t i = 0, j = 0;  ///< targets that are no extra ones
+    std::size_t i = 0, j = 0;  ///< targets of the mesh's own
     double q = 1;
     friend bool operator==(const QuadraticTerm&, const QuadraticTerm&) = default;
   };

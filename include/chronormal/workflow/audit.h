@@ -1,6 +1,6 @@
-/// What a viewer shows against what it should show: the errors of stored normals over a motion.
+/// Compares what a viewer shows with what it should show: the errors of stored normals over a motion.
 ///
-/// Shown at a sample is what the rule makes of the stored normals; what should be shown is n(t), area-weighted or by
+/// A viewer shows at a sample what its rule makes of the stored normals; it should show n(t), area-weighted or by
 /// another weighting, from the positions at that time, in double. An author may give normals of his own (another
 /// weighting, a bevel); that offset is kept and is no fault:
 ///
@@ -16,17 +16,17 @@
 /// Samples    t = i / (samples - 1) of each segment: a target from weight 0 to 1, or the time between two keys of an
 ///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as the file says. Expressions
 ///            of an avatar, the poses in which a file opens, and those that are asked for stand still: one sample each.
-/// Judged     pairs of a vertex and a sample, for vertices that move: a face around them does, or their stored normal.
-/// Unlit      a shown normal that is zero, infinite or NaN cannot be lit: such a pair is off by 180 degrees, the most
-///            that there is, and is counted.
-/// No normal  pairs whose n(t) is below 1e-4 of the largest control normal of its element over the motion are
-///            counted apart, and are in no mean and no worst error. What they show must be finite; and it must not be
-///            zero where the faces around have an area, which is drawn.
-/// Faint      those of them whose n(t) is more than what rounding the positions to float32 may change it by have a
-///            direction all the same, and a gate must not pass what is lit from behind: is_within() of audits and viewers
-///            looks at them, with the angle less what that rounding explains.
-/// Cancelled  those that are not faint although the faces around have an area: faces that lie back to back and share
-///            their vertices. Nobody knows what is right there, and no gate passes.
+/// Judged     samples of vertices that move: a face around them does, or their stored normal.
+/// Unlit      a shown normal that is zero, infinite or NaN cannot be lit: such a sample has an error of 180 degrees,
+///            the most that there is, and is counted.
+/// No normal  samples whose n(t) is below 1e-4 of the largest control normal of its element over the motion are counted
+///            apart, and are in no mean and no worst error. Their shown normal must be finite; and it must not be zero
+///            if the faces around have an area, since these are drawn.
+/// Faint      samples without a normal whose n(t) is more than what rounding the positions to float32 may change it by.
+///            They have a direction all the same, and a gate must not pass what is lit from behind: is_within() of
+///            audits and viewers looks at them, with the angle less what that rounding explains.
+/// Cancelled  samples without a normal that are not faint although the faces around have an area: faces that lie back
+///            to back and share their vertices. Nobody knows what is right there, and no gate passes.
 /// Units      degrees; weights; seconds.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_H_
@@ -53,7 +53,7 @@
 
 namespace chronormal {
 
-/// What a viewer makes of stored normals between two keyframes.
+/// Selects what a viewer makes of stored normals between two keyframes.
 enum class AuditRule {
   kGltf,   ///< normalize(N + sum w D), with the file's deltas, in float32
   kLerp,   ///< a straight line between the stored normals of the keyframes
@@ -64,10 +64,10 @@ enum class AuditRule {
 };
 
 [[nodiscard]] std::string_view audit_rule_name(AuditRule rule) noexcept;
-/// Errors: kUsage, with all names.
+/// Finds a rule by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<AuditRule> make_audit_rule(std::string_view name);
 
-/// Errors below this are no fault of a file: normals are stored in 8 bits, too.
+/// Errors below this are no fault of a file, since some files store normals in 8 bits.
 inline constexpr double kAuditFault = 1;  // degrees
 
 inline constexpr std::size_t kRandomPoses = 200;  ///< of a mesh, where poses are asked for and none are given
@@ -77,18 +77,18 @@ inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< of a segment
 struct AuditOptions {
   std::optional<AuditRule> rule = {};       ///< nothing: kGltf for glTF, kNlerp for sequences
   std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, or fewer in long tracks (about 210 in all)
-  /// glTF: of longer tracks every second, third or later segment is judged, so that about so many are. 0: all are.
+  /// glTF: in longer tracks every second, third or later segment is judged, so that about so many are. 0: all are.
   std::size_t most_segments = 0;
   std::string animation = {};  ///< glTF: this one alone, by name or index; empty: the targets and all of them
-  /// Of the right normals: that of the program which the file comes from. Nothing: of each mesh, and of a sequence, the
-  /// one that its stored base normals follow clearly, or else area.
+  /// The weighting of the right normals: that of the program which the file comes from. Nothing: for each mesh, and for
+  /// a sequence, the one that its stored base normals follow clearly, or else area.
   std::optional<Weighting> weighting = {};
   /// glTF: the document that this one was baked from, whose normals are its author's; it must have the same meshes.
-  /// Nothing: those of this one are.
+  /// Nothing: the normals of this one are its author's.
   const GltfDocument* author = nullptr;
   /// glTF: the weights between which each target is judged alone; the first is below the second, and both are finite.
   std::array<double, 2> weights = {0, 1};
-  /// glTF: poses that are judged, too, of the meshes of which they name a target, or which have their number of targets.
+  /// glTF: poses that are judged too, for meshes of which they name a target, or which have their number of targets.
   /// Without any, but with is_posed, kRandomPoses of each mesh that a program may set (docs/cli.md).
   bool is_posed = false;
   std::vector<RigPose> poses = {};
@@ -118,18 +118,18 @@ struct AuditSubject {
   MotionError at_keys;                         ///< of the same, those at both ends of each segment
   std::optional<SkinningError> skinning = {};  ///< where it was judged through a skin
 
-  /// Whether it is found by a weight, and not by a time.
+  /// Returns true if a sample is found by a weight, and not by a time.
   [[nodiscard]] bool is_weighed() const noexcept {
     return kind == Kind::kTarget || kind == Kind::kExpression || kind == Kind::kOpening;
   }
 };
 
-/// "target", "track", "sequence", "expression", "opening" or "poses".
+/// Returns "target", "track", "sequence", "expression", "opening" or "poses".
 [[nodiscard]] const char* audit_subject_name(AuditSubject::Kind kind) noexcept;
-/// Names what a sample of a subject is found by: "weight", "time" or, of poses, its number: "pose".
+/// Names what a sample of a subject is found by: "weight", "time", or "pose" for the number of a pose.
 [[nodiscard]] const char* audit_moment_name(AuditSubject::Kind kind) noexcept;
 
-/// How far stored base normals are from the geometry.
+/// The distance of stored base normals from the geometry.
 struct AuthoredOffset {
   std::optional<std::size_t> mesh;         ///< of a glTF file
   Weighting weighting = Weighting::kArea;  ///< of the right normals
@@ -139,7 +139,7 @@ struct AuthoredOffset {
   AuditPlace worst_at;
   double area_mean = 0;      ///< the same by area
   bool of_polygons = false;  ///< the right normals are weighed by polygons, of which the file has the triangles
-  /// The weighting that comes closest to the stored normals in the mean, and how close.
+  /// The weighting that comes closest to the stored normals on average, and how close.
   Weighting closest = Weighting::kArea;
   double closest_mean = 0, closest_worst = 0;
 
@@ -161,37 +161,37 @@ struct AuditFinding {
     kSkinned,         ///< a note: nodes with a skin, through which normals are judged; degrees is what skinning turns
     kUnreadSkin,      ///< a note: nodes with a skin that cannot be read, so that normals are judged without it
     kBaked,           ///< a note: a bake was here
-    kEmptied,  ///< a note: another program made the normals anew that a bake wrote; its extra targets turn nothing now
+    kEmptied,  ///< a note: another program made the normals anew that a bake wrote; its correction targets turn nothing now
     kSequenceTargets,  ///< a note: baked keyframes, which mean nothing one by one
     kBeyondViewer      ///< a note: a mesh has more targets than a viewer takes
   };
   Kind kind;
   std::optional<std::size_t> mesh, target, node, animation, expression;
-  std::size_t count = 0;               ///< pairs, primitives, targets or nodes, as the kind has it
+  std::size_t count = 0;               ///< samples, primitives, targets or nodes, as the kind has it
   double degrees = 0;                  ///< the worst
   std::optional<Error> reason = {};    ///< why something could not be read
   std::optional<AuditPlace> worst_at;  ///< where there is one
   std::optional<Viewer> viewer;        ///< that it is about; nothing: all
 
-  /// Normals may be missing where the motion does not turn them.
+  /// Returns true for a fault. Normals may be missing where the motion does not turn them.
   [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kStaleKeys && degrees > kAuditFault; }
 };
 
-/// What one viewer shows of a file. What it should show is n(w) at the weights that it plays.
+/// The errors of one viewer on a file. It should show n(w) at the weights that it plays.
 struct ViewerAudit {
   Viewer viewer;
   MotionError error;                 ///< of all subjects
   std::optional<std::size_t> worst;  ///< the subject with the worst error
-  /// How far a vertex is from where the specification has it, at most: a share of the diagonal of the box around the
-  /// base of its mesh.
+  /// The largest distance of a vertex from where the specification has it: a share of the diagonal of the box around
+  /// the base of its mesh.
   double displaced = 0;
-  /// Targets of a mesh beyond those that the viewer takes: it shows nothing then (Viewer::beyond). The errors above are as
-  /// if it left these out.
+  /// The number of targets of a mesh beyond those that the viewer takes: it shows nothing then (Viewer::beyond). The
+  /// errors above are as if it left these targets out.
   std::size_t beyond = 0;
 
-  /// Whether the viewer shows the file, and every pair as MotionError::passes() has it.
+  /// Returns true if the viewer shows the file, and its errors pass the gate (MotionError::passes()).
   [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.passes(degrees); }
-  /// Whether no more edges are torn than these at any sample.
+  /// Returns true if no more edges are torn than this at any sample.
   [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept { return error.most_torn <= most_torn; }
 };
 
@@ -199,12 +199,13 @@ struct Audit {
   AuditRule rule = AuditRule::kGltf;
   /// The weighting of the normals that all subjects are judged against; empty where meshes have different ones.
   std::optional<Weighting> weighting = Weighting::kArea;
-  /// Whether normals are stored for every keyframe; else a viewer computes them there.
+  /// True if normals are stored for every keyframe; otherwise a viewer computes them there.
   bool stored = true;
   std::array<double, 2> span = {};  ///< of a sequence: the times of its first and its last keyframe
   std::optional<CutPath> cut = {};  ///< of curves, set by who has cut them: for reports
   std::vector<AuditSubject> subjects;
-  /// Targets, tracks and expressions that move nothing, or nothing that can be judged: no subjects.
+  /// The number of targets, tracks and expressions that move nothing, or nothing that can be judged: they are no
+  /// subjects.
   std::size_t still = 0;
   MotionError error;                 ///< of all subjects
   std::optional<std::size_t> worst;  ///< the subject with the worst error
@@ -212,22 +213,23 @@ struct Audit {
   std::vector<AuthoredOffset> offsets;
   std::vector<AuditFinding> findings;  ///< faults first
   std::vector<std::string> notes;      ///< of a glTF file: what was left out, or read in another way than it was meant
-  /// With keep_errors a table for each mesh of a glTF file that has subjects, and one for other inputs. Tracks with the
-  /// same keys have rows once, as the first of their subjects.
+  /// The tables of keep_errors: one for each mesh of a glTF file that has subjects, and one for other inputs. Tracks
+  /// with the same keys have rows once, as the first of their subjects.
   std::vector<ErrorTable> errors;
 
-  /// Whether there was anything to judge. Where nothing turns normals, or no face ever has an area, nothing is known to
-  /// be right.
+  /// Returns true if there was anything to judge. If nothing turns normals, or no face ever has an area, nothing is
+  /// known to be right.
   [[nodiscard]] bool is_judged() const noexcept { return error.judged + error.faint > 0; }
-  /// Whether every viewer that was named shows no more, or the rule where none was: MotionError::passes(). Of motions
-  /// some pair must have been judged; a file in which nothing moves is within anything.
+  /// Returns true if every named viewer passes the gate, or the rule if none was named: MotionError::passes(). If there
+  /// are motions, some sample must have been judged; a file in which nothing moves is within anything.
   [[nodiscard]] bool is_within(double degrees) const noexcept {
     if (!subjects.empty() && !is_judged()) return false;
     if (viewers.empty()) return error.passes(degrees);
     return std::all_of(viewers.begin(), viewers.end(),
                        [degrees](const ViewerAudit& viewer) { return viewer.is_within(degrees); });
   }
-  /// Whether no more edges are torn than these at any sample, in any viewer that was named, or by the rule where none was.
+  /// Returns true if no more edges are torn than this at any sample, in any named viewer, or by the rule if none was
+  /// named.
   [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept {
     if (viewers.empty()) return error.most_torn <= most_torn;
     return std::all_of(viewers.begin(), viewers.end(),
@@ -235,26 +237,27 @@ struct Audit {
   }
 };
 
-/// What an audit may find at most; what is empty allows anything.
+/// The most that an audit may find; an empty limit allows anything.
 struct AuditLimits {
   std::optional<double> degrees = {};          ///< of the worst error
   std::optional<std::size_t> torn_edges = {};  ///< at one sample
 
   [[nodiscard]] bool any() const noexcept { return degrees || torn_edges; }
-  /// Whether an audit, or one of its viewers, keeps to them.
+  /// Returns true if an audit, or one of its viewers, keeps to the limits.
   template <class Found>
   [[nodiscard]] bool allow(const Found& found) const noexcept {
     return (!degrees || found.is_within(*degrees)) && (!torn_edges || found.is_whole(*torn_edges));
   }
 };
 
-/// The errors of the subjects of one mesh, added up; none where it has no subject.
+/// Adds up the errors of the subjects of one mesh; the result is empty for a mesh without subjects.
 [[nodiscard]] MotionError error_of_mesh(const Audit& audit, std::size_t mesh);
 
-/// Audits the targets of all meshes, each alone, the expressions of an avatar, the poses in which the file opens (where
-/// a mesh or a node gives targets weights), and all weight tracks. Extra targets of a bake are no subjects: with each
-/// target alone, in expressions and in poses that are asked for, they get the weights that follow (docs/formats.md); a
-/// track, and the pose in which the file opens, give them what the file says. A file in which nothing moves has no
+/// Audits the targets of all meshes, each alone, the expressions of an avatar, the poses in which the file opens (if a
+/// mesh or a node gives targets weights), and all weight tracks. Correction targets of a bake are no subjects: with
+/// each target alone, in expressions and in poses that are asked for, they get the weights that follow
+/// (docs/formats.md); a track, and the pose in which the file opens, give them what the file says. A file in which
+/// nothing moves has no subjects.
 /// subjects.
 /// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
 /// animation that is not there, viewers with another rule than gltf, fewer than 2 samples, weights that are
@@ -262,15 +265,13 @@ struct AuditLimits {
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
-/// then. Without stored normals, a viewer computes them at keyframes, area-weighted, and interpolates: the truth is what
-/// it would get in between. Residuals of positions count, but for which weighting stored normals
-/// follow, which differences of a tenth of a degree tell. Errors: kUsage for the rule gltf, for viewers,
-/// and for fewer than 2 samples; kInvalidInput for normals that do not fit. Precondition: the
-/// motion is valid
+/// then. Without stored normals, a viewer computes them at keyframes, area-weighted, and interpolates: the audit
+/// compares its normals in between with the truth. Residuals of positions count, except for finding the weighting that
+/// stored normals follow, which differences of a tenth of a degree tell. Errors: kUsage for the rule gltf, for viewers,
+/// and for fewer than 2 samples; kInvalidInput for normals that do not fit. Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
-/// The same for a stream, of which two keyframes are held at a time. It is read twice; it is
-/// read once more up to where all vertices have moved, and once more up to where none coincide any more. Errors: also
-/// those of the stream.
+/// Audits a stream, of which two keyframes are held at a time. It is read twice, once more up to where all vertices
+/// have moved, and once more up to where none coincide any more. Errors: also those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 
 }  // namespace chronormal

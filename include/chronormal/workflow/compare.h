@@ -38,17 +38,17 @@
 
 namespace chronormal {
 
-/// The rows of the paper's table, and ours; but for faces without those that look at the faces themselves.
+/// Names the rows of the paper's table, and ours; for elements other than faces without the schemes that look at faces.
 [[nodiscard]] std::vector<std::string> default_schemes(ElementKind kind = ElementKind::kFaces);
 
-/// How the samples of a segment are visited (section 3 of the paper).
+/// Selects how the samples of a segment are visited (section 3 of the paper).
 enum class Access {
   kRandom,      ///< each on its own
   kSequential,  ///< each from the one before, by the schemes that can; the others as in kRandom
 };
 
-/// The largest error of a scheme at any time of a motion, between two bounds (analysis/certify.h). No sample is above
-/// the upper one.
+/// Bounds of the largest error of a scheme at any time of a motion (analysis/certify.h). No sample is above the upper
+/// one.
 struct CertifiedError {
   double lower = 0;  ///< radians
   double upper = 0;  ///< radians; pi where no better one could be shown
@@ -62,17 +62,17 @@ struct CompareOptions {
   std::vector<std::string> schemes;  ///< names, in the order of the rows; empty: default_schemes()
   std::size_t samples = 21;          ///< per segment, ends included; 2 or more
   Access access = Access::kRandom;
-  /// Told how much of the work is done, from the calling thread; may be empty.
+  /// Is told from the calling thread how much of the work is done; may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
   ElementOptions elements = {};  ///< of which normals
-  /// How faces count in the normals of vertices and corners. With another weighting than area these are no quadratics:
-  /// schemes are prepared from the exact weighted normals, and `polynomial` is the quadratic through three of them.
-  /// `quaternion:optimal` and `linear:scaled` look for what is best for that quadratic.
+  /// The weighting of faces in the normals of vertices and corners. With another weighting than area the normals are no
+  /// quadratics: schemes are prepared from the exact weighted normals, and `polynomial` is the quadratic through three
+  /// of them. `quaternion:optimal` and `linear:scaled` look for what is best for that quadratic.
   Weighting weighting = Weighting::kArea;
   bool keep_errors = false;   ///< every single one, in Comparison::errors
   bool keep_samples = false;  ///< those of each sample together, in SchemeComparison::samples
   bool certify = false;       ///< bound the largest error at any time, in SchemeComparison::certified
-  /// Degrees, 0 or more: certify, and find the cheapest scheme that is never off by more, in Comparison::cheapest.
+  /// Degrees, 0 or more: certify, and find the cheapest scheme whose error is never above, in Comparison::cheapest.
   std::optional<double> tolerance = {};
 };
 
@@ -122,21 +122,21 @@ struct Comparison {
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
-/// The same for a stream, of which a few segments are held at a time: as many as have a few thousand elements for each
-/// thread, but at least one. Errors: also those of the stream.
+/// Compares them for a stream, of which a few segments are held at a time: as many as have a few thousand elements for
+/// each thread, but at least one. Errors: also those of the stream.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
 
-/// What an evaluation costs, roughly, to put schemes in order: 1 for each byte that is read, for an addition and for a
-/// multiplication, 4 for a quotient or a root, 20 for a sine with its cosine.
+/// Estimates the cost of an evaluation, to put schemes in order: 1 for each byte that is read, for an addition and for
+/// a multiplication, 4 for a quotient or a root, 20 for a sine with its cosine.
 [[nodiscard]] double evaluation_cost(const SchemeComparison& scheme) noexcept;
 
-/// The cheapest scheme for a motion that is at no time off by more than a tolerance, for certain: that of the least
-/// evaluation_cost(). Of options.schemes, or all those that have no parameter and fit the elements.
+/// The cheapest scheme whose error is certainly never above a tolerance: the one of the least evaluation_cost().
+/// Candidates are options.schemes, or all schemes that have no parameter and fit the elements.
 struct Choice {
   std::optional<std::string> scheme;  ///< nothing: none is within the tolerance
   Comparison comparison;              ///< of all that were looked at, at two samples of each segment
 };
-/// tolerance: degrees, 0 or more. Errors: those of compare().
+/// Finds the cheapest scheme; tolerance: degrees, 0 or more. Errors: those of compare().
 [[nodiscard]] Result<Choice> choose(const Motion& motion, double tolerance, CompareOptions options = {});
 
 inline constexpr std::size_t kMostBlendRows = 10000;
@@ -152,7 +152,7 @@ struct BlendCompareOptions {
 
 enum class BlendDeltas { kFile, kEndPoint, kLeastSquares, kExact };
 
-/// "file", "end point", "least squares" or "exact".
+/// Returns "file", "end point", "least squares" or "exact".
 [[nodiscard]] std::string_view name_of(BlendDeltas deltas) noexcept;
 
 struct BlendError {
@@ -161,8 +161,9 @@ struct BlendError {
     double weight = 0;
   };
   BlendDeltas deltas = BlendDeltas::kFile;
-  /// max_at: the weight vector as segment, the output as element. count is the same for all deltas: every pair whose
-  /// geometry has a normal. missing are those of them that show zero, infinity or NaN, which count as 180 degrees.
+  /// max_at has the weight vector as segment and the output as element. count is the same for all deltas: every sample
+  /// whose geometry has a normal. missing counts samples among them that show zero, infinity or NaN, which count as 180
+  /// degrees.
   Quality quality;
   std::vector<Weight> worst_weights;           ///< where the largest error is: the active targets
   std::optional<std::size_t> worst_primitive;  ///< of a glTF mesh
@@ -193,24 +194,25 @@ struct BlendComparison {
   std::size_t still = 0;  ///< glTF meshes of which no target moves a normal
 };
 
-/// Blend shapes as a star of segments, valid. Cost: for each row an evaluation, a recomputation of the mesh, and the
-/// angles. Errors: kUsage for options beyond their range, more active targets than there are, and a motion that is no
-/// star; those of make_groups() and blend_set_of(); kInvalidInput where there are more targets than memory for rows of
-/// their weights.
+/// Compares the deltas of blend shapes, given as a valid star of segments. Cost: for each row an evaluation, a
+/// recomputation of the mesh, and the angles. Errors: kUsage for options beyond their range, more active targets than
+/// there are, and a motion that is no star; those of make_groups() and blend_set_of(); kInvalidInput if there are more
+/// targets than memory for rows of their weights.
 [[nodiscard]] Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options = {});
 
-/// All meshes of a file that have targets and normals; with options.animation, those that it drives. Errors: the same;
-/// of GltfDocument; kUsage where an animation is not there or drives none of them, and for random weights of a mesh
-/// whose targets are the keyframes of a baked sequence; kInvalidInput where no mesh can be compared.
+/// Compares them for all meshes of a file that have targets and normals; with options.animation, for the meshes that it
+/// drives. Errors: those above, and those of GltfDocument; kUsage if an animation is not there or drives none of them,
+/// and for random weights of a mesh whose targets are the keyframes of a baked sequence; kInvalidInput if no mesh can
+/// be compared.
 [[nodiscard]] Result<BlendComparison> compare_blends(const GltfDocument& document,
                                                      const BlendCompareOptions& options = {});
 
-// Interpolated normals against keyframes that were left out: what a sampled motion really did.
+// Compares interpolated normals with keyframes that were left out: with what a sampled motion really did.
 //
-// Everything else here takes the motion between two keyframes to be straight, and asks how near the normals are to
-// those of that motion. For blend shapes and a shutter that is the truth. A simulation or a capture did something else
-// between its frames, and the frames themselves tell what: all but every N-th keyframe are left out, normals are
-// interpolated between those that are kept, and held against the normals of those that were left out.
+// Everything else here takes the motion between two keyframes to be straight, and asks how near the normals are to the
+// normals of that motion. For blend shapes and a shutter that is the truth. A simulation or a capture did something
+// else between its frames, and the frames themselves tell what: all but every N-th keyframe are left out, normals are
+// interpolated between the kept ones, and compared with the normals of the ones that were left out.
 //
 // Paths      "linear": vertices move straight, and the schemes are those of compare(). "catmull-rom": each vertex
 //            moves on cubics through the kept keyframes. Its velocity at each of them is that of the parabola through

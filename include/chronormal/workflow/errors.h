@@ -27,13 +27,13 @@
 
 namespace chronormal {
 
-// The errors that an audit adds up: how far shown normals are from the right ones, over pairs of a vertex and a sample
-// (workflow/audit.h says which pairs are judged).
+// The errors that an audit adds up: the angles between shown normals and right ones, over samples of vertices
+// (workflow/audit.h says which samples are judged).
 //
 // Units      degrees
 // Threads    these are plain values. Adding the same parts in the same order gives the same bits.
 
-/// Bins of the histogram: below 0.1, 0.1 to 0.5, ... and from 90 on.
+/// The edges of the bins of the histogram: below 0.1, 0.1 to 0.5, ... and from 90 on.
 inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
 inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
 
@@ -50,8 +50,8 @@ struct AuditPlace {
   double at = 0;                               ///< weight of the target, or time in seconds
 };
 
-/// The counts in these bins. Most errors of a small mesh are in a few of them, and a file may have thousands of
-/// motions, so that only those are kept that are not empty, 8 bytes each.
+/// The counts in the fine bins. Most errors of a small mesh are in a few bins, and a file may have thousands of
+/// motions, so that only bins are kept that are not empty, 8 bytes each.
 class FineBins {
  public:
   class Bin {
@@ -86,32 +86,33 @@ class FineBins {
 };
 
 struct MotionError {
-  std::size_t judged = 0;  ///< pairs
+  std::size_t judged = 0;  ///< samples
   double sum = 0, sum_of_squares = 0;
   double worst = 0;
-  AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
+  AuditPlace worst_at;  ///< the first sample of that error; means nothing where worst is 0
   std::array<std::size_t, kAuditBins> histogram{};
   FineBins counts;            ///< the same in finer bins
-  std::size_t no_normal = 0;  ///< beside those that are judged: n(t) is too small to have a direction
-  std::size_t unlit = 0;      ///< of those that are judged: what is shown cannot be lit, which counts as 180 degrees
+  std::size_t no_normal = 0;  ///< samples that are not judged: n(t) is too small to have a direction
+  std::size_t unlit = 0;      ///< judged samples whose shown normal cannot be lit, which counts as 180 degrees
   AuditPlace unlit_at;        ///< the first of them; means nothing where there are none
-  /// Of those without a normal: n(t) is small, but the positions as float32 determine its direction. Each of these is
-  /// off by the angle less what such rounding of the positions may turn n(t).
+  /// Samples without a normal whose n(t) is small, although the positions as float32 determine its direction. Their
+  /// error is the angle less what such rounding of the positions may turn n(t).
   std::size_t faint = 0;
   double faint_worst = 0;
-  AuditPlace faint_at;  ///< the first pair of that error; means nothing where faint_worst is 0
-  /// Pairs without a normal that are not faint although the faces around have an area: their normals cancel, so that
+  AuditPlace faint_at;  ///< the first sample of that error; means nothing where faint_worst is 0
+  /// Samples without a normal that are not faint although the faces around have an area: their normals cancel, so that
   /// nobody knows what is right.
   std::size_t cancelled = 0;
   AuditPlace cancelled_at;  ///< the first of them; means nothing where there are none
-  /// Edges over which errors jump by more than 10, 20 and 40 degrees: a picture shows a fold there that the surface does
-  /// not have. They are those of faces, and the seams between copies of a point, each counted once at every sample.
+  /// Edges over which errors jump by more than 10, 20 and 40 degrees: a picture shows a fold there that the surface
+  /// does not have. They are the edges of faces, and the seams between copies of a point, each counted once at every
+  /// sample.
   std::array<std::size_t, 3> torn{};
   std::size_t samples = 0;    ///< at which they were counted; 0: nobody counted them, as in sequences
   std::size_t most_torn = 0;  ///< beyond 10 degrees, at one sample
   AuditPlace most_torn_at;    ///< the first sample with so many: mesh, segment and moment
 
-  /// The edges that are torn by more than 10 degrees, on average over the samples.
+  /// Returns the number of edges that are torn by more than 10 degrees, on average over the samples.
   [[nodiscard]] double torn_edges() const noexcept {
     return samples > 0 ? static_cast<double>(torn[0]) / static_cast<double>(samples) : 0;
   }
@@ -119,12 +120,12 @@ struct MotionError {
   [[nodiscard]] double rms() const noexcept {
     return judged > 0 ? std::sqrt(sum_of_squares / static_cast<double>(judged)) : 0;
   }
-  /// The error, in degrees, that at least this share of the judged pairs does not exceed, as counts know it; 0 where
-  /// nothing is judged. 0 < share <= 1.
+  /// Returns the error, in degrees, that at least this share of the judged samples does not exceed, as counts know it;
+  /// 0 if nothing is judged. 0 < share <= 1.
   [[nodiscard]] double percentile(double share) const noexcept;
-  /// Whether every pair can be lit and none is off by more than this.
+  /// Returns true if every sample can be lit and no error is above this.
   [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
-  /// Returns the same for a gate, which leaves out no pair with a direction and passes nothing that is drawn without.
+  /// Does the same for a gate, which also looks at faint samples, and passes nothing with cancelled ones.
   [[nodiscard]] bool passes(double degrees) const noexcept {
     return is_within(degrees) && faint_worst <= degrees && cancelled == 0;
   }
@@ -133,12 +134,12 @@ struct MotionError {
   void add(const MotionError& other);
 };
 
-/// How far a skin turns right normals from those of the surface that it makes, over pairs of a vertex and a sample: what
-/// no target can mend.
+/// The angles by which a skin turns right normals away from the normals of the surface that it makes, over samples of
+/// vertices. No target can mend them.
 struct SkinningError {
-  std::size_t judged = 0;  ///< pairs
+  std::size_t judged = 0;  ///< samples
   double sum = 0, worst = 0;
-  AuditPlace worst_at;  ///< the first pair of that error; means nothing where worst is 0
+  AuditPlace worst_at;  ///< the first sample of that error; means nothing where worst is 0
 
   [[nodiscard]] double mean() const noexcept { return judged > 0 ? sum / static_cast<double>(judged) : 0; }
   void add(double degrees, const AuditPlace& place) noexcept { add({1, degrees, degrees, place}); }
@@ -151,16 +152,16 @@ struct SkinningError {
   }
 };
 
-/// In which respects what an audit found after a change is worse than what it found before: more pairs that cannot be
-/// lit, a worst or mean error that grew by more than what the rounding of float32 may turn, or more torn edges. With the
-/// two exchanged, in which respects it is better.
+/// The respects in which an audit after a change is worse than one before: more samples that cannot be lit, a worst or
+/// mean error that grew by more than what the rounding of float32 may turn, or more torn edges. With the two exchanged,
+/// it holds the respects in which the change is better.
 struct WorseRespects {
   bool unlit = false, mean = false, worst = false, torn = false;
 
   [[nodiscard]] bool any() const noexcept { return unlit || mean || worst || torn; }
 };
 [[nodiscard]] WorseRespects find_worse(const MotionError& after, const MotionError& before) noexcept;
-/// Whether it is worse in any respect.
+/// Returns true if the audit after is worse in any respect.
 [[nodiscard]] inline bool is_worse(const MotionError& after, const MotionError& before) noexcept {
   return find_worse(after, before).any();
 }
@@ -170,18 +171,18 @@ struct ErrorTable {
   ElementKind kind = ElementKind::kVertices;
   Topology topology;             ///< the mesh
   std::vector<float> positions;  ///< (V, 3), at the first keyframe, or of the base
-  /// (V) of a glTF mesh: the primitive of each vertex, and which of its vertices it is; else empty.
+  /// (V) for a glTF mesh: the primitive of each vertex, and which of its vertices it is; otherwise empty.
   std::vector<std::int64_t> primitives = {}, vertices = {};
 
-  /// Of each row: the subject of the audit (Audit::subjects), or the segment of the motion; and when it is. One of time
-  /// and weight is NaN.
+  /// The subject of each row (Audit::subjects), or the segment of the motion; and its moment. One of time and weight is
+  /// NaN.
   std::vector<std::int64_t> subjects = {};
   std::vector<double> times = {}, weights = {};
   std::vector<float> degrees = {};  ///< (rows, columns)
 
   [[nodiscard]] std::size_t rows() const noexcept { return subjects.size(); }
   [[nodiscard]] std::size_t columns() const noexcept;
-  /// The worst error of each column; NaN where nothing was judged.
+  /// Returns the worst error of each column; NaN where nothing was judged.
   [[nodiscard]] std::vector<float> worst() const;
 };
 

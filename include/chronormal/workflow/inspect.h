@@ -1,5 +1,5 @@
-/// What a motion holds, and what in it will trouble whoever needs its normals; and what a glTF file holds beside its
-/// motion: the normals that it stores, which of them follow the targets, and tracks of weights.
+/// Inspects a motion: what it holds, and what in it will trouble a program that needs its normals. Inspects what a glTF
+/// file holds beside its motion: the normals that it stores, which of them follow the targets, and tracks of weights.
 ///
 /// Counts of faces over keyframes or segments come as Places: how many (face, keyframe) pairs there are, how many
 /// different faces take part, and the first pair, by keyframe or segment and then by face.
@@ -92,8 +92,8 @@ struct Inspection {
 /// Precondition: the motion is valid (validate() in motion/motion.h), but that it may have no segment
 [[nodiscard]] Inspection inspect(const Motion& motion,
                                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});
-/// The same for a stream, of which two keyframes are held, or where meshes are small as many as keep all threads busy.
-/// Errors: those of the stream.
+/// Inspects a stream, of which two keyframes are held, or for small meshes as many as keep all threads busy. Errors:
+/// those of the stream.
 [[nodiscard]] Result<Inspection> inspect(MotionStream& stream,
                                          const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
@@ -102,10 +102,10 @@ struct GltfPrimitiveInspection {
   std::size_t mesh = 0, primitive = 0;
   std::size_t triangles = 0;
   std::size_t off_length = 0;  ///< stored normals that are not of length 1, to the rounding of 8-bit integers
-  /// Vertices at the place of a lower one in the base, and those of them with another normal than the lowest one there
-  /// (by more than kSplitNormalTolerance of normals/normal_groups.h).
+  /// Vertices at the place of a lower one in the base, and the number of them with another normal than the lowest one
+  /// there (by more than kSplitNormalTolerance of normals/normal_groups.h).
   std::size_t doubled = 0, split = 0;
-  /// Targets that move positions, and those of them that move normals and tangents too.
+  /// Targets that move positions, and the numbers of them that move normals and tangents too.
   std::size_t moving = 0, moving_normals = 0, moving_tangents = 0;
 };
 
@@ -155,11 +155,11 @@ struct Inspected {
   std::optional<InspectedGltf> gltf;
 
   [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
-  /// Whether it has morph targets: segment k goes from keyframe 0 to target k, from weight 0 to 1.
+  /// Returns true if the input has morph targets: segment k goes from keyframe 0 to target k, from weight 0 to 1.
   [[nodiscard]] bool has_targets() const noexcept { return kind == MotionKind::kTargets && !segments.empty(); }
 };
 
-/// Inspects an input of any kind, opened with allow_mesh; animation is that of its options. progress is as for
+/// Inspects an input of any kind, opened with allow_mesh; animation is the one of its options. progress is as for
 /// inspect().
 /// Errors: those of Input::motion() and GltfDocument.
 [[nodiscard]] Result<Inspected> inspect_input(

@@ -1,4 +1,4 @@
-/// The normals of a motion at chosen moments.
+/// Computes the normals of a motion at chosen moments.
 ///
 /// A moment is
 ///     a time     of a sequence, in its own seconds; there is no motion before its first and after its last
@@ -63,7 +63,7 @@ enum class NormalLength {
 /// the ones before it by additions or by a rotation.
 struct Stepping {
   std::size_t steps = 1;  ///< of a segment, 1 or more
-  /// The state is made anew at every so many steps; 0: never, as in the paper.
+  /// The state is made anew every so many steps; 0: never, as in the paper.
   std::size_t anchor_interval = kDefaultAnchorInterval;
 };
 
@@ -77,11 +77,11 @@ struct SampleOptions {
   std::optional<Stepping> stepping = {};  ///< plays the scheme, at the times of step_moments() only
 };
 
-/// Whether a pose can have these weights. Errors: kUsage for a motion that is not blend shapes; where there is not one
-/// weight for each target, or one that is not finite.
+/// Checks that a pose can have these weights. Errors: kUsage for a motion that is not blend shapes, if there is not one
+/// weight for each target, or for a weight that is not finite.
 [[nodiscard]] Status check_weights(const Motion& motion, std::span<const double> weights);
 
-/// Moments in the order of the output. One list at most; where both are empty, the mesh stands still.
+/// The moments in the order of the output. At most one list has any; if both are empty, the mesh stands still.
 struct Moments {
   std::vector<double> times;
   std::vector<std::vector<double>> weights;
@@ -91,7 +91,8 @@ struct Moments {
   }
 };
 
-/// How far the normals that were played are off those of the same scheme at random access, at the same t.
+/// The largest angle between normals that were played and the normals of the same scheme at random access, at the same
+/// t.
 struct Drift {
   double largest = 0;      ///< radians
   std::size_t output = 0;  ///< the first one that shows it
@@ -106,36 +107,37 @@ struct Pose {
 
 class NormalSampler {
  public:
-  /// The motion must be valid or stand still, and outlive the sampler.
-  /// Errors: of make_groups() and make_scheme(); kUsage for faces with another weighting than area, for the length
-  /// kArea with one, for a scheme with either, with elements that it has no meaning for, or of a mesh that stands still,
-  /// and for stepping without a scheme or with one that has no sequential form.
+  /// Makes a sampler. The motion must be valid or stand still, and outlive the sampler. Errors: of make_groups() and
+  /// make_scheme(); kUsage for faces with another weighting than area, for the length kArea with another weighting, for
+  /// a scheme with either, with elements that it has no meaning for, or for a mesh that stands still, and for stepping
+  /// without a scheme or with one that has no sequential form.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
-  /// The same for a stream: a pose at a time reads the two keyframes around it, and a pose of
-  /// weights reads all keyframes. Errors: also those of the stream, here and for each pose.
+  /// Makes a sampler of a stream: a pose at a time reads the two keyframes around it, and a pose of weights reads all
+  /// keyframes. Errors: also those of the stream, here and for each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
-  /// The pose at a time. evaluations says how many times of its segment will follow each other, this one included; what
-  /// is prepared for the first of them serves all. Errors: of find_instant(); kUsage where no step leads to the time.
+  /// Computes the pose at a time. evaluations says how many times of its segment will follow each other, this one
+  /// included; what is prepared for the first of them serves all. Errors: of find_instant(); kUsage if no step leads to
+  /// the time.
   [[nodiscard]] Result<Pose> at_time(double time, double evaluations = 1);
 
-  /// The pose of weights. Errors: of check_weights(); kUsage for weights with which a vertex leaves the range of
-  /// float32, and for those that are not between the base and one target, where there is a scheme.
+  /// Computes the pose of weights. Errors: of check_weights(); kUsage for weights with which a vertex leaves the range
+  /// of float32 and, with a scheme, for weights that are not between the base and one target.
   [[nodiscard]] Result<Pose> at_weights(std::span<const double> weights);
 
-  /// The pose of keyframe 0, the only one of a mesh that stands still. A stream must hold that keyframe.
+  /// Computes the pose of keyframe 0, the only one of a mesh that stands still. A stream must hold that keyframe.
   [[nodiscard]] Pose at_rest() const;
 
-  /// How many faces, vertices or corners there are.
+  /// Returns the number of faces, vertices or corners.
   [[nodiscard]] std::size_t output_count() const noexcept;
 
-  /// The element of each vertex or corner; empty for faces, which are the elements.
+  /// Returns the element of each vertex or corner; empty for faces, which are the elements.
   [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept;
 
-  /// The normals of a pose for every output: (outputs, 3).
+  /// Returns the normals of a pose for every output: (outputs, 3).
   [[nodiscard]] std::vector<float> normals_of_outputs(const Pose& pose) const;
 
-  /// The largest drift of all poses so far; zero without stepping.
+  /// Returns the largest drift of all poses so far; zero without stepping.
   [[nodiscard]] const Drift& drift() const noexcept { return drift_; }
 
  private:
@@ -144,13 +146,13 @@ class NormalSampler {
 
   [[nodiscard]] bool are_faces() const noexcept { return options_.elements.kind == ElementKind::kFaces; }
   [[nodiscard]] std::size_t element_count() const noexcept;
-  // By area, and prepared for the next moment of the segment.
+  // Computes area-weighted normals, prepared for the next moment of the segment.
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, const LocalTime& t, double evaluations);
-  // Anew, and for this moment only.
+  // Computes normals anew, for this moment only.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, const LocalTime& t) const;
-  // By the scheme; time is what a drift is reported with.
+  // Computes normals by the scheme; time is reported with a drift.
   [[nodiscard]] Result<std::vector<float>> scheme_normals(const Segment& segment, double t, double time);
-  // Makes them units, where the options ask for that.
+  // Scales the normals to unit length if the options ask for that.
   [[nodiscard]] std::vector<float> as_asked(std::span<const Vec3d> exact) const;
   [[nodiscard]] bool are_exact_units() const noexcept {
     return options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
@@ -172,7 +174,7 @@ class NormalSampler {
 /// segment.
 [[nodiscard]] Result<Moments> step_moments(const Motion& motion, std::size_t steps);
 
-/// For each of some times, how many from it on lie in the same segment without a break: the evaluations that
+/// Counts for each time how many times from it on lie in the same segment without a break: the evaluations that
 /// NormalSampler::at_time() wants to know of. Errors: of find_instant()
 [[nodiscard]] Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times);
 
@@ -181,10 +183,10 @@ enum class SampleFormat { kNpy, kNpz, kPly, kObj };
 /// Finds a format by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<SampleFormat> make_sample_format(std::string_view name);
 
-/// The format of a file by its extension; nothing where that is none of these.
+/// Finds the format of a file by its extension; nothing for another extension.
 [[nodiscard]] std::optional<SampleFormat> find_sample_format(std::string_view path);
 
-/// The most bytes that the arrays of a .npz file may have that goes to a pipe: they are in memory until it is written.
+/// The most bytes that the arrays of a .npz file for a pipe may have: they are in memory until it is written.
 inline constexpr std::size_t kMostSampleBytes = addressable(std::uint64_t{4} << 30);
 
 struct SampleOutput {
@@ -193,9 +195,8 @@ struct SampleOutput {
   bool force = false;
 };
 
-/// The files that `count` moments will be written to. Asks before a long computation whether that can be. Errors:
-/// kUsage for normals of corners in PLY, and for several moments in one .ply or .obj; those of
-/// check_output().
+/// Names the files that `count` moments will be written to, and checks before a long computation that they can be.
+/// Errors: kUsage for normals of corners in PLY, and for several moments in one .ply or .obj; those of check_output().
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count);
 

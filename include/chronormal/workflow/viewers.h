@@ -1,4 +1,4 @@
-/// Programs that show a glTF file, and compressors that rewrite it on the way: what they make of stored normals.
+/// Programs that show a glTF file, and compressors that rewrite it on the way, with what they make of stored normals.
 ///
 /// The specification wants normalize(N + sum_k w_k D_k), with the weights of the file's tracks. Every viewer here shows
 /// normalize(N' + sum_k w'_k D'_k) instead, of what it keeps of N, of D_k and of the weights:
@@ -12,10 +12,10 @@
 ///     w'        zero where |w| is not above least_weight, and for targets beyond the first most_targets; with
 ///               weight_bits below 32, weights of tracks are rounded to unsigned integers that stand for [0, 1]
 ///
-/// With |N + D| = 1 and no component of D beyond 1, viewers of all three rules show the same but for rounding.
+/// If |N + D| = 1 and no component of D is beyond 1, viewers of all three rules show the same but for rounding.
 ///
-/// Not modelled: what compressors do to positions; keys that Godot's importer removes; that Filament's frame is made of
-/// texture coordinates or tangents where there are any, and not of the normal alone.
+/// The model leaves out what compressors do to positions, the keys that Godot's importer removes, and that Filament
+/// makes its frame of texture coordinates or tangents where there are any, and not of the normal alone.
 ///
 /// Threads    everything here is pure
 #ifndef CHRONORMAL_WORKFLOW_VIEWERS_H_
@@ -32,11 +32,11 @@
 
 namespace chronormal {
 
-/// How a viewer makes the normal that it shows.
+/// Selects how a viewer makes the normal that it shows.
 enum class NormalRule { kSum, kUnit, kClamped };
 
-/// How a viewer plays a track of weights. Resampled tracks have 30 samples a second and are linear between them (steps
-/// stay steps).
+/// Selects how a viewer plays a track of weights. Resampled tracks have 30 samples a second and are linear between them
+/// (steps stay steps).
 enum class TrackRule {
   kSpecified,               ///< as appendix C of the glTF specification has it
   kSplinesResampled,        ///< CUBICSPLINE from time 0 on, with its last key; others as specified
@@ -45,7 +45,7 @@ enum class TrackRule {
   kSplinesMisread,          ///< CUBICSPLINE by the first third of its numbers, and weights of zero beyond these
 };
 
-/// How a viewer takes a normal through the skin of a node (docs/decisions/0022).
+/// Selects how a viewer takes a normal through the skin of a node (docs/decisions/0022).
 enum class SkinRule {
   kBlended,           ///< through the linear part of the blended matrix of the joints
   kInverseTranspose,  ///< through the inverse transpose of that
@@ -151,31 +151,31 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
                "packages/extensions/src/ext-meshopt-compression/encoder.ts"},
 }};
 
-/// The viewers of a list of names with commas between them, in the order of the list and each once; "all" names those
-/// that show a file as it is, which compressors do not.
+/// Finds the viewers of a list of names with commas between them, in the order of the list and each once; "all" names
+/// the viewers that show a file as it is, which compressors do not.
 /// Errors: kUsage for a name that there is none of, with all names, and the nearest one where it is near.
 [[nodiscard]] Result<std::vector<Viewer>> find_viewers(std::string_view names);
 
-/// What a viewer keeps of the base normal N; (0, 0, 0) for zero.
+/// Returns what a viewer keeps of the base normal N; (0, 0, 0) for zero.
 [[nodiscard]] Vec3f kept_normal(const Viewer& viewer, const Vec3f& normal) noexcept;
 
-/// What a viewer keeps of the delta D of a target: what it adds to kept_normal() for each unit of weight.
+/// Returns what a viewer keeps of the delta D of a target, and adds to kept_normal() for each unit of weight.
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& delta) noexcept;
-/// The same where the result of kept_normal() is known.
+/// Does the same if the result of kept_normal() is known.
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& kept_normal,
                                const Vec3f& delta) noexcept;
 
-/// Replaces weights that a viewer leaves out by zero. There is one for each of some targets, or for all of them where
-/// these are not named.
+/// Replaces weights that a viewer leaves out by zero. There is one weight for each named target, or for each of all
+/// targets if none are named.
 void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<const std::size_t> targets = {}) noexcept;
 
-/// What the sum of a vertex begins with, to which each target then adds its weight times kept_delta() in their order, in
+/// Returns the start of the sum of a vertex, to which each target adds its weight times kept_delta() in their order, in
 /// float32: N', or zero in viewers of 16-bit floats, which add up deltas alone.
 [[nodiscard]] constexpr Vec3f first_of_sum(const Viewer& viewer, const Vec3f& kept_normal) noexcept {
   return viewer.keeps_halves() ? Vec3f{} : kept_normal;
 }
 
-/// The unit normal that is shown of a sum; zero, or not finite, where the sum is.
+/// Returns the unit normal that is shown for a sum; zero, or not finite, if the sum is.
 [[nodiscard]] Vec3f shown_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 
 }  // namespace chronormal
