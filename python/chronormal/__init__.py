@@ -47,14 +47,14 @@ def _vectors(array, place):
         return array
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{place}: the type is {array.dtype}, and must be float32 or other real numbers")
-    with _np.errstate(over="ignore"):  # what is too large becomes infinite, which the library refuses with the place
+    with _np.errstate(over="ignore"):  # too large numbers become infinite, which the library refuses with the place
         return _np.ascontiguousarray(array, dtype=_np.float32)
 
 
 def _indices(array, place):
     """A flat array of uint32."""
     array = _np.asarray(array)
-    if array.size == 0 and array.dtype.kind == "f":  # an empty list
+    if array.size == 0 and array.dtype.kind == "f":  # numpy makes floats of an empty list
         array = array.astype(_np.uint32)
     if array.dtype.kind not in "iu":
         raise ValueError(f"{place}: the type is {array.dtype}, and must be int32, int64 or uint32")

@@ -1,4 +1,4 @@
-// What the calls that are made for every frame have in common: times, and whose normals they are about.
+// Reads the arguments that calls for every frame have in common: times, and the elements whose normals they ask for.
 #ifndef CHRONORMAL_PYTHON_ARGUMENTS_H_
 #define CHRONORMAL_PYTHON_ARGUMENTS_H_
 
@@ -13,7 +13,8 @@ inline std::string counted(std::size_t count, ElementKind kind) {
   return std::to_string(count) + ' ' + std::string(count == 1 ? one_element(kind) : element_kind_name(kind));
 }
 
-// Understands the arguments of Python that curves and blends have in common. Raises ValueError for wrong ones.
+// Makes the options of elements from the arguments that curves and blends have in common. Raises ValueError for wrong
+// ones.
 inline ElementOptions element_options(const std::string& elements, std::optional<double> crease, bool weld) {
   ElementOptions options;
   options.kind = value_or_raise(make_element_kind(elements));
@@ -25,7 +26,7 @@ inline ElementOptions element_options(const std::string& elements, std::optional
   return options;
 }
 
-// The numbers of a Python float or of an array of them; is_one says which it was.
+// Holds the numbers of a Python float or of an array of them; is_one tells which it was.
 struct Numbers {
   explicit Numbers(const py::object& given, const char* place) {
     if (PyFloat_Check(given.ptr()) || PyLong_Check(given.ptr())) {
@@ -48,7 +49,7 @@ struct Numbers {
     if (many->ndim() != 1) refuse(place, "the shape is " + shape_text(*many) + " and must be (T,)");
   }
 
-  // Copies numbers over which an array `out` will be written.
+  // Copies the numbers if an array `out` will be written over them.
   void keep_from(const py::object& out) {
     if (many) *many = kept_from(std::move(*many), out);
   }
@@ -70,7 +71,7 @@ struct Numbers {
 
   bool is_one = false;
   double one = 0;
-  std::optional<Array<double>> many;  // an empty array would have to be made
+  std::optional<Array<double>> many;  // optional, since an empty array would cost time to make
 };
 
 }  // namespace chronormal::python

@@ -1,5 +1,5 @@
-// NumPy arrays as the library sees memory. An array that C++ reads was checked for its type by python/chronormal; its
-// shape is checked here, where it is read.
+// Gives the library views of NumPy arrays. python/chronormal has checked the type of an array that C++ reads; its shape
+// is checked here, where it is read.
 #ifndef CHRONORMAL_PYTHON_ARRAYS_H_
 #define CHRONORMAL_PYTHON_ARRAYS_H_
 
@@ -22,22 +22,22 @@ namespace chronormal::python {
 
 namespace py = pybind11;
 
-// A C-contiguous array. pybind11 makes one of what has another layout or a narrower type; python/chronormal does so
-// before.
+// A C-contiguous array. pybind11 would copy an array of another layout or a narrower type; python/chronormal has done
+// so before.
 template <class T>
 using Array = py::array_t<T, py::array::c_style>;
-// The same, of any type of number.
+// A C-contiguous array of T, into which pybind11 converts numbers of any type.
 template <class T>
 using AnyArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-// The string of a text from outside, as os.fsdecode() makes it of the name of a file: of any bytes.
+// Makes a Python string of a text from outside, which may have any bytes, as os.fsdecode() does for the name of a file.
 inline py::str string_of(std::string_view text) {
   PyObject* const made = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape");
   if (made == nullptr) throw py::error_already_set();
   return py::reinterpret_steal<py::str>(made);
 }
 
-// Raises what stands for an error, with the GIL or without: OSError for files, ValueError for what the caller gave.
+// Raises the exception for an error, with the GIL or without: OSError for files, ValueError for what the caller gave.
 [[noreturn]] inline void raise(const Error& error) {
   const py::gil_scoped_acquire held;
   PyObject* const kind = error.code == ErrorCode::kFailed ? PyExc_OSError : PyExc_ValueError;
@@ -55,7 +55,8 @@ T value_or_raise(Result<T> result) {
   raise(Error{ErrorCode::kUsage, place, message});
 }
 
-// Refuses what does not hold; nothing is made of the words where it does, as a call may take less than a microsecond.
+// Raises an error if a condition does not hold. Builds no string otherwise, since a call may take less than a
+// microsecond.
 inline void require(bool condition, const char* place, const char* message) {
   if (!condition) refuse(place, message);
 }
@@ -66,7 +67,7 @@ inline std::string shape_text(const py::array& array) {
   return text + (array.ndim() == 1 ? ",)" : ")");
 }
 
-// (n, 3) float32.
+// Makes a view of an (n, 3) array of float32.
 template <int kFlags>
 VectorView<const float> vectors_of(const py::array_t<float, kFlags>& array, const std::string& place) {
   if (array.ndim() != 2 || array.shape(1) != 3)
@@ -79,7 +80,7 @@ std::vector<T> vector_of(const Array<T>& array) {
   return {array.data(), array.data() + array.size()};
 }
 
-// An array that keeps the memory of a vector.
+// Makes an array that keeps the memory of a vector.
 template <class T>
 py::array_t<T> array_of(std::vector<T> values, std::vector<py::ssize_t> shape) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
@@ -88,18 +89,18 @@ py::array_t<T> array_of(std::vector<T> values, std::vector<py::ssize_t> shape) {
   return py::array_t<T>(std::move(shape), data, owner);
 }
 
-// Corners and offsets of a mesh, from two arrays of uint32.
+// Makes the topology of a mesh from two arrays of uint32.
 Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners);
 
-// The sequence of keyframes (T, V, 3) at some times.
+// Makes the sequence of keyframes (T, V, 3) at some times.
 Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offsets,
                  const Array<std::uint32_t>& corners, const Array<double>& times);
 
-// Returns the array into which (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself, where it
-// fits, or a new array where `out` is None.
+// Returns the array into which (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself if it fits,
+// or a new array if `out` is None.
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size);
 
-// The array itself, or a copy where it shares memory with an array `out` that is written while it is read.
+// Returns the array itself, or a copy if it shares memory with an array `out` that is written while the array is read.
 inline Array<double> kept_from(Array<double> numbers, const py::object& out) {
   if (!py::isinstance<py::array>(out) || numbers.size() == 0) return numbers;
   const auto other = py::reinterpret_borrow<py::array>(out);
@@ -109,8 +110,8 @@ inline Array<double> kept_from(Array<double> numbers, const py::object& out) {
   return Array<double>(numbers.size(), numbers.data());
 }
 
-// Makes pickle and copy say that objects of a class have memory that they cannot take. By themselves the protocols 0
-// and 1 of pickle make an object of the base class, for which pybind11 ends the process.
+// Makes pickle and copy refuse objects of a class, whose memory they cannot take. By themselves, the protocols 0 and 1
+// of pickle would make an object of the base class, and pybind11 would end the process.
 template <class Class>
 void refuse_to_be_pickled(Class& made) {
   const auto refuse = [](const py::object& self, const py::args&) -> py::object {
@@ -120,7 +121,7 @@ void refuse_to_be_pickled(Class& made) {
   made.def("__reduce__", refuse).def("__reduce_ex__", refuse);
 }
 
-// Which threads a number asks for: 1 is the calling one, 0 all cores, and others are so many.
+// Applies a number of threads: 1 stands for the calling one, 0 for all cores, and a larger number for so many.
 class ChosenThreads {
  public:
   explicit ChosenThreads(int count) : threads_(count == 1 ? Threads::kOne : Threads::kAll) {
@@ -134,8 +135,8 @@ class ChosenThreads {
   std::optional<ThreadLimit> limit_;
 };
 
-// Memory of zeros for objects of Python. `Curves.__new__(Curves)` makes one without calling its constructor, and what
-// pybind11 then hands to a method is this memory: members that mean "not made" where they are zero can be asked.
+// Gives objects of Python memory of zeros. `Curves.__new__(Curves)` makes an object without calling its constructor,
+// and pybind11 then hands this memory to a method. Members that are zero tell the method that the object was never made.
 struct ZeroedObject {
   static void* operator new(std::size_t size) {
     void* const memory = ::operator new(size);

@@ -1,4 +1,4 @@
-// Certificates as arrays.
+// Gives certificates to Python as arrays.
 #include "computation.h"
 
 namespace chronormal::python {

@@ -6,7 +6,7 @@
 namespace chronormal::python {
 namespace {
 
-// The turns of all objects, and the forks that wait for them.
+// Counts the turns of all objects, and the forks that wait for them.
 class ForkGate {
  public:
   void begin_turn() {
@@ -21,7 +21,7 @@ class ForkGate {
     --own_turns;
     change_.notify_all();
   }
-  // The turns of this thread, whose fork this is, go on in the child.
+  // Waits until only this thread, which forks, has turns: these go on in the child.
   void begin_fork() {
     std::unique_lock lock(mutex_);
     ++forks_;
@@ -32,7 +32,7 @@ class ForkGate {
     --forks_;
     change_.notify_all();
   }
-  // In the child, where other threads may have held the mutex.
+  // Starts again in the child, where the mutex may be held by a thread that does not exist there.
   void begin_anew() {
     new (this) ForkGate;
     turns_ = own_turns;

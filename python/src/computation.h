@@ -1,4 +1,4 @@
-// Computations that run while other threads of Python do, that Ctrl-C ends, and that a fork() waits for.
+// Runs computations while other threads of Python run; Ctrl-C ends them, and a fork() waits for them.
 #ifndef CHRONORMAL_PYTHON_COMPUTATION_H_
 #define CHRONORMAL_PYTHON_COMPUTATION_H_
 
@@ -11,12 +11,13 @@
 
 namespace chronormal::python {
 
-// Whose turn it is to compute with an object, which has scratch for one computation. A fork waits until it is nobody's
-// turn, and nobody's begins meanwhile: a thread that is in the middle does not exist in the child, where its turn would
-// never end.
+// Hands out the turn to compute with an object, which has scratch for one computation. A fork waits until nobody has a
+// turn, and no turn begins meanwhile: a thread that is in the middle of one does not exist in the child, where its turn
+// would never end.
 class Turns {
  public:
-  // The handler of a signal may run in the middle of a computation, and cannot wait for its end.
+  // Refuses a signal handler that runs in the middle of a computation, since it cannot wait for the end of its own
+  // thread's turn.
   Turns& required_of_others() {
     require(owner_ != std::this_thread::get_id(), "self", "a handler of signals cannot use what it interrupts");
     return *this;
@@ -29,8 +30,8 @@ class Turns {
   std::atomic<std::thread::id> owner_;
 };
 
-// A computation without the GIL, with an object or without. Where the handler of a signal raises, as that of Ctrl-C
-// does, it throws Interrupted, with the exception of Python set.
+// A computation without the GIL, with an object or without. If the handler of a signal raises, as the one of Ctrl-C
+// does, the computation throws Interrupted, and the exception of Python is set.
 class Computation {
  public:
   Computation() = default;
@@ -48,7 +49,7 @@ class Computation {
   Interruption interruption_{has_heard_a_signal};
 };
 
-// Does what takes long as a Computation, and raises its error with the GIL.
+// Runs long work as a Computation, and raises its error with the GIL.
 template <class Work>
 auto without_gil(const Work& work) {
   auto result = [&] {
@@ -58,7 +59,7 @@ auto without_gil(const Work& work) {
   return value_or_raise(std::move(result));
 }
 
-// Has Python call what a fork waits for.
+// Registers the functions that Python calls around a fork.
 void hear_of_forks();
 
 }  // namespace chronormal::python

@@ -1,4 +1,5 @@
-// Files and what the commands of the program find in them: reports as JSON, errors and motions as arrays.
+// Reads files, and gives Python what the commands of the program find in them: reports as JSON, errors and motions as
+// arrays.
 #include <algorithm>
 #include <map>
 #include <string_view>
@@ -26,7 +27,7 @@ InputOptions options_of(const py::dict& source) {
   options.loop = source["loop"].cast<bool>();
   options.strict = source["strict"].cast<bool>();
   if (const py::object bytes = source["bytes"]; !bytes.is_none()) {
-    const std::string_view view = bytes.cast<std::string_view>();  // of the object, which outlives the input
+    const std::string_view view = bytes.cast<std::string_view>();  // the object outlives the input
     options.files = {kBytes};
     options.resolve = [view](const std::string& name) -> Result<std::string_view> {
       if (name == kBytes) return view;
@@ -104,7 +105,7 @@ class ReadMotion : public ZeroedObject {
 
   [[nodiscard]] std::array<double, 3> origin() const { return motion().origin; }
 
-  // (F, k) where all faces have as many corners, or else (offsets, corners).
+  // Returns (F, k) if all faces have as many corners, or else (offsets, corners).
   [[nodiscard]] py::object faces() const {
     const Topology& topology = motion().topology;
     std::vector<std::uint32_t> corners(topology.corners().begin(), topology.corners().end()), offsets = {0};

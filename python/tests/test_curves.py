@@ -69,7 +69,7 @@ class CurvesTest(unittest.TestCase):
         self.assertEqual(result.__array_interface__["data"][0], address)
         np.testing.assert_array_equal(out, curves.unit_normals(0.5))
         rows = np.zeros((4, 12, 3), dtype=np.float32)
-        curves.unit_normals(0.5, out=rows[2])  # a part of a larger array
+        curves.unit_normals(0.5, out=rows[2])  # this is a part of a larger array
         np.testing.assert_array_equal(rows[2], out)
         self.assertEqual(rows[[0, 1, 3]].any(), False)
 
@@ -82,7 +82,7 @@ class CurvesTest(unittest.TestCase):
         self.assertEqual(cn._vectors(p0, "p0").__array_interface__["data"], p0.__array_interface__["data"])
         out = np.empty_like(p0)
         gc.collect()
-        tracemalloc.start()  # which NumPy tells of its arrays
+        tracemalloc.start()  # NumPy reports its arrays to it
         curves = cn.curves(p0, p0, faces)
         curves.unit_normals(0.5, out=out)
         _, peak = tracemalloc.get_traced_memory()
@@ -134,7 +134,7 @@ class CurvesTest(unittest.TestCase):
         curves = cn.curves(np.tile(p0, (5000, 1)), np.tile(p1, (5000, 1)),
                            (faces + 12 * np.arange(5000)[:, None, None]).reshape(-1, 3), weld=False)
         out = np.empty((100, 60000, 3), dtype=np.float32)
-        curves.unit_normals(np.linspace(0, 1, 100), out=out)  # so that the memory is there
+        curves.unit_normals(np.linspace(0, 1, 100), out=out)  # makes sure that the memory is there
         working = threading.Thread(target=curves.unit_normals, args=(np.linspace(0, 1, 100), out))
         rounds = 0
         working.start()

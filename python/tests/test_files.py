@@ -105,7 +105,7 @@ class ReportTest(unittest.TestCase):
         curves = cn.curves(motion.positions[0], motion.positions[1], motion.faces)
         (table,) = cn.errors(sample="twist", scheme="slerp", samples=3)
         ends = curves.unit_normals([0, 1]).astype(np.float64)
-        middle = ends[0] + ends[1]  # slerp at 1/2, up to its length
+        middle = ends[0] + ends[1]  # this is slerp at 1/2, up to its length
         np.testing.assert_allclose(table.errors[1], curves.errors(0.5, middle), atol=1e-3)
         self.assertLess(table.errors[[0, 2]].max(), 1e-3)
 
@@ -114,7 +114,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(glb[:4], b"glTF")
         self.assertEqual(report["bytes"], len(glb))
         self.assertLess(cn.audit(glb, tolerance=1)["worst_degrees"], 0.01)
-        again, _ = cn.bake(glb)  # of a file that was baked: as it is
+        again, _ = cn.bake(glb)  # a file that was baked stays as it is
         self.assertEqual(cn.inspect(again)["gltf"]["meshes"], cn.inspect(glb)["gltf"]["meshes"])
 
 

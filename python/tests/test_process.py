@@ -73,7 +73,7 @@ class SignalTest(unittest.TestCase):
         deltas = positions[1:] - positions[:1]
         glb, _ = cn.bake(sample="twist", encode="endpoint")
         many = np.linspace(0, 1, 2 * 10**5)
-        out = np.empty((len(many), len(curves), 3), np.float32)  # whose memory is touched row by row
+        out = np.empty((len(many), len(curves), 3), np.float32)  # its memory is touched row by row
         for name, call in {
                 "audit": lambda: cn.audit(glb, samples=10**6, viewers="all"),
                 "compare": lambda: cn.compare(sample="eversion", samples=10**6),
@@ -136,7 +136,7 @@ class SignalTest(unittest.TestCase):
             said.clear()
             signal.setitimer(signal.ITIMER_REAL, 0.001)
             rows = curves.unit_normals(times, threads=1)
-            # A fast machine is through before it looks for signals, and hears this one between two calls.
+            # A fast machine ends before it looks for signals, and gets this one between two calls.
             times = np.full(min(2 * len(times), 10_000), 0.5)
         np.testing.assert_array_equal(said[0], rows[0])
         self.assertIn("a handler of signals cannot use what it interrupts", said[1])
@@ -192,7 +192,7 @@ class ForkTest(unittest.TestCase):
                 thread.join()
 
     def test_a_child_may_end_as_programs_do(self):
-        self.assertEqual(cn.audit(sample="twist")["command"], "audit")  # with threads, where there are several cores
+        self.assertEqual(cn.audit(sample="twist")["command"], "audit")  # it uses threads, where there are several cores
         child = multiprocessing.get_context("fork").Process(target=cn.audit, kwargs={"sample": "twist"})
         child.start()
         child.join(PATIENCE)
