@@ -1,6 +1,6 @@
-/// chronormal: the normals of triangle meshes that deform. All public headers of the library `chronormal`, in the order in
-/// which they build on each other; a header includes only its own folder and those above it. Files, and what is done
-/// with them, are in chronormal_io.h.
+/// chronormal: the normals of triangle meshes that deform. Includes all public headers of the library `chronormal`, in
+/// the order in which they build on each other; a header includes only its own folder and the folders above it.
+/// chronormal_io.h has files, and what is done with them.
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 

@@ -1,12 +1,12 @@
 /// glTF 2.0 files (.gltf, .glb, .vrm): what is in them, and their morphing meshes as arrays.
 ///
 /// Opening a document maps the file and reads its JSON, nothing else; geometry and tracks are read when they are asked
-/// for, so that the cost is that of what is asked for. All of the format that concerns normals over time is understood:
-/// external buffers, data URIs, sparse accessors, byteStride, normalised integers, accessors without a bufferView,
-/// primitives without indices, strips and fans, KHR_mesh_quantization, EXT_meshopt_compression,
-/// KHR_draco_mesh_compression and KHR_animation_pointer. What is read is checked, strictly by the specification; what
-/// is not read (materials, textures, the bounds of accessors) is not. Skins, and animations of nodes, are read by those who
-/// look through skins, and what is wrong with them is an error for those alone.
+/// for, so that nobody pays for the rest. All of the format that concerns normals over time is understood: external
+/// buffers, data URIs, sparse accessors, byteStride, normalised integers, accessors without a bufferView, primitives
+/// without indices, strips and fans, KHR_mesh_quantization, EXT_meshopt_compression, KHR_draco_mesh_compression and
+/// KHR_animation_pointer. What is read is checked, strictly by the specification; materials, textures and the bounds of
+/// accessors are not read and not checked. Skins, and animations of nodes, are read only by callers that look through
+/// skins, and only these see errors in them.
 ///
 /// A file that requires another extension is refused, and the message names the extension. Extensions of materials,
 /// textures and lights are allowed, since they do not touch geometry.

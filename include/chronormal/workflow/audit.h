@@ -161,7 +161,7 @@ struct AuditFinding {
     kSkinned,         ///< a note: nodes with a skin, through which normals are judged; degrees is what skinning turns
     kUnreadSkin,      ///< a note: nodes with a skin that cannot be read, so that normals are judged without it
     kBaked,           ///< a note: a bake was here
-    kEmptied,  ///< a note: another program made the normals anew that a bake wrote; its correction targets turn nothing now
+    kEmptied,  ///< a note: another program remade the normals that a bake wrote; its correction targets turn nothing
     kSequenceTargets,  ///< a note: baked keyframes, which mean nothing one by one
     kBeyondViewer      ///< a note: a mesh has more targets than a viewer takes
   };
