@@ -76,17 +76,16 @@ struct BakeOptions {
   /// lack, all together, turns no normal by more; tracks are cut to this. For keys, the largest error of a normal at
   /// any instant, kLeastKeyTolerance or more. Nothing: kHarmlessTolerance, and kExactBakeTolerance for exact.
   std::optional<double> tolerance = {};
-  /// For smallest: the most targets that a mesh may have, its own ones among them. Nothing: as many as the viewers
-  /// bear.
+  /// The most targets that a mesh may have, its own ones among them (smallest). Nothing: as many as the viewers bear.
   std::optional<std::size_t> most_targets = {};
-  /// For smallest: only the animations of the file will ever be played, so that the deltas of the mesh's own targets
-  /// may be fitted to them, and mean nothing alone.
+  /// Promises that only the animations of the file will ever be played, so that smallest may fit the deltas of the mesh's
+  /// own targets to them; the deltas mean nothing alone.
   bool animations_only = false;
-  /// For smallest: the most bytes of arrays of deltas and tangents that a mesh may have, and its tracks may grow by;
-  /// the nearest candidate that keeps to it is taken.
+  /// The most bytes of arrays of deltas and tangents that a mesh may have, and its tracks may grow by (smallest); the
+  /// nearest candidate that keeps to it is taken.
   std::optional<std::size_t> most_delta_bytes = {};
-  /// For smallest: a program poses the meshes that no animation drives, and drives their correction targets as the file
-  /// says, so that they may get some. Without it they get none.
+  /// Promises that a program poses the meshes that no animation drives, and drives their correction targets as the file
+  /// says. Only then smallest gives them any.
   bool is_posed = false;
   /// The poses that these meshes are made for, by the names of targets or in their order. A mesh takes no part if the
   /// poses name none of its targets and none has its number of weights. None: random poses (docs/cli.md).
