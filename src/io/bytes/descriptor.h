@@ -65,7 +65,7 @@ class Descriptor {
   return ::poll(&waiting, 1, -1) >= 0 || errno == EINTR;
 }
 
-/// Writes everything. Returns false, with errno, on failure.
+/// Writes all bytes. Returns false, with errno, on failure.
 [[nodiscard]] inline bool write_bytes(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());

@@ -18,7 +18,7 @@
 namespace chronormal {
 namespace {
 
-// Says what to do where there is nothing to read yet.
+// Selects what to do while there is nothing to read yet.
 enum class OnWait { kWait, kFail };
 
 // Reads to the end, or until there are more than `most` bytes. Returns false, with errno, on failure.
@@ -40,7 +40,7 @@ bool read_all(int descriptor, OnWait on_wait, std::size_t most, std::string& byt
   return true;
 }
 
-// Counts the bytes of a file that were ever written, and stops at `enough`; the rest are holes. Where the system does
+// Counts the bytes of a file that were ever written, and stops at `enough`; the others are holes. If the system does
 // not tell holes, every byte counts.
 std::uint64_t written_bytes(int descriptor, std::uint64_t size, std::uint64_t enough) {
 #if defined(SEEK_DATA) && defined(SEEK_HOLE)

@@ -41,7 +41,7 @@ class FileBytes {
   /// when they are looked at again.
   void release() const noexcept;
 
-  /// All bytes; valid until the object is destroyed or moved from.
+  /// Returns all bytes; they are valid until the object is destroyed or moved from.
   [[nodiscard]] std::string_view bytes() const noexcept { return view_.data() != nullptr ? view_ : owned_; }
 
  private:

@@ -20,7 +20,7 @@ class PositionedFile {
   /// Opens a regular file; returns nothing for any other, and for one that cannot be opened.
   [[nodiscard]] static std::optional<PositionedFile> open(const std::string& path);
 
-  /// The size of the file in bytes when it was opened.
+  /// Returns the size of the file in bytes when it was opened.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
   /// Fills `bytes` with the bytes of the file from `at` on. Errors: kFailed with the path as the place, where the file
