@@ -51,15 +51,16 @@ struct ErrorBounds {
 };
 
 struct CertifyOptions {
-  /// An element is done as soon as its bounds are closer than this share of the upper one and `gap`, beside what
-  /// rounding may be,
+  /// Ends an element when its bounds differ by no more than this share of the upper one plus `gap`, not counting what
+  /// rounding may add.
   double relative_gap = 1e-3;
   double gap = 1e-6;  ///< radians
-  /// or as soon as the upper one is not above this,
+  /// Ends an element when its upper bound is not above this.
   double enough = 0;  ///< radians
-  /// or above the largest lower bound of the elements before it in the block: for those who only ask for the worst.
+  /// Ends an element when its upper bound is not above the largest lower bound of the elements before it in the block,
+  /// for callers who only ask for the worst.
   bool only_worst = false;
-  /// or as soon as the segment is in so many pieces.
+  /// Ends an element when the segment is in so many pieces.
   std::size_t most_pieces = 256;  // at most 256
 };
 

@@ -72,8 +72,8 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
 /// percent wider), and each level of a hierarchy adds about 1e-7 rad of rounding. Cost: 11 passes over the cones.
 [[nodiscard]] NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept;
 
-// Bounds of clusters of faces of a deforming mesh, in the layout of meshoptimizer: made for one interval of time, and
-// right at every instant of it.
+// The bounds of clusters of faces of a deforming mesh, in the layout of meshoptimizer. They are made for one interval
+// of time, and are right at every instant of it.
 //
 // Engines cull meshlets of which no face can be seen from the front. meshopt_computeMeshletBounds() makes what that
 // test needs of a mesh that stands still. For a mesh that moves, the sphere must hold every vertex on its whole way,
@@ -111,7 +111,8 @@ struct ClusterBounds {
 [[nodiscard]] ClusterBounds cluster_bounds(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
                                            double t1);
 
-// Normals over an open shutter: the mean of n(t), and of the unit normal n(t) / |n(t)|, over an interval of time.
+// Averages normals over an open shutter: the mean of n(t), and the mean of the unit normal n(t) / |n(t)|, over an
+// interval of time.
 //
 // A renderer with motion blur sees every instant of [t0, t1] and shows their mean. What it should store as the normal
 // of a pixel, or shade with where it shades once, is the mean of the unit normal, and not the normal in the middle or
@@ -140,8 +141,8 @@ struct ShutterNormal {
 /// 0 <= t0 <= t1 <= 1; where both are the same, the means are the normals at that instant
 [[nodiscard]] ShutterNormal shutter_normal(const ControlNormals& normals, double t0, double t1) noexcept;
 
-/// Writes the means of a range of faces over [t0, t1], from positions: where control normals of the interval cancel,
-/// from integers. result must have faces.count elements; faces must lie inside the topology; 0 <= t0 <= t1 <= 1
+/// Writes the means of a range of faces over [t0, t1], from positions; if control normals of the interval cancel,
+/// integers compute them. result must have faces.count elements; faces must lie inside the topology; 0 <= t0 <= t1 <= 1
 void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, double t1,
                           std::span<ShutterNormal> result) noexcept;
 

@@ -62,8 +62,8 @@ struct FaceCollapses {
   Collapses collapses;
 };
 
-/// Finds those of a range of faces that collapse, ascending; normals are those of the range. Allocates the result
-/// alone.
+/// Finds the faces of a range that collapse, ascending; normals are the control normals of the range. Allocates the
+/// result alone.
 [[nodiscard]] std::vector<FaceCollapses> find_collapses(const Segment& segment, IndexRange faces,
                                                         std::span<const ControlNormals> normals);
 
@@ -95,7 +95,7 @@ struct FaceCollapses {
 struct View {
   bool is_eye = false;
   Vec3d from, to;  ///< the eye where its way begins and ends; of a direction both are the same
-  /// The eye's place on its way at t = 0 and at t = 1, for a way that is longer than the segment.
+  /// The fractions of the eye's way at t = 0 and at t = 1, for a way that is longer than the segment.
   LocalTime start = 0.0, end = 1.0;
 
   /// Makes a viewer infinitely far away in this direction; it sees the front of a face whose normal points that way.
@@ -129,7 +129,7 @@ struct Facing {
 
   [[nodiscard]] std::span<const FacingChange> changes() const& noexcept { return {at.data(), count}; }
   void changes() && = delete;  ///< a loop over a temporary would outlive it
-  /// The side before the first change and after the last.
+  /// Returns the side before the first change, and last() the side after the last one.
   [[nodiscard]] Side first() const noexcept { return count == 0 ? side : at[0].before; }
   [[nodiscard]] Side last() const noexcept { return count == 0 ? side : at[count - 1].after; }
 };

@@ -11,10 +11,10 @@
 
 namespace chronormal {
 
-// Computations that their caller ends in the middle.
+// A computation can be ended in the middle by its caller.
 
-/// Is thrown through a computation that was asked to end. It leaves files and the caller's memory half written, and
-/// objects that are not const good for nothing but their destruction.
+/// Is thrown through a computation that was asked to end. Files and the caller's memory are left half written, and
+/// objects that are not const may only be destroyed.
 class Interrupted : public std::exception {
  public:
   [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
@@ -63,10 +63,10 @@ enum class Threads { kOne, kAll };
 /// Returns the number of threads that parallel_for may use.
 [[nodiscard]] std::size_t thread_count() noexcept;
 
-/// While it lives, parallel_for on this thread uses this many threads, also more than there are cores (64 at
-/// most): for tests, benchmarks, and programs that want some cores for themselves. Loops inside its loops share these
-/// threads. Limits may be nested; the innermost counts. Where the system grants no threads, there is one whatever the
-/// limit.
+/// Sets the number of threads of parallel_for on this thread while it lives; it may be more than there are cores (64 at
+/// most). It serves tests, benchmarks, and programs that want some cores for themselves. Loops inside its loops share
+/// these threads. Limits may be nested; the innermost counts. If the system grants no threads, there is one whatever
+/// the limit.
 class ThreadLimit {
  public:
   explicit ThreadLimit(std::size_t threads);

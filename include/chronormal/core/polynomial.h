@@ -25,15 +25,15 @@ struct Power {
   std::array<T, N + 1> a;
 };
 
-/// C(n, k) for small n.
+/// Returns C(n, k) for small n.
 [[nodiscard]] constexpr double binomial(std::size_t n, std::size_t k) noexcept {
   double result = 1;
   for (std::size_t i = 0; i < k; ++i) result = result * static_cast<double>(n - i) / static_cast<double>(i + 1);
   return result;
 }
 
-/// The two halves of p at t: the polynomials over [0, t] and [t, 1], each again over a parameter in [0, 1].
-/// By de Casteljau's algorithm, N (N+1) / 2 linear interpolations.
+/// The two halves of p at t: the polynomials over [0, t] and [t, 1], each again over a parameter in [0, 1]. split()
+/// computes them by de Casteljau's algorithm, N (N+1) / 2 linear interpolations.
 template <class T, std::size_t N>
 struct Halves {
   Bernstein<T, N> before, after;
@@ -50,13 +50,13 @@ template <class T, std::size_t M>
   return halves;
 }
 
-/// p(t), by de Casteljau's algorithm. Exact at t = 0 and t = 1.
+/// Returns p(t), by de Casteljau's algorithm. Exact at t = 0 and t = 1.
 template <class T, std::size_t M>
 [[nodiscard]] constexpr T evaluate(const std::array<T, M>& p, double t) {
   return split(p, t).before[M - 1];
 }
 
-/// p over the interval [t0, t1], as a polynomial over [0, 1].
+/// Returns p over the interval [t0, t1], as a polynomial over [0, 1].
 /// 0 <= t0 < t1 <= 1
 template <class T, std::size_t M>
 [[nodiscard]] constexpr std::array<T, M> restrict_to(const std::array<T, M>& p, double t0, double t1) {
@@ -101,7 +101,7 @@ template <class T, std::size_t N>
   return b;
 }
 
-/// p(t) by Horner's scheme: N multiplications and N additions.
+/// Returns p(t) by Horner's scheme: N multiplications and N additions.
 template <class T, std::size_t N>
 [[nodiscard]] constexpr T evaluate(const Power<T, N>& p, double t) {
   T value = p.a[N];

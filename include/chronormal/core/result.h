@@ -48,12 +48,12 @@ class [[nodiscard]] Result {
   [[nodiscard]] bool ok() const noexcept { return state_.index() == 0; }
   explicit operator bool() const noexcept { return ok(); }
 
-  /// The value. Precondition: ok().
+  /// Returns the value. Precondition: ok().
   [[nodiscard]] T& value() & noexcept { return *checked(std::get_if<0>(&state_)); }
   [[nodiscard]] const T& value() const& noexcept { return *checked(std::get_if<0>(&state_)); }
   [[nodiscard]] T&& value() && noexcept { return std::move(*checked(std::get_if<0>(&state_))); }
 
-  /// The error. Precondition: not ok().
+  /// Returns the error. Precondition: not ok().
   [[nodiscard]] const Error& error() const noexcept { return *checked(std::get_if<1>(&state_)); }
 
  private:

@@ -37,7 +37,7 @@ template <class S>
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// The point of the line from a (t = 0) to b (t = 1).
+/// Returns the point of the line from a (t = 0) to b (t = 1).
 template <class S>
 [[nodiscard]] constexpr Vec3<S> lerp(const Vec3<S>& a, const Vec3<S>& b, const S& t) {
   return (S(1) - t) * a + t * b;
@@ -57,7 +57,7 @@ template <class S>
   return b;
 }
 
-/// The largest absolute component: a length that neither overflows nor underflows.
+/// Returns the largest absolute component: a length that neither overflows nor underflows.
 [[nodiscard]] inline double max_abs(const Vec3d& a) noexcept {
   const double x = std::fabs(a.x), y = std::fabs(a.y), z = std::fabs(a.z);
   const double of_two = y > x ? y : x;
@@ -72,7 +72,7 @@ template <class S>
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// Length of a, without overflow or underflow in between.
+/// Returns the length of a, without overflow or underflow in between.
 [[nodiscard]] inline double length(const Vec3d& a) noexcept {
   const double scale = max_abs(a);
   if (scale == 0) return 0;
@@ -89,7 +89,7 @@ template <class S>
   return (1 / std::sqrt(dot(b, b))) * b;
 }
 
-/// A unit vector perpendicular to the unit vector u: a fixed choice, the same for the same u.
+/// Returns a unit vector perpendicular to the unit vector u: a fixed choice, the same for the same u.
 [[nodiscard]] inline Vec3d any_perpendicular(const Vec3d& u) noexcept {
   const double x = std::fabs(u.x), y = std::fabs(u.y), z = std::fabs(u.z);
   if (x <= y && x <= z) return unit(cross(u, Vec3d{1, 0, 0}));
@@ -100,8 +100,8 @@ template <class S>
 /// Angles are in radians; what is shown to people is in degrees.
 inline constexpr double kDegreesPerRadian = 57.295779513082320877;
 
-/// Angle between two vectors in radians, in [0, pi]; 0 if one of them is zero. By atan2, never by acos, which loses
-/// all angles below 1e-8 in double and below 3e-4 in float; the same bits on every machine.
+/// Returns the angle between two vectors in radians, in [0, pi]; 0 if one of them is zero. Uses atan2 and not acos,
+/// which loses all angles below 1e-8 in double and below 3e-4 in float. The bits are the same on every machine.
 [[nodiscard]] double angle_between(const Vec3d& a, const Vec3d& b) noexcept;
 
 }  // namespace chronormal

@@ -25,7 +25,7 @@ namespace chronormal {
   return bytes < static_cast<std::size_t>(-1) ? static_cast<std::size_t>(bytes) : static_cast<std::size_t>(-1);
 }
 
-/// Half-open range of element indices: first, first + 1, ..., first + count - 1.
+/// A half-open range of element indices: first, first + 1, ..., first + count - 1.
 struct IndexRange {
   std::size_t first = 0;
   std::size_t count = 0;
@@ -33,7 +33,7 @@ struct IndexRange {
   [[nodiscard]] constexpr std::size_t end() const noexcept { return first + count; }
 };
 
-/// T is float, const float, double or const double.
+/// A view of vectors; T is float, const float, double or const double.
 template <class T>
 struct VectorView {
   using Scalar = std::remove_const_t<T>;
@@ -78,7 +78,7 @@ struct VectorView {
   /// Returns true if the vectors are one array of shape (n, 3).
   [[nodiscard]] bool is_packed() const noexcept { return stride == 3 && y == x + 1 && z == x + 2; }
 
-  /// The vectors of a range, as a view of their own.
+  /// Returns a view of the vectors of a range.
   [[nodiscard]] VectorView part(IndexRange range) const noexcept {
     assert(range.end() <= count);
     const std::size_t offset = range.first * stride;

@@ -151,17 +151,18 @@ struct GltfNode {
   std::vector<double> weights;        ///< its own, or empty: those of the mesh
 };
 
-/// The animation of the weights of one node: by a channel for it, or by one of KHR_animation_pointer for all weights of
-/// the node, or of its mesh (then each node that has none of its own has such a track).
+/// The animation of the weights of one node. It comes from a channel for the node, or from one of KHR_animation_pointer
+/// for all weights of the node or of its mesh; in the latter case each node without weights of its own has such a
+/// track.
 struct GltfTrack {
   std::size_t node = 0, channel = 0;
   /// The first track of the animation that gives the same weights: the same keys, interpolation and number of targets.
   std::size_t same_keys_as = 0;
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::size_t key_count = 0;
-  /// KHR_animation_pointer gives every weight a channel of its own, which are put together here; channel is that of the
-  /// first of these weights. The track has the keys of all of them. It is cubic where one of them is; files in which some
-  /// of them step and others do not are refused.
+  /// True if KHR_animation_pointer gives every weight a channel of its own: these are put together here, and channel is
+  /// the first of them. The track has the keys of all of them, and is cubic if one of them is; files in which some of
+  /// them step and others do not are refused.
   bool is_assembled = false;
 };
 
@@ -178,20 +179,20 @@ struct GltfKeys {
   std::vector<double> values;
 };
 
-/// Arrays of a primitive, decoded.
+/// The arrays of a primitive, decoded.
 struct GltfGeometry {
   std::vector<std::uint32_t> corners;  ///< (F, 3): strips and fans are taken apart
   std::vector<float> positions;        ///< (V, 3)
   std::vector<float> normals;          ///< (V, 3), or empty
   std::vector<float> tangents;         ///< (V, 4), or empty
-  /// Deltas (V, 3), each empty where the target has none.
+  /// The deltas, (V, 3) each; an array is empty if the target has none.
   struct Target {
     std::vector<float> positions, normals, tangents;
   };
   std::vector<Target> targets;
 };
 
-/// One primitive of a motion or a mesh that was made of a file: where its vertices and faces came from.
+/// Tells for one primitive where its vertices and faces in a motion or a mesh came from.
 struct GltfPart {
   std::optional<std::size_t> node;  ///< which node carries the mesh; nothing where nodes do not matter
   std::size_t mesh = 0, primitive = 0;
@@ -211,8 +212,8 @@ struct GltfOptions {
 
 class GltfDocument {
  public:
-  /// Opens a file; "-" is the standard input. Errors: kFailed with the path as the place where it can not be read; of
-  /// the format.
+  /// Opens a file; "-" is the standard input. Errors: kFailed with the path as the place if it can not be read; errors
+  /// of the format.
   [[nodiscard]] static Result<GltfDocument> open(const std::string& path, const GltfOptions& options = {});
 
   /// Reads a document from bytes that outlive it. name is for messages; folder is where its files are, if it has any.

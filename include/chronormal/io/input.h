@@ -51,7 +51,7 @@ enum class KeepShading {
   kRead,   ///< of all keyframes that are read at once, as kAll; of the first one where positions are left in files
 };
 
-/// Names are those of the program's options, which fill this.
+/// The options of an input; their names are those of the program's options, which fill this.
 struct InputOptions {
   std::vector<std::string> files;    ///< files, patterns, folders or "-": one motion, or the targets of the base
   std::vector<std::string> samples;  ///< a built-in morph, in place of files
@@ -60,26 +60,26 @@ struct InputOptions {
   std::string animation = {};        ///< of a glTF file, by name or index; empty: its morph targets
   bool world = false;                ///< vertices of a glTF file are where its nodes put them
   bool allow_external = false;       ///< a glTF file may name files outside its folder
-  /// A file may make us hold so many times its bytes, or 32 MiB where that is more. What a user asks for is no matter of
-  /// this.
+  /// The limit of what a file may make us hold: so many times its bytes, or 32 MiB if that is more. Requests of the
+  /// user do not count.
   std::size_t max_expansion = 100;
   bool allow_mesh = false;  ///< a mesh that does not move is an input, too
   KeepShading shading = KeepShading::kNone;
-  /// The velocities that mesh files of a sequence store are kept, and then all of them are read at once. Formats that
-  /// hold a whole motion always keep theirs.
+  /// Keeps the velocities that mesh files of a sequence store, and reads all of these at once. Formats that hold a
+  /// whole motion always keep theirs.
   bool velocities = false;
   /// Finds the bytes of files; empty: the file system does. With a resolver, files are names and not patterns or
   /// folders, and a glTF file's buffers are asked for by their paths below its folder.
   FileResolver resolve = {};
-  /// Called after each file that was read.
+  /// Is called after each file that was read.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
   /// The keyframes of a sequence that count: the first, the last, and the step from one to the next.
   std::size_t from = 0;
   std::optional<std::size_t> to = {};
   std::size_t every = 1;
-  /// The last of these keyframes is followed by the first one again, after the mean time between two of them.
+  /// Lets the last of these keyframes be followed by the first one again, after the mean time between two of them.
   bool loop = false;
-  /// Refuses what could be read but for a part of it, with the first of the notes that Input::notes() would have.
+  /// Refuses an input of which only a part could be read, with the first of the notes that Input::notes() would have.
   bool strict = false;
   /// The path of vertices between these keyframes, as make_path() reads it. Curves run through the whole sequence: up
   /// to three keyframes beyond the first and the last one are read for them. They are cut into straight pieces
@@ -90,7 +90,7 @@ struct InputOptions {
   /// and so are mesh files where the normals of all of them are kept. An error in a keyframe is found when the keyframe
   /// is read.
   bool stream = false;
-  /// Keyframes that take no more bytes together than this stay in memory once they have been read.
+  /// The most bytes that keyframes may take together to stay in memory once they have been read.
   std::size_t kept_bytes = MotionStream::kUsuallyKept;
 
   [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1 || loop; }
@@ -114,8 +114,8 @@ struct StoredNormals {
   bool has_more = false;  ///< with KeepShading::kRead: other keyframes may store some, which were left in files
 };
 
-/// The numbers in the names of the files of a sequence, where one number tells these names apart and grows from each
-/// file to the next.
+/// The numbers in the names of the files of a sequence, if one number tells these names apart and grows from each file
+/// to the next.
 struct FileSeries {
   std::size_t count = 0;
   double first = 0, last = 0;            ///< numbers
@@ -134,7 +134,7 @@ class Input {
 
   /// Returns the name that a person gives the input: the only file, "first ... last", the base, or the built-in morph.
   [[nodiscard]] const std::string& name() const noexcept;
-  /// Bytes of the file, where the input is a document.
+  /// Returns the bytes of the file, if the input is a document.
   [[nodiscard]] std::size_t file_size() const noexcept;
 
   /// Returns the limit of what the input may ask for, by the bytes that were read of it; a built-in morph is not
@@ -162,7 +162,7 @@ class Input {
   /// Errors: those of motion(), except those of reading keyframes.
   [[nodiscard]] Result<MotionStream*> stream();
 
-  /// The path that was cut, once motion() or stream() was asked for.
+  /// Returns the path that was cut, once motion() or stream() was asked for.
   [[nodiscard]] const CutPath& cut_path() const noexcept;
 
   /// Returns keyframe k of the motion, from 0, in any order. It is valid until the next call that reads keyframes.
@@ -218,7 +218,8 @@ struct BuiltinMorph {
 /// Lists the built-in blend shapes, whose keyframes are targets over a base.
 [[nodiscard]] std::span<const BuiltinMorph> builtin_blend_shapes() noexcept;
 
-/// Makes one of either by name: the same positions on every call. Errors: kUsage with the names that there are.
+/// Makes a built-in morph of either kind by name: the same positions on every call. Errors: kUsage with the names that
+/// there are.
 [[nodiscard]] Result<Motion> make_builtin_morph(std::string_view name);
 
 // The morph targets of an input by their names.
@@ -229,7 +230,7 @@ struct BuiltinMorph {
 //
 // Threads    pure.
 
-/// The names of each target, in the order of the targets. A target without a name has none here.
+/// The names of each target, in the order of the targets; the list of a target without a name is empty.
 using TargetNames = std::vector<std::vector<std::string>>;
 
 /// Returns the names of the targets that the motion of an input has; empty if it is no set of targets. Errors: of

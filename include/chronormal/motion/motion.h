@@ -113,8 +113,8 @@ struct Motion {
     double time = 0;                     ///< seconds; of targets, the weight
     std::string name;                    ///< for messages: the file that it came from, or empty
     std::vector<float> velocities = {};  ///< (V, 3) per second, of a sequence whose file has them; or empty
-    /// (V, 3) per second, of an end of a part of a sequence: the velocities that curves through the whole sequence have
-    /// there (PathKind::kCatmullRom in motion/paths.h). Empty: they follow from the keyframes of the motion.
+    /// (V, 3) per second, for an end of a part of a sequence: the velocities that curves through the whole sequence
+    /// have there (PathKind::kCatmullRom in motion/paths.h). Empty: velocities follow from the keyframes of the motion.
     std::vector<float> end_velocities = {};
     /// (V, 3), or empty where nothing was rounded: a vertex is at its position and its residual, added up. Files hold
     /// positions alone.
@@ -153,11 +153,11 @@ struct Motion {
 /// Returns a keyframe as a segment that does not move, from time 0 to 1. Both must outlive it.
 [[nodiscard]] Segment still_segment(const Topology& topology, const Motion::Keyframe& keyframe) noexcept;
 
-/// The one check between data from outside and everything that computes. Checks what the rest of the library takes for
-/// granted: at least one face and one segment; every keyframe with 3 x vertex_count finite coordinates, and as many
-/// velocities or none; residuals of rounding to float32, as many or none; a body for each vertex or none; segments
-/// between keyframes that exist; finite times that ascend along every segment; and segments as the kind of the motion
-/// has them. (A Topology checks its own indices.)
+/// Checks data from outside, once, for everything that computes. The rest of the library takes for granted: at least
+/// one face and one segment; every keyframe with 3 x vertex_count finite coordinates, and as many velocities or none;
+/// residuals of rounding to float32, as many or none; a body for each vertex or none; segments between keyframes that
+/// exist; finite times that ascend along every segment; and segments as the kind of the motion has them. (A Topology
+/// checks its own indices.)
 /// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);
 

@@ -43,7 +43,7 @@ enum class PathKind {
   kHermite,     ///< on cubics with the velocities of the keyframes, or those of kCatmullRom where a keyframe has none
 };
 
-/// The largest angle, in degrees, between normals of straight pieces and those of the curve, where none is asked for.
+/// The largest angle, in degrees, between normals of straight pieces and of the curve, if none is asked for.
 inline constexpr double kPathTolerance = 0.01;
 
 /// A path, and how near straight pieces have to be to it.

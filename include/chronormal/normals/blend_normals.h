@@ -142,9 +142,9 @@ class BlendNormals {
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] const BlendSet& set() const noexcept;
-  /// The cost of all targets, added ones included.
+  /// Returns the cost of all targets, added ones included.
   [[nodiscard]] const BlendCost& cost() const noexcept;
-  /// Memory that is kept, in bytes: at most cost().bytes.
+  /// Returns the memory that is kept, in bytes: at most cost().bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:

@@ -85,7 +85,7 @@ struct UnitNormal {
 // Units      a normal of length 2 x area stays one: areas are transformed with it. Directions alone may be normalised.
 // Threads    pure.
 
-/// x -> x.x columns[0] + x.y columns[1] + x.z columns[2] + offset.
+/// The affine map x -> x.x columns[0] + x.y columns[1] + x.z columns[2] + offset.
 struct AffineTransform {
   std::array<Vec3d, 3> columns = {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
   Vec3d offset;
@@ -98,7 +98,7 @@ struct AffineTransform {
 /// Applies first, then second: x -> second(first(x)).
 [[nodiscard]] AffineTransform composed(const AffineTransform& second, const AffineTransform& first) noexcept;
 
-/// A node of glTF and its like: scaled, then rotated, then moved.
+/// A node of glTF or of a similar format: scaled, then rotated, then moved.
 struct NodeTransform {
   Vec3d translation;
   std::array<double, 4> rotation = {0, 0, 0, 1};  ///< unit quaternion x, y, z, w

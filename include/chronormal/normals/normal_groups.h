@@ -129,9 +129,9 @@ class NormalGroups {
   /// Returns the face of each of the element's corners, in their order.
   [[nodiscard]] std::span<const std::uint32_t> faces(std::size_t e) const noexcept { return part(faces_, e); }
 
-  /// The element of each corner.
+  /// Returns the element of each corner.
   [[nodiscard]] std::span<const std::uint32_t> element_of_corner() const noexcept { return element_of_corner_; }
-  /// The element of each output: of each vertex, or of each corner.
+  /// Returns the element of each output: of each vertex, or of each corner.
   [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept {
     return outputs_are_vertices_ ? element_of_vertex_ : element_of_corner_;
   }

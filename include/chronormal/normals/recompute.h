@@ -58,7 +58,7 @@ class NormalRecompute {
 
   /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// Scratch memory, in bytes.
+  /// Returns the bytes of scratch memory.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
@@ -114,9 +114,9 @@ class FloatRecompute {
   std::size_t unit_normals(VectorView<const float> positions, VectorView<float> result,
                            Threads threads = Threads::kOne);
 
-  /// The number of elements.
+  /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// The memory that paths and positions take, in bytes.
+  /// Returns the bytes that paths and positions take.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:

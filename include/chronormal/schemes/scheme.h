@@ -61,9 +61,10 @@ struct OperationCounts {
   friend bool operator==(const OperationCounts&, const OperationCounts&) = default;
 };
 
-/// Keeps the drift of polynomials of degree up to 3 and of arcs below 5e-6 rad on the built-in morphs (docs/paper.md,
-/// section 3), and that of `polynomial` below 5e-5 rad by a bound on every rounding. A scheme that normalises a short
-/// vector, as linear does between nearly antipodal ends, drifts by as much more as that vector is shorter than 1.
+/// The usual interval. It keeps the drift of polynomials of degree up to 3 and of arcs below 5e-6 rad on the built-in
+/// morphs (docs/paper.md, section 3), and the drift of `polynomial` below 5e-5 rad by a bound on every rounding. A
+/// scheme that normalises a short vector, as linear does between nearly antipodal ends, drifts by as much more as that
+/// vector is shorter than 1.
 inline constexpr std::size_t kDefaultAnchorInterval = 64;
 
 /// Plays a scheme at equal steps of t, each made from the one before (sequential access).

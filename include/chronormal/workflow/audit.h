@@ -96,7 +96,7 @@ struct AuditOptions {
   bool skins = true;                 ///< glTF: judges meshes in nodes with a skin as they are seen through it
   bool weld = true;                  ///< vertices at one point throughout are one
   bool keep_errors = false;          ///< every single one, in Audit::errors
-  /// Called with the number of segments.
+  /// Is called with the number of segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 

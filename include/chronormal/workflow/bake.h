@@ -94,7 +94,7 @@ struct BakeOptions {
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// Returns the options with the usual viewers where they name none.
+/// Returns the options, with the usual viewers if they name none.
 [[nodiscard]] BakeOptions with_viewers(BakeOptions options);
 
 /// The errors of shown normals, in degrees.
@@ -128,7 +128,7 @@ struct ViewerChange {
 
 /// A candidate for a mesh that smallest looked at.
 struct BakedCandidate {
-  /// "as it is", "own deltas", "products", "quadratics" or "low rank"
+  /// The kind of candidate: "as it is", "own deltas", "products", "quadratics" or "low rank".
   std::string_view name;
   std::size_t targets = 0, bytes = 0;  ///< bytes: of new deltas and tangents, and those by which tracks grow
   /// The errors in the worst of the named viewers, along the animations of the file, between its keys, and in its

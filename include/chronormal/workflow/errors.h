@@ -37,8 +37,8 @@ namespace chronormal {
 inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
 inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
 
-/// Bins of MotionError::counts: below 2^-10 degrees, and then 128 to each doubling, so that a percentile is known to
-/// 0.001 degrees or to 0.8 %.
+/// The bins of MotionError::counts: below 2^-10 degrees, and then 128 to each doubling, so that a percentile is known
+/// to 0.001 degrees or to 0.8 %.
 inline constexpr int kAuditLeastExponent = -10, kAuditBinsOfDoubling = 128;
 inline constexpr std::size_t kAuditFineBins = 1 + 18 * std::size_t{kAuditBinsOfDoubling};  // up to 256 degrees
 

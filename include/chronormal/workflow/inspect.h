@@ -24,7 +24,7 @@
 
 namespace chronormal {
 
-/// Faces at keyframes or in segments.
+/// Counts faces at keyframes or in segments.
 struct Places {
   std::size_t pairs = 0;
   std::size_t faces = 0;
@@ -33,7 +33,7 @@ struct Places {
   double first_t = 0;          ///< where in the segment, for what has an instant there
 };
 
-/// The largest of something, and the first place where it is.
+/// The largest value of something, and the first place where it is.
 struct Largest {
   double value = 0;
   std::size_t segment = 0, element = 0;  ///< element: a vertex or a face
@@ -145,7 +145,7 @@ struct InspectedGltf {
   std::optional<std::size_t> animation;  ///< the one that is looked at; nothing: the targets, or what stands still
 };
 
-/// One input, and what is known of it.
+/// An opened input, and what is known of it.
 struct Inspected {
   Input opened;
   std::optional<Inspection> inspection;  ///< nothing for a glTF file without faces

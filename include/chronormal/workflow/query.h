@@ -54,7 +54,7 @@ struct SegmentPart {
 
 /// A column of an answer: an array whose first length is that of its table.
 struct QueryColumn {
-  /// Truths are one byte each, 0 or 1.
+  /// The numbers of a column; truths are one byte each, 0 or 1.
   using Values =
       std::variant<std::vector<std::int64_t>, std::vector<double>, std::vector<float>, std::vector<std::uint8_t>>;
 

@@ -59,8 +59,8 @@ enum class NormalLength {
   kArea,  ///< n itself: for a face, twice its area; for a vertex or corner, that of the sum
 };
 
-/// Sequential access (section 3 of the paper): the normals at t = 0, 1/steps, ..., 1 of each segment, each made from
-/// the ones before it by additions or by a rotation.
+/// The steps of sequential access (section 3 of the paper): normals at t = 0, 1/steps, ..., 1 of each segment, each
+/// made from the ones before it by additions or by a rotation.
 struct Stepping {
   std::size_t steps = 1;  ///< of a segment, 1 or more
   /// The state is made anew every so many steps; 0: never, as in the paper.

@@ -58,9 +58,9 @@ struct Viewer {
   std::string_view name;   ///< on the command line
   std::string_view title;  ///< for people: "three.js", "after gltfpack"
   NormalRule normals = NormalRule::kSum;
-  /// sum: of the float that keeps a component of a delta; unit: of each of the two octahedral numbers that keep a
-  /// direction, or of the four numbers of a quaternion; clamped: of the integer that keeps a component, its sign
-  /// included.
+  /// The number of bits. sum: of the float that keeps a component of a delta; unit: of each of the two octahedral
+  /// numbers that keep a direction, or of the four numbers of a quaternion; clamped: of the integer that keeps a
+  /// component, its sign included.
   int bits = 32;
   /// unit: u is the third axis of the rotation that a quaternion has, which is taken from the frame that Frisvad's rule
   /// makes of the vector, as if that were of length 1. (Building an Orthonormal Basis from a 3D Unit Vector Without
