@@ -1,4 +1,4 @@
-// Reads the directory and the members of zip files, and makes the headers of those that are written.
+// Reads the directory and the members of zip files, and makes the headers of the files that are written.
 #include "io/bytes/zip.h"
 
 #include <zlib.h>
