@@ -16,8 +16,8 @@
 ///            largest bound is halved until that bound meets the largest error found in the middle of a piece
 ///            (docs/theory.md, section 19).
 /// Rounding   is included: coefficients are taken as float32 has them, the ball has a proven bound of what evaluating
-///            them in float32 adds, and control normals count as off by what their errors say. `polynomial` and
-///            `recompute` have the bound that they promise, kExactTolerance.
+///            them in float32 adds, and control normals count with their errors. `polynomial` and `recompute` have the
+///            bound that they promise, kExactTolerance.
 /// Collapses  Where n(t) vanishes inside the segment, or what the scheme normalises does, no bound below half a turn is
 ///            claimed: `upper` is pi, and [from, to] holds the place.
 /// Units      radians; local t.

@@ -136,8 +136,8 @@ struct Facing {
 
 /// Decides the sides for a range of faces. normals are the control normals of these faces, as face_control_normals()
 /// makes them of this segment; result has an element for each face.
-/// Cost: about that of unit_normal_at() for each face; several times that where it changes sides twice or more, and some
-/// microseconds of integers where it touches edge-on, or is so at 0, 1/2 or 1.
+/// Cost: about as much as unit_normal_at() for each face; several times as much if it changes sides twice or more, and
+/// some microseconds of integers if it touches edge-on, or is edge-on at 0, 1/2 or 1.
 void find_facings(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                   std::span<Facing> result) noexcept;
 

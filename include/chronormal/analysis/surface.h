@@ -36,7 +36,7 @@ struct Found {
   friend bool operator==(const Found&, const Found&) = default;
 };
 
-/// Finds the vertices that are copies: those at the point of a lower one.
+/// Finds the vertices that are copies: vertices at the point of a lower one.
 [[nodiscard]] Found find_copies(const Points& points);
 
 /// The counts that the text above explains. The first of an edge, or of a pair, is the lowest face that has one.

@@ -306,8 +306,9 @@ class GltfDocument {
 /// Selects how an accessor of new numbers is written.
 struct GltfVectors {
   bool bounds = false;  ///< min and max, which positions and times need
-  /// Write all zeros as bytes too. Otherwise arrays that are mostly zero become a sparse accessor where that is
-  /// smaller, and those that all are an accessor without a bufferView, which some readers (Assimp) refuse.
+  /// Writes zeros as bytes too, in every array. Otherwise arrays that are mostly zero become a sparse accessor if that
+  /// is smaller, and arrays that are all zero become an accessor without a bufferView, which some readers (Assimp)
+  /// refuse.
   bool dense = false;
 };
 

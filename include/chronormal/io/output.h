@@ -57,7 +57,7 @@ void remove_temporaries() noexcept;
 /// A stream is written as its keyframes are read; errors of the stream are returned, too.
 /// Errors: kUsage with path as the place for another extension, a pattern of another form,
 /// and a motion that the format does not hold: targets in a point cache, faces of different numbers of corners in .npz.
-/// Else those of write_output(); where a file exists and force is not given, nothing is written.
+/// Otherwise those of write_output(); if a file exists and force is not given, nothing is written.
 [[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force, bool weld = true);
 [[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, bool weld = true);
 

@@ -104,7 +104,7 @@ inline constexpr double kTooSparse = 0.5;
 /// turn by 60 degrees from keyframe to keyframe bends by the limit, and is not too sparse.
 [[nodiscard]] constexpr bool is_too_sparse(double bend) noexcept { return bend > kTooSparse + 1e-6; }
 
-/// Velocities against positions, to find out whether the velocities are those of the motion.
+/// Compares velocities with positions, to find out whether the velocities belong to the motion.
 struct VelocityFit {
   /// The way that vertices would go from keyframe to keyframe at the mean of the speeds at both ends, as a multiple of
   /// the straight way that they go: 1 or somewhat more. It is 100 where velocities are 100 times too large, and 30

@@ -2,8 +2,8 @@
 ///
 /// Engines add one normal delta per target, but the normal is a quadratic form in the weights (blend_terms.h): each
 /// target has a linear and a square term, and two targets that move the same face have one together. BlendNormals keeps
-/// these terms, sparse, and adds up those of the active targets; an element that none of them touches keeps its base
-/// normal.
+/// these terms, sparse, and adds up the terms of the active targets; an element that none of them touches keeps its
+/// base normal.
 ///
 ///     BlendNormals normals = BlendNormals::of_groups(set, groups);
 ///     const BlendEvaluation done = normals.unit_normals(weights, VectorView<float>::packed(xyz, normals.size()));

@@ -11,10 +11,10 @@
 /// Units      positions: any length L; control normals: L^2; t: fraction of the segment, [0, 1].
 /// Time       Here, and wherever unit normals are made of a segment: t outside [0, 1] is moved to the nearer end, below
 ///            2^-200 it counts as 0, and where t is NaN every normal is (0, 0, 0), Direction::kNone.
-/// Viewer       Results are defined for rounding to nearest, which is how a program starts. In other rounding modes
-///            directions are off by up to twice as much as promised. Flushing subnormal numbers to zero changes no bit,
-///            but that coordinates below 2^-126 = 1.2e-38 may count as 0. Modes belong to a thread: those that calls
-///            with Threads::kAll borrow have their own.
+/// Rounding   Results are defined for rounding to nearest, which is how a program starts. In other rounding modes the
+///            errors of directions are up to twice as large as promised. Flushing subnormal numbers to zero changes no
+///            bit, except that coordinates below 2^-126 = 1.2e-38 may count as 0. Modes belong to a thread: the threads
+///            that calls with Threads::kAll borrow have their own.
 /// Threads    everything here is pure: no allocation, no throw, the same bits on every compiler.
 #ifndef CHRONORMAL_NORMALS_CONTROL_NORMALS_H_
 #define CHRONORMAL_NORMALS_CONTROL_NORMALS_H_

@@ -72,8 +72,8 @@ inline constexpr IndexRange kAllOutputs = {0, ~std::size_t{0}};
 /// float32 keeps lengths; in the others the three are divided by their largest component.
 enum class ControlFormat {
   kFloat32,  ///< 36 bytes: n0, m, n1 as x y z
-  kSnorm16,  ///< 20 bytes: likewise, and 2 bytes of 0. Components are off by at most 1.6e-5
-  kSnorm11,  ///< 12 bytes: a word each for x, y, z; n0 in its lowest 11 bits, then n1 in 11, m in 10: off by up to 1e-3
+  kSnorm16,  ///< 20 bytes: likewise, and 2 bytes of 0. The error of a component is at most 1.6e-5
+  kSnorm11,  ///< 12 bytes: a word each for x, y, z; n0 in its lowest 11 bits, then n1 in 11, m in 10: errors up to 1e-3
 };
 
 /// Returns the bytes of one output: 36, 20 or 12.

@@ -86,7 +86,7 @@ inline constexpr double kCompactTolerance = 1e-3;  // radians
 
 struct CurveOptions {
   /// The largest angle, in radians, by which a unit normal may be wrong: at least kExactTolerance, at most 0.2. Values
-  /// beyond these count as these.
+  /// outside count as the nearer limit.
   double tolerance = kExactTolerance;
 };
 

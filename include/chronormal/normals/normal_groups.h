@@ -1,7 +1,7 @@
 /// Finds the corners of faces that share one normal, and the control normals of such groups of corners.
 ///
-/// The normal of a vertex is a sum over the faces around it, and that of a corner is a sum over some of them: those
-/// across edges that are smooth. Both are a partition of the corners into *elements*; each element has one normal. Two
+/// The normal of a vertex is a sum over the faces around it; the normal of a corner is a sum over those faces around it
+/// that smooth edges join. Both are a partition of the corners into *elements*; each element has one normal. Two
 /// triangles 0 1 2 and 2 1 3 with a hard edge between them, and a vertex 4 without faces:
 ///
 ///     corner    0  1  2  3  4  5            of face 0, and of face 1
@@ -19,7 +19,7 @@
 ///     vertex            0  1  2  3  4        1 and 3 coincide in all keyframes, 2 and 4 in the first one only
 ///     point_of_vertex   0  1  2  1  3
 ///
-/// Two sides  Where all faces at a point lie back to back, the corners of the two sides share no normal, since one is the
+/// Two sides  If all faces at a point lie back to back, the corners of the two sides share no normal, since one is the
 ///            opposite of the other. (A vertex that has corners of both, and one normal, keeps a sum of zero.)
 /// Sums       The length of a face normal is twice the area of the face, so the area-weighted normal of an element is
 ///            the plain sum of the n(t) of its faces: a sum of quadratics, hence a quadratic, exact at every t. The

@@ -3,11 +3,11 @@
 /// The baseline of NormalCurves, which is faster for one evaluation or two. Nothing is prepared but scratch memory;
 /// positions and topology are read at every call and must stay alive, and positions may change between calls.
 ///
-/// Accuracy   within 1e-6 rad of the exact n(t) of the positions at the double t, whatever they are: edges in
-///            float32 and all that follows in double where a bound on the rounding shows that it suffices (edges are
-///            interpolated, not vertices, so the distance from the origin does not matter), double throughout where
-///            that suffices, and integers behind it (docs/theory.md, section 5). The limit direction where n(t) is
-///            exactly zero. What t outside [0, 1], NaN and the modes of the viewer mean is said in control_normals.h.
+/// Accuracy   within 1e-6 rad of the exact n(t) of the positions at the double t, whatever they are: edges in float32
+///            and all that follows in double if a bound on the rounding shows that it suffices (edges are interpolated,
+///            not vertices, so the distance from the origin does not matter), double throughout if that suffices, and
+///            integers behind it (docs/theory.md, section 5). The limit direction where n(t) is exactly zero.
+///            control_normals.h says what t outside [0, 1], NaN and rounding modes mean.
 /// Groups     face normals are made a little ahead of the elements that add them up, in a window that stays in the
 ///            cache; where the faces of neighbouring elements are far apart, in memory for all of them.
 /// Memory     scratch of 16 bytes for each face of the window, or for all; and where vertices lie in no order, or not

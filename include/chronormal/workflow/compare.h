@@ -1,17 +1,17 @@
-/// The paper's Table 1 for any motion, every scheme held against the exact normals; and the same for the deltas of
-/// blend shapes.
+/// Compares every scheme with the exact normals of any motion, as the paper's Table 1 does, and the deltas of blend
+/// shapes with theirs.
 ///
 /// A viewer that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic
 /// form in the weights (docs/theory.md, section 14). Compared are the deltas of a glTF file, end-point deltas (right
-/// for each target alone at weight 1), those that are best by least squares (analysis/quality/blend_quality.h), and the
-/// exact normals of BlendNormals, which are off by rounding. All of them are held against cross products of blended
+/// for each target alone at weight 1), the best deltas by least squares (analysis/quality/blend_quality.h), and the
+/// exact normals of BlendNormals, whose errors are those of rounding. The truth is made of cross products of blended
 /// positions in double.
 ///
-/// Weights    random, from 0 to 1, for 1, 2, 4, 8, 16 targets at once and for all; or those of an animation. Least
-///            squares are over as many other random weights of the same kind, or 16 for each target where that is
-///            more, so that they cannot know those they are judged by; for an animation over the very ones.
-/// Compared   normals that a target of weight other than 0 moves: those with a face that it moves, and those that a
-///            file moves by a delta. One for each different normal; of a glTF file, for each vertex.
+/// Weights    random, from 0 to 1, for 1, 2, 4, 8, 16 targets at once and for all; or the weights of an animation.
+///            Least squares use as many other random weights of the same kind, or 16 for each target if that is more,
+///            so that they cannot know the weights that they are judged by; for an animation they use the very ones.
+/// Compared   normals that a target of weight other than 0 moves: normals with a face that it moves, and normals that a
+///            file moves by a delta. There is one for each different normal; for a glTF file, one for each vertex.
 /// glTF       Each mesh on its own, with elements by its stored normals. Where an author gave base normals of his own,
 ///            the truth is turned as these are, as in an audit (workflow/gltf_shading.h). Flat primitives are right in
 ///            viewers and are left out. Targets that a bake added get products of weights.

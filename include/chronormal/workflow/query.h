@@ -52,7 +52,7 @@ struct SegmentPart {
 /// for a span that is empty or in which there is no motion.
 [[nodiscard]] Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const QuerySpan& span);
 
-/// A column of an answer: an array whose first length is that of its table.
+/// A column of an answer: an array whose first length is the number of rows of its table.
 struct QueryColumn {
   /// The numbers of a column; truths are one byte each, 0 or 1.
   using Values =

@@ -17,8 +17,9 @@
 /// Degenerate An element without a normal has (0, 0, 0). Where n(t) is zero at one time only, area-weighted unit
 ///            normals at times are the limit (Direction in normals/control_normals.h), and the others (0, 0, 0).
 ///
-/// Schemes    With a scheme the normals are those that it gives, and only those at the ends of a segment are exact. At
-///            weights it goes from the base to one target: the other weights must be 0, and that of the target in [0, 1].
+/// Schemes    With a scheme the normals are the ones that it gives, and only normals at the ends of a segment are
+///            exact. At weights it goes from the base to one target: its weight must be in [0, 1], and the other
+///            weights must be 0.
 ///
 /// Files      write_samples() writes them as
 ///     npy    an array (moments, outputs, 3) of float32
