@@ -136,7 +136,8 @@ class ChosenThreads {
 };
 
 // Gives objects of Python memory of zeros. `Curves.__new__(Curves)` makes an object without calling its constructor,
-// and pybind11 then hands this memory to a method. Members that are zero tell the method that the object was never made.
+// and pybind11 then hands this memory to a method, which sees from members that are zero that the object was never
+// made.
 struct ZeroedObject {
   static void* operator new(std::size_t size) {
     void* const memory = ::operator new(size);
