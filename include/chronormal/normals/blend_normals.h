@@ -13,9 +13,9 @@
 ///            part, or of the whole mesh. Each weight vector goes the cheapest way by a model of their costs: a pure
 ///            function of the set, the weights and the options. Its constants were measured on one core of a machine
 ///            of docs/benchmarks.md, and only their ratios matter.
-/// Speed      normals are made anew in lanes of double, along rings of points around elements. An element for which these
-///            do not guarantee 1e-6 rad, or with a ring of more than 64 points, is made by itself, which takes some
-///            eight times as long.
+/// Speed      normals are made anew in lanes of double, along rings of points around elements. If the lanes do not
+///            guarantee 1e-6 rad for an element, or its ring has more than 64 points, it is made by itself, which takes
+///            some eight times as long.
 /// Memory     Known before anything is multiplied (predict_blend_cost()), and limited by max_bytes: terms that do not
 ///            fit are not kept, the largest first, and their elements are made from blended positions.
 /// Accuracy   Within 1e-6 rad of the normals of the blended positions in exact arithmetic, on every path (but see

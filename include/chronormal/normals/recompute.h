@@ -1,7 +1,8 @@
 /// Unit normals from positions, made anew at every t: eq. 1 and eq. 2 as they stand, as fast as we can write them.
 ///
-/// The baseline of NormalCurves, which is faster for one evaluation or two. Nothing is prepared but scratch memory;
-/// positions and topology are read at every call and must stay alive, and positions may change between calls.
+/// The baseline that NormalCurves is compared with; it is the faster of the two for one evaluation or two. Nothing is
+/// prepared but scratch memory; positions and topology are read at every call and must stay alive, and positions may
+/// change between calls.
 ///
 /// Accuracy   within 1e-6 rad of the exact n(t) of the positions at the double t, whatever they are: edges in float32
 ///            and all that follows in double if a bound on the rounding shows that it suffices (edges are interpolated,

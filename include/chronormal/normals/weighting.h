@@ -35,8 +35,8 @@
 ///            the bound 0.
 /// Threads    Everything here but the fit is pure. Angles go through std::atan2: the last bit may differ between C
 ///            libraries.
-/// Source     Jin, Lewis, West, A comparison of algorithms for vertex normal computation, The Visual Computer 21 (2005):
-///            uniform, angle, area, max and the last two.
+/// Source     Jin, Lewis, West, A comparison of algorithms for vertex normal computation, The Visual Computer 21
+///            (2005): uniform, angle, area, max and the last two.
 ///            Moore, Interval Analysis (1966), for Taylor coefficients in intervals.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_H_

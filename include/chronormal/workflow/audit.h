@@ -14,8 +14,9 @@
 ///                offset grows by is an error. Between two keyframes the two rotations are blended
 ///
 /// Samples    t = i / (samples - 1) of each segment: a target from weight 0 to 1, or the time between two keys of an
-///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as the file says. Expressions
-///            of an avatar, the poses in which a file opens, and those that are asked for stand still: one sample each.
+///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as the file says.
+///            Expressions of an avatar, poses in which a file opens, and poses that are asked for stand still: one
+///            sample each.
 /// Judged     samples of vertices that move: a face around them does, or their stored normal.
 /// Unlit      a shown normal that is zero, infinite or NaN cannot be lit: such a sample has an error of 180 degrees,
 ///            the most that there is, and is counted.

@@ -78,8 +78,8 @@ struct BakeOptions {
   std::optional<double> tolerance = {};
   /// The most targets that a mesh may have, its own ones among them (smallest). Nothing: as many as the viewers bear.
   std::optional<std::size_t> most_targets = {};
-  /// Promises that only the animations of the file will ever be played, so that smallest may fit the deltas of the mesh's
-  /// own targets to them; the deltas mean nothing alone.
+  /// Promises that only the animations of the file will ever be played, so that smallest may fit the deltas of the
+  /// mesh's own targets to them. Such deltas mean nothing alone.
   bool animations_only = false;
   /// The most bytes of arrays of deltas and tangents that a mesh may have, and its tracks may grow by (smallest); the
   /// nearest candidate that keeps to it is taken.
@@ -206,9 +206,9 @@ struct GltfBake {
 /// Fits       with weightings other than area, n(w) is no polynomial: exact stands for the quadratic form that is right
 ///            where one target has the weight 0, 1/2 or 1, and where two have the weight 1.
 ///
-/// Errors: of GltfDocument; kUsage of keys; kInvalidInput where nothing moves, more than most_bytes would be added
-/// (with what it would take), extras of a mesh are no object or extras.chronormal is not what a bake writes, base
-/// normals to replace are compressed by Draco, or of exact an extension drives a weight alone.
+/// Errors: of GltfDocument; kUsage for keys; kInvalidInput if nothing moves, if more than most_bytes would be added
+/// (with the number of bytes that it would take), if extras of a mesh are no object or extras.chronormal is not what a
+/// bake writes, if base normals to replace are compressed by Draco, or for exact if an extension drives a weight alone.
 [[nodiscard]] Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit);
 
 struct SequenceBake {
@@ -231,15 +231,15 @@ struct SequenceBake {
   std::optional<CutPath> cut = {};  ///< of curves, set by who has cut them: for reports
 };
 
-/// Makes an animated GLB of a sequence: keyframe 0 is the base, every later one a target with hat weights, and for
-/// exact one more target per segment with the weight t (1 - t) (docs/theory.md, section 15). Harmless has unit normals
-/// in all of them, bends with 4 t (1 - t) where viewers have room, and a LINEAR track (section 16). Vertices of hard
-/// edges (crease angle) are doubled. Keys is harmless without bends, at keys of its own choice, for area weights.
-/// glb gets the bytes of the file; where there is an error, it stays as it was.
+/// Makes an animated GLB of a sequence: keyframe 0 is the base, and every later one a target with hat weights. Exact
+/// adds one more target per segment, with the weight t (1 - t) (docs/theory.md, section 15). Harmless has unit normals
+/// in all targets, bends with 4 t (1 - t) if viewers have room, and a LINEAR track (section 16). Vertices of hard edges
+/// (crease angle) are doubled. Keys is harmless without bends, at keys of its own choice, for area weights. glb gets
+/// the bytes of the file; on an error it stays as it was.
 /// The file holds float32 positions, and its normals are exact for these: residuals of a computed motion are left out.
-/// Polygons become fans of triangles, and keep the normals of polygons; where a fan does not fit in keyframe 0, a
-/// warning says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage of keys for other weights than area
-/// or a tolerance below kLeastKeyTolerance. Precondition: the motion is valid and a sequence (segments k -> k + 1)
+/// Polygons become fans of triangles, and keep the normals of polygons; if a fan does not fit in keyframe 0, a warning
+/// says so. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage in keys for other weights than area or a
+/// tolerance below kLeastKeyTolerance. Precondition: the motion is valid and a sequence (segments k -> k + 1)
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 /// Bakes a stream, into a file that is written as chronormal/io/output.h describes. The stream is read in several

@@ -251,7 +251,8 @@ struct TruthComparison {
 /// Errors     kUsage for a motion that is no sequence (targets and animations of weights are straight: there is no
 ///            other truth), fewer than two kept keyframes, and what compare() refuses in schemes and elements.
 /// Threads    uses all; the same on any number of them.
-/// Memory     the control normals of one segment: 72 bytes for each face and element, and the positions of those left out.
+/// Memory     the control normals of one segment: 72 bytes for each face and element, and the positions that are left
+///            out.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<TruthComparison> compare_with_truth(const Motion& motion, const TruthOptions& options);
 

@@ -115,8 +115,8 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// time of the motion to the last, whatever the span; at keyframes it is rounded to float32, as vertices are, and
 /// between them it moves straight. Vertices at one point in all keyframes are one (normals/normal_groups.h). Tables:
 ///     ""         inside: one row for each point
-///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; of targets, by point,
-///                segment and weight
+///     crossing   point, time, segment, face, inward, normal (rows, 3): ordered by point and time; for targets, by
+///                point, segment and weight
 /// Where the weights of an animation jump, a point may be elsewhere without a crossing.
 /// Errors: of segment_parts() and of Containment::make().
 [[nodiscard]] Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points,
@@ -126,16 +126,16 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///     ""        segment, face, axis, sine, half_angle (degrees, rounded up): one row for each segment and face
 ///     meshlet   segment, index, and the members of meshopt_Bounds (analysis/cones.h), which hold for that part
 ///     member    meshlet, face
-/// There are the last two if `meshlets` says how many triangles one may have: meshoptimizer builds meshlets from the
-/// first keyframe. Errors: of segment_parts(); kUsage, with --meshlets as the place, for a number that is no multiple
-/// of 4 up to 512, and for a mesh of larger faces.
+/// The last two tables are there if `meshlets` says how many triangles one may have: meshoptimizer builds meshlets from
+/// the first keyframe. Errors: of segment_parts(); kUsage, with --meshlets as the place, for a number that is no
+/// multiple of 4 up to 512, and for a mesh of larger faces.
 [[nodiscard]] Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets = {},
                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
 
 /// Computes the mean normals of faces while a shutter is open over the span (analysis/cones.h). Tables:
-///     ""        segment, face, mean, mean_unit, error, length (of mean_unit), half_angle (of the cone, degrees), ends (the
-///               direction half way between the unit normals at both ends, which lerp and nlerp have as their mean), and
-///               ends_off (degrees from mean_unit to it): one row for each segment and face
+///     ""        segment, face, mean, mean_unit, error, length (of mean_unit), half_angle (of the cone, degrees), ends
+///               (the direction half way between the unit normals at both ends, which lerp and nlerp have as their
+///               mean), and ends_off (degrees from mean_unit to it): one row for each segment and face
 ///     span      the same without segment, over all parts together, weighed by their duration; not for targets
 /// Of vertices or corners, the column is `vertex` or `corner`, and all is made from integers. Errors: of make_groups();
 /// of segment_parts().

@@ -4,8 +4,8 @@
 /// normalize(N' + sum_k w'_k D'_k) instead, of what it keeps of N, of D_k and of the weights:
 ///
 ///     sum       N' = N, D' = D                             as 32-bit floats, or deltas as 16-bit ones
-///     unit      N' = u(N), D' = u(N + D) - u(N)            a unit normal u for each target: the direction of N + D, or by
-///                                                          way of a frame what is no direction where |N + D| is not 1
+///     unit      N' = u(N), D' = u(N + D) - u(N)            a unit normal u for each target: the direction of N + D, or
+///                                                          through a frame what is no direction if |N + D| is not 1
 ///     clamped   N' and D' are rounded to signed integers of a few bits that stand for [-1, 1]: larger components of D
 ///               are cut
 ///
