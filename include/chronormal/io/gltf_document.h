@@ -194,7 +194,7 @@ struct GltfGeometry {
 
 /// Tells for one primitive where its vertices and faces in a motion or a mesh came from.
 struct GltfPart {
-  std::optional<std::size_t> node;  ///< which node carries the mesh; nothing where nodes do not matter
+  std::optional<std::size_t> node;  ///< the node that carries the mesh; nothing if nodes do not matter
   std::size_t mesh = 0, primitive = 0;
   std::size_t first_vertex = 0, vertex_count = 0;
   std::size_t first_face = 0, face_count = 0;

@@ -91,7 +91,7 @@ struct Segment {
   VectorView<const float> to;    ///< positions at t = 1
   double start_time = 0;         ///< seconds, at t = 0; of a target, its weight
   double end_time = 1;           ///< the same at t = 1
-  std::size_t index = 0;         ///< which segment of its motion it is
+  std::size_t index = 0;         ///< the number of the segment in its motion
   /// Added to `from` and `to`, these give positions before they were rounded to float32 (Motion::Keyframe). Empty where
   /// nothing was rounded.
   VectorView<const double> from_residuals = {}, to_residuals = {};

@@ -71,11 +71,11 @@ struct BlendNormalsOptions {
 
 /// The cost of the normals of a set, from counts alone. Bytes come on top of the bytes of the set and the groups.
 struct BlendCost {
-  std::size_t target_elements = 0;    ///< that targets touch, added up over targets
-  std::size_t overlapping_pairs = 0;  ///< of targets that move a face in common
-  std::size_t pair_elements = 0;      ///< of these faces, added up over pairs
-  std::size_t stored_targets = 0;     ///< whose terms fit into max_bytes: small ones first
-  std::size_t stored_pairs = 0;       ///< of stored targets, likewise
+  std::size_t target_elements = 0;    ///< elements that targets touch, added up over targets
+  std::size_t overlapping_pairs = 0;  ///< pairs of targets that move a face in common
+  std::size_t pair_elements = 0;      ///< elements of these faces, added up over pairs
+  std::size_t stored_targets = 0;     ///< targets whose terms fit into max_bytes: small ones first
+  std::size_t stored_pairs = 0;       ///< pairs of stored targets whose terms fit, likewise
   std::size_t least_bytes = 0;        ///< kept without any term: base normals, lists, rings, scratch
   std::size_t bytes = 0;              ///< kept with the stored terms, at most
   std::size_t peak_bytes = 0;         ///< while they are made, at most
@@ -95,7 +95,7 @@ struct BlendChoice {
   std::size_t active_targets = 0;     ///< of weight other than 0
   std::size_t touched_elements = 0;   ///< with a face that an active target moves
   std::size_t unstored_elements = 0;  ///< of these, with a term that is not kept: made from positions on any path
-  double terms_ns = 0, touched_ns = 0, whole_ns = 0;  ///< what the model expects each path to cost, in nanoseconds
+  double terms_ns = 0, touched_ns = 0, whole_ns = 0;  ///< the costs that the model expects of each path, in nanoseconds
 };
 
 struct BlendEvaluation : BlendChoice {

@@ -60,7 +60,7 @@ enum class AuditRule {
   kLerp,   ///< a straight line between the stored normals of the keyframes
   kNlerp,  ///< the same between their unit vectors
   kSlerp,  ///< the arc between them
-  kStep,   ///< those of the keyframe before, up to the next one
+  kStep,   ///< the normals of the keyframe before, up to the next one
   kFlat,   ///< face normals of the mesh as it is, instead of stored ones
 };
 
@@ -114,7 +114,7 @@ struct AuditSubject {
   Weighting weighting = Weighting::kArea;             ///< of its right normals
   std::vector<std::size_t> driven;                    ///< the targets that a track gives other weights than 0
   std::size_t segments = 0, samples = 0;              ///< samples of each segment
-  std::size_t vertices = 0;                           ///< that are judged, corners where there is no one-to-one
+  std::size_t vertices = 0;                           ///< judged vertices, or corners where there is no one-to-one
   MotionError error;
   MotionError at_keys;                         ///< of the same, those at both ends of each segment
   std::optional<SkinningError> skinning = {};  ///< where it was judged through a skin
@@ -135,7 +135,7 @@ struct AuthoredOffset {
   std::optional<std::size_t> mesh;         ///< of a glTF file
   Weighting weighting = Weighting::kArea;  ///< of the right normals
   bool is_detected = false;                ///< nobody asked for it: the stored normals follow it, or none clearly
-  std::size_t vertices = 0;                ///< that have both
+  std::size_t vertices = 0;                ///< vertices that have both
   double sum = 0, worst = 0;
   AuditPlace worst_at;
   double area_mean = 0;      ///< the same by area
@@ -149,7 +149,7 @@ struct AuthoredOffset {
 
 struct AuditFinding {
   enum class Kind {
-    kUnlit,           ///< what is shown somewhere is zero, infinite or NaN
+    kUnlit,           ///< a shown normal is zero, infinite or NaN somewhere
     kMissingNormals,  ///< a target moves positions, and the base has normals, but the target has none
     kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1, or at keyframes
     kWrongBetween,    ///< right there, and off on the way
@@ -172,7 +172,7 @@ struct AuditFinding {
   double degrees = 0;                  ///< the worst
   std::optional<Error> reason = {};    ///< why something could not be read
   std::optional<AuditPlace> worst_at;  ///< where there is one
-  std::optional<Viewer> viewer;        ///< that it is about; nothing: all
+  std::optional<Viewer> viewer;        ///< the viewer that it is about; nothing: all
 
   /// Returns true for a fault. Normals may be missing where the motion does not turn them.
   [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kStaleKeys && degrees > kAuditFault; }
@@ -210,7 +210,7 @@ struct Audit {
   std::size_t still = 0;
   MotionError error;                 ///< of all subjects
   std::optional<std::size_t> worst;  ///< the subject with the worst error
-  std::vector<ViewerAudit> viewers;  ///< those of the options, in their order
+  std::vector<ViewerAudit> viewers;  ///< the viewers of the options, in their order
   std::vector<AuthoredOffset> offsets;
   std::vector<AuditFinding> findings;  ///< faults first
   std::vector<std::string> notes;      ///< of a glTF file: what was left out, or read in another way than it was meant

@@ -101,7 +101,7 @@ struct BakeOptions {
 struct ShownErrors {
   std::size_t judged = 0;  ///< samples: a vertex in a pose
   double mean = 0;
-  double most = 0;  ///< that of 99.9 % of them is smaller, to a tenth
+  double most = 0;  ///< 99.9 % of the errors are smaller than this, to a tenth
   double worst = 0;
   /// Samples (an edge in a pose) at which errors jump by more than 10, 20 and 40 degrees.
   std::array<std::size_t, 3> tears{};
@@ -168,7 +168,7 @@ struct BakedMesh {
   std::size_t rescaled = 0;  ///< vertices whose stored base normal was too long or short for float32: now of length 1
   /// Targets whose tangents leaned on the right normals. These are made anew, for viewers that add up tangents.
   std::size_t new_tangents = 0;
-  std::size_t left_tangents = 0;  ///< those for which most_delta_bytes has no room: they stay as they are
+  std::size_t left_tangents = 0;  ///< targets for which most_delta_bytes has no room: they stay as they are
   std::size_t stilled = 0;        ///< targets that moved normals and no position: their deltas are zero now
   std::size_t without_base = 0;   ///< vertices whose faces have no area in the base: see docs/cli.md
   /// Degrees, of endpoint targets and fits: each alone, over w in [0, 1] and beyond as the file goes. Targets that are
@@ -187,7 +187,7 @@ struct BakedMesh {
 };
 
 struct GltfBake {
-  std::vector<BakedMesh> meshes;      ///< those with targets that move
+  std::vector<BakedMesh> meshes;      ///< the meshes with targets that move
   std::vector<std::string> pointers;  ///< JSON pointers that were replaced or added
   std::vector<std::string> warnings;  ///< for a person: one sentence each
   std::size_t added_targets = 0, added_bytes = 0;
@@ -195,7 +195,7 @@ struct GltfBake {
   std::size_t left_out_bytes = 0;    ///< of arrays of the source that nothing refers to any more
   std::size_t converted_tracks = 0;  ///< weight tracks that are cubic splines now
   bool changed = false;
-  std::string drivers;  ///< what drives the correction targets of all meshes, as JSON of its own (docs/formats.md)
+  std::string drivers;  ///< the drivers of the correction targets of all meshes, as JSON of its own (docs/formats.md)
 };
 
 /// Bakes a document into a new edit of it, which the caller writes. Meshes that were baked before stay as they are.
@@ -222,9 +222,9 @@ struct SequenceBake {
   /// The numbers that --encode keys reports.
   struct Keys {
     std::size_t count = 0;       ///< the first and the last among them
-    std::size_t in_between = 0;  ///< those that lie between two keyframes
+    std::size_t in_between = 0;  ///< keys that lie between two keyframes
     std::size_t left_out = 0;    ///< keyframes that are no keys: their positions lie on the lines between keys
-    std::size_t even = 0;        ///< how many it would take if all keyframes stayed, and all segments were cut alike
+    std::size_t even = 0;        ///< the number of keys if all keyframes stayed, and all segments were cut alike
     std::size_t beyond = 0;      ///< (normal, segment) pairs that no keys bring within the tolerance: they collapse
   };
   std::optional<Keys> keys = {};

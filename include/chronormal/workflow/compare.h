@@ -70,7 +70,7 @@ struct CompareOptions {
   /// of them. `quaternion:optimal` and `linear:scaled` look for what is best for that quadratic.
   Weighting weighting = Weighting::kArea;
   bool keep_errors = false;   ///< every single one, in Comparison::errors
-  bool keep_samples = false;  ///< those of each sample together, in SchemeComparison::samples
+  bool keep_samples = false;  ///< keep the errors of each sample together, in SchemeComparison::samples
   bool certify = false;       ///< bound the largest error at any time, in SchemeComparison::certified
   /// Degrees, 0 or more: certify, and find the cheapest scheme whose error is never above, in Comparison::cheapest.
   std::optional<double> tolerance = {};
@@ -85,7 +85,7 @@ struct SchemeComparison {
   std::optional<double> relative_to_linear;      ///< sum / sum of linear; nothing where linear errs by rounding only
   std::size_t fallbacks = 0;                     ///< (element, segment) pairs prepared with a stated fallback
   std::size_t flagged = 0;                       ///< (element, segment) pairs evaluated in double
-  bool sequential = false;                       ///< whether the scheme was played step by step
+  bool sequential = false;                       ///< the scheme was played step by step
   double prepare_ns = 0;                         ///< control normals included, where the scheme uses them
   double evaluate_ns = 0;                        ///< per sample
   double bytes = 0;                              ///< read by an evaluation
@@ -98,11 +98,11 @@ struct Comparison {
   ElementKind kind = ElementKind::kFaces;
   std::size_t vertices = 0;
   std::size_t faces = 0;
-  std::size_t elements = 0;  ///< that were compared: faces, or different normals of vertices or corners
+  std::size_t elements = 0;  ///< compared elements: faces, or different normals of vertices or corners
   std::size_t segments = 0;
   std::size_t samples = 0;
   std::vector<SchemeComparison> schemes;
-  MotionKind motion = MotionKind::kSequence;  ///< what the segments are
+  MotionKind motion = MotionKind::kSequence;  ///< the kind of the segments
   std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each scheme that was asked for
   std::optional<double> tolerance = {};       ///< degrees, where it was given
   std::optional<std::size_t> cheapest = {};   ///< of those judged: within the tolerance for certain; nothing: none is
@@ -143,7 +143,7 @@ inline constexpr std::size_t kMostBlendRows = 10000;
 
 struct BlendCompareOptions {
   std::size_t rows = 100;  ///< weight vectors for each number of active targets; 1 to kMostBlendRows
-  std::size_t active = 0;  ///< how many targets at once; 0: 1, 2, 4, 8, 16 and all, as far as there are
+  std::size_t active = 0;  ///< targets at once; 0: 1, 2, 4, 8, 16 and all, as far as there are
   std::uint64_t seed = 1;  ///< of random weights: the same ones on every system
   ElementOptions elements = {ElementKind::kVertices};  ///< of a motion; those of a glTF file are as it stores them
   std::string animation = {};  ///< of a glTF file, by name or index: up to `rows` of its weight vectors, evenly
@@ -223,7 +223,7 @@ struct BlendComparison {
 // Source     docs/truth.md.
 
 struct TruthOptions {
-  std::size_t every = 2;             ///< which keyframes are kept: 0, N, 2 N, ...; 2 or more
+  std::size_t every = 2;             ///< keyframes 0, N, 2 N, ... are kept; 2 or more
   std::vector<std::string> schemes;  ///< names; empty: those that compare() takes
   ElementOptions elements = {};      ///< of which normals
   std::function<void(std::size_t done, std::size_t total)> progress = {};

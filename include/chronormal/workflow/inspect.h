@@ -42,12 +42,12 @@ struct Largest {
 /// One segment: for a star of targets, one target.
 struct SegmentInspection {
   std::size_t moved_vertices = 0;
-  Largest motion;                   ///< how far a vertex goes
+  Largest motion;                   ///< the longest way of a vertex
   Largest turn;                     ///< the angle between the normals of a face at both ends
   std::size_t turned_far = 0;       ///< faces of which that is more than 90 degrees
   std::size_t collapses = 0;        ///< faces that have no area at an instant inside, or nearly none
-  std::size_t vanishing = 0;        ///< those that lose it exactly, and not nearly
-  std::size_t turned_over = 0;      ///< those that come out of it with the opposite normal
+  std::size_t vanishing = 0;        ///< faces among these that lose it exactly, and not nearly
+  std::size_t turned_over = 0;      ///< faces among these that come out of it with the opposite normal
   std::size_t without_normals = 0;  ///< faces that have no area throughout
   std::size_t flagged = 0;          ///< faces that are evaluated in double (NormalCurves)
   std::size_t bytes = 0;            ///< of its NormalCurves
@@ -120,7 +120,7 @@ struct GltfInspection {
   std::vector<GltfPrimitiveInspection> primitives;
   std::vector<GltfTrackInspection> tracks;
   std::vector<std::size_t> instances;  ///< per mesh: how many nodes have it
-  std::size_t skinned_nodes = 0;       ///< that have a mesh
+  std::size_t skinned_nodes = 0;       ///< nodes with a skin that have a mesh
   std::size_t without_faces = 0;       ///< primitives of points or lines, or without positions
 };
 

@@ -67,7 +67,7 @@ struct QueryColumn {
 
 struct QueryTable {
   std::string name;     ///< prefix of its arrays in a file: "crossing" has crossing_face; may be empty
-  std::string meaning;  ///< what a row is, for people: "collapses of faces"
+  std::string meaning;  ///< a row, in words for people: "collapses of faces"
   std::vector<QueryColumn> columns = {};
 
   [[nodiscard]] std::size_t rows() const noexcept { return columns.empty() ? 0 : columns.front().rows(); }

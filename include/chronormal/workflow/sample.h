@@ -202,8 +202,8 @@ struct SampleOutput {
                                                             std::size_t count);
 
 struct SampleSummary {
-  std::size_t normals = 0;  ///< that were written: moments x outputs
-  std::size_t zeros = 0;    ///< how many of them are (0, 0, 0)
+  std::size_t normals = 0;  ///< normals that were written: moments x outputs
+  std::size_t zeros = 0;    ///< normals among these that are (0, 0, 0)
   Drift drift = {};         ///< of those that were computed by this call, with stepping
 };
 

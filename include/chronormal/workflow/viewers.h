@@ -73,7 +73,7 @@ struct Viewer {
   double least_weight = 0;
   bool adds_tangents = true;     ///< of targets; else the tangents of the base stay, whatever the targets do
   std::size_t most_targets = 0;  ///< of a primitive; 0: no limit is known
-  std::string_view beyond = {};  ///< what becomes of a file with more targets, where there is a limit
+  std::string_view beyond = {};  ///< what happens to a file with more targets, where there is a limit
   std::string_view source = {};  ///< where this can be read
 
   [[nodiscard]] constexpr bool keeps_halves() const noexcept { return normals == NormalRule::kSum && bits == 16; }
