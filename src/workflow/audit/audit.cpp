@@ -1,4 +1,4 @@
-// What audits of glTF files and of sequences share.
+// Holds the parts that audits of glTF files and audits of sequences share.
 #include "chronormal/workflow/audit.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace chronormal {
 namespace {
 
-// Where such a bin ends, in degrees.
+// Returns the upper end of a fine bin, in degrees.
 double end_of_fine_bin(std::size_t bin) noexcept {
   const int doubling = static_cast<int>(bin) / kAuditBinsOfDoubling,
             part = static_cast<int>(bin) % kAuditBinsOfDoubling;
@@ -25,7 +25,7 @@ double end_of_fine_bin(std::size_t bin) noexcept {
 
 constexpr std::array<std::string_view, 6> kRules = {"gltf", "lerp", "nlerp", "slerp", "step", "flat"};
 
-// Whether two shards may belong to one audit: of the same vertices at the same samples, by the same rule.
+// Tells whether two shards may belong to one audit: they judge the same vertices at the same samples by the same rule.
 bool are_of_one(const Audit& a, const Audit& b) {
   const auto same_subject = [](const AuditSubject& one, const AuditSubject& other) {
     return one.kind == other.kind && one.weighting == other.weighting && one.segments == other.segments &&
@@ -84,12 +84,12 @@ MotionError error_of_mesh(const Audit& audit, std::size_t mesh) {
 }
 
 WorseRespects find_worse(const MotionError& after, const MotionError& before) noexcept {
-  // Degrees: a sum in float32 is off by 1e-7, and a normal may be a hundredth as long as what it is the sum of.
+  // Tolerances in degrees. A sum in float32 has an error of 1e-7, and a normal may be a hundredth as long as its terms.
   constexpr double kWorst = 0.05, kMean = 0.001;
-  // A mean may also grow because fewer pairs are judged, after deltas that were nothing but rounding are gone.
+  // The average may also grow because fewer samples are judged, once deltas that were only rounding are gone.
   const bool is_farther =
       after.mean() > before.mean() + kMean && after.sum > before.sum + kMean * static_cast<double>(after.judged);
-  // Of a hundred edges one may be torn by rounding where it was next to that.
+  // Rounding may tear one edge in a hundred that was close to torn before.
   const bool is_torn = after.samples > 0 && before.samples > 0 && after.torn_edges() > 1.01 * before.torn_edges() + 0.5;
   return {after.unlit > before.unlit, is_farther, after.worst > before.worst + kWorst, is_torn};
 }
@@ -116,9 +116,9 @@ void FineBins::add(const FineBins& other) {
     while (i < before && bins_[i].number() < other.bins_[j].number()) ++i;
     if (i == before || bins_[i].number() != other.bins_[j].number()) ++added;
   }
-  if (added > 0) bins_.reserve(before + added);  // no more than is needed
+  if (added > 0) bins_.reserve(before + added);  // no more than needed
   bins_.resize(before + added, Bin(0, 0));
-  // From the end, so that nothing is overwritten that is still to be read.
+  // Merges from the end, so that no bin is overwritten before it is read.
   for (std::size_t to = bins_.size(), from = other.bins_.size(); from > 0;) {
     const Bin& bin = other.bins_[from - 1];
     --to;
@@ -203,15 +203,15 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
   const Vec3d u0 = unit(from), u1 = unit(to);
   if (rule == AuditRule::kNlerp || u0 == Vec3d{} || u1 == Vec3d{}) return to_float(unit(lerp(u0, u1, t)));
   const double angle = angle_between(u0, u1), sine = portable::sin(angle);
-  constexpr double kStraight = 1e-9;  // near 0 and 180 degrees the arc is a line, or none
+  constexpr double kStraight = 1e-9;  // near 0 and 180 degrees the arc is a line, or undefined
   if (sine < kStraight) return to_float(unit(lerp(u0, u1, t)));
   return to_float((portable::sin((1 - t) * angle) / sine) * u0 + (portable::sin(t * angle) / sine) * u1);
 }
 
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error) {
   constexpr std::size_t kEdgeBlock = 4096;
-  // Two ends that are both within half of the least tear have none between them, which is so of most edges.
-  constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // less what is rounded
+  // If both ends of an edge are within half of the least tear, the edge is not torn. Most edges are skipped so.
+  constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // less a margin for rounding
   std::vector<std::uint8_t> is_far(part.vertices_of_edges());
   std::size_t far = 0;
   for (std::size_t i = 0; i < differences.size(); ++i) {
@@ -239,7 +239,7 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
 
 std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments, std::size_t fewest) noexcept {
   if (options.samples) return *options.samples;
-  // An odd number, so that the middle is among them.
+  // The number is odd, so that the middle is one of the samples.
   return std::clamp(kAuditSamplesOfAll / std::max<std::size_t>(1, segments) | 1U, fewest, kAuditSamples);
 }
 
@@ -277,7 +277,7 @@ void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, 
   const std::span<float> row = add_row(*kept.table, kept.subject, is_weight, at);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     float& worst = row[outputs[i].vertex];
-    worst = std::fmax(worst, degrees[i]);  // a number, where one of them is NaN
+    worst = std::fmax(worst, degrees[i]);  // fmax ignores NaN
   }
 }
 

@@ -13,7 +13,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 2048;
-constexpr std::ptrdiff_t kManyTargets = 8;  // adding up their deltas takes much longer than going between two ends
+constexpr std::ptrdiff_t kManyTargets =
+    8;  // adding up their deltas takes much longer than interpolating between two ends
 
 }  // namespace
 
@@ -81,7 +82,7 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   return true;
 }
 
-// Where the end of one segment is the start of the next, it is placed once.
+// Places both ends of a segment. If the segment starts where the last one ended, reuses that end.
 void BlendSource::place_ends(std::size_t segment) {
   if (!ends_) ends_ = SegmentEnds{};
   std::vector<double> start = weights(segment, 0), end = weights(segment, 1);
@@ -100,7 +101,7 @@ void BlendSource::place_ends(std::size_t segment) {
   ends_->end = std::move(end);
 }
 
-// Whether the weights that were placed are on the straight line between those of the ends, but for rounding.
+// Tells whether the placed weights lie on the straight line between the weights at both ends, apart from rounding.
 bool BlendSource::is_between_ends(double t) const {
   constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
   for (std::size_t k = 0; k < now_.size(); ++k) {
@@ -200,7 +201,7 @@ void BlendSource::place_base(std::span<Vec3d> positions) const {
     positions[i] = to_double(vector_at(shading_.set.base, vertices[i]));
 }
 
-// The deltas of an involved target, with vertices as the part numbers them.
+// Returns the deltas of an involved target, with vertices numbered as in the part.
 const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   if (moved_[k]) return *moved_[k];
   std::vector<Delta>& result = moved_[k].emplace();
@@ -218,10 +219,11 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   return result;
 }
 
-// The weights of the moment that was placed, and of those of its segment that follow.
+// Returns the weights of the placed moment and of the next ones in its segment.
 std::vector<std::vector<double>> BlendSource::now_and_next() const {
   std::vector<std::vector<double>> result = {now_};
-  // There may be a million samples. They are evenly spaced, so that none after t_ lies before this one.
+  // There may be a million samples, so the search starts near t_: samples are evenly spaced, so none after t_ lies
+  // before this one.
   auto i = static_cast<std::size_t>(t_ * static_cast<double>(samples_));
   while (i < samples_ && time_of_sample(i, samples_) <= t_) ++i;
   for (; i < samples_ && result.size() < StoredSums::kAtOnce; ++i)

@@ -1,4 +1,4 @@
-/// What a viewer makes of the mesh of a glTF file and its weights: a source of measure.h. Private to workflow.
+/// A source for measure.h: the mesh of a glTF file as a viewer shows it at given weights. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_
 
@@ -24,43 +24,43 @@ namespace chronormal::inline internal {
   return {v[0], v[1], v[2]};
 }
 
-/// A vertex of all parts together, as the file counts.
+/// Returns the place of a vertex of all parts together, numbered as in the file.
 [[nodiscard]] AuditPlace place_of(const GltfShading& shading, std::size_t vertex);
 
-/// The weights of the targets that are involved in a motion at t of a segment.
+/// Writes the weights of the targets that are involved in a motion, at t of a segment.
 using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
-/// The weight or the time that a person finds this by.
+/// Returns the weight or the time by which a person finds a moment.
 using Moment = std::function<double(std::size_t segment, double t)>;
 
 class BlendSource {
  public:
   static constexpr bool kNeedsEnds = false;
 
-  /// shading, truth and part must outlive this, and so must the skin through which the mesh is seen, if there is one;
-  /// where its joints move, moment says when. Outputs are those of the part. involved are targets, ascending: weights
-  /// are those of them alone, and the others have none at any time. A segment is placed at `samples` moments, one after
-  /// the other.
+  /// shading, truth, part and the skin through which the mesh is seen, if there is one, must outlive this. If its
+  /// joints move, moment returns the time. Outputs are the outputs of the part. involved lists targets in ascending
+  /// order: weights has one value for each of them, and all other targets always have weight 0. Each segment is placed
+  /// at `samples` moments, one after the other.
   BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
               std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
               MeshSkin* skin = nullptr);
 
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
-  /// Writes the positions at any weights, and leaves the moment that was placed as it is.
+  /// Writes the positions at any weights, and keeps the placed moment as it is.
   void place_at(std::span<const double> weights, std::span<Vec3d> positions);
-  /// The weights of the moment that was placed.
+  /// Returns the weights of the placed moment.
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
-  /// How often place() has placed anything.
+  /// Counts the calls of place() that changed anything.
   [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
-  /// Makes the truths of sums at the moment that was placed, or at any weights: adds what the author added to them.
+  /// Turns sums into true normals, at the placed moment or at any weights, by adding the author's own offset.
   void turn(std::span<const Vec3d> positions, std::span<Vec3d> normals) const { turn_at(now_, positions, normals); }
   void turn_at(std::span<const double> weights, std::span<const Vec3d> positions, std::span<Vec3d> normals) const;
-  /// Adds up the normals that are shown at the moment that was placed, and finds what the skin does to them.
+  /// Adds up the rendered normals at the placed moment, and finds how the skin transforms them.
   void show();
-  /// A normal of the i-th output, of any length, as it is seen: carried along by the skin, or else as it is.
+  /// Returns a normal of the i-th output as it is seen, of any length: carried along by the skin, if there is one.
   [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const noexcept;
-  /// Whether the skin leaves nothing of the right normal, so that no target could show any.
+  /// Tells whether the skin collapses the true normal, so that no target could render it.
   [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const;
   [[nodiscard]] const MeshSkin* skin() const noexcept { return skin_; }
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const;
@@ -69,8 +69,8 @@ class BlendSource {
 
  private:
   using Delta = std::pair<std::uint32_t, Vec3f>;
-  // Weights and positions at both ends of a segment. Tracks are mostly straight in between, and so are the ways of
-  // vertices then, so that the deltas of many targets are added up for the ends alone.
+  // Holds weights and positions at both ends of a segment. Tracks are mostly linear in between, and then vertices move
+  // on straight lines, so that the deltas of many targets are added up at the ends only.
   struct SegmentEnds {
     std::size_t segment = 0;
     std::vector<double> start, end;  // weights
@@ -93,9 +93,9 @@ class BlendSource {
   Weights weights_at_;
   Moment moment_;
   MeshSkin* skin_;
-  std::vector<AffineTransform> carriers_;  // of outputs, where there is a skin
+  std::vector<AffineTransform> carriers_;  // of outputs, if there is a skin
   std::size_t placed_ = 0;
-  std::vector<std::optional<std::vector<Delta>>> moved_;  // of each involved target, once it was asked for
+  std::vector<std::optional<std::vector<Delta>>> moved_;  // of each involved target, once requested
   std::vector<ShownTurn> turns_;                          // of outputs
   std::optional<SegmentEnds> ends_;
   bool known_ = false;
@@ -106,12 +106,12 @@ class BlendSource {
   std::span<const float> shown_now_, shown_start_, shown_end_;  // (outputs, 3)
 };
 
-/// The vertices whose normal some targets move: by a face around them, or by a stored delta. Of the rule flat, their
-/// corners.
+/// Finds the vertices whose normal some of the targets move, by a face around them or by a stored delta. For the rule
+/// flat, finds corners instead.
 [[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,
                                                        std::span<const std::size_t> involved, AuditRule rule);
 
-/// The part of a mesh that judges some outputs by the truth.
+/// Makes the part of a mesh that compares these outputs with the truth.
 [[nodiscard]] JudgedPart judged_part(const GltfShading& shading, const AuthorTruth& truth,
                                      std::vector<JudgedOutput> outputs, AuditRule rule);
 

@@ -1,5 +1,5 @@
-// Audits of glTF files. Of each mesh: how far the author's normals are from the geometry, what there is to note, every
-// target from weight 0 to 1, every track of weights, and every expression of an avatar.
+// Audits glTF files. For each mesh this measures the distance of the author's normals from the geometry, every target
+// from weight 0 to 1, every track of weights and every expression of an avatar, and collects notes.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -31,7 +31,7 @@
 namespace chronormal {
 namespace {
 
-// What an audit of one mesh needs to know.
+// Everything that the audit of one mesh needs to know.
 struct MeshAudit {
   const GltfDocument& document;
   const AuditOptions& options;
@@ -40,13 +40,13 @@ struct MeshAudit {
   std::span<const SurfaceEdge> edges;
   AuditRule rule;
   std::function<void()> progress;
-  ErrorTable* errors;  // nullptr: none are kept
+  ErrorTable* errors;  // nullptr if errors are not kept
   const AuditWatch& watch;
-  MeshSkin* standing;                    // through which targets and expressions are seen; nullptr: none
-  std::map<std::size_t, Error>& unread;  // why the skins of nodes cannot be read
+  MeshSkin* standing;                    // the skin for targets and expressions, or nullptr
+  std::map<std::size_t, Error>& unread;  // the reasons why skins of nodes cannot be read
 };
 
-// The skin of a node, which must have one; nothing where it cannot be read, which is noted.
+// Reads the skin of a node, which must have one. If the skin cannot be read, returns nothing and notes the reason.
 std::optional<MeshSkin> read_skin(const GltfDocument& document, const GltfShading& shading, std::size_t node,
                                   std::optional<std::size_t> animation, std::map<std::size_t, Error>& unread) {
   Result<MeshSkin> skin = MeshSkin::read(document, shading, node, animation);
@@ -55,7 +55,7 @@ std::optional<MeshSkin> read_skin(const GltfDocument& document, const GltfShadin
   return std::nullopt;
 }
 
-// The skin of the first node that has one and carries the mesh, as the file poses it.
+// Reads the skin of the first node that has one and carries the mesh, as the file poses it.
 std::optional<MeshSkin> standing_skin(const GltfDocument& document, const GltfShading& shading,
                                       std::map<std::size_t, Error>& unread) {
   const std::vector<GltfNode>& nodes = document.nodes();
@@ -65,10 +65,10 @@ std::optional<MeshSkin> standing_skin(const GltfDocument& document, const GltfSh
   return read_skin(document, shading, static_cast<std::size_t>(found - nodes.begin()), std::nullopt, unread);
 }
 
-// Tracks by animation and index.
+// Tracks, by animation and index.
 using Tracks = std::vector<std::pair<std::size_t, std::size_t>>;
 
-// The tracks that drive a mesh, in the animations that are asked for.
+// Lists the tracks that drive a mesh, in the requested animations.
 Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<std::size_t> only) {
   Tracks tracks;
   for (std::size_t a = 0; a < document.animations().size(); ++a) {
@@ -79,7 +79,7 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
   return tracks;
 }
 
-// Measures how far base normals are from the sums that the truth adds up.
+// Measures the angles between base normals and the sums that the truth adds up.
 void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, AuthoredOffset& offset) {
   const auto position = [&](std::uint32_t v) { return to_double(vector_at(shading.set.base, v)); };
   std::vector<Vec3d> sums(shading.groups.size());
@@ -100,7 +100,7 @@ void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, Auth
   }
 }
 
-// Notes how far base normals are from the geometry, where there are any.
+// Notes the angles between base normals and the geometry, if there are base normals.
 void note_offset(const GltfShading& shading, const AuthorTruth& truth, std::optional<Weighting> asked, Audit& result) {
   const AuthoredWeighting authored = find_authored_weighting(shading);
   const bool any_shaded = std::any_of(shading.element_of_vertex.begin(), shading.element_of_vertex.end(),
@@ -115,7 +115,7 @@ void note_offset(const GltfShading& shading, const AuthorTruth& truth, std::opti
   result.offsets.push_back(offset);
 }
 
-// Reads what a mesh was before it was baked; returns nothing where that is not known.
+// Reads the mesh as it was before it was baked; returns nothing if the original is not known.
 Result<std::optional<GltfShading>> shading_of_author(const AuditOptions& options, const GltfShading& baked) {
   if (options.author == nullptr || baked.mesh >= options.author->meshes().size()) return std::optional<GltfShading>();
   Result<GltfShading> read = read_gltf_shading(*options.author, baked.mesh, {.weld = options.weld});
@@ -132,31 +132,30 @@ JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
   JudgedPart part =
       judged_part(mesh.shading, mesh.truth, moving_outputs(mesh.shading, mesh.truth, involved, mesh.rule), mesh.rule);
   if (mesh.rule != AuditRule::kFlat)
-    part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());  // facets have no folds between them
+    part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());  // the rule flat has no folds between facets
   return part;
 }
 
-// The weights of the targets that are involved in a subject: those of the specification, and those that each viewer
-// plays.
+// The weights of the targets that are involved in a subject: as specified, and as each viewer plays them.
 struct SubjectWeights {
   Weights specified;
   std::vector<Weights> played;
 };
 
-// A subject, and what viewers show of it.
+// A subject with its errors in each viewer.
 struct Measured {
   AuditSubject subject;
   std::vector<ViewerError> of_viewers;
 };
 
-// Spreads the weights of the targets that are involved over all.
+// Returns weights for all targets: zero for each target that is not involved.
 std::vector<double> of_all_targets(std::span<const double> weights, const Involved& involved, std::size_t targets) {
   std::vector<double> all(targets);
   for (std::size_t i = 0; i < involved.size(); ++i) all[involved[i]] = weights[i];
   return all;
 }
 
-// The same weights, for the targets that are involved, of a function that fills in those of all.
+// Makes a function that keeps only the weights of involved targets from one that fills in the weights of all targets.
 Weights of_involved(const Involved& involved, std::size_t targets, Weights all_weights) {
   return [&involved, targets, all_weights = std::move(all_weights)](std::size_t segment, double t,
                                                                     std::span<double> weights) {
@@ -166,8 +165,8 @@ Weights of_involved(const Involved& involved, std::size_t targets, Weights all_w
   };
 }
 
-// The segments of a track, or one of a target, all of them in memory, so that there can be no error; of long tracks every
-// so many of them.
+// The segments of a track, or the one segment of a target. All of them are in memory, so that no error can occur. Of
+// long tracks only every step-th segment is measured.
 struct SegmentsOfTrack {
   std::size_t count, step;
   const std::function<void()>& progress;
@@ -187,7 +186,7 @@ struct SegmentsOfTrack {
   }
 };
 
-// Measures a subject that will be the one of this index; nothing where there is nothing to judge.
+// Measures a subject, which will get this index; returns nothing if no output can be judged.
 std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const Involved& involved,
                                      const SubjectWeights& weights, const Moment& moment, MeshSkin* skin,
                                      AuditSubject subject, std::size_t index) {
@@ -230,7 +229,7 @@ void add_subject(Measured measured, Audit& result) {
   result.subjects.push_back(std::move(measured.subject));
 }
 
-// Audits a target from weight 0 to 1. Extra targets of a bake get the weights that follow.
+// Audits a target from weight 0 to 1. Correction targets of a bake get the weights that follow from it.
 void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const GltfShading& shading = mesh.shading;
   Involved involved = {k};
@@ -260,7 +259,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
     of_targets[k] = weight_at(t);
     fill_extra_weights(shading, of_targets);
   };
-  // There may be thousands of targets, so that nothing is done for each of them here without need.
+  // A mesh may have thousands of targets, so this path does no work for each of them unless it must.
   weights.specified = [&](std::size_t, double t, std::span<double> alone) { alone[0] = weight_at(t); };
   if (shading.mark) weights.specified = of_involved(involved, shading.set.targets.size(), with_extras);
   for (const Viewer& viewer : mesh.options.viewers) {
@@ -283,8 +282,8 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   add_subject(std::move(*measured), result);
 }
 
-// Audits the weights between two keys of a track, and what of the mesh they move. Nothing for a track that moves
-// nothing.
+// Audits the weights between two keys of a track, and the part of the mesh that they move. Returns nothing for a track
+// that moves nothing.
 Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t animation, std::size_t index,
                                             std::size_t subject_index) {
   const GltfTrack& track = mesh.document.animations()[animation].tracks[index];
@@ -337,10 +336,10 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
                       std::move(subject), subject_index);
 }
 
-// Audits all tracks of a mesh; those with the same keys are measured once, and are subjects each.
+// Audits all tracks of a mesh. Tracks with the same keys are measured once, but each of them is a subject.
 Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_targets_judged, double worst_target,
                     Audit& result) {
-  // By animation, same_keys_as, and the skin of the node.
+  // The key is the animation, same_keys_as, and the skin of the node.
   using Curve = std::tuple<std::size_t, std::size_t, bool, std::optional<std::uint32_t>>;
   std::map<Curve, std::optional<Measured>> of_curves;
   for (const auto& [animation, index] : tracks) {
@@ -370,8 +369,8 @@ Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_target
   return Success{};
 }
 
-// Audits poses that stand still, and returns what was measured. Each is a segment, which goes from the pose, where it is
-// judged, to the base: how short a normal is follows from both.
+// Audits static poses, and returns the measured subject. Each pose becomes a segment that runs from the pose, which
+// alone is judged, to the base, because the judgement of short normals needs both.
 std::optional<Measured> measure_poses(const MeshAudit& mesh, const PoseList& poses, MeshSkin* skin,
                                       AuditSubject subject, std::size_t index) {
   const std::size_t targets = mesh.shading.set.targets.size();
@@ -401,7 +400,7 @@ std::optional<Measured> measure_poses(const MeshAudit& mesh, const PoseList& pos
   return measure_part(mesh, part_of(mesh, involved), involved, weights, moment, skin, std::move(subject), index);
 }
 
-// Audits an expression of an avatar at its full strength, with the weights of extra targets that follow.
+// Audits an expression of an avatar at full strength, with the weights of correction targets that follow from it.
 void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_target, Audit& result) {
   const GltfExpression& expression = mesh.document.meshes()[mesh.shading.mesh].expressions[index];
   std::vector<double> full = expression.weights;
@@ -420,7 +419,7 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
   add_subject(std::move(*measured), result);
 }
 
-// The weights with which a file opens, each once, and the first node that shows them; only those that are not all 0.
+// Lists the distinct weights with which a file opens, except all zeros, and the first node that shows each of them.
 std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> opening_poses(const GltfDocument& document,
                                                                                       std::size_t mesh) {
   std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> poses;
@@ -450,7 +449,7 @@ void add_poses(std::optional<Measured> measured, Audit& result) {
   add_subject(std::move(*measured), result);
 }
 
-// Audits the poses in which a mesh is when the file opens.
+// Audits the poses of a mesh when the file opens.
 void audit_openings(const MeshAudit& mesh, Audit& result) {
   for (const auto& [weights, node] : opening_poses(mesh.document, mesh.shading.mesh)) {
     AuditSubject subject;
@@ -464,7 +463,7 @@ void audit_openings(const MeshAudit& mesh, Audit& result) {
   }
 }
 
-// The poses that are asked for, of the mesh.
+// Returns the requested poses of the mesh.
 PoseList asked_poses(const GltfDocument& document, const AuditOptions& options, std::size_t mesh) {
   constexpr unsigned kSeed = 51;
   const GltfMesh& of_mesh = document.meshes()[mesh];
@@ -488,7 +487,7 @@ void audit_asked_poses(const MeshAudit& mesh, Audit& result) {
   add_poses(measure_poses(mesh, poses, mesh.standing, std::move(subject), result.subjects.size()), result);
 }
 
-// The segments of all subjects.
+// Counts the segments of all subjects.
 std::size_t count_segments(const GltfDocument& document, const AuditOptions& options, std::optional<std::size_t> only) {
   std::size_t total = 0;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
@@ -501,7 +500,7 @@ std::size_t count_segments(const GltfDocument& document, const AuditOptions& opt
   return total;
 }
 
-// The samples of all subjects of a mesh, at most.
+// Bounds the number of samples of all subjects of a mesh.
 std::size_t count_rows(const GltfDocument& document, std::size_t mesh, const Tracks& tracks, bool only_tracks,
                        const AuditOptions& options) {
   const GltfMesh& of_mesh = document.meshes()[mesh];
@@ -517,7 +516,7 @@ std::size_t count_rows(const GltfDocument& document, std::size_t mesh, const Tra
   return rows;
 }
 
-// The table of a mesh, still without rows.
+// Makes the table of a mesh, with no rows yet.
 ErrorTable table_of(const GltfShading& shading) {
   ErrorTable table{"mesh" + std::to_string(shading.mesh), ElementKind::kVertices, shading.set.topology,
                    shading.set.base};

@@ -1,4 +1,4 @@
-// Looks for what an audit has to say of a glTF file beside its errors.
+// Finds what an audit reports about a glTF file besides its errors.
 #include "workflow/audit/gltf_findings.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ bool moves_vertices(const GltfShading& shading, std::size_t k, const GltfPart& p
   return first != moved.end() && *first < part.first_vertex + part.vertex_count;
 }
 
-// How far tangents are from perpendicular to the right normal at weight 1, beyond what they are in the base.
+// Finds tangents that are farther from perpendicular to the true normal at weight 1 than they are in the base.
 std::optional<AuditFinding> stale_tangents(const GltfShading& shading, const AuthorTruth& truth, AuditRule rule,
                                            std::size_t k, const JudgedPart& part, std::span<const std::size_t> involved,
                                            const Weights& weights) {
@@ -155,7 +155,7 @@ std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const G
 std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged, double worst_target) {
   std::optional<AuditFinding> fault = find_wrong_normals(subject);
   if (!fault || fault->kind == Kind::kUnlit) return fault;
-  // What is not more than that is said of the targets already.
+  // The targets already report an error of this size.
   if (are_targets_judged && worst_target > kAuditFault && subject.error.worst <= worst_target + kAuditFault)
     return std::nullopt;
   if (are_targets_judged) fault->kind = Kind::kWrongTogether;

@@ -16,17 +16,17 @@
 
 namespace chronormal::inline internal {
 
-/// What one task takes.
+/// The number of elements or outputs that one task handles.
 inline constexpr std::size_t kRange = 4096;
 
-/// Where terms cancel, a sum below this share of their size is nothing but rounding, and has no direction.
+/// If terms cancel to less than this share of their size, the sum is only rounding error and has no direction.
 inline constexpr double kRoundingOfTerms = 1e-13;
 
-/// By how much the normal of a polygon may change, at most, where each coordinate of its corners is rounded to float32,
-/// which changes it by 2^-24 of itself: d n is the sum over the corners of d p[c] x (p[c+1] - p[c-1]).
+/// Bounds the change of a polygon's normal if each coordinate of its corners is rounded to float32, which changes a
+/// coordinate by 2^-24 of itself: d n is the sum over the corners of d p[c] x (p[c+1] - p[c-1]).
 template <class VertexAt>
 [[nodiscard]] double rounding_of_area(std::size_t corners, const VertexAt& vertex) {
-  constexpr double kOfVector = 1.7320508075688772 / (1 << 24);  // of the largest of three coordinates
+  constexpr double kOfVector = 1.7320508075688772 / (1 << 24);  // relative to the largest of three coordinates
   double sum = 0;
   for (std::size_t c = 0; c < corners; ++c) {
     const Vec3d chord = vertex((c + 1) % corners) - vertex((c + corners - 1) % corners);
@@ -35,32 +35,32 @@ template <class VertexAt>
   return sum;
 }
 
-/// Something that shows a normal: a vertex, or a corner where a vertex has several normals.
+/// An output shows a normal: it is a vertex, or a corner if the vertex has several normals.
 struct JudgedOutput {
   std::uint32_t vertex = 0, element = 0;
-  std::uint32_t face = 0, corner = 0;  ///< where a rule looks at them
+  std::uint32_t face = 0, corner = 0;  ///< for rules that need them
 };
 
 struct PartNormals {
   std::vector<Vec3d> faces, elements;
-  std::vector<double> sizes;  ///< of each element, the largest components of the terms of its normal, added up
+  std::vector<double> sizes;  ///< for each element, the sum of the largest components of its normal's terms
 };
 
-/// The elements of some outputs, and the faces and vertices that these need, numbered anew.
+/// The elements of some outputs, and the faces and vertices that they need, renumbered.
 class JudgedPart {
  public:
-  /// Elements and faces of the outputs become those of this part; their vertices and corners stay those of the mesh.
-  /// Without needs_faces, normals() may leave out those of faces. groups need no corners where the weighting is area.
-  /// Where there are sums, the normals of elements are those, and the sums must outlive this.
+  /// Elements and faces of the outputs are renumbered for this part; their vertices and corners stay those of the mesh.
+  /// Without needs_faces, normals() may leave out the normals of faces. groups need no corners if the weighting is
+  /// area. If sums is given, it supplies the normals of elements and must outlive this.
   JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
              std::vector<JudgedOutput> outputs, bool needs_faces = true, const AuthorSums* sums = nullptr);
 
-  /// Its vertices and its elements, as the mesh numbers them, ascending.
+  /// Return the vertices and the elements of the part, as the mesh numbers them, ascending.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const std::uint32_t> elements() const noexcept { return elements_; }
   [[nodiscard]] std::span<const JudgedOutput> outputs() const noexcept { return outputs_; }
 
-  /// The faces of an element, and the corners of a face, numbered as in vertices().
+  /// Returns the faces of an element. corners_of() numbers the corners of a face as vertices() does.
   [[nodiscard]] std::span<const std::uint32_t> faces_of(std::size_t element) const noexcept {
     return std::span(faces_of_element_)
         .subspan(element_offsets_[element], element_offsets_[element + 1] - element_offsets_[element]);
@@ -68,47 +68,48 @@ class JudgedPart {
   [[nodiscard]] std::span<const std::uint32_t> corners_of(std::size_t face) const noexcept {
     return std::span(face_vertices_).subspan(face_offsets_[face], face_offsets_[face + 1] - face_offsets_[face]);
   }
-  /// Pairs of neighbours, as vertices of the mesh, among them all that have an output; and which output a vertex has, or
-  /// one behind all of them.
+  /// Returns the edges as pairs of vertices of the mesh; every edge between two vertices that have an output is among
+  /// them. output_of() returns the output of a vertex, or an index past all outputs if it has none.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const noexcept {
     return own_edges_.empty() ? edges_ : own_edges_;
   }
   [[nodiscard]] std::uint32_t output_of(std::uint32_t vertex) const noexcept { return output_of_[vertex]; }
-  /// How many vertices the mesh of these edges has.
+  /// Returns the number of vertices of the mesh that has these edges.
   [[nodiscard]] std::size_t vertices_of_edges() const noexcept { return output_of_.size(); }
-  /// Takes the edges of a mesh of so many vertices, which must outlive this. Every vertex must have one output at most.
+  /// Takes the edges of a mesh with this many vertices, which must outlive this. Every vertex must have one output at
+  /// most.
   void set_edges(std::span<const std::array<std::uint32_t, 2>> edges, std::size_t vertex_count);
   [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }
-  /// Where a vertex of the mesh is in vertices(); of parts with sums, and vertices that they need.
+  /// Returns the index in vertices() of a vertex of the mesh. The part must have sums that need the vertex.
   [[nodiscard]] std::uint32_t place_of(std::uint32_t vertex) const noexcept { return places_[vertex]; }
 
-  /// Computes the normals of its faces and elements from positions of vertices(): cross products, and for elements
-  /// their weighted sums (normals/weighting.h) or the given ones, without a look at what is rounding.
+  /// Computes the normals of faces and elements from the positions of vertices(): cross products, and for elements
+  /// their weighted sums (normals/weighting.h) or the given sums. Sums that are only rounding error are not removed.
   void normals(std::span<const Vec3d> positions, PartNormals& result) const;
 
-  /// By how much the normal of an element may change, at most, where each of these positions is rounded to float32. The
-  /// weights of its faces count as if they stayed the same.
+  /// Bounds the change of an element's normal if each of these positions is rounded to float32. The weights of its
+  /// faces count as constant.
   [[nodiscard]] double rounding_of(std::span<const Vec3d> positions, std::size_t element) const;
 
  private:
   void given_normals(std::span<const Vec3d> positions, PartNormals& result) const;
   void weighted_normals(std::span<const Vec3d> positions, PartNormals& result) const;
   [[nodiscard]] Vec3d face_normal(std::span<const Vec3d> positions, std::size_t face) const;
-  // What a corner of a face adds to the normal of its element.
+  // Returns the term that a corner of a face adds to the normal of its element.
   [[nodiscard]] Vec3d term(std::span<const Vec3d> positions, std::size_t face, std::size_t corner,
                            const Vec3d& normal) const;
 
   std::vector<std::uint32_t> vertices_, elements_;
-  std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;        // of this part
-  std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // of this part
-  std::vector<std::uint32_t> corners_of_element_;  // 0, 1, 2 ... within these faces; empty where faces count by area
+  std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;        // as the part numbers them
+  std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // as the part numbers them
+  std::vector<std::uint32_t> corners_of_element_;  // 0, 1, 2 ... within these faces; empty if faces count by area
   Weighting weighting_;
   const AuthorSums* sums_;
-  std::vector<std::uint32_t> places_;  // of the vertices of the mesh, in vertices_
-  bool keeps_faces_;  // or each element computes the normals of its faces: no memory, and little time for small ones
+  std::vector<std::uint32_t> places_;  // for vertices of the mesh, their indices in vertices_
+  bool keeps_faces_;  // else each element computes its faces' normals: no memory, and little time for small elements
   std::vector<JudgedOutput> outputs_;
   std::span<const std::array<std::uint32_t, 2>> edges_;
-  std::vector<std::array<std::uint32_t, 2>> own_edges_;  // those of a small part
+  std::vector<std::array<std::uint32_t, 2>> own_edges_;  // edges of a small part
   std::vector<std::uint32_t> output_of_;
 };
 

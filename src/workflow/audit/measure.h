@@ -1,4 +1,4 @@
-/// The loop of an audit: the right normals of the part of a mesh that moves, and what is shown instead. Private to
+/// The loop of an audit: compares the true normals of the moving part of a mesh with the rendered ones. Private to
 /// workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_
@@ -25,27 +25,27 @@
 
 namespace chronormal::inline internal {
 
-/// Below this part of its largest control normal, a normal is left out of all sums: what stored normals show there is
-/// mostly what they had to be elsewhere. A gate looks at it all the same, as long as it has a direction.
+/// A normal shorter than this share of its largest control normal is left out of all sums: the stored normals there
+/// mostly follow from what they must be elsewhere. A gate still judges the normal as long as it has a direction.
 inline constexpr double kVanished = 1e-4;
 
-/// Stands for the error of a pair whose faces have an area, while their normals cancel.
+/// Stands for the error of a sample whose faces have an area but whose normals cancel.
 inline constexpr double kCancels = -3;
 
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditSamplesOfAll = 210;
 inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
 
-/// The bin of the histogram for an error of [0, 180] degrees.
+/// Returns the bin of the histogram for an error in [0, 180] degrees.
 [[nodiscard]] inline std::size_t bin_of(double degrees) noexcept {
   std::size_t bin = 0;
   for (const double edge : kAuditBinEdges) bin += degrees >= edge ? 1U : 0U;
   return bin;
 }
 
-/// The fine bin for it. Where a viewer rounds otherwise than to nearest, an angle may also be -0, or a little beyond
-/// 180: nothing may be indexed by such bits unchecked.
+/// Returns the fine bin for an error. With a rounding mode other than to nearest, an angle may also be -0 or slightly
+/// more than 180: check the result before using it as an index.
 [[nodiscard]] inline std::size_t fine_bin_of(double degrees) noexcept {
-  // Each doubling is an exponent of double, and its bins are the first bits of the fraction; both together are one
+  // Each doubling is an exponent of double, and its bins are the first bits of the fraction. Both together are one
   // number.
   static_assert(kAuditBinsOfDoubling == 128);
   constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
@@ -55,29 +55,30 @@ inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
   return static_cast<std::size_t>(std::min<std::uint64_t>(fine_bin, kAuditFineBins - 1));
 }
 
-/// How far what is shown is from a right direction, in degrees, at least: less what may have turned it where rounding
-/// changes the normal behind it, of this length, by so much. kNotJudged where rounding may give it any direction.
+/// Returns a lower bound, in degrees, of the angle between the rendered and the true direction. It subtracts the angle
+/// by which a rounding error of this size may have turned a normal of this length. Returns kNotJudged if rounding may
+/// give the normal any direction.
 [[nodiscard]] double faint_degrees(const Vec3d& shown, const Vec3d& right, double length, double rounding) noexcept;
 
-/// What a rule shows between two stored normals; (0, 0, 0) where that is zero.
+/// Returns the normal that a rule renders between two stored normals, or (0, 0, 0) if the blend is zero.
 [[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
 
-/// The samples of each of some segments, or of some targets alone.
+/// Returns the number of samples in each of these segments, or in each target alone.
 [[nodiscard]] std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments,
                                               std::size_t fewest = kAuditFewSamples) noexcept;
 
-/// Where the i-th sample of a segment is in it.
+/// Returns the position of the i-th sample in its segment.
 [[nodiscard]] inline double time_of_sample(std::size_t i, std::size_t samples) noexcept {
   return samples > 1 ? static_cast<double>(i) / static_cast<double>(samples - 1) : 0;
 }
 
 [[nodiscard]] Status check_samples(const AuditOptions& options);
 
-/// The offset of stored normals from the geometry by the weighting that was asked for, or else the detected one.
+/// Returns the angle of stored normals from the geometry, by the requested weighting or else by the detected one.
 [[nodiscard]] AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<Weighting> asked);
 
-/// The fault of a subject whose stored normals are off by more than kAuditFault: where they cannot be lit, or else at
-/// keys, or else between them.
+/// Finds the fault of a subject whose stored normals have an error above kAuditFault: normals that cannot be lit come
+/// first, then errors at keys, then errors between them.
 [[nodiscard]] std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject);
 
 /// Adds the errors of a segment to those of its subject.
@@ -86,25 +87,25 @@ inline void add_segment(const SegmentErrors& found, AuditSubject& subject) {
   subject.at_keys.add(found.at_keys);
 }
 
-/// Sums over the subjects, finds the worst of them, and puts faults before notes.
+/// Adds up all subjects, finds the worst one, and puts faults before notes.
 void finish(Audit& result);
 
-// A source is a motion with what is shown on the way:
-//     place(segment, t, positions)   writes the positions of the part; false where nothing differs from the last call
+// A source is a motion together with the normals that are rendered on the way:
+//     place(segment, t, positions)   writes the positions of the part; returns false if nothing differs from the last call
 //     forget()                       makes the next call differ
-//     turn(positions, normals)       makes right directions of the normals of the part, as long as they are
-//     begin(start, end)              gets the normals of elements at both ends before the samples (where kNeedsEnds)
-//     show()                         is called where something was placed, before shown()
-//     shown(output)                  a normal of any length, zero for none
-//     seen(i, n)                     what becomes of a normal of the i-th output on its way to the screen
-//     right(output, n)               the direction for a normal of the geometry
-//     hides(output, n)               whether what is seen has no direction, however right: such a pair is not judged
-//     at(segment, t, output)         for people
+//     turn(positions, normals)       turns the normals of the part into true directions, and keeps their lengths
+//     begin(start, end)              gets the normals of elements at both ends before the samples (if kNeedsEnds)
+//     show()                         is called after each placement, before shown()
+//     shown(output)                  returns a normal of any length, zero if there is none
+//     seen(i, n)                     returns a normal of the i-th output as it reaches the screen
+//     right(output, n)               returns the true direction for a normal of the geometry
+//     hides(output, n)               tells whether the true normal has no direction on the screen; it is not judged then
+//     at(segment, t, output)         returns the place in terms for people
 //
-// Segments are what it is measured on:
-//     look_over(look)                calls look(segment) for those from which the largest normals follow; a Status
-//     maximize(numbers)              makes each number the largest that processes with other segments have
-//     over(subject, work)            adds work(segment), the errors of each that is measured, to its subject; a Status
+// Segments tell where to measure:
+//     look_over(look)                calls look(segment) for segments that determine the largest normals; returns a Status
+//     maximize(numbers)              replaces each number by the largest of all processes that have other segments
+//     over(subject, work)            adds work(segment), the errors of each measured segment, to its subject; a Status
 
 /// Positions and normals of a part, as the source has placed it.
 struct PlacedPart {
@@ -126,9 +127,9 @@ struct PlacedPart {
   PartNormals normals;
 };
 
-/// The length of the largest control normal of each element in all segments. The control normals of a quadratic
-/// follow from its ends and its middle. (On curved paths they are those of the parabola through these three, which is
-/// near enough for a scale.)
+/// Returns the length of the largest control normal of each element in all segments. The control normals of a quadratic
+/// follow from its ends and its middle. (On curved paths they belong to the parabola through these three, which is near
+/// enough for a scale.)
 template <class Source, class Segments>
 [[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, Segments& segments,
                                                                   PlacedPart& placed) {
@@ -152,9 +153,9 @@ template <class Source, class Segments>
   return largest;
 }
 
-/// Adds the errors of some outputs, in their order, to a result that has none yet, as MotionError::add() and
-/// add_unlit() do. degrees(output, i) is that of the i-th of them, kNotLit or kNotJudged; faint(output, i) is asked for
-/// that of a pair that is not judged, which a gate looks at: kNotJudged where no face around has an area, or kCancels.
+/// Adds the errors of some outputs, in their order, to an empty result, as MotionError::add() and add_unlit() do.
+/// degrees_of returns the error of an output, kNotLit or kNotJudged. faint_of is called for samples that are not judged
+/// but that a gate looks at: it returns their error, kNotJudged if no face around has an area, or kCancels.
 template <class Degrees, class Faint, class At>
 void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
                 MotionError& result) {
@@ -197,14 +198,14 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
     if (counts[bin] > 0) result.counts.add(bin, counts[bin]);
 }
 
-/// Makes a vector that is nearly of length 1, as most here are, or of any other, one of length 1.
+/// Returns a vector of length 1. Most inputs have nearly that length already and are returned as they are.
 [[nodiscard]] inline Vec3d to_unit(const Vec3d& v) noexcept {
-  constexpr double kNear = 1e-6;  // lengths of float32 are closer
+  constexpr double kNear = 1e-6;  // lengths in float32 are closer
   return std::fabs(dot(v, v) - 1) < kNear ? v : unit(v);
 }
 
-/// What is shown less what is right, as unit vectors: the other side where nothing can be lit, NaN where a pair is not
-/// judged.
+/// Returns the rendered minus the true unit normal: the opposite side if the normal cannot be lit, NaN if the sample is
+/// not judged.
 [[nodiscard]] inline Vec3f difference(double judged, const Vec3d& shown, const Vec3d& right) noexcept {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   if (judged == kNotJudged || right == Vec3d{}) return {kNan, kNan, kNan};
@@ -212,16 +213,16 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
   return to_float(judged == kNotLit ? -2.0 * u : to_unit(shown) - u);
 }
 
-/// Counts the torn edges of a part, of which these are the differences between what is shown and what is right: unit
-/// vectors of outputs, NaN where none is judged.
+/// Counts the torn edges of a part. differences has, for each output, the rendered minus the true unit normal, or NaN
+/// if the output is not judged.
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error);
 
-/// What is right at an output, as it is placed.
+/// The true normal of a placed output.
 struct RightOutput {
   Vec3d direction;          ///< as source.right() has it
   bool is_hidden = false;   ///< as source.hides() has it
-  bool has_normal = false;  ///< whether the normal is long enough to be judged by
-  bool has_area = false;    ///< whether a face around it is drawn: one without area is not, whatever its normal
+  bool has_normal = false;  ///< tells whether the normal is long enough to judge by
+  bool has_area = false;    ///< tells whether a face around it is drawn: faces without area are not drawn
 };
 
 template <class Source>
@@ -233,9 +234,9 @@ template <class Source>
           placed.normals.sizes[output.element] > least};
 }
 
-/// The errors of all outputs as they are placed. shown(i, output) is the normal that the i-th of them shows, and
-/// right(i, output) what is right there. each, where it is not empty, gets that of the i-th in degrees, NaN where none
-/// is judged.
+/// Returns the errors of all placed outputs. shown(i, output) returns the rendered normal of the i-th output, and
+/// right(i, output) the true one. If each is not empty, it receives the error of each output in degrees, NaN if the
+/// output is not judged.
 template <class Source, class Shown, class Right>
 [[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat, std::size_t segment,
                                    double t, const Shown& shown, const Right& right, std::span<float> each = {}) {
@@ -253,7 +254,7 @@ template <class Source, class Shown, class Right>
         is_shown[k] = shown(from + k, outputs[from + k]);
         const RightOutput& is = right(from + k, outputs[from + k]);
         const bool may_be_lit = is_flat ? is_shown[k] != Vec3d{} : is.has_area;
-        // A skin may leave nothing of a normal that is right.
+        // A skin may collapse a true normal.
         of_some[k] = is.is_hidden                                                        ? kNotJudged
                      : !is_finite(is_shown[k]) || (may_be_lit && is_shown[k] == Vec3d{}) ? kNotLit
                      : !is.has_normal || !may_be_lit                                     ? kNotJudged
@@ -296,31 +297,31 @@ template <class Source, class Shown, class Right>
   return all;
 }
 
-/// Where single errors are kept, and which subject they are of.
+/// The table that keeps single errors, and the subject that they belong to.
 struct KeptErrors {
-  ErrorTable* table = nullptr;  ///< nullptr: nowhere
+  ErrorTable* table = nullptr;  ///< nullptr if errors are not kept
   std::size_t subject = 0;
-  bool are_watched = false;  ///< each_sample looks at them
+  bool are_watched = false;  ///< tells whether each_sample uses them
 
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
 
-/// A sample that was measured.
+/// A measured sample.
 struct MeasuredSample {
   std::size_t segment = 0;
   double t = 0;
   const PlacedPart& placed;
   std::span<const double> largest;  ///< as largest_control_normals() has it
   const MotionError& error;
-  std::span<const float> each;  ///< that of each output, NaN where none is judged; empty where nobody keeps them
+  std::span<const float> each;  ///< errors of outputs, NaN if not judged; empty if not kept
 };
 
-/// Appends the errors of the outputs at a sample: the worst of each vertex.
+/// Appends the errors of the outputs at a sample: the worst error of each vertex.
 void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
                  bool is_weight, double at);
 
-/// Measures all samples of segments of a subject, and fills in its errors. Each sample is told to each_sample(measured
-/// sample). Errors: those of the segments.
+/// Measures all samples of the segments of a subject, and fills in its errors. Calls each_sample(measured sample) for
+/// each of them. Errors: as the segments return them.
 template <class Source, class Segments, class EachSample>
 [[nodiscard]] Status measure(Source& source, Segments segments, const JudgedPart& part, AuditRule rule,
                              AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {

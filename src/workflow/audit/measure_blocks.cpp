@@ -17,17 +17,17 @@
 namespace chronormal::inline internal {
 namespace {
 
-// As many blocks at a time as keep all threads busy, while their results stay few.
+// Enough blocks are measured at a time to keep all threads busy, and few enough to keep their results small.
 constexpr std::size_t kBlocksPerWaveAndThread = 8;
 
-// The errors of a block at all samples of a segment take 20 kB each.
+// The errors of a block at one sample of a segment take 20 kB.
 constexpr std::size_t kMostSamples = 128;
 
 // Some outputs, and the faces from which their normals are computed.
 struct Block {
   IndexRange outputs, elements;
   std::vector<std::uint32_t> corners;           // three vertices of the mesh for each face of the block
-  std::vector<std::uint32_t> faces, face_ends;  // of each element, as the block numbers them
+  std::vector<std::uint32_t> faces, face_ends;  // for each element, as the block numbers them
 };
 
 std::vector<Block> make_blocks(const JudgedPart& part) {
@@ -56,16 +56,16 @@ std::vector<Block> make_blocks(const JudgedPart& part) {
   return blocks;
 }
 
-// The memory that it takes to measure a block.
+// The memory that is needed to measure a block.
 struct Scratch {
   TrianglesInMotion triangles;
   std::vector<TrianglesInMotion::Normal> faces;
-  PlanesOf4 start, end, between;  // right normals, at the ends of a segment and inside
-  PlanesOf4 from, to;             // what a viewer keeps of those at the ends
+  PlanesOf4 start, end, between;  // true normals at both ends of a segment and inside
+  PlanesOf4 from, to;             // the true normals at the ends as a viewer keeps them
   std::vector<double> degrees;
 };
 
-// The sums of the normals of faces, and of their sizes.
+// Adds up the normals of faces around each element, and their sizes.
 void add_up_at(const Block& block, double t, Scratch& scratch, PlanesOf4& result) {
   scratch.triangles.normals(t, scratch.faces);
   sums_around(scratch.faces, block.faces, block.face_ends, result);
@@ -75,11 +75,11 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
   return without_rounding(Vec3d{sums.x[e], sums.y[e], sums.z[e]}, kRoundingOfTerms * sums.w[e]);
 }
 
-// Does what largest_control_normals() in measure.h does: enlarges the lengths where they are larger in these segments.
+// Does the work of largest_control_normals() in measure.h: raises each length to the largest one in these segments.
 void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
                           std::vector<double>& largest) {
   Scratch scratch;
-  std::optional<std::size_t> keyframe;  // that scratch.end belongs to
+  std::optional<std::size_t> keyframe;  // the keyframe of scratch.end
   for (const std::size_t s : segments) {
     const Segment segment = motion.segment(s);
     scratch.triangles.gather(segment.from, segment.to, block.corners);
@@ -98,7 +98,7 @@ void keep_largest_normals(const Motion& motion, std::span<const std::size_t> seg
   }
 }
 
-// Makes each number the largest that a peer has there, all of them in one go.
+// Replaces each number by the largest that any peer has, with one exchange for all numbers.
 void maximize(const SegmentRun& run, std::vector<std::vector<double>>& numbers) {
   if (run.peers == nullptr) return;
   std::vector<double> all;
@@ -112,7 +112,7 @@ void maximize(const SegmentRun& run, std::vector<std::vector<double>>& numbers) 
   }
 }
 
-// The normals that a viewer stores at a keyframe, and interpolates, made from the right ones.
+// Makes the normals that a viewer stores at a keyframe, and interpolates, from the true ones.
 void keep_as_viewer(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   result.resize(sums.x.size());
   for (std::size_t e = 0; e < sums.x.size(); ++e) {
@@ -124,7 +124,7 @@ void keep_as_viewer(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   }
 }
 
-// The most that rounding positions to float32 may change in the normal of an element.
+// Bounds the change of an element's normal if positions are rounded to float32.
 double rounding_at(const Segment& segment, double t, const Block& block, std::size_t e) {
   double sum = 0;
   for (std::uint32_t i = e == 0 ? 0 : block.face_ends[e - 1]; i < block.face_ends[e]; ++i) {
@@ -136,7 +136,7 @@ double rounding_at(const Segment& segment, double t, const Block& block, std::si
   return sum;
 }
 
-// Everything that a viewer shows of an element between what it keeps at the ends.
+// Returns the normal that a viewer renders for an element, interpolated between the normals kept at the ends.
 Vec3d shown_at(const Scratch& scratch, std::size_t e, double weight) {
   const auto kept = [e](const PlanesOf4& planes) { return Vec3d{planes.x[e], planes.y[e], planes.z[e]}; };
   return rounded_to_float(unit(lerp(kept(scratch.from), kept(scratch.to), weight)));
@@ -194,7 +194,7 @@ Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, Aud
   std::vector<std::vector<double>> largest;  // an element at the border of two blocks is in both
   largest.reserve(blocks.size());
   for (const Block& block : blocks) largest.emplace_back(block.elements.count, 0.0);
-  // Segments that are held together share the normals at the keyframes between them.
+  // Segments that are in memory together share the normals at the keyframes between them.
   const std::size_t at_once = segments.stream.keeps_all() ? std::max<std::size_t>(segments.of_motion.size(), 1) : 1;
   const Status looked =
       SegmentRun::look_over(segments.stream, segments.keys(), segments.looked_at(), at_once, [&](IndexRange some) {

@@ -1,4 +1,4 @@
-/// The loop of an audit where no normals are stored and all faces are triangles: it does what measure() does, block by
+/// The loop of an audit if no normals are stored and all faces are triangles: it does what measure() does, block by
 /// block, with the same results.
 ///
 /// A block has some outputs with their elements and faces. Its positions are gathered once for each segment and stay in
@@ -18,8 +18,8 @@
 
 namespace chronormal::inline internal {
 
-/// Whether measure_blocks() applies: to triangles with area weights, a rule that interpolates along straight lines or
-/// not at all, and a number of samples for which the memory of a segment stays small.
+/// Tells whether measure_blocks() applies: it needs triangles with area weights, a rule that interpolates linearly or
+/// not at all, and few enough samples that the memory of a segment stays small.
 [[nodiscard]] bool can_measure_blocks(const JudgedPart& part, AuditRule rule, Weighting weighting,
                                       std::size_t samples) noexcept;
 
@@ -29,15 +29,15 @@ using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const 
 /// The segments of a subject in a motion, as measure() goes over them.
 struct SegmentsOfRun {
   MotionStream& stream;
-  std::span<const std::size_t> of_motion;  ///< their numbers there
+  std::span<const std::size_t> of_motion;  ///< their indices in the motion
   AuditRun& run;
 
   [[nodiscard]] auto keys() const {
     return [&motion = stream.motion(), own = of_motion](std::size_t s) { return motion.segments[own[s]]; };
   }
-  /// Those from which follows what holds for all of them.
+  /// Returns the segments that determine the facts about all of them.
   [[nodiscard]] IndexRange looked_at() const noexcept { return run.looked_at(of_motion.size()); }
-  /// Those that are measured. Only a sequence is divided, which is one subject.
+  /// Returns the segments to measure. Only a sequence, which is one subject, is divided.
   [[nodiscard]] IndexRange rest() const noexcept {
     return run.is_divided() ? run.rest() : IndexRange{0, of_motion.size()};
   }
@@ -58,7 +58,7 @@ struct SegmentsOfRun {
 };
 
 /// Measures all samples of these segments, as measure() does for normals that a viewer computes at keyframes. The
-/// outputs of the part must be in the order of their elements. Errors: those of the stream and of the run.
+/// outputs of the part must be in the order of their elements. Errors: as the stream and the run return them.
 [[nodiscard]] Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, AuditRule rule,
                                     const FindPlace& at, AuditSubject& subject);
 

@@ -1,4 +1,4 @@
-// Audits of sequences: what a viewer shows that interpolates normals between keyframes.
+// Audits sequences in a viewer that interpolates normals between keyframes.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -64,7 +64,7 @@ class SequenceSource {
 
   [[nodiscard]] Vec3f shown(const JudgedOutput& output) const {
     if (stored_) return blend_stored(rule_, stored_at(keys().from, output), stored_at(keys().to, output), t_);
-    // What a viewer computes at the keyframes, as it keeps it.
+    // The viewer computes normals at the keyframes and keeps them in float32.
     const auto computed = [](const Vec3d& normal) { return rounded_to_float(unit(normal)); };
     return blend_stored(rule_, computed(start_[output.element]), computed(end_[output.element]), t_);
   }
@@ -93,7 +93,7 @@ class SequenceSource {
     return stored_normal(normals_, keyframe, output);
   }
 
-  // A direction turned as the author turned the geometry at a keyframe, by no more than in keyframe 0.
+  // Turns a direction as the author turned the geometry's normal at a keyframe, but by no more than in keyframe 0.
   [[nodiscard]] Vec3d offset_by(std::size_t keyframe, const Vec3d& geometry, const JudgedOutput& output,
                                 const Vec3d& direction) const {
     const Vec3d from = unit(geometry), to = unit(stored_at(keyframe, output));
@@ -101,7 +101,7 @@ class SequenceSource {
     if (from == Vec3d{} || to == Vec3d{} || first == Vec3d{} || first_stored == Vec3d{}) return direction;
     const double offset = angle_between(from, to), allowed = angle_between(first, first_stored);
     if (offset <= allowed) return turned(from, to, direction);
-    // The point of the arc at the allowed angle.
+    // The offset ends at the point of the arc at the allowed angle.
     const Vec3d side = to - dot(from, to) * from;
     const Vec3d across = length(side) > kVanished ? unit(side) : any_perpendicular(from);
     return turned(from, portable::cos(allowed) * from + portable::sin(allowed) * across, direction);
@@ -112,7 +112,7 @@ class SequenceSource {
   bool stored_;
   const JudgedPart& part_;
   AuditRule rule_;
-  std::vector<Vec3d> first_;  // of keyframe 0
+  std::vector<Vec3d> first_;  // in keyframe 0
   std::span<const std::size_t> segments_;
   bool known_ = false;
   std::size_t segment_ = 0;
@@ -159,7 +159,7 @@ Status check_normals(const Motion& motion, const StoredNormals& normals) {
   return Success{};
 }
 
-// A vertex once for each normal that it shows: corners of one element with the same stored normals show the same.
+// Lists each vertex once for each normal that it shows: corners of one element with the same stored normals share one.
 std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups& groups, const StoredNormals& normals,
                                        const std::vector<bool>& moves, AuditRule rule, bool stored) {
   const auto corners = motion.topology.corners();
@@ -191,7 +191,7 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
   return outputs;
 }
 
-// Looks at these segments alone where peers look at the others.
+// Finds the vertices that move. Looks only at this run's segments if peers look at the others.
 Result<std::vector<bool>> moving_vertices(const SegmentsOfRun& segments) {
   const Motion& motion = segments.stream.motion();
   std::vector<bool> moves(motion.topology.vertex_count());
@@ -215,7 +215,7 @@ Result<std::vector<bool>> moving_vertices(const SegmentsOfRun& segments) {
   return moves;
 }
 
-// A sequence is one subject; each target is one.
+// Groups segments by subject: a sequence is one subject, and each target is one.
 std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion) {
   const bool is_targets = motion.kind == MotionKind::kTargets;
   std::vector<std::vector<std::size_t>> subjects(is_targets ? motion.segments.size() : 1);
@@ -294,7 +294,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
 
   const Topology& topology = motion.topology;
   if (const Status status = stream.hold(0, 0); !status) return status.error();
-  // Where a viewer computes the normals of keyframes, it does so by area, whatever the program did that made the first.
+  // A viewer that computes the normals of keyframes weights faces by area, whatever the program did that made the
+  // first.
   const std::optional<Weighting> asked =
       result.stored || options.weighting ? options.weighting : std::optional(Weighting::kArea);
   Weighting weighting = asked.value_or(Weighting::kArea);
@@ -347,7 +348,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
       run.checksums["which vertices move"] = checksum_of_flags(moves.value());
     }
     const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
-    if (!is_targets) groups = NormalGroups();  // the part has all that is needed of the groups
+    if (!is_targets) groups = NormalGroups();  // the part has copied all that it needs of the groups
     if (part.outputs().empty()) {
       ++result.still;
       run.tell(own.rest().count);
@@ -386,7 +387,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   }
   if (result.subjects.empty()) result.errors.clear();
   if (run.shard) {
-    // Without peers, what follows from the whole motion is found out from all keyframes.
+    // Without peers, facts about the whole motion come from all keyframes.
     const Shard read = run.peers != nullptr ? *run.shard : Shard{};
     const Status status = seen.finish(keyframes_of_shard(motion, read), run.checksums);
     if (!status) return status.error();

@@ -1,5 +1,5 @@
-/// How far the skin itself turns right normals from those of the surface that it makes, which no target can mend. Private
-/// to workflow.
+/// Measures the error that the skin itself adds to true normals, compared with the surface that it makes. No target can
+/// correct it. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_SKINNING_ERROR_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_SKINNING_ERROR_H_
 
@@ -13,17 +13,17 @@ namespace chronormal::inline internal {
 
 class SkinningErrors {
  public:
-  /// Judges a sample that the source has placed: n(w) as the skin carries it, without a turn of the author's, against
-  /// the same sum over the faces of the skinned positions. Mirrored faces keep their outer side. Pairs are left out where
-  /// n(w), or what is left of it beside its size, is below kVanished of the largest.
+  /// Judges a sample that the source has placed: compares n(w) as the skin carries it, without the author's offset,
+  /// with the same sum over the faces of the skinned positions. Mirrored faces keep their outer side. A sample is left
+  /// out if n(w), or its remainder relative to its size, is below kVanished of the largest.
   void add_sample(const BlendSource& source, const MeasuredSample& sample);
 
-  /// Nothing where the source has no skin.
+  /// Returns nothing if the source has no skin.
   [[nodiscard]] const std::optional<SkinningError>& all() const noexcept { return all_; }
 
  private:
-  std::size_t placed_ = 0;  // as source.placed() was at the last sample
-  SkinningError last_;      // of that
+  std::size_t placed_ = 0;  // source.placed() at the last sample
+  SkinningError last_;      // the error of that sample
   std::optional<SkinningError> all_;
 };
 

@@ -1,4 +1,4 @@
-// Keeps deltas as dense rows of groups of outputs, and multiplies them by the weights of several moments at a time.
+// Keeps deltas as dense rows for groups of outputs, and multiplies them by the weights of several moments at a time.
 #include "workflow/audit/stored_sums.h"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ void StoredSums::add_up(std::vector<std::vector<double>> sets) {
     if (!is_finite[s]) std::fill_n(sums_.data() + s * stride_, stride_, std::numeric_limits<float>::quiet_NaN());
 }
 
-// by_target are the weights as (targets, sets).
+// by_target has the weights as (targets, sets).
 void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
   const Group& group = groups_[g];
   const std::size_t sets = sets_.size(), first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);

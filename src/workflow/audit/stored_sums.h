@@ -1,8 +1,8 @@
-/// Stored normals of some outputs and their deltas, added up as the specification says, or as a viewer keeps them. Private
-/// to workflow.
+/// Adds up the stored normals of some outputs and their deltas, as the specification says or as a viewer keeps them.
+/// Private to workflow.
 ///
-/// The deltas of many targets fill more memory than a cache has, so that a sum at one set of weights takes as long as it
-/// takes to read them all. Sums at several sets are therefore made in one pass.
+/// The deltas of many targets exceed the cache, so that the sum at one set of weights takes as long as reading them
+/// all. Sums at several sets are therefore made in one pass.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 
@@ -19,28 +19,28 @@ namespace chronormal::inline internal {
 
 class StoredSums {
  public:
-  static constexpr std::size_t kAtOnce = 4;  ///< so many sets of weights take hardly longer than one
+  static constexpr std::size_t kAtOnce = 4;  ///< this many sets of weights take hardly longer than one
 
-  /// shading and outputs must outlive this. involved are targets, ascending: a set of weights has one for each of them,
-  /// and the others have none at any time.
+  /// shading and outputs must outlive this. involved lists targets in ascending order: a set of weights has one value
+  /// for each of them, and all other targets always have weight 0.
   StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<std::size_t> involved,
              const Viewer& viewer = {});
 
-  /// Computes N + sum w D of every output at each set of weights, in float32, target after target, as viewers add. What
-  /// was known before is forgotten. A delta of zero changes no sum, even where its weight is not finite: such a weight
-  /// never makes a sum finite, whatever the delta is. On all threads.
+  /// Computes N + sum w D of every output at each set of weights, in float32 and target after target, as viewers add.
+  /// Forgets earlier results. A delta of zero changes no sum, even if its weight is not finite: such a weight never
+  /// makes a sum finite, whatever the delta is. Uses all threads.
   void add_up(std::vector<std::vector<double>> sets);
 
-  /// The sums at one of these sets, three for each output; nothing where it is not among them.
+  /// Returns the sums at one of the sets of weights, three for each output; empty if the set is not known.
   [[nodiscard]] std::span<const float> find(const std::vector<double>& weights) const noexcept;
 
-  /// The unit normal that is shown of a sum; zero, or not finite, where the sum is.
+  /// Returns the unit normal that is rendered for a sum; zero or not finite if the sum is.
   [[nodiscard]] Vec3f shown(std::span<const float> sums, std::size_t output) const;
 
   [[nodiscard]] const Viewer& viewer() const noexcept { return viewer_; }
 
  private:
-  // Some neighbouring outputs, and a row of deltas for each target that turns any of them.
+  // Neighbouring outputs, with a row of deltas for each target that turns any of them.
   struct Group {
     std::vector<std::uint32_t> targets;  // ascending, as numbered in involved_
     std::vector<float> deltas;           // (targets, 3 kGroup)
@@ -56,10 +56,10 @@ class StoredSums {
   std::span<const JudgedOutput> outputs_;
   std::vector<std::size_t> involved_;
   Viewer viewer_;
-  std::vector<Vec3f> kept_normals_;  // of outputs, where the viewer does not keep those that are stored
-  std::vector<Group> groups_;        // empty until something is added up
+  std::vector<Vec3f> kept_normals_;  // of outputs, if the viewer does not keep the stored ones
+  std::vector<Group> groups_;        // empty until the first sum
   std::vector<std::vector<double>> sets_;
-  std::size_t stride_;       // of the sums of a set: whole groups
+  std::size_t stride_;       // of the sums of a set, in whole groups
   std::vector<float> sums_;  // (sets, stride)
 };
 

@@ -13,12 +13,13 @@ bool keep_alike(const Viewer& a, const Viewer& b, bool is_skinned) noexcept {
          a.octahedral_base == b.octahedral_base;
 }
 
-// Whether a viewer adds up normals in float32 and shows them as BlendSource does by the rule of the specification.
+// Tells whether a viewer adds up normals in float32 and renders them as BlendSource does by the rule of the
+// specification.
 bool adds_as_specified(const Viewer& viewer, bool is_skinned) noexcept {
   return viewer.normals == NormalRule::kSum && viewer.bits == 32 && (!is_skinned || viewer.skins == SkinRule::kBlended);
 }
 
-// A source as a viewer sees it through a skin: what error_at() needs of it.
+// A source as a viewer sees it through a skin, with the functions that error_at() needs.
 struct SeenByViewer {
   const BlendSource& source;
   SkinRule rule;
@@ -34,7 +35,7 @@ struct SeenByViewer {
   }
 };
 
-// The diagonal of the box around the base.
+// Returns the diagonal of the box around the base.
 double size_of(const GltfShading& shading) noexcept {
   Vec3d low, high;
   for (std::size_t v = 0; v < shading.set.topology.vertex_count(); ++v) {
@@ -46,7 +47,7 @@ double size_of(const GltfShading& shading) noexcept {
   return length(high - low);
 }
 
-// The largest distance between two places of one vertex.
+// Returns the largest distance between two places of one vertex.
 double largest_distance(std::span<const Vec3d> a, std::span<const Vec3d> b) noexcept {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, length(a[i] - b[i]));
@@ -80,17 +81,17 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     std::vector<double> now(now_[h].size());
     weights_[h](sample.segment, sample.t, now);
-    is_judged[h] = is_still && now == now_[h];  // as in the sample before
+    is_judged[h] = is_still && now == now_[h];  // as in the previous sample
     now_[h] = std::move(now);
   }
   placed_ = source.placed();
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
-    // Viewers that play these weights and keep normals alike show the same, so that one of them is judged for all. These
-    // are the errors that are known so far.
+    // Viewers that play the same weights and keep normals alike render the same, so that one is judged for all of them.
+    // This list holds the errors that are already known.
     std::vector<const MotionError*> of_kept(kept_.size());
-    std::optional<SkinRule> is_right_for;  // whom right_ is for, of those who see this part alike
+    std::optional<SkinRule> is_right_for;  // the rule that right_ was computed for
     double displaced = 0;
     if (now_[h] != source.now()) {
       if (!elsewhere_) elsewhere_.emplace(part_);

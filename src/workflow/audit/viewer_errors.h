@@ -1,7 +1,7 @@
-/// What viewers show beside the specification, judged at the same samples. Private to workflow.
+/// Judges the normals that viewers render, besides the specification, at the same samples. Private to workflow.
 ///
-/// Viewers that play the same weights have the same positions and right normals, which are computed once; those that also
-/// keep normals and deltas alike show the same.
+/// Viewers that play the same weights have the same positions and true normals, which are computed once. Viewers that
+/// also keep normals and deltas alike render the same.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
 
@@ -19,26 +19,27 @@
 
 namespace chronormal::inline internal {
 
-/// What a viewer shows of one subject.
+/// The error of a viewer in one subject.
 struct ViewerError {
   MotionError error;
-  double displaced = 0;  ///< as ViewerAudit has it
+  double displaced = 0;  ///< see ViewerAudit
 };
 
 class ViewerErrors {
  public:
-  /// weights are those that each viewer plays, of the involved targets, as BlendSource has them. shading and part must
-  /// outlive this. is_skinned: viewers may see the part through a skin in ways of their own.
+  /// weights has, for each viewer, the weights of the involved targets that it plays, as in BlendSource. shading and
+  /// part must outlive this. is_skinned: viewers may see the part through a skin in their own ways.
   ViewerErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Viewer> viewers,
                std::vector<Weights> weights, std::span<const std::size_t> involved, bool is_skinned = false);
 
-  /// Judges every viewer at a sample that the source has placed. What shows the same as the source has its error.
+  /// Judges every viewer at a sample that the source has placed. A viewer that renders the same as the source has its
+  /// error.
   void add_sample(BlendSource& source, const MeasuredSample& sample);
 
-  /// The weights that each viewer plays at the last sample.
+  /// Returns the weights that each viewer plays at the last sample.
   [[nodiscard]] std::span<const std::vector<double>> now() const noexcept { return now_; }
 
-  /// One for each viewer.
+  /// Moves out the errors, one for each viewer.
   [[nodiscard]] std::vector<ViewerError> take() { return std::move(errors_); }
 
  private:
@@ -46,13 +47,13 @@ class ViewerErrors {
   bool is_skinned_;
   std::vector<Weights> weights_;
   std::vector<StoredSums> kept_;            // normals and deltas as some viewers keep them
-  std::vector<std::size_t> kept_by_;        // of each viewer, in kept_
-  std::vector<RightOutput> right_;          // of each output, as some of them see it
+  std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
+  std::vector<RightOutput> right_;          // of each output, as some viewers see it
   double size_ = 0;                         // of the mesh
-  std::optional<PlacedPart> elsewhere_;     // at weights other than those of the specification, once there are any
-  std::size_t placed_ = 0;                  // as source.placed() was at the last sample; 0 before any
-  std::vector<std::vector<double>> now_;    // of each viewer, the weights of the last sample
-  std::vector<ViewerError> last_, errors_;  // of each viewer, those of the last sample and of all
+  std::optional<PlacedPart> elsewhere_;     // at weights other than the specified ones, once needed
+  std::size_t placed_ = 0;                  // source.placed() at the last sample; 0 before any
+  std::vector<std::vector<double>> now_;    // for each viewer, the weights of the last sample
+  std::vector<ViewerError> last_, errors_;  // for each viewer: of the last sample and of all
 };
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-/// Audits of a share of a sequence, and audits that tell of each sample, for whoever keeps more of it than its sums.
-/// Private to workflow.
+/// Audits a share of a sequence, and reports each sample of an audit to callers that keep more than sums. Private to
+/// workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_WATCHED_AUDIT_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_WATCHED_AUDIT_H_
 
@@ -19,7 +19,7 @@
 
 namespace chronormal::inline internal {
 
-/// The errors in one segment, and those at its ends alone.
+/// The errors in one segment, and the errors at its ends alone.
 struct SegmentErrors {
   std::size_t segment = 0;
   MotionError error, at_keys;
@@ -28,42 +28,43 @@ struct SegmentErrors {
 using AuditRun = RecordedRun<SegmentErrors>;
 using AuditShard = ShardOf<Audit, SegmentErrors>;
 
-/// The audit of a sequence as the run has it: of its share of the segments. Every shard finds out for itself what
-/// follows from the whole motion (which vertices move, how long a normal gets); with peers they find it out together,
-/// by maximize(). Errors: also kUsage for single errors of a run that is divided, or for targets, and for known
-/// segments of another audit; those of run.keep.
+/// Audits the share of a sequence's segments that belongs to the run. Every shard derives for itself the facts about
+/// the whole motion (which vertices move, how long a normal gets); with peers they derive them together, by maximize().
+/// Errors: also kUsage for single errors of a run that is divided, or for targets, and for known segments of another
+/// audit; errors of run.keep.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
                                   AuditRun& run);
 
-/// Joins the shards of one audit into what one run would have found. Errors: those of join(). There must be some
+/// Joins the shards of one audit into the result of one run. Errors: as join() returns them. There must be at least one
+/// shard.
 [[nodiscard]] Result<Audit> merge(std::vector<AuditShard> shards);
 
-/// A sample of a subject as it was judged. Views are good for the call.
+/// A judged sample of a subject. Views are valid during the call.
 struct AuditSample {
-  std::size_t subject_index = 0;  ///< of Audit::subjects, which does not have it yet
-  const AuditSubject& subject;    ///< without its errors
-  std::size_t segment = 0;        ///< of the subject; of a motion, of the motion
+  std::size_t subject_index = 0;  ///< its future index in Audit::subjects
+  const AuditSubject& subject;    ///< errors not filled in yet
+  std::size_t segment = 0;        ///< index in the subject, or in the motion
   double t = 0;                   ///< in the segment
   double at = 0;                  ///< weight or time
   const JudgedPart& part;
-  std::span<const double> largest;  ///< of the elements of the part, the length of the largest control normal
+  std::span<const double> largest;  ///< per element of the part: length of the largest control normal
   const MotionError& error;
-  std::span<const float> degrees;               ///< of the outputs of the part; NaN where none is judged
-  std::span<const double> weights;              ///< of a glTF file, of all targets
-  std::span<const std::vector<double>> played;  ///< of a glTF file, those that each viewer of the options plays
+  std::span<const float> degrees;               ///< per output of the part; NaN if not judged
+  std::span<const double> weights;              ///< of all targets of a glTF file
+  std::span<const std::vector<double>> played;  ///< for a glTF file, the weights that each viewer plays
 };
 
 using AuditWatch = std::function<void(const AuditSample&)>;
 
-/// The audits of workflow/audit.h, told as they go: subject after subject, sample after sample. Tracks with the same
-/// keys are told once, as the first of their subjects. An empty watch is told nothing.
+/// Run the audits of workflow/audit.h and report each sample, subject after subject. Tracks with the same keys are
+/// reported once, as the first of their subjects. An empty watch gets no reports.
 [[nodiscard]] Result<Audit> watched_audit(const GltfDocument& document, const AuditOptions& options,
                                           const AuditWatch& watch);
 [[nodiscard]] Result<Audit> watched_audit(MotionStream& stream, const StoredNormals& normals,
                                           const AuditOptions& options, AuditRun& run, const AuditWatch& watch);
 
-/// Which corners of a motion share a normal, as its audit has it: those of smooth edges, as the stored normals of
-/// keyframe 0 say, where there are any. Errors: of NormalGroups and of the stream
+/// Returns the groups of corners that share a normal in the audit of a motion: corners joined by smooth edges, as the
+/// stored normals of keyframe 0 tell if there are any. Errors: as NormalGroups and the stream return them.
 [[nodiscard]] Result<NormalGroups> audited_groups(MotionStream& stream, const StoredNormals& normals, bool weld);
 
 }  // namespace chronormal::inline internal
