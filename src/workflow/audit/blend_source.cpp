@@ -13,8 +13,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 2048;
-constexpr std::ptrdiff_t kManyTargets =
-    8;  // adding up their deltas takes much longer than interpolating between two ends
+constexpr std::ptrdiff_t kManyTargets = 8;  // adding up their deltas takes longer than interpolating two ends
 
 }  // namespace
 
