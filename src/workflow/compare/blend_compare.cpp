@@ -24,9 +24,9 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kNames = {"file", "end point", "least squares", "exact"};
 constexpr std::array<std::size_t, 5> kActive = {1, 2, 4, 8, 16};
-constexpr std::size_t kRowsPerTarget = 16;                  // of least squares
+constexpr std::size_t kRowsPerTarget = 16;                  // rows of least squares
 constexpr std::size_t kMostWeights = std::size_t{1} << 27;  // in one list of rows
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;    // of terms: others are made from positions
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;    // of terms; beyond it normals come from positions
 constexpr std::size_t kChunk = 512;
 
 Error misuse(std::string place, std::string message) {
@@ -37,12 +37,12 @@ Vec3d vector_at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-// What shows a normal, and what a person calls it.
+// The place that shows a normal, and the number that a person knows it by.
 struct Output {
   std::uint32_t element = 0, number = 0;
 };
 
-// A set whose normals are compared. Without groups its elements are its faces; with a shading, that of a file.
+// A set whose normals are compared. Its elements are faces if groups is nullptr; shading belongs to the file, if any.
 struct Subject {
   const BlendSet* set = nullptr;
   const NormalGroups* groups = nullptr;
@@ -52,18 +52,20 @@ struct Subject {
   [[nodiscard]] std::size_t elements() const { return groups ? groups->size() : set->topology.face_count(); }
 };
 
-// A normal, and what it is the sum of: the products of the lengths of edges.
+// A normal with the size of its terms, which are products of lengths of edges.
 struct SizedNormal {
   Vec3d value;
   double size = 0;
 
-  // What is left of terms that cancel is their rounding, and no direction. A direction is right to 1e-6 rad above this.
+  // Removes rounding error: if the terms cancel to less than this, the rest has no direction. Above the limit, a
+  // direction is right to 1e-6 rad.
   [[nodiscard]] Vec3d without_rounding() const { return length(value) > 1e-10 * size ? value : Vec3d{}; }
 };
 
 SizedNormal operator+(const SizedNormal& a, const SizedNormal& b) { return {a.value + b.value, a.size + b.size}; }
 
-// n(w) of all elements by nothing but cross products of blended positions, and zero where that is rounding.
+// Computes n(w) of all elements from cross products of blended positions alone, and zero if n(w) is only rounding
+// error.
 std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> weights) {
   const Topology& topology = subject.set->topology;
   std::vector<double> positions(subject.set->base.size());
@@ -96,7 +98,7 @@ std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> 
   return result;
 }
 
-// The outputs whose normal each target moves, ascending.
+// Lists, for each target, the outputs whose normal it moves, ascending.
 std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   const Topology& topology = subject.set->topology;
   const std::size_t targets = subject.set->targets.size();
@@ -146,7 +148,7 @@ class BlendMeter {
     return std::any_of(moved_.begin(), moved_.end(), [](const auto& outputs) { return !outputs.empty(); });
   }
 
-  // Errors over rows of weights, with least squares over others.
+  // Measures the errors at rows of weights. The least squares are fitted to other rows.
   BlendErrors measure(std::span<const double> rows, std::span<const double> fitted_rows,
                       const std::function<void()>& progress) {
     const DeltaNormals best = best_deltas(normals_, fitted_rows);
@@ -180,7 +182,7 @@ class BlendMeter {
     return result;
   }
 
-  // N + sum w D as a file has them, in float32 as viewers add.
+  // Computes N + sum w D from the normals of the file, in float32 as viewers add.
   [[nodiscard]] Vec3d stored(const Output& output, std::span<const double> weights) const {
     Vec3f sum = to_float(vector_at(subject_.shading->normals, output.number));
     for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -208,7 +210,7 @@ class BlendMeter {
         const std::size_t e = output.element;
         for (std::size_t m = 0; m < methods; ++m) {
           Quality& quality = parts[chunk * methods + m];
-          if (truth[e] == Vec3d{}) {  // nothing but rounding: no method is asked there
+          if (truth[e] == Vec3d{}) {  // only rounding error: no method is judged there
             ++quality.degenerate;
             continue;
           }
@@ -234,7 +236,7 @@ class BlendMeter {
     for (std::size_t p = 0; p < parts.size(); ++p) errors.deltas[p % methods].quality.add(parts[p]);
   }
 
-  // What cannot be lit is the worst that a method can show.
+  // A normal that cannot be lit counts as the largest error that a method can have.
   static void add(const Vec3d& shown, const Vec3d& right, const ErrorPlace& place, Quality& quality) {
     const bool is_lit = is_finite(shown) && shown != Vec3d{};
     if (!is_lit) ++quality.missing;
@@ -280,7 +282,7 @@ Status check(const BlendCompareOptions& options) {
   return Success{};
 }
 
-// How many targets are active at once, where there are so many.
+// Lists how many targets are active at once, if there are that many.
 std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) {
   if (wanted > 0) return {std::min(wanted, targets)};
   std::vector<std::size_t> result;
@@ -293,12 +295,12 @@ std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) 
 std::size_t fitted_rows(std::size_t rows, std::size_t targets) { return std::max(rows, kRowsPerTarget * targets); }
 
 Status check_memory(const std::string& place, std::size_t rows, std::size_t targets) {
-  // Without overflow: a list of targets that is in memory is not near it.
+  // The left side cannot overflow: a list of targets that fits in memory is far too short.
   if (targets == 0 || fitted_rows(rows, targets) <= kMostWeights / targets) return Success{};
   return invalid_input(place, std::to_string(targets).append(" targets are too many for that many weight vectors"));
 }
 
-// Random weights of some targets, as rows for all of them; those of extra ones follow.
+// Draws random weights for some targets, in rows for all of them, and fills in the weights of correction targets.
 std::vector<double> random_rows(const Subject& subject, const std::vector<std::size_t>& own, std::size_t count,
                                 std::size_t active, std::uint64_t seed) {
   const std::vector<double> drawn = random_blend_weights({own.size(), count, active, 0, 1, seed});
@@ -319,7 +321,7 @@ void measure_random(BlendMeter& meter, const Subject& subject, const std::vector
     const std::vector<double> others =
         random_rows(subject, own, fitted_rows(options.rows, own.size()), active, ~options.seed);
     result.errors.push_back(meter.measure(rows, others, progress));
-    result.errors.back().active = active;  // without extra ones
+    result.errors.back().active = active;  // without correction targets
   }
 }
 
@@ -333,7 +335,7 @@ BlendSubject describe(const Subject& subject, ElementKind kind) {
   return result;
 }
 
-// Vertices with a stored normal and a face.
+// Lists the vertices that have a stored normal and a face.
 std::vector<Output> outputs_of(const GltfShading& shading) {
   std::vector<Output> result;
   for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v)
@@ -341,7 +343,7 @@ std::vector<Output> outputs_of(const GltfShading& shading) {
   return result;
 }
 
-// The weights that an animation gives a mesh, one track after the other; empty where it gives none.
+// Reads the weights that an animation gives a mesh, track after track; empty if it gives none.
 Result<std::vector<std::vector<double>>> animated_weights(const GltfDocument& document, std::size_t animation,
                                                           std::size_t mesh, std::size_t most) {
   const std::vector<GltfTrack>& tracks = document.animations()[animation].tracks;
@@ -367,7 +369,7 @@ bool has_stored_normals(const GltfMesh& mesh) {
                      [](const GltfPrimitive& p) { return p.has_faces() && p.has_normals; });
 }
 
-// Targets that move vertices by themselves.
+// Lists the targets that move vertices by themselves.
 std::vector<std::size_t> own_targets(const GltfMesh& mesh) {
   std::vector<std::size_t> result;
   for (std::size_t k = 0; k < mesh.target_count; ++k) {

@@ -1,5 +1,5 @@
-// Compares schemes block by block, as many blocks at a time as keep all threads busy, and adds up their results in
-// order.
+// Compares schemes block by block. Processes enough blocks at a time to keep all threads busy, and adds up their
+// results in order.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>
@@ -31,7 +31,8 @@
 namespace chronormal {
 namespace {
 
-// A block of the widest scheme stays in the second-level cache; a wave keeps partial results few and progress smooth.
+// A block of the widest scheme stays in the second-level cache. A wave keeps few partial results and reports progress
+// often.
 constexpr std::size_t kBlockSize = 1024;
 constexpr std::size_t kBlocksPerWaveAndThread = 4;
 
@@ -41,7 +42,7 @@ double nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
 }
 
-// The median, which does not change where a thread was interrupted.
+// Returns the median, which a few interrupted threads do not change.
 double median(std::vector<float> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -51,7 +52,7 @@ double median(std::vector<float> values) {
 
 // The results of one scheme on one block, or on all blocks of a segment so far.
 struct Tally : SchemeTally {
-  std::vector<Quality> samples;                // of a block, where they are kept
+  std::vector<Quality> samples;                // of a block, if samples are kept
   std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
 
   void add(const Tally& other) {
@@ -61,7 +62,7 @@ struct Tally : SchemeTally {
   }
 };
 
-// The times of one scheme, as the median of each segment, so that the memory grows with segments and not with faces.
+// The times of one scheme as the median of each segment, so that memory grows with segments and not with faces.
 struct SchemeTimes {
   std::vector<float> prepare_ns, evaluate_ns;
 };
@@ -85,20 +86,20 @@ class Elements {
   }
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  // The element of each output; empty where they are faces, which are both.
+  // Returns the element of each output; empty if elements are faces, since outputs then are elements.
   [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept {
     return groups_ ? groups_->element_of_output() : std::span<const std::uint32_t>();
   }
   [[nodiscard]] bool are_faces() const noexcept { return !groups_; }
 
-  // What a person calls an element: the face, or the first vertex or corner that shows it.
+  // Returns the number that a person knows an element by: the face, or the first vertex or corner that shows it.
   [[nodiscard]] std::size_t first_output(std::size_t element) const {
     if (!groups_) return element;
     const auto outputs = groups_->element_of_output();
     return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
   }
 
-  // Makes ready for segments first to last: the control normals of faces are shared by many groups.
+  // Prepares segments first to last, because many groups share the control normals of faces.
   void enter(const Motion& motion, std::size_t first, std::size_t last) {
     if (!groups_ || !by_area()) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
@@ -118,9 +119,9 @@ class Elements {
       });
     }
   }
-  // What the faces of a segment cost one thread, for each of the elements that share them.
+  // Returns the time that one thread needs for the faces of a segment, divided by the elements that share them.
   [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
-  // Those of another weighting are fitted.
+  // Computes control normals. With a weighting other than area they are fitted.
   void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const {
     if (!by_area()) {
       for (std::size_t i = 0; i < range.count; ++i) {
@@ -134,7 +135,7 @@ class Elements {
     else
       face_control_normals(segment, range, result);
   }
-  // The elements of a range for schemes to be prepared from. All arguments must outlive it.
+  // Returns the elements of a range, from which schemes are prepared. All arguments must outlive the result.
   [[nodiscard]] ElementBlock block(const Segment& segment, IndexRange range,
                                    std::span<const ControlNormals> normals) const {
     ElementBlock block{&segment, range, normals, are_faces()};
@@ -144,7 +145,7 @@ class Elements {
       };
     return block;
   }
-  // How far they may be off.
+  // Bounds the errors of the control normals.
   [[nodiscard]] std::vector<ControlErrors> control_errors(const Segment& segment, IndexRange range) const {
     std::vector<ControlErrors> errors;
     if (!groups_) return errors;
@@ -153,12 +154,12 @@ class Elements {
       errors.push_back(settled_group_normals(shared(segment), *groups_, of_faces, range.first + i).errors);
     return errors;
   }
-  // For exact_normals(); nothing where these are not normals of triangles.
+  // Returns the triangles for exact_normals(), or nothing if the elements are not triangles.
   [[nodiscard]] std::optional<ReferenceTriangles> triangles(const Segment& segment, IndexRange range) const {
     if (groups_ || !segment.topology->all_triangles()) return std::nullopt;
     return ReferenceTriangles(segment, range);
   }
-  // Exact normals at a sample, of any length.
+  // Computes exact normals at a sample, of any length.
   void exact_normals(const Segment& segment, IndexRange range, const std::optional<ReferenceTriangles>& triangles,
                      std::size_t sample, std::size_t samples, std::span<Vec3d> result) const {
     const double t = time_of_sample(sample, samples);
@@ -190,22 +191,23 @@ class Elements {
   Weighting weighting_ = Weighting::kArea;
   std::size_t count_;
   std::size_t samples_ = 0;  // for groups
-  // Faces of more corners have their normals computed once for all of these; they take less than 400 bytes a corner.
+  // Normals of faces with more corners than this are computed once for all groups; they take less than 400 bytes a
+  // corner.
   std::size_t many_corners_ = 0;
   std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // by segment, for groups
-  std::vector<std::uint32_t> large_;                             // these faces, for groups
+  std::vector<std::uint32_t> large_;                             // faces of more than many_corners_, for groups
   std::map<std::size_t, SharedFaces> shared_;                    // by segment, for groups
-  std::map<std::size_t, std::vector<ReferenceArea>> of_large_;   // theirs at each sample, by segment
+  std::map<std::size_t, std::vector<ReferenceArea>> of_large_;   // of large_ at each sample, by segment
   double shared_ns_ = 0;
 };
 
-// NaN where one of the two has no direction, as Quality leaves such pairs out.
+// Returns NaN if one of the two normals has no direction, as Quality leaves out such samples.
 float error_in_degrees(const Vec3d& exact, const Vec3d& shown) {
   if (exact == Vec3d{} || shown == Vec3d{} || !is_finite(shown)) return std::numeric_limits<float>::quiet_NaN();
   return static_cast<float>(angle_between(unit(exact), shown) * kDegreesPerRadian);
 }
 
-// Makes a table of the errors of one scheme, (rows, elements), that shows each element wherever the mesh does.
+// Makes a table of the errors of one scheme, (rows, elements), that has each element once per place in the mesh.
 ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOptions& options, const std::string& scheme,
                     const std::vector<float>& of_elements) {
   ErrorTable table{scheme, options.elements.kind, motion.topology, motion.keyframes[0].positions};
@@ -241,7 +243,7 @@ CertifiedError certified_error(const Scheme& scheme, const ElementBlock& block, 
   return all;
 }
 
-// What is asked for, as a checksum.
+// Returns a checksum of the options.
 std::uint32_t checksum_of_options(const CompareOptions& options, const std::vector<std::string>& names) {
   NumberChecksum sum;
   for (const std::string& name : names) sum.add(name);
@@ -255,8 +257,8 @@ std::uint32_t checksum_of_options(const CompareOptions& options, const std::vect
   return sum.value();
 }
 
-// Prepares every scheme on one block of elements, evaluates it at every sample, and holds it against the exact normals.
-// Each scheme that `each` has an array for gets its errors there.
+// Prepares every scheme on one block of elements, evaluates it at every sample, and compares it with the exact normals.
+// Writes the errors of each scheme to its array in `each`, if it has one.
 std::vector<Tally> compare_block(const Segment& segment, const Elements& all, IndexRange range,
                                  const std::vector<std::string>& names, const CompareOptions& options,
                                  std::span<std::vector<float>> each) {
@@ -365,7 +367,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   if (!by_area && certified)
     return Error{ErrorCode::kUsage, "", "certificates are of area-weighted normals, which are polynomials"};
 
-  // Linear is the measure of the others, so it takes part even where it is not a row.
+  // Errors are compared with the error of linear, so linear is computed even if it is not a row.
   std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
   std::vector<SchemeComparison> rows;
   for (const std::string& name : names) {
@@ -390,7 +392,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
     if (!groups) return groups.error();
     all.emplace(motion.topology, std::move(groups).value(), options.weighting, options.samples);
   }
-  // The errors of all elements at all samples, of every row.
+  // Errors of every row, for all elements at all samples.
   std::vector<std::vector<float>> each;
   if (options.keep_errors) {
     const std::size_t samples = motion.segments.size() * options.samples;

@@ -9,10 +9,10 @@
 namespace chronormal {
 namespace {
 
-// Below this mean, the error of linear is nothing but rounding, and the errors of other schemes are not divided by it.
+// Below this average, the error of linear is only rounding, and the errors of other schemes are not divided by it.
 constexpr double kNoError = 1e-6;  // radians
 
-// A scheme that was held against no normal at all is not within anything.
+// Finds the cheapest scheme within the tolerance. A scheme that was compared with no normal at all is never within it.
 std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& schemes, double degrees) {
   std::optional<std::size_t> cheapest;
   for (std::size_t s = 0; s < schemes.size(); ++s) {
@@ -22,7 +22,7 @@ std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& 
   return cheapest;
 }
 
-// Whether two shards may belong to one comparison: of the same elements at the same samples, by the same schemes.
+// Tells whether two shards may belong to one comparison: they have the same elements, samples and schemes.
 bool are_of_one(const Comparison& a, const Comparison& b) {
   const auto same_scheme = [](const SchemeComparison& one, const SchemeComparison& other) {
     return one.scheme == other.scheme && one.sequential == other.sequential &&

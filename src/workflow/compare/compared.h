@@ -1,4 +1,4 @@
-/// Adds up the results of comparisons, block by block and segment by segment, and computes what follows from the sums.
+/// Adds up the results of comparisons, block by block and segment by segment, and derives figures from the sums.
 /// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_COMPARED_H_
 #define CHRONORMAL_WORKFLOW_COMPARE_COMPARED_H_
@@ -19,7 +19,7 @@ struct SchemeTally {
   CertifiedError certified = {};
 };
 
-/// The results of all schemes in one segment: one for each row, and a last one for linear where it is none of the rows.
+/// The results of all schemes in one segment: one for each row, then one for linear if linear is not a row.
 struct ComparedSegment {
   std::size_t segment = 0;
   std::vector<SchemeTally> schemes;
@@ -28,22 +28,22 @@ struct ComparedSegment {
 using CompareRun = RecordedRun<ComparedSegment>;
 using ComparisonShard = ShardOf<Comparison, ComparedSegment>;
 
-/// compare() as the run has it. Segments that are known have no times. Errors: also kUsage for single errors or samples
-/// of a run that is divided, and for known segments of another comparison; those of run.keep.
+/// Runs compare() on the share of the run. Known segments have no times. Errors: also kUsage for single errors or
+/// samples of a run that is divided, and for known segments of another comparison; errors of run.keep.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options, CompareRun& run);
 
-/// Joins the shards of one comparison into what one run would have found, but without times. Errors: those of join().
-/// There must be at least one shard
+/// Joins the shards of one comparison into the result of one run, without times. Errors: as join() returns them. There
+/// must be at least one shard.
 [[nodiscard]] Result<Comparison> merge(std::vector<ComparisonShard> shards);
 
-/// Puts the bounds of the elements of a block together, or those of blocks; of equals the first counts.
+/// Merges the bounds of elements or of blocks; of equal ones the first counts.
 void add(CertifiedError& all, const CertifiedError& other);
 
-/// Adds the results that come next. Adding the same parts in the same order gives the same bits.
+/// Adds the next results. Adding the same parts in the same order gives the same bits.
 void add(SchemeTally& all, const SchemeTally& other);
 
-/// Fills in what follows from the sums over so many segments. The sums are those of each row, and last those of linear
-/// where it is none of the rows.
+/// Derives the figures of a comparison from sums over this many segments. totals has the sums of each row, then the
+/// sums of linear if linear is not a row.
 void conclude(const std::vector<SchemeTally>& totals, std::size_t segments, bool certified, Comparison& comparison);
 
 }  // namespace chronormal::inline internal

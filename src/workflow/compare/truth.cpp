@@ -1,4 +1,4 @@
-// Compares interpolated normals with those of keyframes that were left out.
+// Compares interpolated normals with the true normals of keyframes that were left out.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class KeptKeys {
     segment.index = i;
     return segment;
   }
-  // The keyframes between the kept ones i and i + 1.
+  // Returns the keyframes between the kept ones i and i + 1.
   [[nodiscard]] std::span<const Motion::Keyframe> between(std::size_t i) const {
     return std::span(motion_.keyframes).subspan(i * every_ + 1, every_ - 1);
   }
@@ -56,7 +56,7 @@ class KeptKeys {
   std::size_t every_;
 };
 
-// The faces of a motion, or groups of their corners, and the control normals of either.
+// The faces of a motion, or groups of their corners, with their control normals.
 class TruthElements {
  public:
   TruthElements(const Topology& topology, std::optional<NormalGroups> groups)
@@ -76,7 +76,7 @@ class TruthElements {
     group_control_normals(segment, *groups_, of_faces, {0, count_}, result);
     return result;
   }
-  // The exact normals of a mesh that stands still.
+  // Computes the exact normals of a mesh that does not move.
   void exact_normals(const Segment& still, IndexRange range, std::span<Vec3d> result) const {
     if (!groups_) return reference_normals(still, range, 0, result);
     const SharedFaces shared(still);
@@ -103,19 +103,19 @@ class TruthElements {
   std::size_t count_;
 };
 
-// One kept segment with what stands between its ends.
+// One kept segment and the keyframes between its ends.
 struct Piece {
   Segment segment;
   std::span<const Motion::Keyframe> between;
   std::vector<ControlNormals> straight;
-  std::vector<std::vector<Motion::Keyframe>> curved;  // on each curved path, at the times of those between
+  std::vector<std::vector<Motion::Keyframe>> curved;  // on each curved path, at the times of the keyframes between
 
   [[nodiscard]] double local_time(const Motion::Keyframe& keyframe) const {
     return (keyframe.time - segment.start_time) / (segment.end_time - segment.start_time);
   }
 };
 
-// The mesh on a curve at the times of the keyframes that were left out.
+// Poses the mesh on a curve at the times of the keyframes that were left out.
 std::vector<Motion::Keyframe> poses_on_curve(const Piece& piece, const CubicSegment& curve) {
   std::vector<Motion::Keyframe> poses;
   for (const Motion::Keyframe& keyframe : piece.between) {
@@ -130,7 +130,7 @@ std::vector<Motion::Keyframe> poses_on_curve(const Piece& piece, const CubicSegm
   return poses;
 }
 
-// The errors of all rows on one block of elements, curved paths last.
+// Measures the errors of all rows on one block of elements, curved paths last.
 std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& elements, IndexRange range,
                                      const std::vector<std::string>& names) {
   std::vector<std::unique_ptr<Scheme>> schemes;
@@ -162,7 +162,7 @@ std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& el
   return result;
 }
 
-// "2nd", "3rd", "4th", "11th".
+// Returns "2nd", "3rd", "4th", "11th".
 std::string ordinal(std::size_t n) {
   const bool is_teen = n % 100 >= 11 && n % 100 <= 13;
   const char* const ending = is_teen ? "th" : n % 10 == 1 ? "st" : n % 10 == 2 ? "nd" : n % 10 == 3 ? "rd" : "th";
