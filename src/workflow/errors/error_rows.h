@@ -1,4 +1,4 @@
-/// How an audit or a comparison fills a table of errors. Private to workflow.
+/// Fills the table of errors of an audit or a comparison. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_ERRORS_ERROR_ROWS_H_
 #define CHRONORMAL_WORKFLOW_ERRORS_ERROR_ROWS_H_
 
@@ -11,8 +11,9 @@
 
 namespace chronormal::inline internal {
 
-/// Makes room for so many rows. `earlier` are the bytes of other tables of the same result, and get those of this one, too.
-/// Errors: kUsage where the table takes more than kMostErrorBytes; those of expansion.check() of all tables together.
+/// Reserves memory for this many rows. `earlier` counts the bytes of other tables of the same result; the bytes of this
+/// table are added to it. Errors: kUsage if the table takes more than kMostErrorBytes; errors of expansion.check() for
+/// all tables together.
 [[nodiscard]] Status reserve_rows(ErrorTable& table, std::size_t rows, const Expansion& expansion,
                                   std::uint64_t& earlier);
 [[nodiscard]] inline Status reserve_rows(ErrorTable& table, std::size_t rows, const Expansion& expansion) {
