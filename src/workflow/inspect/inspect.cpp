@@ -1,7 +1,7 @@
-// Looks at every segment of a motion for whatever may cause wrong normals, block by block and in waves of segments, and
-// adds up what it finds in order. A wave looks at vertices first, since how small a face may be depends on how large
-// the coordinates of its keyframe are; then a glance at sixteen faces at a time (analysis/signs/kernels/face_glance.h)
-// leaves few of them to be looked at one by one.
+// Looks at every segment of a motion for causes of wrong normals, block by block and in waves of segments, and adds up
+// the findings in order. A wave looks at vertices first, since the limit for small faces depends on the largest
+// coordinates of the keyframe. Then a quick test of sixteen faces at a time (analysis/signs/kernels/face_glance.h)
+// leaves only a few faces for the full test.
 #include "chronormal/workflow/inspect.h"
 
 #include <algorithm>
@@ -31,15 +31,15 @@
 namespace chronormal {
 namespace {
 
-// Half a unit in the last place of float32 moves an end of an edge by up to sqrt(3) of it, so the edge by twice that,
-// and the cross product of two edges by twice that again, times the longer edge.
+// Half a unit in the last place of float32 moves an end of an edge by up to sqrt(3) units, so the edge by twice as
+// much, and the cross product of two edges by twice as much again, times the longer edge.
 constexpr double kRounding = 4 * 1.7320508075688772 * 0x1p-24;
 
-// So many faces, or vertices, are a block: their control normals stay in the second-level cache. A wave has a segment,
-// or where segments are small as many as keep all threads busy.
+// A block has this many faces or vertices, so that their control normals stay in the second-level cache. A wave has one
+// segment, or enough small segments to keep all threads busy.
 constexpr std::size_t kBlock = 8 * kCountedTogether, kBlocksPerThread = 4;
 
-// What can be wrong with a face, a bit each.
+// Problems of a face, one bit each.
 enum Mark : std::uint8_t {
   kNoArea = 1,
   kSliver = 2,
@@ -52,12 +52,12 @@ enum Mark : std::uint8_t {
 
 using FaceMarks = std::vector<std::atomic<std::uint8_t>>;
 
-// Faces at one keyframe, or of one kind in one segment.
+// Counts faces at one keyframe, or faces of one kind in one segment.
 struct FaceTally {
   std::size_t count = 0, first_face = 0;
   double first_t = 0;
 
-  // Faces come in ascending order.
+  // Adds a face. Faces come in ascending order.
   void add(std::size_t face, Mark mark, FaceMarks& marks, double t = 0) {
     if (count++ == 0) {
       first_face = face;
@@ -65,7 +65,7 @@ struct FaceTally {
     }
     marks[face].fetch_or(mark, std::memory_order_relaxed);
   }
-  // The next faces, of the same keyframe or segment.
+  // Adds the next faces of the same keyframe or segment.
   void add(const FaceTally& next) {
     if (count == 0) {
       first_face = next.first_face;
@@ -75,7 +75,7 @@ struct FaceTally {
   }
 };
 
-// The bounding box of vertices that come one after the other.
+// The bounding box of vertices, which are added one after the other.
 struct Box {
   bool is_empty = true;
   Vec3f low, high;
@@ -92,13 +92,13 @@ struct Box {
   static Vec3f highest(const Vec3f& a, const Vec3f& b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
   }
-  // The largest coordinate, regardless of its sign.
+  // Returns the largest absolute coordinate.
   [[nodiscard]] double most() const { return maximum_number(max_abs(to_double(low)), max_abs(to_double(high))); }
 };
 
 // The vertices of one block of a segment, or of all of its blocks so far.
 struct VertexTally {
-  Box from, to;  // of the keyframes that this segment judges
+  Box from, to;  // of the keyframes judged in this segment
   Largest motion;
   std::size_t moved = 0;
 
@@ -123,9 +123,9 @@ void keep_larger(Largest& largest, const Largest& other) {
   if (other.value > largest.value) largest = other;
 }
 
-// A tally has what was found in one block of faces of a segment, or in all of its blocks so far.
+// The findings in one block of faces of a segment, or in all of its blocks so far.
 struct SegmentTally {
-  KeyframeTally from, to;  // of the keyframes that this segment judges
+  KeyframeTally from, to;  // of the keyframes judged in this segment
   FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
   Largest turn;
   CurveCount curves;
@@ -171,7 +171,7 @@ std::size_t count_marked(const FaceMarks& marks, Mark mark) {
       std::count_if(marks.begin(), marks.end(), [mark](const auto& bits) { return (bits & mark) != 0; }));
 }
 
-// How long a normal may be that is nothing but the rounding of its positions.
+// Bounds the length of a normal that is only rounding error of its positions.
 double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> positions) {
   double coordinate = 0, edge = 0;
   const Vec3d origin = to_double(positions[face[0]]);
@@ -183,10 +183,10 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
   return kRounding * static_cast<double>(face.size() - 2) * coordinate * edge;
 }
 
-// Judges a face of one keyframe by the normal that it has there. No coordinate of the keyframe is larger than `most`.
+// Judges a face of one keyframe by its normal there. No coordinate of the keyframe is larger than `most`.
 void inspect_at_keyframe(std::span<const std::uint32_t> face, std::size_t f, VectorView<const float> positions,
                          double most, const Vec3d& normal, KeyframeTally& tally, FaceMarks& marks) {
-  const double largest_rounding = kRounding * most * 2 * most;  // of a triangle
+  const double largest_rounding = kRounding * most * 2 * most;  // for a triangle
   const double size = max_abs(normal);
   if (size > static_cast<double>(face.size() - 2) * largest_rounding) return;
   if (size == 0)
@@ -207,7 +207,7 @@ Box box_of(VectorView<const float> positions, IndexRange vertices) {
 
 void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& tally) {
   const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
-  double most_of_square = 0;  // a square that is not larger is that of no larger length
+  double most_of_square = 0;  // squares up to this one belong to lengths that are not larger
   for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
     const Vec3d step = to.way_from(from, v, v);
     if (max_abs(step) == 0) continue;
@@ -220,14 +220,13 @@ void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& 
   }
 }
 
-// Two vectors with a positive dot product certainly differ by less than the angle where the square of this product is a
-// larger share than this of the product of their squared lengths.
+// Returns the share s for which a.b > 0 and (a.b)^2 > s |a|^2 |b|^2 prove that a and b differ by less than the angle.
 double square_of_cosine_above(double angle) {
   const double cosine = angle < std::numbers::pi / 2 ? portable::cos(angle) : 0;
   return cosine * cosine * (1 + 1e-12);
 }
 
-// most_of_square is square_of_cosine_above() the largest angle so far.
+// most_of_square must be square_of_cosine_above() of the largest angle so far.
 void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c, double& most_of_square,
                   FaceMarks& marks, SegmentTally& tally) {
   const double along = dot(c.n0, c.n1);
@@ -242,7 +241,7 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (is_far_from_collapse(c)) return;
   const Collapses exact = find_collapses(segment, f, c);
   const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
-    return each.before != Vec3d{} && each.after != Vec3d{};  // and not at an end
+    return each.before != Vec3d{} && each.after != Vec3d{};  // and so not at an end
   });
   if (zero != exact.instants().end()) tally.vanishing.add(f, kVanishes, marks, zero->upper);
   if (exact.always) tally.without_normals.add(f, kWithoutNormal, marks);
@@ -254,7 +253,7 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (over != end) tally.turned_over.add(f, kTurnsOver, marks, over->t);
 }
 
-// The largest coordinates of both keyframes of a segment, of those that it judges.
+// The largest coordinates at both ends of a segment, for the keyframes that it judges.
 struct JudgedEnds {
   std::optional<double> from, to;
 };
@@ -280,7 +279,7 @@ void inspect_faces(const Segment& segment, IndexRange faces, const JudgedEnds& j
   }
 }
 
-// Faces at a keyframe without a segment.
+// Judges faces at a keyframe without a segment.
 void inspect_still_faces(const Segment& segment, IndexRange faces, double most, FaceMarks& marks, SegmentTally& tally) {
   std::vector<ControlNormals> normals(faces.count);
   face_control_normals(segment, faces, normals);
@@ -289,7 +288,7 @@ void inspect_still_faces(const Segment& segment, IndexRange faces, double most, 
                         marks);
 }
 
-// The block of this number, of so many faces or vertices; empty behind the last.
+// Returns the block with this number, of `count` faces or vertices; empty past the last.
 IndexRange block_of(std::size_t number, std::size_t count) {
   const std::size_t first = std::min(number * kBlock, count);
   return {first, std::min(kBlock, count - first)};
@@ -330,7 +329,7 @@ Result<Inspection> inspect(MotionStream& stream,
     }
   }
 
-  // The first segment at a keyframe judges it; one without a segment is judged as if it stood still.
+  // The first segment at a keyframe judges the keyframe. A keyframe without a segment is judged as a still mesh.
   const std::size_t segment_count = motion.segments.size();
   std::vector<std::optional<std::size_t>> judge(result.keyframes);
   for (std::size_t s = segment_count; s > 0; --s) {
@@ -350,7 +349,7 @@ Result<Inspection> inspect(MotionStream& stream,
   const std::size_t wave = block_count(kBlocksPerThread * thread_count(), blocks);
   std::vector<VertexTally> vertex_blocks(std::min(wave, total) * blocks);
   std::vector<SegmentTally> face_blocks(std::min(wave, total) * blocks);
-  // Segments, and behind them the keyframes that no segment judges.
+  // Lists segments first, then the keyframes that no segment judges.
   const auto moves = [&](std::size_t s) { return s < segment_count; };
   const auto keys_of = [&](std::size_t s) {
     return moves(s) ? motion.segments[s] : Motion::SegmentKeys{still[s - segment_count], still[s - segment_count]};
@@ -414,7 +413,7 @@ Result<Inspection> inspect(MotionStream& stream,
   result.low = result.low + origin;
   result.high = result.high + origin;
 
-  // In order, so that what is first does not depend on the threads.
+  // Tallies are added in order, so that the first finding does not depend on the threads.
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     add_tally(result.no_area, keyframes[k].no_area, k);
     add_tally(result.slivers, keyframes[k].slivers, k);

@@ -14,7 +14,7 @@
 namespace chronormal {
 namespace {
 
-// Signed bytes round a component by up to 1 / 254, so a length by up to sqrt(3) times that.
+// Signed bytes round a component by up to 1 / 254, and so a length by up to sqrt(3) times as much.
 constexpr double kLengthTolerance = 1.7320508075688772 / 254;
 
 Status inspect_vertices(GltfGeometry geometry, GltfPrimitiveInspection& result) {
@@ -60,7 +60,7 @@ Result<GltfPrimitiveInspection> inspect_primitive(const GltfDocument& document, 
   return result;
 }
 
-// Widens the range to what a weight does between two keys, where the tangents lead it past both.
+// Widens the range to the weights between two keys, if the tangents lead the spline past both keys.
 void add_spline(const Bernstein<double, 3>& weight, GltfTrackInspection& result) {
   const auto [lowest, highest] = std::minmax_element(weight.begin(), weight.end());
   if (result.lowest <= *lowest && *highest <= result.highest) return;
@@ -83,7 +83,7 @@ Result<GltfTrackInspection> inspect_track(const GltfDocument& document, std::siz
   if (times.empty()) return result;
   result.first_time = times.front();
   result.last_time = times.back();
-  // A cubic spline has three rows a key, of which the middle one is the weights.
+  // A cubic spline has three rows per key, and the middle one holds the weights.
   const bool is_cubic = document.animations()[animation].tracks[track].interpolation == GltfInterpolation::kCubicSpline;
   const std::size_t rows = times.size() * (is_cubic ? 3 : 1), width = values.size() / rows;
   bool is_first = true;

@@ -1,4 +1,4 @@
-// Inspects an input of any kind: its motion, and what a glTF file has beside.
+// Inspects an input of any kind: its motion, and the other contents of a glTF file.
 #include <utility>
 
 #include "chronormal/workflow/inspect.h"
@@ -22,7 +22,7 @@ Status inspect_keyframes(const ProgressCallback& progress, Inspected& result) {
   return Success{};
 }
 
-// Inspects what a glTF file holds, and what moves in it.
+// Inspects the contents of a glTF file and its moving parts.
 Status inspect_document(const std::string& animation, const ProgressCallback& progress, Inspected& result) {
   Input& input = result.opened;
   const GltfDocument& document = *input.document();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 40;
 
-// Exporters compute weights, and miss 0 and 1 by a little.
+// Exporters compute weights, and miss 0 and 1 slightly.
 constexpr double kRoundedWeight = 1e-3;
 
 std::string numbered(const char* what, std::size_t number) { return what + (' ' + std::to_string(number)); }
@@ -23,12 +23,12 @@ std::string faces(std::size_t count) { return counted(count, "face", "faces"); }
 std::string edges(std::size_t count) { return counted(count, "edge", "edges"); }
 std::string vertices(std::size_t count) { return counted(count, "vertex", "vertices"); }
 
-// "12 faces have", "1 face has".
+// Returns "12 faces have" or "1 face has".
 std::string have(const std::string& counted_things, std::size_t count) {
   return counted_things + (count == 1 ? " has" : " have");
 }
 
-// ", 30 times in all" where the same faces come more than once.
+// Returns ", 30 times in all" if the same faces occur more than once.
 std::string in_all(const Places& places) {
   return places.pairs > places.faces ? ", " + grouped(places.pairs) + " times in all" : "";
 }
@@ -81,7 +81,7 @@ void add_motion_trouble(const Inspection& found, Troubles& troubles) {
   troubles.in_segments("turns_over", found.turned_over, " turning over inside a segment, through no area", true,
                        "the normal jumps to its opposite at that instant");
   Places others = found.collapses;
-  if (found.turned_over.pairs == others.pairs) others.pairs = 0;  // all of them were told
+  if (found.turned_over.pairs == others.pairs) others.pairs = 0;  // all of them were reported
   troubles.in_segments("collapses", others, " losing all area inside a segment", true,
                        found.turned_over.pairs > 0 ? "the normal jumps or comes back, the ones that turn over included"
                                                    : "the normal is lost for an instant, and comes back");
@@ -129,7 +129,7 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
                "they come apart: they must not be welded by their first positions");
 }
 
-// "Head, primitive 1", and the node where several have the mesh.
+// Returns "Head, primitive 1", and adds the node if several nodes have the mesh.
 std::string part_label(const InspectedGltf& gltf, const GltfPart& part) {
   std::string label = mesh_label(*gltf.document, part.mesh) + numbered(", primitive", part.primitive);
   if (part.node && gltf.inspection.instances[part.mesh] > 1)

@@ -1,4 +1,4 @@
-/// The part of what inspect_input() found that is bad news: in words, with what it means for normals. Private to
+/// Finds the bad news in the results of inspect_input(), in words, and says what it means for normals. Private to
 /// workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_
 #define CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_
@@ -16,23 +16,24 @@ struct Trouble {
   std::string kind;  ///< for programs: "no_area_at_keyframe"
   std::size_t count = 0;
   std::string what;     ///< "2 faces have no area at a keyframe"
-  std::string where;    ///< the first of them, or empty
-  std::string meaning;  ///< for normals
+  std::string where;    ///< the first place, or empty
+  std::string meaning;  ///< consequences for normals
 };
 
-/// All that is bad news, the worst first.
+/// Lists all bad news, the worst first.
 [[nodiscard]] std::vector<Trouble> find_trouble(const Inspected& input);
 
-/// "keyframe 3 (walk_3.obj)", "segment 3 (smile)", "face 7 of Head, primitive 1": as a person finds it again.
+/// Return labels by which a person finds the place again: "keyframe 3 (walk_3.obj)", "segment 3 (smile)", "face 7 of
+/// Head, primitive 1".
 [[nodiscard]] std::string keyframe_label(const Inspected& input, std::size_t keyframe);
 [[nodiscard]] std::string segment_label(const Inspected& input, std::size_t segment);
 [[nodiscard]] std::string face_label(const Inspected& input, std::size_t face);
 [[nodiscard]] std::string vertex_label(const Inspected& input, std::size_t vertex);
 
-/// "LINEAR", as glTF has it.
+/// Returns the name in glTF, such as "LINEAR".
 [[nodiscard]] const char* interpolation_name(GltfInterpolation interpolation);
 
-/// The name of a mesh, or "mesh 3" where it has none.
+/// Returns the name of a mesh, or "mesh 3" if it has none.
 [[nodiscard]] std::string mesh_label(const GltfDocument& document, std::size_t mesh);
 
 }  // namespace chronormal::inline internal
