@@ -25,7 +25,7 @@ Json place_json(const AuditPlace& place, const char* moment) {
 
 const char* moment_of(const AuditSubject& subject) { return audit_moment_name(subject.kind); }
 
-// On average over samples, beyond 10, 20 and 40 degrees; and the most at one sample.
+// Adds the number of torn edges on average over samples, beyond 10, 20 and 40 degrees, and the largest at one sample.
 void add_torn(const MotionError& error, Json& json) {
   if (error.samples == 0) return;
   Json average = Json::array();
@@ -138,7 +138,7 @@ Json viewer_json(const Audit& audit, const AuditLimits& limits, const ViewerAudi
   return json;
 }
 
-// All that was found in one input, but for its subjects.
+// Returns everything found in one input, except its subjects.
 Json without_subjects(const std::string& input, const Audit& audit, const AuditLimits& limits) {
   Json json;
   json["input"] = {{"name", input}};
@@ -165,11 +165,12 @@ Json without_subjects(const std::string& input, const Audit& audit, const AuditL
   return json;
 }
 
-// The text of one input, whose subjects are never all there as objects.
+// Returns the text of one input. Its subjects are converted one by one, so that they are never all in memory as
+// objects.
 std::string audit_text_of(const std::string& input, const Audit& audit, const AuditLimits& limits, bool is_indented) {
   Json json = json_of_command("audit", kAuditSchema);
   json.update(without_subjects(input, audit, limits));
-  if (limits.any() && !audit.is_judged()) json["passed"] = false;  // of one input, and not of one among others
+  if (limits.any() && !audit.is_judged()) json["passed"] = false;  // only for a single input, not for one of several
   return with_items(
       is_indented ? json_text(json) : json.dump(-1, ' ', false, Json::error_handler_t::replace), "subjects",
       audit.subjects.size(), [&](std::size_t i) { return subject_json(audit.subjects[i]); }, is_indented);

@@ -1,4 +1,4 @@
-/// The result of an audit as a JSON object, for one input and for several. Private to workflow and the program.
+/// Makes JSON from the result of an audit, for one input or for several. Private to workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_JSON_AUDIT_JSON_H_
 #define CHRONORMAL_WORKFLOW_JSON_AUDIT_JSON_H_
 
@@ -10,13 +10,13 @@
 
 namespace chronormal::inline internal {
 
-/// The number of the JSON objects of audits. 2: `viewers` for `hosts`; torn edges.
+/// The version of the JSON of audits. 2: `viewers` for `hosts`; torn edges.
 inline constexpr int kAuditSchema = 2;
 
-/// All that was found in one input; without the fields that every command begins with.
+/// Returns everything found in one input, without the fields that every command begins with.
 [[nodiscard]] Json audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
-/// The text of audit_json() in one line.
+/// Returns the text of audit_json() in one line.
 [[nodiscard]] std::string audit_line(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
 }  // namespace chronormal::inline internal

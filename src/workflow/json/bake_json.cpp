@@ -9,7 +9,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// 3: `viewers` for `hosts` and `candidates` for `choices`; kinds of poses; torn edges.
+// The version of the JSON of bakes. 3: `viewers` for `hosts` and `candidates` for `choices`; kinds of poses; torn
+// edges.
 constexpr int kSchema = 3;
 
 Json common_json(const BakeReport& report) {
@@ -32,7 +33,7 @@ Json audit_json(const MotionError& before, const MotionError& after) {
           {"worse", is_worse(after, before)}};
 }
 
-// Keys for the kinds of poses: animations and standing poses, single targets, and those that a program sets.
+// Keys for the kinds of poses: animations and static poses, single targets, and poses that a program sets.
 constexpr std::array<const char*, 3> kPoses = {"file", "alone", "posed"};
 
 Json shown_json(const ShownErrors& errors) {

@@ -56,7 +56,7 @@ Json schemes_json(const NamedComparison& input, bool with_times) {
   return schemes;
 }
 
-// The key is there where there was a tolerance, and null where no scheme is within it.
+// Writes the cheapest scheme. The key exists if there was a tolerance, and is null if no scheme is within it.
 void put_cheapest(Json& json, const Comparison& c) {
   if (!c.tolerance) return;
   json["tolerance_degrees"] = *c.tolerance;

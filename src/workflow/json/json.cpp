@@ -1,4 +1,4 @@
-// Writes the parts that the JSON of several commands has in common.
+// Writes the parts of JSON that several commands share.
 #include "core/text.h"
 #include "workflow/json/object.h"
 
@@ -8,14 +8,14 @@ Json json_of_command(const char* command, int schema) {
   return {{"chronormal", CHRONORMAL_VERSION}, {"command", command}, {"schema", schema}};
 }
 
-// Control characters that JSON lets stand are those from DEL on, inside of texts: as escapes they are the same texts.
+// JSON leaves control characters from DEL on unescaped; escaping them gives the same strings.
 std::string json_text(const Json& json) {
   return escaped_for_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n';
 }
 
 std::string with_items(std::string text, const std::string& name, std::size_t count,
                        const std::function<Json(std::size_t)>& item, bool is_indented) {
-  // Inside of strings, quotes are escaped: there is no such text but that of the list.
+  // Quotes inside strings are escaped, so only the list itself can match this text.
   const std::string list = '"' + name + (is_indented ? "\": []" : "\":[]"), margin(is_indented ? 4 : 0, ' ');
   const std::size_t at = text.find(list);
   if (at == std::string::npos || count == 0) return text;

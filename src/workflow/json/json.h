@@ -1,8 +1,8 @@
-/// The results of inspect, audit, compare, bake and query as JSON: what the program prints for --json, for whoever has
-/// the results and not the program. docs/cli.md has the fields.
+/// Makes JSON from the results of inspect, audit, compare, bake and query: the output of the program for --json, for
+/// callers that have the results but not the program. docs/cli.md lists the fields.
 ///
-/// Text       indented by two, with a line end; names that are no UTF-8 get U+FFFD, and numbers that are infinite or no
-///            numbers are null.
+/// Text       indented by two, with a line end; bytes in names that are not UTF-8 become U+FFFD, and numbers that are
+///            infinite or NaN become null.
 /// Threads    everything here is pure.
 #ifndef CHRONORMAL_WORKFLOW_JSON_JSON_H_
 #define CHRONORMAL_WORKFLOW_JSON_JSON_H_
@@ -23,17 +23,18 @@ namespace chronormal::inline internal {
 
 [[nodiscard]] std::string inspect_json(const Inspected& input);
 
-/// input is the name of what was audited. tolerance: degrees, which `passed` is about; nothing: none was asked for.
+/// Returns the text of an audit. input is the name of the audited file; `passed` says whether the audit is within
+/// limits.
 [[nodiscard]] std::string audit_json(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
 struct NamedComparison {
   std::string name;
   Comparison comparison;
-  TargetNames targets = {};  ///< of a set of targets
+  TargetNames targets = {};  ///< if the motion is a set of targets
 };
 
-/// `several` nests the inputs, even if there is only one. Without times the text is the same on every run.
-/// inputs must not be empty
+/// Returns the text of comparisons. `several` nests the inputs, even if there is only one. Without times the text is
+/// the same on every run. inputs must not be empty.
 [[nodiscard]] std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times);
 
 /// input is the name of what the face belongs to.
@@ -41,7 +42,7 @@ struct NamedComparison {
 
 struct NamedBlendComparison {
   std::string name;
-  std::string animation;  ///< as it was asked for; empty: random weights
+  std::string animation;  ///< as requested; empty for random weights
   BlendComparison comparison;
 };
 
@@ -54,19 +55,19 @@ struct NamedTruthComparison {
 
 [[nodiscard]] std::string truth_json(const NamedTruthComparison& input);
 
-/// The audit of the input of a bake, and the audit of the file that it made.
+/// The audit of the input of a bake, and the audit of the baked file.
 struct BeforeAndAfter {
   Audit before, after;
 
   [[nodiscard]] bool is_worse() const noexcept { return chronormal::is_worse(after.error, before.error); }
 };
 
-/// What is reported of a bake beside its result.
+/// Facts about a bake that are reported with its result.
 struct BakeReport {
   std::string input, output;  ///< names
   std::optional<std::string> drivers_file;
   std::optional<BeforeAndAfter> audit;
-  std::vector<std::string> notes = {};  ///< on the input, as Input::notes() has them
+  std::vector<std::string> notes = {};  ///< on the input, from Input::notes()
 };
 
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);
@@ -75,7 +76,7 @@ struct BakeReport {
 /// Lists the targets, bytes and errors that each candidate for each mesh would have, as --encode smallest compares them.
 [[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
 
-/// input is the name of what was asked about. Columns are arrays, named as in a .npz file.
+/// Returns the text of an answer; input is the name of the queried file. Columns are arrays, named as in a .npz file.
 [[nodiscard]] std::string query_json(const std::string& input, const QueryAnswer& answer);
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// Puts the rows of arrays that shards of samples have left into one array, and finds out which rows are missing.
+// Joins the rows of arrays that shards of samples wrote into one array, and finds missing rows.
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -16,7 +16,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The rows of one shard, and where they stand among all.
+// The rows of one shard, and their position among all rows.
 struct ShardRows {
   PositionedFile file;
   npy::Array array;
@@ -25,7 +25,7 @@ struct ShardRows {
 
   [[nodiscard]] std::uint64_t end() const { return place.first + array.shape.front(); }
 
-  // Checked checksums have it that this is so, unless somebody made the parts up.
+  // Tells whether the shapes agree. Matching checksums imply it, unless somebody forged the parts.
   [[nodiscard]] bool is_like(const ShardRows& other) const {
     return place.total == other.place.total &&
            std::equal(array.shape.begin() + 1, array.shape.end(), other.array.shape.begin() + 1);
@@ -56,7 +56,7 @@ Result<ShardRows> open_rows(const std::string& path) {
   return ShardRows{std::move(*file), std::move(array).value(), std::move(place).value(), path};
 }
 
-// Whether every row is in exactly one of the shards, which are in order.
+// Checks that every row is in exactly one of the shards, which are in order.
 Status check_rows(const std::vector<ShardRows>& all) {
   const std::uint64_t count = all.front().place.total;
   std::uint64_t next = 0;
@@ -98,7 +98,7 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
   for (const ShardRows& rows : all) {
     std::uint32_t sum = 0;
     std::uint64_t at = 0;
-    // Copies the bytes of a part up to a place, or reads them alone.
+    // Reads the bytes of a part up to a place, and copies them if asked to.
     const auto pass = [&](std::uint64_t end, bool is_copied) -> Status {
       while (at < end) {
         const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), end - at));

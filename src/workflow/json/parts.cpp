@@ -1,4 +1,4 @@
-// Writes and reads parts as JSON: numbers stand in lists, in the order of the members of their structs. Sums keep their
+// Writes and reads parts as JSON. Numbers are in lists, in the order of the members of their structs. Sums keep their
 // bits, since the shortest text of a double reads back as the same double.
 #include "workflow/json/parts.h"
 
@@ -16,7 +16,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr double kMostCount = 9007199254740992;  // up to here a double holds every integer
+constexpr double kMostCount = 9007199254740992;  // a double holds every integer up to this one
 
 // Reads the numbers of a list one after the other.
 class Numbers {
@@ -68,7 +68,7 @@ SchemeTally read_tally(Numbers numbers) {
   return tally;
 }
 
-// Few of the fine bins are not empty; each of these is written with its number.
+// Writes an error. Most of the fine bins are empty, so each other bin is written with its number.
 Json error_json(const MotionError& error) {
   Json json = {error.judged,
                error.sum,
@@ -187,7 +187,7 @@ std::array<double, 2> read_span(const JsonView& part) {
   return {first, numbers.real()};
 }
 
-// Curves that were cut, as parts have them.
+// Writes which curves were cut, in the format of parts.
 void put_cut(Json& json, const std::optional<CutPath>& cut) {
   if (!cut) return;
   json["path"] = path_name(cut->path.kind);
@@ -327,7 +327,7 @@ AuditShard read_audit(const JsonView& part) {
   return shard;
 }
 
-// The parts that were read, of which one list is empty, and what all of them have.
+// The parts that were read, and the fields that all of them share. One of the two lists is empty.
 struct ReadParts {
   std::string name;
   std::optional<double> tolerance;
@@ -335,7 +335,7 @@ struct ReadParts {
   std::vector<AuditShard> audits;
 };
 
-// The checksums of a part, with what it has as a text.
+// Returns the checksums of a part, extended by its name of the input and its tolerance.
 TaskChecksums checksums_of(const JsonView& part) {
   TaskChecksums checksums = read_task_checksums(part);
   NumberChecksum input, tolerance;

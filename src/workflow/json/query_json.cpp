@@ -13,7 +13,7 @@ Json value_json(T value) {
   return value;
 }
 
-// A value for each row, or an array of them where the column is wide.
+// Returns one value for each row, or one array for each row if the column is wide.
 Json column_json(const QueryColumn& column) {
   Json rows = Json::array();
   std::visit(
@@ -28,7 +28,7 @@ Json column_json(const QueryColumn& column) {
   return rows;
 }
 
-// Counts are integers.
+// Writes counts as integers.
 Json fact_json(double value) {
   constexpr double kEveryInteger = 0x1p53;
   if (value == std::floor(value) && std::fabs(value) < kEveryInteger) return static_cast<std::int64_t>(value);
