@@ -7,7 +7,7 @@
 namespace chronormal {
 namespace {
 
-// The faces of one part that collapse in it.
+// Finds the faces that collapse in one part of a segment.
 std::vector<FaceCollapses> collapses_of(const Motion& motion, const SegmentPart& part) {
   const Segment segment = motion.segment(part.segment);
   std::vector<ControlNormals> normals(motion.topology.face_count());
@@ -23,7 +23,7 @@ std::vector<FaceCollapses> collapses_of(const Motion& motion, const SegmentPart&
   return found;
 }
 
-// How many bytes the rows of these take in the answer.
+// Returns the size of these rows in the answer, in bytes.
 std::uint64_t bytes_of_collapses(const std::vector<FaceCollapses>& found) {
   constexpr std::uint64_t kBytesPerCollapse = 2 * sizeof(std::int64_t) + 9 * sizeof(double) + 1;
   constexpr std::uint64_t kBytesPerAlways = 2 * sizeof(std::int64_t);

@@ -1,4 +1,5 @@
-// The question `cones`: in which cone every normal of a face stays, and bounds of meshlets that hold while they deform.
+// Answers the question `cones`: the cone that contains every normal of a face, and bounds of meshlets that hold while
+// they deform.
 
 #include "chronormal/analysis/cones.h"
 
@@ -16,10 +17,10 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kMostTriangles = 512;  // of a meshlet, as meshoptimizer has it
-constexpr float kConeWeight = 0.5F;          // meshlets of faces that look alike are culled more often
+constexpr std::size_t kMostTriangles = 512;  // of a meshlet; the limit of meshoptimizer
+constexpr float kConeWeight = 0.5F;          // meshlets whose faces point in similar directions are culled more often
 
-// For people, and no less than it is.
+// Returns the half angle in degrees, rounded up.
 double degrees_of(const NormalCone& cone) { return half_angle(cone) * kDegreesPerRadian * (1 + 0x1p-48); }
 
 struct Meshlets {
@@ -31,7 +32,8 @@ struct Meshlets {
   }
 };
 
-// meshoptimizer names the corners of its triangles, in their order but for where each begins; this finds their faces.
+// Builds meshlets with meshoptimizer, which returns the corners of triangles but may rotate them; this finds their
+// faces.
 Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
   const std::span<const std::uint32_t> corners = motion.topology.corners();
   const std::vector<float>& positions = motion.keyframes.front().positions;
@@ -60,7 +62,7 @@ Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
       const unsigned char* const local = &triangles[meshlet.triangle_offset + 3 * i];
       const unsigned* const global = &vertices[meshlet.vertex_offset];
       const Triangle triangle = from_the_lowest({global[local[0]], global[local[1]], global[local[2]]});
-      // Doubled faces are taken one after the other.
+      // Duplicate faces are taken one after the other.
       auto found = std::lower_bound(faces.begin(), faces.end(), std::pair{triangle, std::uint32_t{0}});
       while (taken[found->second] != 0) ++found;
       taken[found->second] = 1;
@@ -71,7 +73,7 @@ Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
   return result;
 }
 
-// The columns of meshopt_Bounds, a row for each segment and meshlet.
+// Makes a table with the columns of meshopt_Bounds and a row for each segment and meshlet.
 QueryTable meshlet_table(const Motion& motion, const Meshlets& meshlets, std::span<const SegmentPart> parts,
                          const QueryProgress& progress) {
   const std::vector<std::vector<ClusterBounds>> found =

@@ -13,7 +13,7 @@
 namespace chronormal {
 namespace {
 
-// Where something begins and ends, each between two instants.
+// The beginning and the end of an interval, each known to lie between two instants.
 struct Interval {
   std::array<double, 2> from{}, to{};
 };
@@ -30,7 +30,7 @@ struct Found {
   std::size_t always_front = 0, always_back = 0;
 };
 
-// Cuts an interval off at the ends of a part; false where nothing is left.
+// Clips an interval to a part; returns false if nothing is left.
 bool cut(Interval& when, const SegmentPart& part) {
   if (when.from[0] >= part.t1 || when.to[1] <= part.t0) return false;
   for (double& t : when.from) t = std::max(t, part.t0);
@@ -45,7 +45,7 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
     if (cut(when, part)) fronts.push_back({element, when});
   };
   for (const FacingChange& change : facing.changes()) {
-    // Where it only touches edge-on, one interval ends and the next begins.
+    // At an instant where the face is only touched edge-on, one interval ends and the next begins.
     if (is_front) {
       when.to = {change.lower, change.upper};
       close();
@@ -56,7 +56,7 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
   if (is_front) close();
 }
 
-// The view of one segment: an eye moves evenly over the time of the motion.
+// Returns the view in one segment: an eye moves evenly over the time of the motion.
 View view_in(const Segment& segment, const View& view, double first, double last) {
   if (view.from == view.to) return view;
   return View::of_moving_eye(view.from, view.to, LocalTime::between(first, segment.start_time, last),
@@ -101,14 +101,14 @@ Found facing_of(const Segment& segment, const View& view, bool with_silhouettes,
   return found;
 }
 
-// How many bytes the rows of these take in the answer.
+// Returns the size of these rows in the answer, in bytes.
 std::uint64_t bytes_of_fronts(const Found& found) {
   constexpr std::uint64_t kBytesPerFront = 2 * sizeof(std::int64_t) + 4 * sizeof(double);
   constexpr std::uint64_t kBytesPerSilhouette = 5 * sizeof(std::int64_t) + 4 * sizeof(double);
   return kBytesPerFront * found.fronts.size() + kBytesPerSilhouette * found.silhouettes.size();
 }
 
-// The columns that say when.
+// The columns that hold segments and times.
 struct WhenColumns {
   std::vector<std::int64_t> segments;
   std::array<std::vector<double>, 4> ends;

@@ -1,4 +1,4 @@
-/// The loop that all questions share, one result for each part of a segment, and how large an answer may get.
+/// The loop that all questions share, with one result for each part of a segment, and limits on the size of an answer.
 #ifndef CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 #define CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 
@@ -67,8 +67,8 @@ class RowsInBounds {
  public:
   explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}
 
-  /// Adds the bytes of another part, the `done`th of `total`. Errors: of Expansion::check(), once all that was added so
-  /// far is too much.
+  /// Adds the bytes of another part, the `done`th of `total`. Errors: as Expansion::check() returns them, once the sum
+  /// so far is too large.
   [[nodiscard]] Status add(std::uint64_t bytes, std::size_t done, std::size_t total) {
     bytes_ += bytes;
     return expansion_.check(bytes_,
@@ -80,9 +80,9 @@ class RowsInBounds {
   std::uint64_t bytes_ = 0;
 };
 
-/// Calls answer(part) for every part, on all cores, and returns the results in the order of the parts. As many parts as
-/// there are threads are answered at a time, and after each time the bytes_of(result) of all of them must be in bounds.
-/// Errors: of RowsInBounds::add().
+/// Calls answer(part) for every part, on all cores, and returns the results in the order of the parts. Each round
+/// answers as many parts as there are threads, and after each round the total bytes_of(result) must be in bounds.
+/// Errors: as RowsInBounds::add() returns them.
 template <class T, class Answer, class BytesOf>
 [[nodiscard]] Result<std::vector<T>> for_bounded_parts(std::span<const SegmentPart> parts, const QuerySpan& span,
                                                        const QueryProgress& progress, const Answer& answer,
@@ -104,7 +104,7 @@ template <class T, class Answer, class BytesOf>
   return results;
 }
 
-/// The same for answers of which check_rows() knew how large they get.
+/// Does the same for answers whose size check_rows() has already limited.
 template <class T, class Answer>
 [[nodiscard]] std::vector<T> for_parts(std::span<const SegmentPart> parts, const QueryProgress& progress,
                                        const Answer& answer) {

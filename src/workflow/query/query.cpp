@@ -1,4 +1,4 @@
-// What all questions share: the parts of segments that lie in a span, and answers as files.
+// Shared code of all questions: the parts of segments that lie in a span, and answers as files.
 
 #include "chronormal/workflow/query.h"
 
@@ -30,7 +30,8 @@ std::string npy_of(const QueryColumn& column) {
   return NpyBytes(shape, std::get<std::vector<std::uint8_t>>(column.values)).bytes();
 }
 
-// Returns the t of a time, or where no double is that t the next one towards an end: a part holds the whole span.
+// Returns the t of a time. If t is not a double, returns the next double towards `end`, so that a part holds the whole
+// span.
 double t_towards(const Segment& segment, double time, double end) {
   const LocalTime t = LocalTime::between(segment.start_time, time, segment.end_time);
   return t.is_double() ? t.t : std::nextafter(t.t, end);

@@ -1,5 +1,5 @@
-// The question `shutter`: what normal a renderer should show while the shutter is open, and what it shows instead where
-// it interpolates between the ends.
+// Answers the question `shutter`: the normal that a renderer should use while the shutter is open, and the error of
+// interpolating between the ends.
 
 #include "chronormal/analysis/cones.h"
 
@@ -94,7 +94,7 @@ Means whole_of(const Motion& motion, std::span<const SegmentPart> parts, std::sp
   return whole;
 }
 
-// A table of means, row after row.
+// The rows of a table of means.
 struct Rows {
   std::vector<std::int64_t> segments, numbers;
   std::vector<double> mean, mean_unit, error, spread, half_angle, ends, ends_off;
