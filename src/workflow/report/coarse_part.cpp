@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kNone = kNoReportElement;
 
-// Faces of a part: runs of triangles.
+// The faces of a part, each a run of triangles.
 struct Faces {
   explicit Faces(const ModelPart& part) {
     const std::size_t triangles = part.triangles.size() / 3;
@@ -24,17 +24,17 @@ struct Faces {
     first.push_back(triangles);
   }
   [[nodiscard]] std::size_t count() const noexcept { return first.size() - 1; }
-  // The corners of all triangles of a face.
+  // Returns the corners of all triangles of a face.
   [[nodiscard]] std::span<const std::uint32_t> corners(const ModelPart& part, std::size_t face) const {
     return std::span(part.triangles).subspan(3 * first[face], 3 * (first[face + 1] - first[face]));
   }
 
-  std::vector<std::size_t> first;  // triangle of each face, and the end
+  std::vector<std::size_t> first;  // first triangle of each face, and the end
 };
 
-// What belongs to each element, one list after the other.
+// Lists of numbers, one for each element, stored one after the other.
 struct ListsOfElements {
-  // each(use) calls use(element, number) for all that is listed, in order; of no element, it is left out.
+  // each(use) must call use(element, number) for all entries, in order. Entries without an element are left out.
   template <class Each>
   ListsOfElements(const ModelPart& part, const Each& each) : offsets(part.elements + 1) {
     each([&](std::uint32_t e, std::size_t) {
@@ -70,7 +70,7 @@ void for_terms(const ModelPart& part, const Use& use) {
   for (std::uint32_t c = 0; c < truth.corners.size(); ++c) use(c, part.element[truth.corners[c]]);
 }
 
-// The polygon of each corner.
+// Returns the polygon of each corner.
 std::vector<std::uint32_t> polygons_of_corners(const ModelTruth& truth) {
   std::vector<std::uint32_t> result;
   result.reserve(truth.corners.size());
@@ -78,7 +78,7 @@ std::vector<std::uint32_t> polygons_of_corners(const ModelTruth& truth) {
   return result;
 }
 
-// The vertices that the truth of each element looks at, beside those of its triangles.
+// Lists the vertices that the truth of each element needs, besides the vertices of its triangles.
 ListsOfElements vertices_of_truths(const ModelPart& part) {
   const ModelTruth& truth = part.truth;
   const std::vector<std::uint32_t> polygon_of = polygons_of_corners(truth);
@@ -97,8 +97,8 @@ struct Kept {
   std::vector<bool> faces, vertices, elements;
 };
 
-// The elements around the worst places, ring after ring, until their faces have so many vertices; at least those of the
-// places themselves.
+// Keeps the elements around the worst places, ring after ring, until their faces have this many vertices; always keeps
+// the elements of the places themselves.
 Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size_t most_vertices) {
   const ModelPart& part = model.parts[number];
   const Faces faces(part);
@@ -133,7 +133,7 @@ Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size
   return kept;
 }
 
-// Fewer triangles of the same vertices; their border stays, if it may.
+// Returns fewer triangles with the same vertices. Their border stays if possible.
 std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
                                       std::size_t most_triangles) {
   if (triangles.empty() || most_triangles == 0) return {};
@@ -143,7 +143,7 @@ std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangle
   std::vector<std::uint32_t> result(triangles.size());
   std::size_t count = meshopt_simplify(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                        kStride, most, kAnyError, meshopt_SimplifyLockBorder);
-  // The topology or the borders of a mesh may keep it from becoming coarse. Then only its shape counts.
+  // The topology or the borders of a mesh may prevent simplification. Then only its shape is kept.
   if (count > most + most / 2)
     count = meshopt_simplifySloppy(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                    kStride, most, kAnyError);
@@ -151,7 +151,7 @@ std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangle
   return result;
 }
 
-// Numbers those that stay, in their order.
+// Numbers the kept items in their order.
 std::vector<std::uint32_t> numbers(const std::vector<bool>& kept) {
   std::vector<std::uint32_t> result(kept.size(), kNone);
   std::uint32_t count = 0;
@@ -172,7 +172,7 @@ void keep_vectors(const std::vector<bool>& kept, const std::vector<std::uint32_t
   for (std::uint32_t& v : vectors.vertices) v = number[v];
 }
 
-// Keeps the truth of elements that stay, with numbers of vertices and elements anew. The part has its old ones.
+// Keeps the truth of kept elements, and renumbers its vertices and elements. The part must still have the old numbers.
 void keep_truth(const Kept& kept, const std::vector<std::uint32_t>& vertex, const std::vector<std::uint32_t>& element,
                 ModelPart& part) {
   ModelTruth& truth = part.truth;
@@ -216,7 +216,7 @@ void keep_truth(const Kept& kept, const std::vector<std::uint32_t>& vertex, cons
   }
 }
 
-// The number of each vertex in the file: in its primitive, where there are several.
+// Stores the number of each vertex in the file, or in its primitive if there are several.
 void label(ModelPart& part) {
   if (!part.labels.empty()) return;
   for (const ModelPrimitive& primitive : part.primitives)

@@ -1,4 +1,4 @@
-/// A part of a report with fewer triangles. Private to workflow.
+/// Makes a part of a report coarser. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_COARSE_PART_H_
 #define CHRONORMAL_WORKFLOW_REPORT_COARSE_PART_H_
 
@@ -8,9 +8,9 @@
 
 namespace chronormal::inline internal {
 
-/// Leaves about so many vertices of a part: half of them around its worst places, with all triangles there, and half
-/// for the others, which become coarse. The worst places keep their neighbourhoods even where these take more. Numbers
-/// in the model follow. The part must have no coarse triangles yet
+/// Leaves about this many vertices of a part: half of them around its worst places, with all triangles there, and half
+/// for the other places, which become coarse. The worst places keep their neighbourhoods even if these need more.
+/// Numbers in the model are updated. The part must have no coarse triangles yet.
 void make_coarse(ReportModel& model, std::size_t part, std::size_t most_vertices);
 
 }  // namespace chronormal::inline internal

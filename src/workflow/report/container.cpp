@@ -26,7 +26,7 @@ void pad(std::string& bytes, char with) {
   bytes.resize((bytes.size() + kAlignment - 1) / kAlignment * kAlignment, with);
 }
 
-// The arrays behind the JSON, one after the other.
+// The arrays that follow the JSON, one after the other.
 class Arrays {
  public:
   template <class T>
@@ -41,11 +41,11 @@ class Arrays {
   Json add_or_null(const std::vector<T>& values) {
     return values.empty() ? Json() : add(values);
   }
-  // {"indices", name}; without indices where all vertices have a value
+  // Returns {"indices", name}; the indices are null if all vertices have a value.
   Json add(const ModelVectors& vectors, const char* name) {
     return {{"indices", vectors.is_dense ? Json() : add(vectors.vertices)}, {name, add(vectors.values)}};
   }
-  // As an array where all vertices have a value.
+  // Returns a plain array if all vertices have a value.
   Json add_keyframe(const ModelVectors& vectors) {
     return vectors.is_dense ? add(vectors.values) : add(vectors, "values");
   }
@@ -221,7 +221,7 @@ std::string gzipped(std::string_view bytes) {
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();
   std::string result;
-  // Lengths of zlib are 32 bits.
+  // zlib stores lengths in 32 bits.
   constexpr std::size_t kAtOnce = std::size_t{1} << 20;
   std::string block(kAtOnce, '\0');
   int state = Z_OK;

@@ -9,13 +9,14 @@
 
 namespace chronormal::inline internal {
 
-/// head has what the JSON begins with: the fields that are no part of the model, as text, each with a comma behind it.
+/// Writes the container. head is the beginning of the JSON: the fields that do not belong to the model, as text, each
+/// with a comma behind it.
 [[nodiscard]] std::string write_container(const std::string& head, const ReportModel& model);
 
-/// The bytes by gzip.
+/// Compresses the bytes with gzip.
 [[nodiscard]] std::string gzipped(std::string_view bytes);
 
-/// The bytes as base64, with padding.
+/// Encodes the bytes as base64, with padding.
 [[nodiscard]] std::string base64(std::string_view bytes);
 
 }  // namespace chronormal::inline internal

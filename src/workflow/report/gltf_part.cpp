@@ -9,7 +9,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Vectors of all vertices, as those that are not zero, or all where none is.
+// Keeps only the vectors that are not zero, or stores all of them densely if none is zero.
 ModelVectors without_zeros(const std::vector<float>& vectors) {
   ModelVectors result;
   for (std::size_t v = 0; 3 * v < vectors.size(); ++v) {
@@ -21,7 +21,7 @@ ModelVectors without_zeros(const std::vector<float>& vectors) {
   return result;
 }
 
-// The normals and deltas that one viewer keeps of the stored ones. The specification keeps all of them.
+// Returns the normals and deltas as one viewer keeps them. The specification keeps all of them.
 ModelShown shown_by(const GltfShading& shading, const Viewer& viewer) {
   ModelShown shown;
   shown.keeps_halves = viewer.keeps_halves();
@@ -46,8 +46,8 @@ bool show_alike(const Viewer& a, const Viewer& b) noexcept {
          a.octahedral_base == b.octahedral_base && a.least_weight == b.least_weight;
 }
 
-// The first entry is what the specification shows, with the names of all viewers that show the same. The others are what
-// the rest of `viewers` show.
+// Returns the normals that viewers keep. The first entry is the specification, with the names of all viewers that show
+// the same; the others are the remaining `viewers`.
 std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Viewer> viewers) {
   const Viewer specification{.name = "specification", .title = ""};
   std::vector<Viewer> firsts = {specification};
@@ -69,7 +69,7 @@ std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Vie
   return result;
 }
 
-// The polygons that are added up, and which corners of them each element adds up where that is more than its own.
+// Adds the polygons that are summed up, and the corners that each element sums up if it uses more than its own.
 void add_sums(const AuthorTruth& truth, const GltfShading& shading, ModelTruth& result) {
   const AuthorSums& sums = truth.sums();
   result.first = {0};

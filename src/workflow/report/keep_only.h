@@ -1,4 +1,4 @@
-/// Leaving some of many values out. Private to workflow.
+/// Removes some of many values. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_KEEP_ONLY_H_
 #define CHRONORMAL_WORKFLOW_REPORT_KEEP_ONLY_H_
 
@@ -9,7 +9,7 @@
 
 namespace chronormal::inline internal {
 
-/// Keeps the i-th `width` values where kept[i], in their order. There may be fewer values than kept says.
+/// Keeps the i-th `width` values if kept[i], in their order. There may be fewer values than kept has entries.
 template <class T>
 void keep_only(const std::vector<bool>& kept, std::size_t width, std::vector<T>& values) {
   std::size_t count = 0;

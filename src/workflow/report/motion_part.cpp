@@ -1,4 +1,5 @@
-// The part of a motion that is no glTF file: keyframes, the normals that they store, and the segments between them.
+// Makes the part of a motion that does not come from a glTF file: keyframes, the normals that they store, and the
+// segments between them.
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -16,7 +17,7 @@ const float* stored_at(const StoredNormals& normals, std::size_t keyframe, std::
   return normals.of_keyframes[keyframe].data() + 3 * corner;
 }
 
-// Whether two corners have the same stored normals, as far as those of every keyframe are stored.
+// Tells whether two corners have the same stored normals at every keyframe, if every keyframe has stored normals.
 bool same_normals(const Motion& motion, const StoredNormals& normals, std::size_t a, std::size_t b) {
   if (normals.of_keyframes.size() != motion.keyframes.size()) return true;
   for (std::size_t k = 0; k < normals.of_keyframes.size(); ++k) {
@@ -26,7 +27,7 @@ bool same_normals(const Motion& motion, const StoredNormals& normals, std::size_
   return true;
 }
 
-// Vectors of a keyframe as those that differ from keyframe 0, where they are few.
+// Stores only the vectors that differ from keyframe 0, if they are few.
 ModelVectors changes(const std::vector<float>& first, std::vector<float> now) {
   ModelVectors result;
   const std::size_t vertices = now.size() / 3;
@@ -35,7 +36,7 @@ ModelVectors changes(const std::vector<float>& first, std::vector<float> now) {
     result.vertices.push_back(static_cast<std::uint32_t>(v));
     result.values.insert(result.values.end(), &now[3 * v], &now[3 * v] + 3);
   }
-  // A vertex with its number is 16 bytes, and one without is 12.
+  // A vertex with its number takes 16 bytes, and 12 bytes without.
   result.is_dense = 4 * result.vertices.size() > 3 * vertices;
   if (result.is_dense) result = {true, {}, std::move(now)};
   return result;
@@ -79,7 +80,7 @@ void add_schemes(const Comparison& comparison, ModelMotion& motion) {
     ModelMotion::Scheme& scheme = motion.schemes.emplace_back();
     scheme.name = row.scheme;
     for (std::size_t i = 0; i < motion.at.size(); ++i) {
-      // The samples of an audit go from segment to segment, as many in each.
+      // The samples of an audit go from segment to segment, with the same number in each.
       const Quality& quality = row.samples[motion.segments[i] * samples + i % samples];
       scheme.worst.push_back(static_cast<float>(quality.max * kDegreesPerRadian));
       scheme.mean.push_back(static_cast<float>(quality.mean() * kDegreesPerRadian));
@@ -99,7 +100,7 @@ Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals
     std::uint32_t vertex = 0, element = 0, corner = 0;
   };
   std::vector<Shown> shown;
-  std::vector<std::uint32_t> shown_by(corners.size());  // of each corner, the corner that stands for what it shows
+  std::vector<std::uint32_t> shown_by(corners.size());  // for each corner, the corner that stands for its output
   for (std::uint32_t e = 0; e < groups.value().size(); ++e) {
     const std::size_t first = shown.size();
     for (const std::uint32_t c : groups.value().corners(e)) {

@@ -1,4 +1,4 @@
-// Gathers the data of a report, and puts them into its container.
+// Gathers the data of a report, and puts it into its container.
 #include "workflow/report/report.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A page that is still too large is thinned out more, by this factor, until hardly anything is left.
+// A page that is still too large is thinned out again by this factor, until hardly anything is left.
 constexpr double kShare = 0.9, kLeastShare = 0.1;
 
 std::function<void(std::size_t, std::size_t)> told(const ReportOptions& options, std::string_view what) {
@@ -42,7 +42,7 @@ Result<NamedComparison> compare_schemes(Input& input, const Motion& motion, cons
   return NamedComparison{input.name(), std::move(compared).value(), std::move(names).value()};
 }
 
-// The last part of a path.
+// Returns the last component of a path.
 std::string without_folders(const std::string& name) {
   const std::size_t slash = name.find_last_of("/\\");
   return slash == std::string::npos ? name : name.substr(slash + 1);
@@ -113,7 +113,7 @@ void plan(const GltfDocument& document, const ReportOptions& options, Report& re
     report.plan_message = planned.error().text();
 }
 
-// The fields of a container that are the JSON of commands, each with a comma behind it.
+// Returns the fields of a container that are the JSON of commands, each with a comma behind it.
 std::string head_of(const Report& report) {
   const auto line = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
   const auto in_one_line = [&](const std::string& text) { return line(Json::parse(text)); };
@@ -130,16 +130,16 @@ std::string head_of(const Report& report) {
   return fields;
 }
 
-// The bytes of a page with so many of it as base64 of a container packed, beside the template.
+// Returns the size of a page whose container is packed to this size, with base64 and the template.
 std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
   constexpr std::size_t kElement = 128;
   return options.template_bytes + kElement + (packed + 2) / 3 * 4;
 }
 
-// Writes the container, and thins the model out first where the page would be too large.
+// Writes the container, and first thins out the model if the page would be too large.
 std::string write_within(const std::string& head, ReportModel& model, const ReportOptions& options) {
   std::string container = write_container(head, model);
-  // How small arrays become is known from these; a part of them may become less so.
+  // This run tells how well the arrays compress; a part of them may compress worse.
   const std::size_t packed = page_bytes(gzipped(container).size(), options);
   if (packed <= options.most_bytes) return container;
   const double per_byte = static_cast<double>(packed - options.template_bytes) / static_cast<double>(container.size());

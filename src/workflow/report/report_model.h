@@ -1,5 +1,5 @@
-/// A report before it becomes bytes: the parts, their motions and the worst places, as docs/formats.md has them.
-/// Private to workflow.
+/// A report before it becomes bytes: the parts, their motions and the worst places, as in docs/formats.md. Private to
+/// workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
 
@@ -20,24 +20,24 @@ namespace chronormal::inline internal {
 
 inline constexpr std::uint32_t kNoReportElement = static_cast<std::uint32_t>(-1);
 
-/// Vectors of some vertices, ascending, or of all where it is dense.
+/// Vectors of some vertices, in ascending order, or of all vertices if dense.
 struct ModelVectors {
   bool is_dense = false;
-  std::vector<std::uint32_t> vertices;  ///< empty where it is dense
+  std::vector<std::uint32_t> vertices;  ///< empty if dense
   std::vector<float> values;            ///< (n, 3)
 
   [[nodiscard]] std::size_t size() const noexcept { return values.size() / 3; }
   [[nodiscard]] std::uint32_t vertex(std::size_t i) const noexcept {
     return is_dense ? static_cast<std::uint32_t>(i) : vertices[i];
   }
-  /// Makes vectors dense that all vertices of a mesh have.
+  /// Makes the vectors dense if every vertex of the mesh has one.
   void drop_vertices_of(std::size_t vertex_count) {
     is_dense = vertex_count > 0 && vertices.size() == vertex_count;
     if (is_dense) vertices.clear();
   }
 };
 
-/// What viewers keep of the normals of a glTF mesh.
+/// The normals and deltas of a glTF mesh as some viewers keep them.
 struct ModelShown {
   std::vector<std::string> viewers;
   bool keeps_halves = false;
@@ -46,35 +46,34 @@ struct ModelShown {
   std::vector<ModelVectors> targets;  ///< deltas
 };
 
-/// What the author added to the sum of an element, in a frame that the surface carries (truth/offset_frame.h).
+/// The author's offset from the sum of an element, in a frame that the surface carries (truth/offset_frame.h).
 struct ModelOffset {
   std::uint32_t element = 0;
   bool is_other_side = false;                  ///< the author shows the other side of the sum
   std::vector<std::uint32_t> edges;            ///< (n, 2) vertices: from the element to its neighbours
-  std::uint32_t reference = kNoReportElement;  ///< the one of its edges from which azimuths are measured
+  std::uint32_t reference = kNoReportElement;  ///< the edge from which azimuths are measured
   std::array<double, 6> turned = {};           ///< without a reference: z and x of the base
   std::array<float, 2> base = {};
 };
 
-/// The right normals of a glTF mesh where they are more than sums over its triangles (truth/author_truth.h).
+/// The true normals of a glTF mesh if they are more than sums over its triangles (truth/author_truth.h).
 struct ModelTruth {
-  /// What a target adds to the offsets `offsets` at weight 1.
+  /// The changes that a target makes to the offsets `offsets` at weight 1.
   struct Changes {
     std::vector<std::uint32_t> offsets;
     std::vector<float> values;  ///< (n, 2)
   };
 
-  std::vector<std::uint32_t> first, corners;  ///< of polygons; empty where triangles are added up
-  /// (n, 2) corners of polygons, ascending, and elements that add them up; empty where each counts for its vertex
+  std::vector<std::uint32_t> first, corners;  ///< of polygons; empty if triangles are added up
+  /// (n, 2) corners of polygons, ascending, and elements that add them up; empty if each counts for its vertex.
   std::vector<std::uint32_t> terms;
   std::vector<ModelOffset> offsets;
-  std::vector<Changes> changes;  ///< of each target; empty where there are no offsets
+  std::vector<Changes> changes;  ///< of each target; empty without offsets
 
   [[nodiscard]] bool is_plain() const noexcept { return first.empty() && offsets.empty(); }
 };
 
-/// Weights at all samples as some viewers play them, of the targets that have another weight than 0 at one of them: (S,
-/// n).
+/// Weights at all samples as some viewers play them, (S, n), for the targets whose weight is not always 0.
 struct ModelWeights {
   std::vector<std::string> viewers;
   std::vector<std::uint32_t> targets;  ///< (n), ascending
@@ -82,15 +81,15 @@ struct ModelWeights {
 };
 
 struct ModelMotion {
-  AuditSubject subject;  ///< without its errors
+  AuditSubject subject;  ///< errors not filled in
   std::size_t subject_index = 0;
   std::vector<double> at;               ///< (S)
-  std::vector<std::uint32_t> segments;  ///< (S) of a motion that is no glTF file
-  std::vector<double> t;                ///< (S) the same
+  std::vector<std::uint32_t> segments;  ///< (S) for motions that are not glTF
+  std::vector<double> t;                ///< (S) for motions that are not glTF
   std::vector<ModelWeights> weights;    ///< glTF; the first is the specification
   std::vector<float> worst, mean;       ///< (S) degrees
   std::vector<double> least;            ///< (E) the length below which a normal has no direction
-  /// The errors of a scheme that is not the one of the audit.
+  /// The errors of a scheme other than the one that the audit judged.
   struct Scheme {
     std::string name;
     std::vector<float> worst, mean;  ///< (S)
@@ -103,7 +102,7 @@ struct ModelPrimitive {
   bool is_flat = false;
 };
 
-/// The largest error of a vertex, and the moment of it.
+/// The largest error of a vertex, and its moment.
 struct ModelPeak {
   float degrees = 0;
   std::uint32_t motion = 0, sample = 0;
@@ -113,20 +112,20 @@ struct ModelPart {
   std::string name;
   std::optional<std::size_t> mesh;
   std::vector<ModelPrimitive> primitives;
-  std::vector<std::uint32_t> labels;  ///< (V) the number of each vertex in the file; empty: they count alike
+  std::vector<std::uint32_t> labels;  ///< (V) number of each vertex in the file; empty if the same
   std::vector<std::uint32_t> triangles, faces, coarse;
-  std::vector<std::uint32_t> backs;  ///< corners of triangles at which a vertex shows the other side of a sheet
+  std::vector<std::uint32_t> backs;  ///< corners of triangles whose vertex shows the other side of a sheet
   std::size_t elements = 0;
   std::vector<std::uint32_t> element;  ///< (V)
   Weighting weighting = Weighting::kArea;
   std::vector<float> positions, normals;  ///< (V, 3); normals may be empty
-  // glTF
+  // Members for glTF files.
   std::vector<std::string> target_names;
   std::vector<ModelVectors> targets;  ///< deltas of positions
   std::optional<GltfBakeMark> mark;
   std::vector<ModelShown> shown;
   ModelTruth truth;
-  // Other motions. Vectors are values, those of keyframe 0 where there are none.
+  // Members for other motions. Vectors are values; missing ones are as in keyframe 0.
   std::vector<double> times;
   std::vector<std::size_t> keyframe_numbers;
   std::vector<ModelVectors> keyframe_positions, keyframe_normals;

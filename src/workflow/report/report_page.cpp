@@ -1,4 +1,4 @@
-// The page of a report: a template, and in it the container.
+// Makes the page of a report: a template with the container in it.
 #include <string>
 
 #include "workflow/json/object.h"

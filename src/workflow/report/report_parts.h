@@ -1,5 +1,5 @@
-/// The parts of a report, as an input has them: one for each mesh of a glTF file that was judged, or one for another
-/// motion. Private to workflow.
+/// Makes the parts of a report from an input: one for each judged mesh of a glTF file, or one for another motion.
+/// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_PARTS_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_PARTS_H_
 
@@ -20,25 +20,25 @@
 
 namespace chronormal::inline internal {
 
-/// A mesh of a glTF file, with what `viewers` keep of its normals; right is what the author would see, or sums by a
-/// weighting where one is asked for. Errors: of GltfDocument
+/// Makes the part of a glTF mesh, with its normals as `viewers` keep them. The true normals are the author's, or sums
+/// by the requested weighting. Errors: as GltfDocument returns them.
 [[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh,
                                           std::optional<Weighting> asked, std::span<const Viewer> viewers,
                                           WatchedPart watched);
 
-/// The vertices of a motion in a report: a vertex of the file stands there once for each normal that it shows.
+/// The vertices of a motion in a report: a vertex of the file occurs once for each normal that it shows.
 struct MotionVertices {
   std::vector<std::uint32_t> labels;             ///< their vertices in the file, ascending
-  std::vector<std::uint32_t> elements, corners;  ///< of each; corners: one that shows it
-  std::vector<std::uint32_t> of_corner;          ///< which of them each corner of the motion shows
+  std::vector<std::uint32_t> elements, corners;  ///< of each vertex; corners: one that shows it
+  std::vector<std::uint32_t> of_corner;          ///< for each corner of the motion, the vertex that it shows
   std::size_t element_count = 0;
 };
 
-/// Finds them. Errors: of NormalGroups
+/// Finds the vertices. Errors: as NormalGroups returns them.
 [[nodiscard]] Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals& normals);
 
-/// A motion that is no glTF file, with what a comparison of schemes on it found, with keep_samples at the samples of
-/// the audit.
+/// Makes the part of a motion that is not a glTF file. comparison has the results of schemes on it, made with
+/// keep_samples at the samples of the audit.
 [[nodiscard]] ModelPart motion_part(const Motion& motion, const StoredNormals& normals, const MotionVertices& vertices,
                                     const Comparison& comparison, WatchedPart watched);
 

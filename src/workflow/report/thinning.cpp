@@ -24,7 +24,7 @@ std::size_t bytes_of_keyframes(const ModelPart& part) {
   return bytes;
 }
 
-// The bytes that the weights of all samples take. Everything else that a sample has is small beside them.
+// Returns the bytes of the weights of all samples. Everything else in a sample is small in comparison.
 std::size_t bytes_of_samples(const ModelPart& part) {
   std::size_t bytes = 0;
   for (const ModelMotion& motion : part.motions)
@@ -65,10 +65,10 @@ std::size_t sum(const ReportModel& model, const OfPart& of_part) {
   return result;
 }
 
-// How many of `most` remain when some are taken.
+// Returns the rest of `most` after subtracting `taken`.
 std::size_t left(std::size_t most, std::size_t taken) { return most > taken ? most - taken : 0; }
 
-// The samples of a motion that are worst places.
+// Lists the samples of a motion that are worst places.
 std::vector<std::size_t> worst_samples(const ReportModel& model, std::size_t part, std::size_t motion) {
   std::vector<std::size_t> samples;
   for (const ReportPlace& place : model.worst)
@@ -76,7 +76,7 @@ std::vector<std::size_t> worst_samples(const ReportModel& model, std::size_t par
   return samples;
 }
 
-// Leaves keyframes out until about most_bytes of them are left. Returns how many are.
+// Leaves out keyframes until about most_bytes remain. Returns the number of keyframes left.
 std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
   ModelPart& part = model.parts[0];
   const std::size_t keyframes = part.times.size(), segments = part.segments.size() / 2;
@@ -87,7 +87,7 @@ std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
     is_segment_kept[s] = true;
     is_kept[part.segments[2 * s]] = is_kept[part.segments[2 * s + 1]] = true;
   };
-  is_kept[0] = true;  // what the others are given by
+  is_kept[0] = true;  // the other keyframes are stored relative to it
   for (const ReportPlace& place : model.worst) {
     const std::size_t s = part.motions[place.motion].segments[place.sample];
     keep(s);
@@ -96,7 +96,7 @@ std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
     if (s > 0) keep(s - 1);
   }
   const std::size_t have = static_cast<std::size_t>(std::count(is_kept.begin(), is_kept.end(), true));
-  // A segment takes two keyframes where it stands alone; one of targets shares the base.
+  // A separate segment takes two keyframes; the segments of targets share the base.
   const std::size_t room = left(most, have) / (model.kind == "sequence" ? 2 : 1);
   for (std::size_t n = 0; n < room; ++n) keep(n * segments / room);
 
@@ -117,7 +117,7 @@ std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
   return count;
 }
 
-// Leaves every sample out but each `step`th, the ends and the worst places.
+// Keeps each `step`th sample, the ends and the worst places, and leaves out all others.
 void thin_samples(ReportModel& model, std::size_t step) {
   for (std::size_t p = 0; p < model.parts.size(); ++p) {
     for (std::size_t m = 0; m < model.parts[p].motions.size(); ++m) {
@@ -152,7 +152,7 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
   const auto note = [&](const std::string& sentence) { model.thinned.push_back(sentence); };
   if (const std::size_t all = bytes_of(model); model.kind != "gltf" && all > most_bytes) {
     const std::size_t of_keyframes = sum(model, bytes_of_keyframes), before = model.parts[0].times.size();
-    // Half of the page at least is for keyframes: what is then still too large has too many vertices.
+    // At least half of the page is for keyframes. If it is still too large after this, it has too many vertices.
     const std::size_t after = thin_keyframes(model, std::max(left(most_bytes, all - of_keyframes), most_bytes / 2));
     const bool is_sequence = model.kind == "sequence";
     if (after < before)

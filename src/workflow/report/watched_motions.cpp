@@ -80,7 +80,7 @@ void WatchedMotions::begin(const AuditSample& sample) {
   for (std::size_t e = 0; e < elements.size(); ++e) motion.least[elements[e]] = kVanished * sample.largest[e];
 }
 
-// Sorts what viewers played in the motion that was told last: those that play alike stand together.
+// Groups the weights of the last motion, so that viewers that play alike are together.
 void WatchedMotions::end() {
   if (now_ == nullptr || now_->motions.back().weights.empty()) return;
   std::vector<ModelWeights>& weights = now_->motions.back().weights;

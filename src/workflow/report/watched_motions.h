@@ -1,5 +1,5 @@
-/// The samples of an audit as a report keeps them: what it takes to place each, its errors, and where each vertex is
-/// off the most. Private to workflow.
+/// Keeps the samples of an audit for a report: the data that place each sample, its errors, and the largest error of
+/// each vertex. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
 #define CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
 
@@ -18,28 +18,29 @@ namespace chronormal::inline internal {
 /// The motions of one mesh.
 struct WatchedPart {
   std::vector<ModelMotion> motions;
-  std::vector<ModelPeak> peaks;  ///< of vertices, as far as some were judged
+  std::vector<ModelPeak> peaks;  ///< of vertices, if any were judged
 };
 
 class WatchedMotions {
  public:
-  /// audited are the viewers of the audit; the weights that those of `kept` play are kept. vertex_of_corner, which must
-  /// outlive this, says which vertex of the report shows a corner; where it is empty, vertices are those of the audit.
+  /// audited lists the viewers of the audit; only the weights of the viewers in `kept` are kept. vertex_of_corner,
+  /// which must outlive this, has the vertex of the report for each corner; if it is empty, vertices are as in the
+  /// audit.
   WatchedMotions(std::span<const Viewer> audited, std::span<const Viewer> kept,
                  std::span<const std::uint32_t> vertex_of_corner = {});
 
   void add(const AuditSample& sample);
 
-  /// By mesh; what is no glTF file has one, without a mesh.
+  /// Moves out the parts by mesh; an input that is not glTF has one part, without a mesh.
   [[nodiscard]] std::map<std::optional<std::size_t>, WatchedPart> take();
 
  private:
-  // The weights of a motion, sample after sample, without those that are 0: a file of many targets has a motion for
-  // each, in which the others rest.
+  // The weights of a motion, sample after sample, without zeros: a file with many targets has a motion for each, in
+  // which the other targets rest.
   class Weights {
    public:
     void add(std::span<const double> of_sample);
-    // Empties it.
+    // Moves out the weights and leaves this empty.
     [[nodiscard]] ModelWeights take();
 
    private:
@@ -52,7 +53,7 @@ class WatchedMotions {
     std::size_t samples_ = 0;
   };
 
-  // The weights that one viewer plays in the motion that the audit tells of.
+  // The weights that one viewer plays in the motion that the audit reports.
   struct Played {
     const Viewer* viewer = nullptr;
     bool is_kept = false, is_specified = true;

@@ -8,8 +8,8 @@
 
 namespace chronormal::inline internal {
 
-/// At most kMostWorstPlaces of them, worst first: the vertices by what they are off at the most, without those that are
-/// within kPlaceDistance of one before. Part and vertex as the model counts before it is thinned.
+/// Finds at most kMostWorstPlaces places, worst first: vertices in the order of their largest errors, without those
+/// that are within kPlaceDistance of an earlier one. Parts and vertices are numbered as before thinning.
 [[nodiscard]] std::vector<ReportPlace> find_worst_places(const std::vector<ModelPart>& parts);
 
 }  // namespace chronormal::inline internal
