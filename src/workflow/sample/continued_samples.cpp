@@ -1,4 +1,4 @@
-// Verifies what an interrupted run wrote: the header, and row after row by its checksum.
+// Verifies the file of an interrupted run: the header, and row after row by its checksum.
 #include "workflow/sample/continued_samples.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::optional<WrittenRow> read_row(std::string_view text) {
   return zeros.ec == std::errc{} && zeros.ptr == last ? std::optional(row) : std::nullopt;
 }
 
-// Whether the file has this row.
+// Tells whether the file has this row.
 Result<bool> has_row(const PositionedFile& file, std::uint64_t at, std::size_t row_bytes, const WrittenRow& row,
                      std::string& block) {
   if (file.size() < at + row_bytes) return false;

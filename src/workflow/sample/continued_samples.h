@@ -1,5 +1,5 @@
-/// Samples that a process writes with others, as a share, or behind the rows that an interrupted run wrote already.
-/// Private to workflow and the program.
+/// Writes samples that a process computes together with others, as a share, or after the rows that an interrupted run
+/// already wrote. Private to workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_SAMPLE_CONTINUED_SAMPLES_H_
 #define CHRONORMAL_WORKFLOW_SAMPLE_CONTINUED_SAMPLES_H_
 
@@ -17,28 +17,28 @@
 
 namespace chronormal::inline internal {
 
-/// The files that `count` moments are written to. Of several shards, other files may be there. Errors: also kUsage for
-/// a shard of .npz, and for peers and a stream.
+/// Returns the files that `count` moments are written to, and checks that they may be written. If there are several
+/// shards, files of other shards may exist. Errors: also kUsage for a shard of .npz, and for peers and a stream.
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count, const SegmentRun& run);
 
-/// write_samples() as the run has it, of which each moment is a segment:
+/// Runs write_samples() on the share of the run, in which each moment is a segment:
 ///
 ///     shard      its share of the moments: .ply and .obj files with the numbers that they would have among all, or
-///                .npy with as many rows (workflow/json/parts.h joins them). The bits are those of one run
-///     peers      the shards have one output among them, which no one sees before all are done: a .npy or .npz file
-///                that every process writes its rows into, or .ply and .obj files. The first process gets the summary
-///                of all, and each of the others its own
+///                .npy with as many rows (workflow/json/parts.h joins them). The bits are the same as in one run
+///     peers      the shards share one output, which nobody sees before all are done: a .npy or .npz file that every
+///                process writes its rows into, or .ply and .obj files. The first process gets the summary of all, and
+///                each other process its own
 ///     journal    each row of a .npy file gets a record. The file is OUT.partial until it is whole. Rows that the
 ///                journal of an earlier run has, and that are in the file with the same checksum, are not computed
 ///                again. The journal stays; the caller removes it
 ///
-/// Errors: also those of the journal; kUsage for a journal with another format or a stream; kFailed where OUT.partial
-/// is no such array.
+/// Errors: also the errors of the journal; kUsage for a journal with another format or a stream; kFailed if OUT.partial
+/// is not such an array.
 [[nodiscard]] Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& options,
                                                   const Moments& moments, const SampleOutput& output, SegmentRun& run);
 
-/// A row that was written, as the journal has it.
+/// A row that was written, as recorded in the journal.
 struct WrittenRow {
   std::uint32_t checksum = 0;
   std::size_t zeros = 0;  ///< normals that are (0, 0, 0)
@@ -47,15 +47,15 @@ struct WrittenRow {
   [[nodiscard]] std::string text() const;
 };
 
-/// What earlier runs left.
+/// The rows that earlier runs left.
 struct WrittenRows {
   std::vector<WrittenRow> rows;
-  /// What follows the last row in the output itself, where that is there with all rows: then nothing is left to do but
-  /// to remove the journal, if this is how the output ends.
+  /// The bytes after the last row in the output itself, if it already has all rows. If they are the right end of the
+  /// output, only the journal remains to be removed.
   std::optional<std::string> end = {};
 };
 
-/// Finds the rows of the journal that are in the file, each of row_bytes bytes behind the header, and drops the other
+/// Finds the rows of the journal that are in the file, each of row_bytes bytes after the header, and drops the other
 /// records. `count` is the number of rows of the whole output.
 [[nodiscard]] Result<WrittenRows> find_written_rows(const std::string& output, std::string_view header,
                                                     std::size_t row_bytes, std::size_t count, Journal& journal);

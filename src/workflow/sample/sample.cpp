@@ -1,4 +1,4 @@
-// Computes the normals of a motion at one moment after the other.
+// Computes the normals of a motion, one moment after the other.
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ std::vector<float> positions_at(const Segment& segment, double t) {
   return positions;
 }
 
-// Positions that were computed, as a keyframe. Refuses those beyond float32.
+// Makes a keyframe from computed positions. Refuses positions beyond float32.
 Result<Motion::Keyframe> pose_of(const LongSums& positions, const std::string& mover) {
   for (std::size_t i = 0; i < positions.high().size(); ++i) {
     if (!(std::fabs(positions.high()[i]) <= kLargestFloat))
@@ -176,14 +176,14 @@ std::vector<float> NormalSampler::unit_normals(const Segment& segment, const Loc
     segment_ = segment.index;
   }
   std::vector<float> normals(3 * element_count());
-  // Who writes them counts those without a direction.
+  // The writer counts normals without a direction.
   curves_.unit_normals(t, VectorView<float>::packed(normals.data(), element_count()), Threads::kAll);
   return normals;
 }
 
 Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment, double t, double time) {
   if (!scheme_normals_ || segment_ != segment.index) {
-    scheme_normals_.reset();  // before the next one takes as much memory
+    scheme_normals_.reset();  // frees memory before the next one is made
     scheme_normals_ = std::make_shared<SchemeNormals>(segment, groups_.get(), options_.scheme);
     segment_ = segment.index;
   }
@@ -201,7 +201,7 @@ Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment,
   const auto expected = VectorView<float>::packed(at_random.data(), element_count());
   scheme_normals_->unit_normals(static_cast<double>(index) * (1 / static_cast<double>(steps)), expected);
   scheme_normals_->played_normals(index, steps, anchor_interval, result);
-  // No drift is below zero: the first element of all is the worst until another one is worse.
+  // Drift is never negative, so the first element is the worst until another one is worse.
   struct Worst {
     double angle = 0;
     std::size_t element = 0;
@@ -266,8 +266,8 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   const Result<TargetWeight> own = options_.scheme.empty() ? TargetWeight{} : one_target_of(weights);
   if (!own) return own.error();
   if (Status status = stream_->hold_all(); !status) return status.error();
-  // base + sum of w (target - base), in an order in which nothing is lost where these are far apart: what is left of the
-  // base is 1 - sum of w, which is nothing for a single target of weight 1.
+  // Computes base + sum of w (target - base) in an order that loses nothing if base and targets are far apart: the base
+  // gets the factor 1 - sum of w, which is zero for a single target of weight 1.
   Twofold rest{1, 0};
   for (const double weight : weights) rest = rest + Twofold{-weight, 0};
   LongSums positions(3 * motion_->topology.vertex_count());

@@ -43,7 +43,8 @@ bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || form
 Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments& moments,
                      const std::vector<double>& in_a_row, std::size_t i) {
   if (!moments.times.empty()) {
-    // The moments for which a segment is prepared do not depend on where in it a shard begins.
+    // A run of moments starts at the same one for all shards, so that the prepared segment does not depend on the
+    // share.
     std::size_t first = i;
     while (first > 0 && in_a_row[first - 1] == in_a_row[first] + 1) --first;
     return sampler.at_time(moments.times[i], in_a_row[first]);
@@ -53,7 +54,7 @@ Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments
   return sampler.at_rest();
 }
 
-// What can be known about the moments before anything is computed.
+// Checks the moments as far as possible before anything is computed.
 Status check_moments(const Motion& motion, const SampleOptions& options, const Moments& moments) {
   assert(moments.times.empty() || moments.weights.empty());
   for (const double time : moments.times) {
@@ -80,15 +81,15 @@ std::size_t count_zeros(const std::vector<float>& normals) {
 
 bool is_first_process(const SegmentRun& run) { return !run.shard || run.shard->index == 0; }
 
-// A .npy or .npz file as it grows.
+// A .npy or .npz file that grows row by row.
 class ArrayFile {
  public:
   ArrayFile(OutputFile file, SampleFormat format) : file_(std::make_unique<OutputFile>(std::move(file))) {
     if (format == SampleFormat::kNpz) npz_.emplace(*file_);
   }
 
-  // Begins with the row at the first moment of a share: of a file of its own, or, with peers, of the file of all.
-  // header is that of a .npy file.
+  // Begins with the row at the first moment of a share: in its own file or, with peers, in the shared file. header is
+  // the header of a .npy file.
   [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, const SegmentRun& run, std::size_t outputs,
                              std::string_view header) {
     const IndexRange share = run.share();
@@ -120,7 +121,7 @@ class ArrayFile {
     return Success{};
   }
 
-  // A row of a .npy file gets a record of the journal, where there is one.
+  // Appends a row. In a .npy file with a journal, the row also gets a record.
   [[nodiscard]] Status append(const std::vector<float>& normals, const Pose& pose, std::size_t zeros,
                               Journal* journal) {
     if (!npz_) {
@@ -136,14 +137,14 @@ class ArrayFile {
                     : npz_->append(positions_, bytes_of(pose.positions));
   }
 
-  // Goes on behind bytes of a .npy file that have this checksum.
+  // Continues after bytes of a .npy file that have this checksum.
   void go_on(std::uint32_t checksum) { checksum_ = checksum; }
-  // The checksum of all bytes of a .npy file so far.
+  // Returns the checksum of all bytes of a .npy file so far.
   [[nodiscard]] std::uint32_t checksum() const { return checksum_; }
-  // Writes the text of a part behind the last row.
+  // Writes the text of a part after the last row.
   [[nodiscard]] Status append_end(std::string_view text) { return file_->append(text); }
 
-  // The checksums of the rows that this process has written; the first process adds those of each of the others.
+  // Returns the checksums of the rows that this process wrote; the first process adds the checksums of all others.
   [[nodiscard]] std::array<std::uint32_t, 2> checksums() const {
     if (!npz_) return {};
     return {npz_->checksum(normals_), npz_->checksum(positions_)};
@@ -154,7 +155,7 @@ class ArrayFile {
     npz_->add_checksum(positions_, checksums[1], positions * 3 * (is_far() ? sizeof(double) : sizeof(float)));
   }
 
-  // Ends what a process has written that is not the first.
+  // Ends the file in a process that is not the first.
   [[nodiscard]] Status seal() { return file_->seal(); }
   [[nodiscard]] Status finish_joined() { return file_->finish(); }
 
@@ -169,16 +170,16 @@ class ArrayFile {
     return binary::bytes_of(values, std::endian::little, storage_);
   }
 
-  std::unique_ptr<OutputFile> file_;  // on the heap, where npz_ finds it
+  std::unique_ptr<OutputFile> file_;  // on the heap, so that its address for npz_ stays
   std::optional<NpzOutput> npz_;
-  std::size_t normals_ = 0, positions_ = 0;  // numbers of arrays in npz_
+  std::size_t normals_ = 0, positions_ = 0;  // indices of arrays in npz_
   Origin origin_ = {};                       // of the positions
-  std::optional<std::uint64_t> at_;          // where the next row goes in the .npy file of all peers
-  std::uint32_t checksum_ = 0;               // of a .npy file that has no peers
+  std::optional<std::uint64_t> at_;          // next row's place in the .npy file of all peers
+  std::uint32_t checksum_ = 0;               // of a .npy file without peers
   std::string storage_;
 };
 
-// Removes a partial output in the end, where no row of it was written: then there is nothing to go on with.
+// Removes a partial output at the end if no row of it was written, since there is nothing to continue.
 struct EmptyPartial {
   EmptyPartial() = default;
   EmptyPartial(const EmptyPartial&) = delete;
@@ -188,11 +189,11 @@ struct EmptyPartial {
     if (!name.empty() && journal->is_empty()) std::filesystem::remove(name, ignored);
   }
 
-  std::string name;  // empty: there is none
+  std::string name;  // empty if there is none
   const Journal* journal = nullptr;
 };
 
-// The mesh at one moment, as a file.
+// Returns the text of a file with the mesh at one moment.
 std::string mesh_file(const Motion& motion, const NormalSampler& sampler, const Pose& pose,
                       const std::vector<float>& normals, ElementKind kind, SampleFormat format) {
   const Topology& topology = motion.topology;
@@ -212,7 +213,7 @@ std::string mesh_file(const Motion& motion, const NormalSampler& sampler, const 
   return write_obj(topology, packed(pose.positions), packed(normals), face_of_corner, origin);
 }
 
-// Begins a file; of peers, the first begins it, and the others open what the first has begun.
+// Begins a file. With peers, the first process creates it, and the others open it.
 Result<OutputFile> begin_file(const SampleOutput& output, const SegmentRun& run) {
   if (run.peers != nullptr && !is_first_process(run)) return OutputFile::join(output.path, run.peers->broadcast(""));
   Result<OutputFile> file = OutputFile::create(output.path, output.force);
@@ -227,7 +228,7 @@ Status finish_all(std::vector<OutputFile>& meshes) {
   return Success{};
 }
 
-// What a process tells the first when it has written all of its rows.
+// The message of a process to the first one after it has written all of its rows.
 struct Written {
   SampleSummary summary;
   std::uint64_t positions = 0;
@@ -253,7 +254,7 @@ struct Written {
   }
 };
 
-// Gives files their names once all peers have written theirs, and returns in the first process once all have done that.
+// Renames files once all peers have written theirs, and returns in the first process once all have renamed theirs.
 Result<SampleSummary> finish_with_peers(const SegmentRun& run, Written own, ArrayFile* arrays,
                                         std::vector<OutputFile>& meshes) {
   const bool is_first = is_first_process(run);
@@ -281,7 +282,7 @@ Result<SampleSummary> finish_with_peers(const SegmentRun& run, Written own, Arra
   return own.summary;
 }
 
-// The text that ends the part of a share, whose bytes before that have this checksum.
+// Returns the text that ends the part of a share. array is the checksum of the bytes before it.
 Result<std::string> end_of_part(const Motion& motion, const SampleOptions& options, const Moments& moments,
                                 const SegmentRun& run, const NormalSampler& sampler, std::uint32_t array,
                                 KeyframeChecksums& seen) {
@@ -325,7 +326,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
   std::optional<ArrayFile> arrays;
   SampleSummary summary;
   std::size_t written = 0;        // rows, by an earlier run
-  std::uint32_t written_sum = 0;  // the checksum of the header and of these
+  std::uint32_t written_sum = 0;  // the checksum of the header and these rows
   const auto end = [&](std::uint32_t array) {
     return is_part ? end_of_part(motion, options, moments, run, sampler, array, seen) : std::string();
   };
@@ -468,7 +469,7 @@ Result<std::vector<std::string>> internal::sample_files(const SampleOutput& outp
     return Error{ErrorCode::kUsage, output.path,
                  "there are " + std::to_string(count) + " meshes, and the standard output can take one"};
   }
-  // Where there are shards, the files of the other shards may be there.
+  // If there are shards, files of the other shards may exist.
   const IndexRange own = names.size() == count ? run.share_of(count) : IndexRange{0, names.size()};
   for (std::size_t i = own.first; i < own.end(); ++i) {
     if (Status status = check_output(names[i], output.force); !status) return status.error();

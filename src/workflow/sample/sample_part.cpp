@@ -1,4 +1,4 @@
-// Writes and reads the end of a part, and finds out what the part follows from.
+// Writes and reads the end of a part, and finds the keyframes that the part depends on.
 #include "workflow/sample/sample_part.h"
 
 #include <limits>

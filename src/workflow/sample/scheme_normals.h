@@ -1,5 +1,4 @@
-/// The normals that a scheme gives for all elements of a segment, at random access or played step by step. Private to
-/// workflow.
+/// Normals by a scheme for all elements of a segment, at random access or played step by step. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SAMPLE_SCHEME_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_SAMPLE_SCHEME_NORMALS_H_
 
@@ -17,17 +16,17 @@
 
 namespace chronormal::inline internal {
 
-/// Refuses a scheme that does not exist, or that looks at edges where elements are no faces. Errors: kUsage.
+/// Returns the scheme. Errors: kUsage if it does not exist, or if it needs edges and elements are not faces.
 [[nodiscard]] Result<std::unique_ptr<Scheme>> scheme_for(const std::string& name, ElementKind kind);
 
-/// The target that a scheme goes to, and its weight.
+/// The target that a scheme moves to, and its weight.
 struct TargetWeight {
   std::size_t target = 0;
   double weight = 0;
 };
 
-/// Returns the one target of a pose; the first one, where all weights are 0. Errors: kUsage where there are several, or
-/// the weight is beyond [0, 1].
+/// Returns the one target of a pose, or the first one if all weights are 0. Errors: kUsage if several targets have a
+/// weight, or the weight is outside [0, 1].
 [[nodiscard]] Result<TargetWeight> one_target_of(std::span<const double> weights);
 
 class SchemeNormals {
@@ -41,8 +40,9 @@ class SchemeNormals {
   /// Writes the unit normals at t in [0, 1]. result must have as many elements as the segment.
   void unit_normals(double t, VectorView<float> result) const;
 
-  /// Writes those at t = index / steps as they come out of `index` steps from t = 0, of which every
-  /// anchor_interval-th is made anew (0: none). The scheme must have a sequential form. Going back begins again.
+  /// Writes the unit normals at t = index / steps as they come out of `index` steps from t = 0. Every
+  /// anchor_interval-th step is computed anew (0: none). The scheme must have a sequential form. Going back starts
+  /// over.
   void played_normals(std::size_t index, std::size_t steps, std::size_t anchor_interval, VectorView<float> result);
 
  private:
@@ -55,7 +55,7 @@ class SchemeNormals {
   Segment segment_;
   std::vector<ControlNormals> control_normals_;
   std::vector<Block> blocks_;
-  std::size_t played_ = 0;  // steps, since the playbacks began; 0: there are none
+  std::size_t played_ = 0;  // steps since the playbacks began; 0 if there are none
 };
 
 }  // namespace chronormal::inline internal
