@@ -1,6 +1,6 @@
 /// One pass over the segments of a motion, which compare, audit, sample, inspect and query share. A run knows which
-/// segments are its own, holds their keyframes, and knows where results go; the commands know what to compute of a
-/// segment, and how results are added up.
+/// segments are its own, holds their keyframes, and knows where results go; the commands know what to compute for a
+/// segment, and how to add up results.
 ///
 ///     SegmentRun run;                           // one process does everything; or:
 ///     run.shard = Shard{0, 8};                  // the first of eight shares, for --shard 1/8
@@ -8,8 +8,8 @@
 ///     run.begin(motion.segments.size());
 ///     run.over(stream, segment_keys(motion), run.share(), at_once, [&](IndexRange segments) -> Status { ... });
 ///
-/// A RecordedRun also has a result for each segment: it leaves out the segments of which an earlier run has kept the
-/// results (--resume), hands each new result to the journal, and collects them for the part of a shard.
+/// A RecordedRun also has a result for each segment: it skips the segments whose results an earlier run has kept
+/// (--resume), hands each new result to the journal, and collects them for the part of a shard.
 ///
 /// Results are added up segment by segment in the order of the motion, so that their bits depend neither on the number
 /// of threads nor on where a motion is divided.
@@ -41,7 +41,8 @@ namespace chronormal::inline internal {
 
 class Journal;
 
-/// The keyframes of each segment of a motion, for SegmentRun::over(). The motion must outlive it.
+/// Returns a function that maps a segment of the motion to its keyframes, for SegmentRun::over(). The motion must
+/// outlive it.
 [[nodiscard]] inline auto segment_keys(const Motion& motion) {
   return [&motion](std::size_t segment) { return motion.segments[segment]; };
 }
@@ -49,47 +50,47 @@ class Journal;
 struct SegmentRun {
   using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-  /// The share of the work; nothing: all of it, and no part for a merge is wanted.
+  /// The share of the work; without one, the run does all of it and makes no part for merge.
   std::optional<Shard> shard = {};
-  /// The processes that have the other shares; nullptr: nobody is known to.
+  /// The processes that have the other shares, or nullptr if none are known.
   const Peers* peers = nullptr;
-  /// How much the results may take in memory: that of the files behind the motion.
+  /// The limit on the memory of results, taken from the files of the motion.
   Expansion expansion = Expansion::unlimited();
   Progress progress = {};
-  /// Records the rows of samples; a RecordedRun has `keep` instead.
+  /// The journal for rows of samples; a RecordedRun has `keep` instead.
   Journal* journal = nullptr;
-  /// The checksums of what a shard follows from, for its part.
+  /// The checksums of everything that a shard depends on, for its part.
   TaskChecksums checksums = {};
 
-  /// Begins a run over so many segments, each of which takes so many steps, as progress has them.
+  /// Begins a run over this many segments, each of which counts as this many steps of progress.
   void begin(std::size_t segments, std::size_t steps = 1) noexcept {
     total_ = segments;
     steps_ = steps;
     done_ = 0;
   }
-  /// Passes over segments that are done already.
+  /// Skips segments that are already done.
   void skip(std::size_t segments) noexcept { done_ += segments; }
-  /// The segments that this process computes.
+  /// Returns the segments that this process computes.
   [[nodiscard]] IndexRange share() const noexcept { return share_of(total_); }
-  /// The same of a row of so many things.
+  /// Returns this process's share of `total` things.
   [[nodiscard]] IndexRange share_of(std::size_t total) const noexcept { return shard.value_or(Shard{}).of(total); }
-  /// The things that it looks at to find what follows from all: its own, where peers look at the others.
+  /// Returns the things to look at for facts about all of them: only its own if peers look at the others.
   [[nodiscard]] IndexRange looked_at(std::size_t total) const noexcept {
     return peers != nullptr ? share_of(total) : IndexRange{0, total};
   }
-  /// Makes each number the largest that a peer has in its place.
+  /// Replaces each number by the largest that any peer has in its place.
   void maximize(std::span<double> numbers) const {
     if (peers != nullptr) peers->maximize(numbers);
   }
 
-  /// Reports that so many segments, and so many steps of the next one, are done.
+  /// Reports that this many more segments, and this many steps of the next one, are done.
   void tell(std::size_t segments, std::size_t steps = 0) {
     done_ += segments;
     if (progress) progress(done_ * steps_ + steps, share().count * steps_);
   }
 
   /// Goes over segments that are in memory, in order: calls work(segments) for `at_once` of them at a time, and reports
-  /// that they are done. Errors: those of work.
+  /// that they are done. Errors: as work returns them.
   template <class Work>
   [[nodiscard]] Status over(IndexRange segments, std::size_t at_once, const Work& work) {
     return in_waves(segments, at_once, [&](IndexRange some) -> Status {
@@ -98,8 +99,8 @@ struct SegmentRun {
       return status;
     });
   }
-  /// The same of a stream, which holds the keyframes from the first to the last that keys(segment) names of a wave.
-  /// Errors: also those of the stream.
+  /// Does the same for a stream. For each wave it holds the keyframes from the first to the last that keys(segment)
+  /// names. Errors: also those of the stream.
   template <class Keys, class Work>
   [[nodiscard]] Status over(MotionStream& stream, const Keys& keys, IndexRange segments, std::size_t at_once,
                             const Work& work) {
@@ -108,7 +109,7 @@ struct SegmentRun {
       return status ? work(some) : status;
     });
   }
-  /// The same before the run, to find what it needs to know of all segments: nothing is reported.
+  /// Does the same before the run, to find facts about all segments; reports no progress.
   template <class Keys, class Work>
   [[nodiscard]] static Status look_over(MotionStream& stream, const Keys& keys, IndexRange segments,
                                         std::size_t at_once, const Work& work) {
@@ -136,22 +137,22 @@ struct SegmentRun {
   std::size_t total_ = 0, steps_ = 1, done_ = 0;
 };
 
-/// A run that has a result for each segment. Found has a member `segment`, its number.
+/// A run that keeps a result for each segment. Found must have a member `segment` with the segment's number.
 template <class Found>
 struct RecordedRun : SegmentRun {
-  /// The results of the first segments of the share, where an earlier run has them.
+  /// The results of the first segments of the share, if an earlier run has them.
   std::vector<Found> known = {};
-  /// Told of each segment that was computed, in order, so that a later run can have it among `known`; may be empty. An
-  /// error that it returns ends the run.
+  /// Called for each segment that was computed, in order, so that a later run can have it among `known`; may be empty.
+  /// An error that it returns ends the run.
   std::function<Status(const Found&)> keep = {};
-  /// The result of each segment of a shard, those that were known among them.
+  /// The result of each segment of a shard, including the known ones.
   std::vector<Found> found = {};
 
-  /// Whether only sums are kept of segments, so that nothing may be asked that needs them all at once.
+  /// Tells whether only sums over segments are kept, so that options that need all segments at once are refused.
   [[nodiscard]] bool is_divided() const noexcept { return shard || keep || !known.empty(); }
 
-  /// Begins as SegmentRun does, with add(result) for each segment that is known. Errors: kUsage unless these are the
-  /// first segments of the share, and fits(result) is true of each; `task` names what they are of then, "audit".
+  /// Begins as SegmentRun does, and calls add(result) for each known segment. Errors: kUsage unless these are the first
+  /// segments of the share and fits(result) is true for each; the message names `task`, such as "audit".
   template <class Fits, class Add>
   [[nodiscard]] Status begin(std::size_t segments, std::size_t steps, const char* task, const Fits& fits,
                              const Add& add) {
@@ -170,13 +171,13 @@ struct RecordedRun : SegmentRun {
     skip(known.size());
     return Success{};
   }
-  /// The segments of the share that are not known.
+  /// Returns the segments of the share that are not known.
   [[nodiscard]] IndexRange rest() const noexcept {
     const IndexRange own = share();
     return {own.first + known.size(), own.count - known.size()};
   }
 
-  /// Takes the result of the next segment, and calls add(result). Errors: those of keep.
+  /// Takes the result of the next segment, and calls add(result). Errors: as keep returns them.
   template <class Add>
   [[nodiscard]] Status take(Found result, const Add& add) {
     if (Status kept = keep ? keep(result) : Success{}; !kept) return kept;
@@ -186,7 +187,7 @@ struct RecordedRun : SegmentRun {
   }
 };
 
-/// What one shard found: the sums over its segments, and each of them.
+/// The result of one shard: the sums over its segments, and the result of each segment.
 template <class Whole, class Found>
 struct ShardOf {
   Whole whole;
@@ -194,9 +195,9 @@ struct ShardOf {
   TaskChecksums checksums;
 };
 
-/// Puts the segments of shards, which may come in any order, in the order of the motion; it has total(whole) segments.
-/// Errors: kUsage unless all are of one task, which are_of_one(whole, whole) decides and `tasks` names, and each
-/// segment is in exactly one of them.
+/// Puts the segments of shards, which may come in any order, in the order of the motion, which has total(whole)
+/// segments. Errors: kUsage unless are_of_one(whole, whole) says that all belong to one task, which `tasks` names, and
+/// each segment is in exactly one shard.
 template <class Whole, class Found, class AreOfOne>
 [[nodiscard]] Result<std::vector<Found>> join(std::vector<ShardOf<Whole, Found>>& shards, std::size_t total,
                                               const AreOfOne& are_of_one, const char* tasks) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kKeyframe = "keyframe ";
 
-// Everything but the positions.
+// Adds the checksums of everything except the positions.
 void add_outline(const Motion& motion, TaskChecksums& result) {
   NumberChecksum program, faces, times, velocities;
   program.add(generator_name());
@@ -104,7 +104,7 @@ TaskChecksums read_task_checksums(const JsonView& part) {
 
 Status KnownParts::add(const std::string& part, const TaskChecksums& checksums) {
   parts_.push_back(part);
-  std::optional<Error> keyframe;  // says less than what all keyframes have in common
+  std::optional<Error> keyframe;  // reported last: errors in what all keyframes share say more
   for (const auto& [name, checksum] : checksums) {
     const auto [known, is_new] = first_.try_emplace(name, checksum, parts_.size() - 1);
     if (is_new || known->second.first == checksum) continue;

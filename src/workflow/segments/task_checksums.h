@@ -1,4 +1,4 @@
-/// The checksums by which parts of one task are told from parts of another, taken of keyframes as a shard reads them.
+/// The checksums that tell parts of one task from parts of another. They are computed while a shard reads keyframes.
 /// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 #define CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
@@ -21,7 +21,7 @@
 
 namespace chronormal::inline internal {
 
-/// The keyframes from which a shard of segments follows, and the one with which the next shard begins.
+/// Returns the keyframes that a shard of segments depends on, and the one with which the next shard begins.
 [[nodiscard]] std::set<std::size_t> keyframes_of_shard(const Motion& motion, const Shard& shard);
 
 class KeyframeChecksums {
@@ -32,23 +32,23 @@ class KeyframeChecksums {
   KeyframeChecksums& operator=(const KeyframeChecksums&) = delete;
   ~KeyframeChecksums() { (void)stream_.watch({}); }
 
-  /// Takes checksums from now on. Errors: here and for each hold, kFailed for a keyframe that is read again and has
-  /// other positions then.
+  /// Starts to compute checksums. Errors: here and for each hold, kFailed for a keyframe that is read again with
+  /// different positions.
   [[nodiscard]] Status begin();
 
-  /// Reads what is missing of the keyframes that are needed, and adds the checksums of the keyframes and of all else in
-  /// the motion. Errors: those of the stream.
+  /// Reads the needed keyframes that are missing, and adds the checksums of the keyframes and of the rest of the
+  /// motion. Errors: as the stream returns them.
   [[nodiscard]] Status finish(std::set<std::size_t> needed, TaskChecksums& result);
 
  private:
   [[nodiscard]] Status take(std::size_t keyframe, std::span<const float> positions);
 
   MotionStream& stream_;
-  std::mutex mutex_;  // a keyframe that is read ahead is told of by another thread
+  std::mutex mutex_;  // keyframes that are read ahead are reported by another thread
   std::map<std::size_t, std::uint32_t> of_keyframe_;
 };
 
-/// The version of all parts, and what is said of a part that does not end with its checksum.
+/// The version of all parts, and the message for a part that does not end with its checksum.
 inline constexpr std::size_t kPartVersion = 6;
 inline constexpr std::string_view kDamagedPart =
     "the part is damaged: its bytes do not have the checksum that it ends with";
@@ -56,13 +56,14 @@ inline constexpr std::string_view kDamagedPart =
 /// Complains about a part of another version.
 void check_part_version(const JsonView& part);
 
-/// The member "checksums" of a part.
+/// Reads the member "checksums" of a part.
 [[nodiscard]] TaskChecksums read_task_checksums(const JsonView& part);
 
-/// Parts of one task, as far as their checksums tell.
+/// The parts seen so far, which must belong to one task by their checksums.
 class KnownParts {
  public:
-  /// Errors: kUsage with the name of the part as the place, where it and one of the parts before are not of one task.
+  /// Adds a part. Errors: kUsage, with the name of the part as the place, if it and an earlier part belong to different
+  /// tasks.
   [[nodiscard]] Status add(const std::string& part, const TaskChecksums& checksums);
 
  private:
