@@ -1,4 +1,4 @@
-// chronormal, the program: runs the command that the command line names, and maps what happened to an exit code.
+// The program chronormal: runs the command that the command line names, and maps its result to an exit code.
 
 #include <exception>
 #include <new>

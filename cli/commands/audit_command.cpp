@@ -30,24 +30,24 @@ namespace {
 struct AuditArguments {
   InputOptions input;
   CommonOptions common;
-  std::string rule;  // empty: what is usual for the input
+  std::string rule;  // empty: the default for the input
   JudgeArguments judge;
   std::optional<std::string> poses;  // "random", or the file of the poses
   std::optional<std::string> weights;
   AuditLimits limits;
-  std::optional<std::string> errors;  // where to write every single one
+  std::optional<std::string> errors;  // the file for all single errors
   RunArguments run;
   bool no_weld = false;
   bool json = false;
 };
 
-// What a gate says where there is nothing to look at: a build that has lost its animations must not pass.
+// The message of a gate for an input in which nothing moves: a build that has lost its animations must not pass.
 constexpr const char* kNothingMoves =
     "nothing moves stored normals, so that there is nothing to judge, and no limit is of use";
 
 constexpr const char* kDividesSequences = "it divides the segments of a sequence, and a glTF file is none";
 
-// A word as a shell reads it back.
+// Quotes a word so that a shell reads it back.
 std::string shell_word(const std::string& word) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:@%+=";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
@@ -56,7 +56,8 @@ std::string shell_word(const std::string& word) {
   return printable(quoted + "'");
 }
 
-// The words of a command line that name the input, the keyframes of it that count, and how vertices move between them.
+// Returns the words of a command line that name the input, select its keyframes, and say how vertices move between
+// them.
 std::string words_of(const InputOptions& input) {
   std::string words;
   constexpr std::size_t kMost = 4;
@@ -104,7 +105,7 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
           options.common.table(false)};
 }
 
-// Audits what is no glTF file. The result is nothing on a rank that has nothing to print.
+// Audits an input that is not glTF. The result is empty on a rank that has nothing to print.
 Result<std::optional<Audit>> audit_motion(Input& input, const AuditArguments& options, const AuditOptions& how,
                                           CommandRun& run, AuditRun& segments) {
   const Result<MotionStream*> motion = input.stream();
@@ -219,7 +220,7 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   return how;
 }
 
-// Why small normals do not pass; place ends the sentence.
+// Says why small normals do not pass. place ends the sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
   return formatted("where faces all but vanish, the worst error is {:.4g} degrees, beyond the tolerance of {:g}{}",
                    error.faint_worst, *audited.limits.degrees, place);
@@ -238,7 +239,7 @@ std::string why_cancelled(const MotionError& error) {
       counted(error.cancelled, "pair has", "pairs have"));
 }
 
-// Says why errors are beyond the tolerance, or, where they are not, why others are.
+// Says why errors are beyond the tolerance; if they are not, says which other limit is exceeded.
 std::string why_beyond(const Audited& audited, const MotionError& error, const std::string& worst_label,
                        const std::string& unlit_label, const std::string& faint_label,
                        const std::string& cancelled_label) {
@@ -271,8 +272,7 @@ std::string why_beyond(const Audited& audited) {
                     cancelled_label(audited));
 }
 
-// Says why an input does not pass, where it does not; place is its name, where there are several. Returns whether it
-// passes.
+// Says why an input does not pass, if so. place is its name if there are several inputs. Returns whether it passes.
 bool say_what_is_beyond(const Audited& audited, const std::string& place) {
   if (audited.passed()) return true;
   const std::vector<ViewerAudit>& viewers = audited.audit.viewers;
@@ -309,15 +309,14 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
   return say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
 }
 
-// Returns the exit code of the worse of two files: a file that could not be judged is worse than one that is beyond the
-// tolerance.
+// Returns the exit code of the worse of two files: failing to judge a file is worse than exceeding the tolerance.
 int worse_exit(int a, int b) {
   constexpr std::array<int, 4> kWorstFirst = {static_cast<int>(ErrorCode::kFailed),
                                               static_cast<int>(ErrorCode::kInvalidInput), kExitBeyond, kExitDone};
   return *std::find_if(kWorstFirst.begin(), kWorstFirst.end(), [&](int code) { return code == a || code == b; });
 }
 
-// Judges files one by one. One that cannot be read does not keep the others from being judged.
+// Judges files one by one. A file that cannot be read does not keep the others from being judged.
 Result<int> run_several(const AuditArguments& options, const AuditOptions& how, const std::vector<std::string>& names,
                         Progress& progress) {
   if (options.run.resume) return misuse("--resume", "it goes on with one sequence, and these are several glTF files");

@@ -26,23 +26,23 @@
 namespace chronormal::cli {
 namespace {
 
-// An audit looks at every target: files beyond this would wait for a line of the report.
+// An audit judges every target. For files above this size the user would wait too long for one line of the report.
 constexpr std::size_t kMostAudited = std::size_t{64} << 20;
 
 struct BakeArguments {
   InputOptions input;
   CommonOptions common;
-  std::string encode;     // empty: by what drives the weights
-  std::string weighting;  // empty: what the stored base normals follow
+  std::string encode;     // empty: depends on what drives the weights
+  std::string weighting;  // empty: as the stored base normals suggest
   double crease_angle = 180;
   bool recompute_base = false, smooth = false, dense_zeros = false;
   std::optional<std::size_t> most_bytes;
-  std::string viewers;                // empty: the usual ones
-  std::optional<std::string> output;  // where it is asked for by name
+  std::string viewers;                // empty: the default viewers
+  std::optional<std::string> output;  // if requested by name
   std::optional<double> tolerance;
   std::optional<std::size_t> most_targets;
   bool animations_only = false, plan = false;
-  std::optional<std::string> drivers;  // where to write them beside the result
+  std::optional<std::string> drivers;  // the file for them beside the result
   std::optional<std::string> poses;    // the file of the poses that a rig is made for
   bool json = false, no_audit = false, no_weld = false;
 };
@@ -107,7 +107,7 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   return how;
 }
 
-// Returns whether some mesh has no candidate within what was asked for.
+// Returns whether some mesh has no candidate within the requested limits.
 bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
   return std::any_of(bake.meshes.begin(), bake.meshes.end(), [&how](const BakedMesh& mesh) {
@@ -118,7 +118,7 @@ bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfB
   });
 }
 
-// Where the report goes: beside the result, or out of its way.
+// Prints the report on stdout, or on stderr if the result goes to stdout.
 Result<int> report(const BakeArguments& options, const std::string& text, const std::string& json) {
   const bool is_aside = is_stream(options.common.output) && !options.json;
   if (is_aside && !options.common.quiet) say_text(text);
@@ -136,16 +136,16 @@ void warn_if_worse(const BakeReport& report, bool of_animations) {
   if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit, of_animations)});
 }
 
-// Audits the input, by audit_before, and the file that was written, both by the normals of the author of a glTF file. A
-// track that got keys is looked at more often than it was, and may show what was there before: the input is looked at as often before the result is called worse. The
-// result is empty where neither has anything that an audit can judge. Errors: kFailed where the written file cannot be
-// read.
+// Audits the input, by audit_before, and the written file, both by the true normals of the author of a glTF file. The
+// result has more keys in a track, so an audit of it has more samples and may find errors that were there before: the
+// input is audited at as many samples before the result is called worse. Returns nothing if neither file has anything
+// that an audit can judge. Errors: kFailed if the written file cannot be read.
 template <class AuditBefore>
 Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const BakeArguments& options,
                                                  const GltfDocument* author, const AuditBefore& audit_before) {
   std::optional<BeforeAndAfter> result;
   if (options.no_audit || is_stream(options.common.output)) return result;
-  // Whoever ends the audit has the file.
+  // Tells a user who ends the audit that the file is complete.
   struct Stands {
     Stands() { say_at_end("chronormal: the output stands; only its audit was ended (--no-audit leaves it out)\n"); }
     Stands(const Stands&) = delete;
@@ -157,7 +157,7 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   audited.weighting = how.weighting;
   constexpr std::size_t kEnoughSegments = 120;
   audited.most_segments = kEnoughSegments;
-  if (author != nullptr) {  // a sequence is shown alike in all viewers, and has no poses of its own
+  if (author != nullptr) {  // a sequence looks alike in all viewers and has no own poses
     audited.viewers = how.viewers;
     audited.viewers.insert(audited.viewers.end(), how.spared.begin(), how.spared.end());
     audited.is_posed = how.is_posed;
@@ -177,14 +177,14 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
     if (closer) first.value().error.worst = std::max(first.value().error.worst, closer.value().error.worst);
   }
   if (!first && first.error().code == ErrorCode::kFailed) return first.error();
-  if (!second) return second.error();  // what was written must be read again
+  if (!second) return second.error();  // the written file must be readable
   if (first && second && !first.value().subjects.empty())
     result = BeforeAndAfter{std::move(first).value(), std::move(second).value()};
   return result;
 }
 
-// Whether all normals of the result can be lit, as far as an audit looked at them; says so where that is asked for by a
-// tolerance, and where it is not so.
+// Returns whether all normals of the result can be lit, as far as an audit checked them. Says so if they cannot and a
+// tolerance was requested.
 bool is_lit(const BakeArguments& options, const BakeReport& report) {
   const std::size_t unlit = report.audit ? report.audit->after.error.unlit : 0;
   if (!options.tolerance || unlit == 0) return true;
@@ -208,7 +208,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   progress.clear();
   if (!baked) return baked.error();
 #ifdef __GLIBC__
-  (void)::malloc_trim(0);  // what the bake took is free, but not the system's yet
+  (void)::malloc_trim(0);  // memory of the bake is free, but not yet returned to the system
 #endif
   const int code = is_beyond(options, how, baked.value()) ? kExitBeyond : kExitDone;
   BakeReport told{input.name(), output, options.drivers, std::nullopt, input.notes()};
@@ -218,7 +218,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
     if (!printed) return printed.error();
     return code;
   }
-  // Elsewhere than beside its source, a file refers to what it takes along in other ways.
+  // In another folder, a file needs other paths to its resources.
   Result<std::vector<std::string>> pointers = edit.pointers(output);
   if (!pointers) return pointers.error();
   baked.value().pointers = std::move(pointers).value();
@@ -227,7 +227,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   baked.value().left_out_bytes = left_out.value();
   std::vector<std::string> warnings = baked.value().warnings;
   for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
-  // The file, which may be the input, comes last: it has everything, and nothing is lost where this fails.
+  // The result, which may replace the input, is written last, so that nothing is lost if an earlier write fails.
   if (options.drivers) {
     if (const Status written = write_output(*options.drivers, baked.value().drivers, options.common.force); !written)
       return written.error();
@@ -290,7 +290,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
                          "these are targets and no sequence: convert makes a .glb of them, and bake takes that");
   if (motion.segments.size() + 1 != motion.keyframes.size())
     return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
-  // Hard edges are those that the file shows, where nothing else is asked for.
+  // By default hard edges follow the stored normals of the file.
   const StoredNormals& stored = *input.normals().value();
   if (!stored.of_keyframes.empty()) {
     const std::vector<float>& first = stored.of_keyframes.front();
@@ -305,7 +305,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (options.input.is_curved()) baked.value().cut = input.cut_path();
   warn(baked.value().warnings);
   BakeReport told{input.name(), output, std::nullopt, std::nullopt, input.notes()};
-  // An audit judges the triangles of a file, whatever polygons they come from.
+  // An audit judges the triangles of a file. If the input has larger polygons, results would differ.
   if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
     std::optional<Input> whole;
     auto audited = audit_both(how, options, nullptr, [&](AuditOptions asked) -> Result<Audit> {
@@ -333,7 +333,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
 }
 
-// Without -o the last of several files is where to write, where it can be: IN OUT.
+// Without -o the last of several files is the output, if it can be: IN OUT.
 Status take_output(BakeArguments& options) {
   std::vector<std::string>& files = options.input.files;
   if (options.output) {
@@ -349,7 +349,8 @@ Status take_output(BakeArguments& options) {
   return Success{};
 }
 
-// No output may replace another one, or what is read. OUT alone may be INPUT: it has everything that INPUT has.
+// Checks that no output replaces another one or an input. Only OUT may be INPUT, since it keeps everything that INPUT
+// has.
 Status check_files(const BakeArguments& options) {
   std::vector<NamedFile> poses;
   if (options.poses && *options.poses != "random") poses.push_back({"--poses", *options.poses});
@@ -366,7 +367,7 @@ Result<int> run(BakeArguments options) {
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
   if (!how) return how.error();
-  // This is said before anything is read; for other names it depends on what the input turns out to be.
+  // This error is reported before anything is read; for other names it depends on the input.
   const bool writes = !options.plan;
   if (writes && !is_stream(options.common.output) && is_motion_file(options.common.output))
     return misuse(options.common.output,
@@ -387,7 +388,7 @@ Result<int> run(BakeArguments options) {
                                              : run_sequence(options, how.value(), input.value(), progress);
 }
 
-// The table that all commands share, but that OUT need not be named.
+// Returns the table that all commands share, but OUT is optional here.
 std::vector<Option> with_output(std::vector<Option> table, std::optional<std::string>& output) {
   table.front() = {"-o,--output OUT", &output, "where to write (default: the last INPUT, where there are several)"};
   return table;

@@ -1,4 +1,4 @@
-/// The page of reports as a part of the program.
+/// The page of reports that is built into the program.
 #ifndef CLI_COMMANDS_BUILT_IN_PAGE_H_
 #define CLI_COMMANDS_BUILT_IN_PAGE_H_
 
@@ -6,7 +6,7 @@
 
 namespace chronormal::cli {
 
-/// Returns the page that CHRONORMAL_REPORT_PAGE named when the program was built. It is empty where none was named.
+/// Returns the page that CHRONORMAL_REPORT_PAGE named when the program was built, or an empty text if it named none.
 [[nodiscard]] std::string_view built_in_page() noexcept;
 
 }  // namespace chronormal::cli

@@ -5,7 +5,7 @@
 namespace chronormal::cli {
 namespace {
 
-// Whether the options say by themselves that it cannot be.
+// Checks the options as far as possible without the input.
 Status check(const InputOptions& input, bool elements_given, const BlendArguments& arguments) {
   if (*arguments.rows < 1 || *arguments.rows > kMostBlendRows)
     return misuse("--blend", "it must be a whole number from 1 to 10,000: how many weight vectors");
@@ -17,7 +17,7 @@ Status check(const InputOptions& input, bool elements_given, const BlendArgument
   return Success{};
 }
 
-// The message of the library, with the option that it is about.
+// Adds the option to a message of the library.
 Error blamed(Error error, const std::string& option) {
   if (error.code == ErrorCode::kUsage && error.place.empty()) error.place = option;
   return error;

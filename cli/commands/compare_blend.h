@@ -12,15 +12,15 @@
 namespace chronormal::cli {
 
 struct BlendArguments {
-  std::optional<std::size_t> rows;  ///< given: --blend
+  std::optional<std::size_t> rows;  ///< set by --blend
   std::optional<std::size_t> active;
   std::size_t seed = 1;
 
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input and compares. Where elements were asked for, those of a glTF file are by its geometry.
-/// Errors: kUsage for what does not go together; those of reading and of compare_blends().
+/// Reads the input and compares. If elements were requested, the elements of a glTF file follow its geometry. Errors:
+/// kUsage for options that exclude each other; errors of reading and of compare_blends().
 [[nodiscard]] Result<NamedBlendComparison> compare_blend_input(const InputOptions& input,
                                                                const ElementArguments& elements,
                                                                const BlendArguments& arguments, Progress& progress);

@@ -30,7 +30,7 @@ constexpr std::size_t kMostSamples = 1000000;
 struct CompareArguments {
   InputOptions input;
   CommonOptions common;
-  std::optional<std::string> schemes;  // a list; nothing: those that are usual for the elements
+  std::optional<std::string> schemes;  // a list; by default, depends on the elements
   std::optional<std::size_t> samples;
   ElementArguments elements{"faces"};
   std::string weighting;            // empty: area
@@ -43,7 +43,7 @@ struct CompareArguments {
   bool no_times = false;
   bool certify = false;
   std::optional<double> tolerance;    // degrees
-  std::optional<std::string> errors;  // where to write every single one
+  std::optional<std::string> errors;  // the file for all single errors
   RunArguments run;
   BlendArguments blend;
   TruthArguments truth;
@@ -68,7 +68,7 @@ std::vector<std::string> scheme_names(const CompareArguments& options) {
   return options.schemes ? split_at_commas(*options.schemes) : std::vector<std::string>();
 }
 
-// An option that was given, and has no meaning with --blend.
+// Returns an option that was given but has no meaning with --blend.
 std::string option_of_schemes(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
@@ -151,7 +151,7 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
           options.common.table(false)};
 }
 
-// Compares one motion. The result is nothing on a rank that has nothing to print.
+// Compares one motion. The result is empty on a rank that has nothing to print.
 Result<std::optional<NamedComparison>> compare_one(Input& input, const CompareArguments& options, Progress& progress,
                                                    CommandRun& run, CompareRun& segments) {
   const Result<MotionStream*> motion = input.stream();
@@ -187,7 +187,7 @@ Result<std::optional<NamedComparison>> compare_one(Input& input, const CompareAr
   return prints.value() ? std::optional(std::move(named)) : std::nullopt;
 }
 
-// An option that was given, and has no meaning where several ranks divide one motion.
+// Returns an option that was given but has no meaning if several ranks divide one motion.
 std::string option_of_one_process(const CompareArguments& options) {
   if (options.errors) return "--errors";
   if (options.face) return "--face";
@@ -196,7 +196,7 @@ std::string option_of_one_process(const CompareArguments& options) {
   return options.each ? "--each" : "";
 }
 
-// One motion at a time is in memory. The result is empty on a rank that has nothing to print.
+// Compares the inputs with one motion in memory at a time. The result is empty on a rank that has nothing to print.
 Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& options, Progress& progress,
                                                     CommandRun& run, CompareRun& segments) {
   std::vector<InputOptions> inputs;
@@ -216,7 +216,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
   } else {
     inputs.push_back(options.input);
   }
-  // Find out about all wrong inputs before the first is read.
+  // Reports all wrong inputs before the first one is read.
   for (const InputOptions& input : inputs) {
     if (const Status status = check_input(input); options.each && !status) return status.error();
   }
@@ -238,12 +238,12 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
     if (!comparison.value()) break;
     comparisons.push_back(std::move(*comparison.value()));
     if (options.each && !wanted.base.empty())
-      comparisons.back().name = wanted.files.front();  // the base is that of all
+      comparisons.back().name = wanted.files.front();  // all inputs share the base
   }
   return comparisons;
 }
 
-// No output may replace another one, or what is read.
+// Checks that no output replaces another one or an input.
 Status check_files(const CompareArguments& options) {
   std::vector<NamedFile> outputs = {{"OUT", options.common.output}}, read = input_files(options.input);
   if (options.errors) outputs.push_back({"--errors", *options.errors});
@@ -271,7 +271,7 @@ Result<int> run_blend(const CompareArguments& options) {
   return kExitDone;
 }
 
-// An option that was given, and has no meaning with --truth.
+// Returns an option that was given but has no meaning with --truth.
 std::string option_of_samples(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";

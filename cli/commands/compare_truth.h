@@ -12,12 +12,13 @@
 namespace chronormal::cli {
 
 struct TruthArguments {
-  std::optional<std::size_t> every;  ///< given: --truth
+  std::optional<std::size_t> every;  ///< set by --truth
 
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input, leaves keyframes out, and compares with them. Errors: those of reading and of compare_with_truth().
+/// Reads the input, leaves keyframes out, and compares with them. Errors: as reading and compare_with_truth() return
+/// them.
 [[nodiscard]] Result<NamedTruthComparison> compare_input_with_truth(const InputOptions& input,
                                                                     const ElementArguments& elements,
                                                                     const TruthArguments& arguments,

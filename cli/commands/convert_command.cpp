@@ -1,4 +1,4 @@
-// The command `convert`: it writes a motion in another format.
+// The command `convert` writes a motion in another format.
 #include <memory>
 #include <utility>
 
@@ -43,7 +43,7 @@ Result<int> run(const ConvertArguments& options) {
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
   wanted.stream = true;
-  wanted.velocities = options.common.output.ends_with(".npz");  // the only format that they are written to
+  wanted.velocities = options.common.output.ends_with(".npz");  // the only output format with velocities
   Result<Input> input = open_input("convert", std::move(wanted), progress);
   if (!input) return input.error();
   const Result<MotionStream*> motion = input.value().stream();

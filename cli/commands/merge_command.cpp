@@ -1,4 +1,4 @@
-// The command `merge`: it joins the parts that shards wrote.
+// The command `merge` joins the parts that shards wrote.
 #include <memory>
 #include <string>
 #include <string_view>

@@ -1,5 +1,5 @@
-// chronormal query: asks one of several questions about whole intervals of time. A question stands in a file of its own
-// (cli/commands/query_question.h); here is what they share: the input, the span, and where the answer goes.
+// chronormal query: asks one of several questions about whole intervals of time. Each question has its own file
+// (cli/commands/query_question.h). This file has the shared parts: the input, the span, and the output of the answer.
 
 #include <algorithm>
 #include <memory>
@@ -33,7 +33,7 @@ struct QueryArguments {
                                      shutter_question()};
 };
 
-// Whether the command line gave an option a value.
+// Tells whether the command line gave an option a value.
 bool was_given(const Option& option) {
   return std::visit(
       [](const auto* target) {
@@ -162,7 +162,7 @@ std::string footer(const std::vector<Question>& questions) {
 
 Command query_command() {
   auto options = std::make_shared<QueryArguments>();
-  // A question takes an interval of time here, and not a range of keyframes.
+  // A question takes an interval of time instead of a range of keyframes.
   std::vector<Option> input = input_table(options->input, {{"--from", ""}, {"--to", ""}}), own;
   input.insert(input.begin(), {"QUESTION", &options->question, "what is asked (listed below)"});
   for (const Question& question : options->questions)

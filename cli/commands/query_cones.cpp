@@ -1,4 +1,4 @@
-// chronormal query cones: where the normals of faces and of meshlets stay.
+// chronormal query cones: cones that contain the normals of faces and of meshlets.
 
 #include <memory>
 

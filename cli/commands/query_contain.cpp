@@ -1,4 +1,4 @@
-// chronormal query contain: which points are inside a closed mesh, and when each goes through its surface.
+// chronormal query contain: finds the points inside a closed mesh, and when each passes through its surface.
 
 #include <memory>
 #include <utility>

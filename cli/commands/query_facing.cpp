@@ -19,7 +19,7 @@ struct FacingOptions {
   bool silhouettes = false;
 };
 
-// Numbers between commas, within the range of float32.
+// Parses numbers between commas, within the range of float32.
 Result<std::vector<double>> parse_numbers(const std::string& option, std::string_view list) {
   std::vector<double> values;
   for (;;) {

@@ -18,8 +18,8 @@ using Ask =
 
 struct Question {
   std::string name, summary;
-  std::vector<Option> options;  ///< that only this question has
-  /// Reads what the options say, before any input is read. Errors: kUsage with an option as the place.
+  std::vector<Option> options;  ///< options of this question only
+  /// Parses the options before any input is read. Errors: kUsage with an option as the place.
   std::function<Result<Ask>()> understand;
   bool takes_elements = false;  ///< or is about faces alone
 };

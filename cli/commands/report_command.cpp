@@ -33,8 +33,8 @@ struct ReportArguments {
 
 bool is_container(const ReportArguments& options) { return lower_extension(options.common.output) == ".bin"; }
 
-// The template beside the program: below share/ of where it was installed, or built. Nothing where the system does not
-// say where that is.
+// Returns the template installed or built with the program, below share/ beside it, or nothing if the system does not
+// tell where the program is.
 std::optional<std::string> usual_template() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
@@ -42,8 +42,8 @@ std::optional<std::string> usual_template() {
   return (program.parent_path().parent_path() / "share" / "chronormal" / "report.html").string();
 }
 
-// Reads the template of the page, before anything is computed, so that nothing is in vain. A template that is named comes
-// first, then the one in the program, and then the one beside it.
+// Reads the template of the page before anything is computed, so that no work is wasted. A named template comes first,
+// then the built-in one, then the one beside the program.
 Result<std::string> read_template(const ReportArguments& options) {
   if (!options.page_template && !built_in_page().empty()) return std::string(built_in_page());
   const std::optional<std::string> path = options.page_template ? options.page_template : usual_template();

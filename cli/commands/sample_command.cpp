@@ -74,7 +74,7 @@ std::vector<std::vector<Option>> tables(SampleArguments& options) {
           options.common.table(true)};
 }
 
-// The options of the command line, after their texts were parsed.
+// The options of the command line, parsed.
 struct Request {
   SampleOptions sample;
   AskedMoments asked;
@@ -149,7 +149,7 @@ Result<Request> understand(const SampleArguments& options) {
     if (const Status output = options.run.check_output(options.common); !output) return output.error();
     const Status distinct = check_distinct({{"OUT", options.common.output}}, input_files(options.input));
     if (!distinct) return distinct.error();
-    // An interrupted run may have written OUT just before its end, as write_samples() finds out.
+    // An interrupted run may have written OUT just before its end. write_samples() finds out.
     return request;
   }
   const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count(), request.run);
@@ -160,7 +160,7 @@ Result<Request> understand(const SampleArguments& options) {
   return request;
 }
 
-// Takes the hard edges from where the input stores them: its smoothing groups, or its normals.
+// Takes the hard edges from the smoothing groups or the normals of the input.
 Status take_hard_edges(Input& input, const std::string& what, ElementOptions& elements) {
   const std::string& file = input.shaded_by();
   if (file.empty())
@@ -183,7 +183,7 @@ Status take_hard_edges(Input& input, const std::string& what, ElementOptions& el
   return Success{};
 }
 
-// Says how much was asked for, where that is much: it is not refused.
+// Says how large the task is if it is large; it is not refused.
 void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
   constexpr double kMuch = 1e9;
   const std::size_t elements = kind == ElementKind::kFaces     ? topology.face_count()

@@ -18,8 +18,8 @@
 namespace chronormal::cli {
 namespace {
 
-// Says what became of curves. Wrong velocities give curves that look like any others, so that nothing but a comparison
-// with positions finds them.
+// Reports how curves were cut. Wrong velocities give curves that look like any others, so that only a comparison with
+// positions can find them.
 void say_of_curves(const std::string& command, const CutPath& cut, std::size_t faces, bool is_quiet) {
   const auto warn = [&](const std::string& message) { say(command, message, Tone::kWarning); };
   if (!is_quiet)

@@ -1,5 +1,5 @@
-// Lines of help are broken here and nowhere else. A line of a text that begins with a blank stands for itself, as the
-// rows of a list do; all others flow together into paragraphs.
+// All lines of help are broken here. A line that begins with a blank is kept as it is, like the rows of a list; all
+// other lines flow together into paragraphs.
 #include "cli/options/help.h"
 
 #include <algorithm>
@@ -21,10 +21,10 @@ constexpr std::string_view kAbout = "Normals of triangle meshes that deform: exa
 
 struct Paragraph {
   std::string text;
-  std::size_t hang = 0;  ///< by how much lines after the first are indented
+  std::size_t hang = 0;  ///< indentation of all lines after the first
 };
 
-// The parts of a text between separators. (A stream would take a lack of memory for the end of the text.)
+// Splits a text at separators. (A stream would take a lack of memory for the end of the text.)
 std::vector<std::string> parts_of(const std::string& text, char separator) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -35,7 +35,7 @@ std::vector<std::string> parts_of(const std::string& text, char separator) {
   return parts;
 }
 
-// What a text consists of: paragraphs that flow, and rows that stand for themselves.
+// Splits a text into paragraphs, which flow, and rows, which keep their line.
 std::vector<Paragraph> paragraphs_of(const std::string& text) {
   std::vector<Paragraph> paragraphs;
   bool flows = false;
@@ -56,8 +56,8 @@ std::vector<Paragraph> paragraphs_of(const std::string& text) {
   return paragraphs;
 }
 
-// Breaks a paragraph between words; every line begins at `indent`, but the first, which is written after what stands
-// there already.
+// Breaks a paragraph between words. Every line begins at `indent`, except the first, which follows the text that is
+// already there.
 std::string broken(const Paragraph& paragraph, std::size_t indent, std::size_t columns) {
   const std::size_t first = std::min(paragraph.text.find_first_not_of(' '), paragraph.text.size());
   std::string result = paragraph.text.substr(0, first);
@@ -89,7 +89,7 @@ std::string flowing(const std::string& text, std::size_t indent, std::size_t col
   return result;
 }
 
-// A row of a list: a name, and what it means.
+// Returns a row of a list: a name and its meaning.
 std::string row(const std::string& name, const std::string& text, std::size_t columns) {
   const std::size_t at = std::min(kTextColumn, columns / 2);
   std::string line(kNameColumn, ' ');
@@ -125,7 +125,7 @@ std::string usage_of(const Command& command) {
   return formatted("chronormal {}{} [OPTIONS]", command.name, arguments);
 }
 
-// A text for roff: no line may begin with one of its own signs.
+// Escapes a text for roff, in which no line may begin with a control character.
 std::string for_manual(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -136,7 +136,7 @@ std::string for_manual(const std::string& text) {
   return result;
 }
 
-// Rows keep their lines, and texts flow.
+// Formats a text for the manual: rows keep their lines, and paragraphs flow.
 std::string lines_for_manual(const std::string& text) {
   std::string result;
   for (const Paragraph& paragraph : paragraphs_of(text)) {
@@ -158,14 +158,14 @@ std::string command_names(const std::vector<Command>& commands) {
   return names;
 }
 
-// A text between single quotes of a shell.
+// Quotes a text with the single quotes of a shell.
 std::string quoted_for_shell(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result + '\'';
 }
 
-// The first sentence of a help, in one line.
+// Returns the first sentence of a help in one line.
 std::string brief(const Option& option) {
   std::string text = option.help.substr(0, option.help.find("\n "));
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -270,7 +270,7 @@ std::string help_of_command(const Command& command, std::size_t columns) {
   for (auto table = command.tables.begin() + 1; table != command.tables.end(); ++table)
     std::for_each(table->begin(), table->end(), add_row);
   text += row("-h, --help", "print this", columns);
-  std::string heading = "\nOptions for what is read:\n";  // printed only where there are such options
+  std::string heading = "\nOptions for what is read:\n";  // printed only if there are such options
   for (const Option& option : command.tables.front()) {
     if (names_of(option).empty()) continue;
     text += std::exchange(heading, "");

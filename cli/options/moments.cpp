@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostTimes = 1000000;
 
-// The parts of a list between separators.
+// Splits a list at separators.
 std::vector<std::string_view> split(std::string_view list, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t first = 0;;) {
@@ -45,7 +45,7 @@ Result<double> parse_number(const std::string& option, std::string_view word) {
   return value;
 }
 
-// The times of A:STEP:B, of which the last is B itself if the steps lead there.
+// Appends the times of A:STEP:B. The last one is B itself if the steps lead there.
 Status append_range(const std::vector<std::string_view>& ends, std::string_view text, std::vector<double>& times) {
   const auto wrong = [&](const char* why) { return misuse("--times", formatted("'{}': {}", text, why)); };
   if (ends.size() != 3) return wrong("a range is FIRST:STEP:LAST");
@@ -84,7 +84,8 @@ Result<std::vector<double>> parse_times(const std::string& list) {
   return times;
 }
 
-// Takes a name in double quotes from the beginning of the text; nothing where the quotes do not end.
+// Removes a name in double quotes from the beginning of the text and returns it; returns nothing if the quotes do not
+// end.
 std::optional<std::string> take_quoted(std::string_view& text) {
   std::string name;
   for (std::size_t i = 1; i < text.size(); ++i) {
@@ -99,7 +100,7 @@ std::optional<std::string> take_quoted(std::string_view& text) {
   return std::nullopt;
 }
 
-// Takes what stands before the next comma from the beginning of the text, and the comma.
+// Removes the text up to the next comma, and the comma, from the beginning of the text and returns the part before it.
 std::string_view take_part(std::string_view& text) {
   const std::size_t comma = std::min(text.find(','), text.size());
   const std::string_view part = text.substr(0, comma);
@@ -141,7 +142,7 @@ Result<AskedMoments::Pose> parse_pose(const std::string& list) {
   return pose;
 }
 
-// N or N:M.
+// Parses N or N:M.
 Result<Stepping> parse_step(const std::string& text) {
   Stepping stepping;
   const std::vector<std::string_view> parts = split(text, ':');
@@ -181,7 +182,7 @@ Result<std::vector<double>> weights_of(const AskedMoments::Pose& pose, const Tar
   return weights;
 }
 
-// Returns an error where a motion of this kind cannot be sampled at such moments.
+// Checks that a motion of this kind can be sampled at such moments.
 Status check_kind(const Motion& motion, const AskedMoments& asked) {
   const bool has_times = asked.at_keys || !asked.times.empty(), has_weights = !asked.poses.empty();
   if (motion.segments.empty()) {

@@ -1,4 +1,4 @@
-/// The moments at which normals are wanted, as the command line gives them: --times and --weights.
+/// The moments at which the command line requests normals: --times and --weights.
 ///
 ///     --times 0,0.5,1            times in seconds
 ///     --times 0:0.25:2,5         a range with its step, and a time
@@ -8,8 +8,8 @@
 ///     --step 100                 every segment in 100 equal steps, each from the one before
 ///     --step 100:0               the same, and nothing is made anew on the way
 ///
-/// A weight stands behind the last '=', so that names may have one; a name with a comma, or with blanks at its ends,
-/// stands in double quotes, in which "" is a quote.
+/// The weight follows the last '=', so that names may contain one. A name with a comma, or with blanks at its ends, is
+/// written in double quotes, in which "" is a quote.
 #ifndef CLI_OPTIONS_MOMENTS_H_
 #define CLI_OPTIONS_MOMENTS_H_
 
@@ -24,7 +24,7 @@
 
 namespace chronormal::cli {
 
-/// The words of the command line.
+/// The arguments as they were written.
 struct MomentArguments {
   std::string times;                 ///< empty: none
   std::vector<std::string> weights;  ///< a list for each pose
@@ -33,9 +33,9 @@ struct MomentArguments {
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// The moments that the options ask for, parsed as far as that is possible before the input is read.
+/// The requested moments, parsed as far as possible before the input is read.
 struct AskedMoments {
-  /// Weights of targets in their order, or by name.
+  /// Weights of targets, in order or by name.
   struct Pose {
     std::vector<double> numbers;
     std::vector<std::pair<std::string, double>> named;
@@ -46,15 +46,15 @@ struct AskedMoments {
   std::vector<Pose> poses;
   std::optional<Stepping> stepping;
 
-  /// How many moments there are; 1 where only the input can tell.
+  /// Returns the number of moments, or 1 if only the input can tell.
   [[nodiscard]] std::size_t count() const noexcept;
 };
 
-/// Reads the words. Errors: kUsage, with the option as the place.
+/// Parses the arguments. Errors: kUsage, with the option as the place.
 [[nodiscard]] Result<AskedMoments> understand(const MomentArguments& arguments);
 
-/// The moments of this input; none for a mesh that does not move. Errors: of Input::motion(); kUsage where the moments
-/// do not go with the motion, and for names that are not there or that several targets have.
+/// Returns the moments for this input; none for a mesh that does not move. Errors: of Input::motion(); kUsage if the
+/// moments do not go with the motion, and for names that no target or several targets have.
 [[nodiscard]] Result<Moments> moments_of(Input& input, const AskedMoments& asked);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-// Hands the tables of options to the parser, and what the parser has to say to the user.
+// Passes the tables of options to the parser, and the messages of the parser to the user.
 
 #include "cli/options/options.h"
 
@@ -31,7 +31,7 @@ CLI::Option* add_target(CLI::App& command, const std::string& names, bool* targe
   return command.add_flag(names, *target, help);
 }
 
-// The parser would take an empty text for none.
+// Adds an optional text by a function, since the parser would take an empty text for a missing one.
 CLI::Option* add_target(CLI::App& command, const std::string& names, std::optional<std::string>* target,
                         const std::string& help) {
   return command.add_option_function<std::string>(
@@ -49,8 +49,8 @@ CLI::Option* add_target(CLI::App& command, const std::string& names, T* target, 
   return command.add_option(names, *target, help);
 }
 
-// What is wrong with the value of an option that takes a number. The parser would take an empty text for an option that
-// was not given, and "nan" for a number.
+// Checks the value of an option that takes a number. The parser would take an empty text for an option that was not
+// given, and accept "nan" as a number.
 template <class T>
 std::string fault_of_number(const T*, const std::string& value) {
   constexpr bool is_text = std::is_same_v<T, bool> || std::is_same_v<T, std::string> ||
@@ -72,7 +72,7 @@ void add_option(const Option& option, CLI::App& command) {
   added->required(rules.required);
   if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
   if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
-  // A check of the table's own says more of what is wanted than that it is a number.
+  // The table's own check explains more than that a number is needed.
   added->check(
       [target = option.target, check = rules.check](const std::string& value) {
         std::string wrong = check ? check(value) : "";
@@ -92,7 +92,7 @@ void say_where_help_is(std::string_view command) {
   say_raw(formatted("Try: chronormal{}{} --help\n", command.empty() ? "" : " ", command));
 }
 
-// Says the error, and returns its exit code.
+// Prints the error, and returns its exit code.
 int report(const std::string& command, const Error& error) {
   say(command, error.text(), Tone::kError);
   if (error.code == ErrorCode::kUsage) say_where_help_is(command);
@@ -104,13 +104,13 @@ int print_or_report(const std::string& text) {
   return printed ? kExitDone : report("", printed.error());
 }
 
-// "; did you mean NAME?", or nothing.
+// Returns "; did you mean NAME?", or nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
   const std::string nearest = nearest_name(word, names);
   return nearest.empty() ? "" : formatted("; did you mean {}?", nearest);
 }
 
-// A word that is no command deserves a better answer than the parser's.
+// Checks the command, since a wrong one deserves a better answer than the parser gives.
 bool is_known(const std::vector<Command>& commands, std::string_view first) {
   if (first.starts_with('-')) return true;
   std::vector<std::string> names;
@@ -146,8 +146,8 @@ std::vector<std::string> names_of_options(const Command& command, bool only_with
   return names;
 }
 
-// What to do in place of an option that the command does not have: its own reason, else the commands that have the
-// option, else the nearest of its options.
+// Says what to do instead of using an unknown option: the command's own reason, else the commands that have the option,
+// else the nearest option of the command.
 std::string advice_on(std::string_view name, const Command& command, const std::vector<Command>& commands) {
   for (const RefusedOption& refused : command.refused)
     if (refused.name == name) return " here: " + refused.reason;
@@ -160,8 +160,8 @@ std::string advice_on(std::string_view name, const Command& command, const std::
   return suggestion(name, own);
 }
 
-// The first option that the command does not have, which the parser would pass over where a required one is missing. A
-// word after an option that takes a value is that value, whatever it looks like.
+// Finds the first unknown option, which the parser would overlook if a required one is missing. A word after an option
+// that takes a value is that value, whatever it looks like.
 std::optional<Error> find_unknown_option(const Command& command, const std::vector<Command>& commands,
                                          std::span<char* const> arguments) {
   std::vector<std::string> names = names_of_options(command);
@@ -181,7 +181,8 @@ std::optional<Error> find_unknown_option(const Command& command, const std::vect
   return std::nullopt;
 }
 
-// `running` gets the name of the command that runs. What the parser refuses was said by the time that this returns.
+// Parses the command line and runs the command. `running` gets its name. Messages of the parser are printed before this
+// returns.
 Result<int> understand_and_run(const std::vector<Command>& commands, int argument_count, char** arguments,
                                std::string& running) {
   CLI::App program("", "chronormal");
@@ -252,7 +253,7 @@ Check check_given(std::string message) {
 }
 
 int run_program(const std::vector<Command>& commands, int argument_count, char** arguments) {
-  std::string name;  // of the command, once it is known
+  std::string name;  // name of the command, once known
   start_ranks([&name](const Error& error) { return report(name, error); });
   return end_ranks(understand_and_run(commands, argument_count, arguments, name));
 }

@@ -1,4 +1,4 @@
-/// The files that a command writes, held against each other and against those that it reads: none may replace another,
+/// Compares the files that a command writes with each other and with the files that it reads: none may replace another,
 /// whatever their names look like.
 #ifndef CLI_OPTIONS_OUTPUTS_H_
 #define CLI_OPTIONS_OUTPUTS_H_
@@ -11,17 +11,17 @@
 
 namespace chronormal::cli {
 
-/// A file, and the option that names it, for messages.
+/// A file with the option that names it, for messages.
 struct NamedFile {
   std::string option;
   std::string path;
 };
 
-/// The files of an input, as far as they can be found without opening one; the rest has an error when it is opened.
+/// Lists the files of an input that can be found without opening one; other problems are reported when it is opened.
 [[nodiscard]] std::vector<NamedFile> input_files(const InputOptions& input);
 
-/// Checks that each output is another file than those before it, and than all that are read; "-" is the standard
-/// output, which may be a file, too. Errors: kUsage, with the option of the output as the place.
+/// Checks that each output differs from the outputs before it and from all inputs; "-" is the standard output, which
+/// may be a file, too. Errors: kUsage, with the option of the output as the place.
 [[nodiscard]] Status check_distinct(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& read);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-// Describes a run by its options and its files, holds this against the journal, and finds the share of this process.
+// Describes a run by its options and its files, compares it with the journal, and finds the share of this process.
 #include "cli/options/run.h"
 
 #include <filesystem>
@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 std::string journal_name(const std::string& output) { return output + ".journal"; }
 
-// The value of an option as a text; empty where it was not given.
+// Returns the value of an option as a text, empty if it was not given.
 struct ValueText {
   std::string operator()(const bool* value) const { return *value ? "given" : ""; }
   std::string operator()(const std::string* value) const { return *value; }
@@ -43,7 +43,7 @@ struct ValueText {
   }
 };
 
-// Everything that decides the result, as names and values.
+// Describes everything that determines the result, as names and values.
 Result<Json> describe(const std::string& command, const std::vector<std::vector<Option>>& tables,
                       const InputOptions& input) {
   Json run = {{"chronormal", kVersion}, {"command", command}};
@@ -65,7 +65,7 @@ std::string quoted_value(const Json& run, const std::string& name) {
   return run.contains(name) && run[name].is_string() ? formatted("'{}'", run[name].get<std::string>()) : "not given";
 }
 
-// Returns what differs first between two runs, in words; the text is empty where nothing differs.
+// Returns the first difference between two runs in words, or an empty text if there is none.
 std::string difference(const Json& old, const Json& now) {
   if (!old.is_object()) return "it describes no run";
   std::vector<std::string> names;
@@ -201,7 +201,7 @@ Result<std::unique_ptr<CommandRun>> RunArguments::begin(const std::string& comma
   Result<Journal> journal = Journal::open(journal_name(common.output), text);
   if (!journal) return journal.error();
   if (journal.value().run() != text && journal.value().records().empty()) {
-    // Nothing was done yet, so there is nothing to lose.
+    // The old run has done nothing yet, so nothing is lost.
     if (const Status removed = journal.value().remove(); !removed) return removed.error();
     journal = Journal::open(journal_name(common.output), text);
     if (!journal) return journal.error();

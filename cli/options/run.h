@@ -1,5 +1,5 @@
-/// How a command divides its work, and goes on with it: --shard, --resume, and the ranks that mpirun starts. Commands
-/// know of none of the three: a CommandRun makes a SegmentRun (workflow/segments/segment_run.h) of them.
+/// Divides the work of a command and resumes it: --shard, --resume, and the ranks that mpirun starts. Commands know none
+/// of the three: a CommandRun makes a SegmentRun (workflow/segments/segment_run.h) from them.
 ///
 ///     const auto run = options.run.begin("compare", tables(options), options.input, options.common);
 ///     CompareRun segments;
@@ -8,8 +8,8 @@
 ///     run->join(compare_part(...), merge_compare_parts);         // on several ranks
 ///     run->finish(text);
 ///
-/// With --resume, OUT.journal says what the run is (version, command, options, input files with their sizes and times
-/// of change) and what is done. It stays where the run ends too early, for whatever reason, and is gone when OUT is
+/// With --resume, OUT.journal describes the run (version, command, options, input files with their sizes and times of
+/// change) and records what is done. It stays if the run ends too early, for whatever reason, and is removed when OUT is
 /// whole.
 #ifndef CLI_OPTIONS_RUN_H_
 #define CLI_OPTIONS_RUN_H_
@@ -33,23 +33,23 @@
 
 namespace chronormal::cli {
 
-/// One run of a command. Where a run with --resume is destroyed before finish(), it says how to go on, or removes the
-/// journal where nothing was done; while it is there, so does the end by a signal.
+/// One run of a command. If a run with --resume is destroyed before finish(), it tells how to continue, or removes the
+/// journal if nothing was done. A signal that ends the program meanwhile has the same effect.
 class CommandRun {
  public:
-  /// journal: nothing without --resume.
+  /// journal must be empty without --resume.
   CommandRun(std::string command, const CommonOptions& common, std::optional<Shard> shard,
              std::optional<Journal> journal);
   CommandRun(const CommandRun&) = delete;
   CommandRun& operator=(const CommandRun&) = delete;
   ~CommandRun();
 
-  /// Makes a SegmentRun of the share of this process: its limits are those of the input, and each of the `things` that
-  /// are done is shown. Errors: kUsage for --resume and an input that is no sequence of keyframes.
+  /// Makes a SegmentRun of the share of this process: it has the limits of the input, and shows progress in `things`.
+  /// Errors: kUsage for --resume and an input that is not a sequence of keyframes.
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                const std::string& things, SegmentRun& run);
-  /// The same with a result for each segment: read(text, name) is what write(result) has written into the journal.
-  /// Errors: also those of read.
+  /// Does the same with a result for each segment: read(text, name) reads back the text that write(result) put into the
+  /// journal. Errors: also those of read.
   template <class Found, class Read>
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                RecordedRun<Found>& run, std::string (*write)(const Found&), const Read& read) {
@@ -65,8 +65,8 @@ class CommandRun {
     return Success{};
   }
 
-  /// Puts together what several ranks have found: makes merge(parts) the whole on the first, which prints. Returns
-  /// false on the others, where nothing is left to do. Errors: those of merge.
+  /// Joins the results of several ranks: on the first rank, which prints, it sets whole to merge(parts). Returns false
+  /// on the other ranks, which have nothing left to do. Errors: as merge returns them.
   template <class Whole, class Merge>
   [[nodiscard]] static Result<bool> join(const std::string& part, const Merge& merge, Whole& whole) {
     if (!has_ranks()) return true;
@@ -78,19 +78,19 @@ class CommandRun {
     return true;
   }
 
-  /// Whether OUT is a part for merge.
+  /// Tells whether OUT is a part for merge.
   [[nodiscard]] bool is_part() const noexcept { return shard_.has_value(); }
-  /// Whether one process did all of the work without a break, so that times tell something.
+  /// Tells whether one process does all of the work without a break, so that times are meaningful.
   [[nodiscard]] bool is_timed() const noexcept { return !journal_ && !has_ranks(); }
 
-  /// Writes the result to OUT, and removes the journal. An OUT that has this text already is as good: an earlier run
-  /// ended between the two. Errors: those of print_to() and of the journal.
+  /// Writes the result to OUT, and removes the journal. If OUT already has this text, an earlier run ended between the
+  /// two steps, and OUT is kept. Errors: as print_to() and the journal return them.
   [[nodiscard]] Status finish(std::string_view text);
-  /// Removes the journal, where OUT is whole already.
+  /// Removes the journal if OUT is already whole.
   [[nodiscard]] Status finish();
 
  private:
-  // What each rank has found, on the first rank.
+  // Returns the parts of all ranks on the first rank.
   [[nodiscard]] static std::vector<Part> gather(const std::string& own);
 
   std::string command_;
@@ -104,23 +104,23 @@ struct RunArguments {
   std::optional<std::string> shard;
   bool resume = false;
 
-  /// --shard and --resume; of_what ends the help of --shard: it says what is divided, and what OUT is then.
+  /// Returns --shard and --resume. of_what ends the help of --shard: it says what is divided, and what OUT is then.
   [[nodiscard]] std::vector<Option> options(const std::string& of_what);
 
-  /// Refuses what no ranks and no other shares can do. Errors: kUsage where there are several ranks, and --shard,
-  /// --resume or `other`, an option that was given and divides no task; where several copies that know nothing of each
-  /// other would do the same work; and for a --shard that is no share I/N.
+  /// Refuses options that ranks or shares do not support. Errors: kUsage if there are several ranks and --shard,
+  /// --resume or `other`, an option that was given and does not divide the task; if several copies that know nothing of
+  /// each other would do the same work; and for a --shard that is not a share I/N.
   [[nodiscard]] Status check(const std::string& other = "") const;
 
-  /// The share that --shard or the ranks give this process. check() must have passed.
+  /// Returns the share that --shard or the ranks give this process. check() must have passed.
   [[nodiscard]] std::optional<Shard> share() const;
 
-  /// check_output(), but for an OUT that an interrupted run may have written just before its end. Errors: also kUsage
-  /// for --resume without a file.
+  /// Runs check_output(), but accepts an OUT that an interrupted run may have written just before its end. Errors: also
+  /// kUsage for --resume without a file.
   [[nodiscard]] Status check_output(const CommonOptions& common) const;
 
-  /// Begins a run, or goes on with one whose options are those of the tables. Errors: kUsage where the journal is of
-  /// another run, with what differs, and for inputs that cannot be read again; those of the journal and of finding the
+  /// Begins a run, or resumes one that has the options in the tables. Errors: kUsage if the journal belongs to another
+  /// run, with the difference, and for inputs that cannot be read again; errors of the journal and of finding the
   /// files.
   [[nodiscard]] Result<std::unique_ptr<CommandRun>> begin(const std::string& command,
                                                           const std::vector<std::vector<Option>>& tables,
@@ -130,8 +130,8 @@ struct RunArguments {
   [[nodiscard]] Result<std::optional<Shard>> read_shard() const;
 };
 
-/// Errors: kUsage where several ranks were started for a command, or an input, that one process looks at alone;
-/// what says so: "it divides the segments of a sequence, and a glTF file is none".
+/// Refuses ranks and shares for a command or an input that one process handles alone. Errors: kUsage, with the reason
+/// `what`: "it divides the segments of a sequence, and a glTF file is none".
 [[nodiscard]] Status refuse_shares(const RunArguments& run, const char* what);
 
 }  // namespace chronormal::cli

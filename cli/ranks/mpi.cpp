@@ -1,10 +1,10 @@
-// Ranks by MPI. Texts go as bytes: first how many, then the bytes themselves in blocks that MPI can count; an error is
-// one message. Whoever waits sleeps between looks, since the ranks of one machine share its cores, and looks for errors
-// whenever it waits: the first rank for those of the others, the others for word from the first that all must end.
+// Ranks by MPI. Texts are sent as bytes: first their number, then the bytes in blocks that MPI can count; an error is
+// one message. A waiting rank sleeps between polls, since the ranks of one machine share its cores, and looks for errors
+// whenever it waits: the first rank for errors of the others, the others for the message of the first that all must end.
 //
-// They must hear of it from the first rank. mpirun would send them SIGTERM, and soon after that SIGKILL; Open MPI means
-// to wait a second in between, but when one rank ends, the signal that says so cuts this short for all others. On a busy
-// machine they lost before they had removed their files.
+// The first rank must send this message itself. mpirun would send SIGTERM, and soon after that SIGKILL; Open MPI means
+// to wait a second in between, but when one rank ends, its signal cuts this short for all others. On a busy machine they
+// were killed before they had removed their files.
 #include <mpi.h>
 
 #include <algorithm>
@@ -24,10 +24,10 @@ namespace chronormal::cli {
 namespace {
 
 constexpr int kFirst = 0;
-constexpr int kText = 1, kError = 2, kEnd = 3, kReady = 4;  // what a message is
+constexpr int kText = 1, kError = 2, kEnd = 3, kReady = 4;  // kinds of messages
 constexpr std::uint64_t kBlock = std::uint64_t{1} << 30U;
 constexpr std::chrono::milliseconds kNap{1};
-constexpr std::chrono::seconds kGrace{5};  // for ranks that look for word of the first only now and then
+constexpr std::chrono::seconds kGrace{5};  // for ranks that look for the message of the first only now and then
 
 struct State {
   int rank = 0, count = 1;
@@ -41,14 +41,15 @@ State& state() {
 
 bool is_first() { return state().rank == kFirst; }
 
-// Open MPI's mpirun, any PMIx (srun, Open MPI 5) and any PMI (MPICH, Intel MPI) set one of these for each rank.
+// Tells whether this process is a rank. Open MPI's mpirun, any PMIx (srun, Open MPI 5) and any PMI (MPICH, Intel MPI)
+// set one of these variables for each rank.
 bool was_started_as_rank() {
   constexpr const char* kVariables[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
   return std::any_of(std::begin(kVariables), std::end(kVariables),
                      [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
-// Whether there is a message of this kind; it is taken.
+// Receives a message of this kind, if there is one, and tells whether there was.
 bool take_signal(int from, int kind) {
   int is_there = 0;
   MPI_Iprobe(from, kind, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
@@ -56,10 +57,10 @@ bool take_signal(int from, int kind) {
   return is_there != 0;
 }
 
-// Returns when the other ranks have removed their files, or when the time for that is over.
+// Tells the other ranks to end. Returns when they have removed their files, or when the time for that is over.
 void end_others() {
   for (int rank = 1; rank < state().count; ++rank) {
-    MPI_Request request{};  // nobody waits for it: some ranks may never look
+    MPI_Request request{};  // never awaited: some ranks may never look
     MPI_Isend(nullptr, 0, MPI_BYTE, rank, kEnd, MPI_COMM_WORLD, &request);
     MPI_Request_free(&request);
   }
@@ -72,7 +73,7 @@ void end_others() {
   }
 }
 
-// Says an error and ends all ranks; mpirun sends signals to those that do not answer.
+// Reports an error and ends all ranks; mpirun sends signals to ranks that do not answer.
 [[noreturn]] void end_all(const Error& error) {
   const int code = state().report(error);
   remove_temporaries();
@@ -81,7 +82,7 @@ void end_others() {
   std::_Exit(code);
 }
 
-// Waits for mpirun to end this rank where the first rank has said that all must end.
+// Ends this rank, by waiting for mpirun, if the first rank has said that all must end.
 void look_for_end() {
   if (!take_signal(kFirst, kEnd)) return;
   remove_temporaries();
@@ -100,7 +101,7 @@ void wait(MPI_Request& request) {
   }
 }
 
-// Calls move(data, bytes) for one block after the other; it begins what wait() ends.
+// Calls move(data, bytes), which begins an operation that wait() ends, for one block after the other.
 template <class Byte, class Move>
 void move_blocks(std::span<Byte> bytes, const Move& move) {
   while (!bytes.empty()) {
@@ -135,7 +136,7 @@ std::string receive_text(int from) {
   return text;
 }
 
-// An error as a text: its code, its place and its message, with a zero between them.
+// Converts an error to a text: its code, its place and its message, with a zero between them.
 std::string text_of(const Error& error) {
   return formatted("{}", static_cast<int>(error.code)) + '\0' + error.place + '\0' + error.message;
 }
@@ -146,7 +147,7 @@ Error error_of(const std::string& text) {
           text.substr(message)};
 }
 
-// The error, with the rank that has it where not all have it.
+// Adds the rank to an error, unless all ranks have it.
 Error of_rank(int rank, Error error) {
   if (error.code != ErrorCode::kUsage)
     error.place = formatted("rank {}{}{}", rank, error.place.empty() ? "" : ": ", error.place);

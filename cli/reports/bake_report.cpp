@@ -23,11 +23,11 @@ std::string mesh_name(const BakedMesh& mesh) {
   return mesh.name.empty() ? formatted("mesh {}", mesh.mesh) : printable(mesh.name, kLongestName);
 }
 
-// How far the deltas are from what they stand for, as the bake computes it: of its targets, and of what its animations
-// were brought into. It is no audit, which looks at all that is shown.
+// Returns the largest error of the deltas against the normals that they encode, as the bake computes it for its targets
+// and its resampled animations. An audit, in contrast, judges everything that is rendered.
 double fit_error(const BakedMesh& mesh) { return mesh.largest_error + mesh.resampling_error; }
 
-// The worst error of a mesh before and after, or how far its deltas are from what they stand for.
+// Returns the worst error of a mesh before and after, or else the error of its deltas.
 std::vector<std::string> error_cells(const BakedMesh& mesh, const BakeReport& report) {
   if (!report.audit) return {mesh.elements == 0 ? "" : four_decimals(fit_error(mesh))};
   const MotionError before = error_of_mesh(report.audit->before, mesh.mesh),
@@ -50,7 +50,7 @@ void add_row(const BakedMesh& mesh, const BakeReport& report, Table& table) {
 
 std::string change(double before, double after) { return four_decimals(before) + " -> " + four_decimals(after); }
 
-// "worst 12.3000 -> 0.0010, mean 3.2000 -> 0.0001 degrees", and what cannot be lit.
+// Returns "worst 12.3000 -> 0.0010, mean 3.2000 -> 0.0001 degrees", and the number of normals that cannot be lit.
 std::string change_words(const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text =
@@ -60,7 +60,7 @@ std::string change_words(const BeforeAndAfter& audit) {
   return text;
 }
 
-// Which meshes were baked for normals that are not weighted by area.
+// Lists the meshes that were baked for normals with a weighting other than area.
 std::string weighting_lines(const GltfBake& bake) {
   std::string text;
   for (const WeightingInfo& info : kAllWeightings) {
@@ -89,7 +89,7 @@ void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
   all.poses += of_mesh.poses;
 }
 
-// The candidate that was chosen for a mesh has deltas that are fitted to the animations.
+// Tells whether the chosen candidate of a mesh has deltas that are fitted to the animations.
 bool is_of_animations(const BakedMesh& mesh) {
   return std::any_of(mesh.candidates.begin(), mesh.candidates.end(),
                      [](const BakedCandidate& choice) { return choice.chosen && choice.animations_only; });
@@ -111,8 +111,8 @@ struct ViewerRow {
   bool is_named = true, is_better = false;
 };
 
-// Rows of what bake itself measured: adds up the errors of all poses and of all meshes whose deltas are fitted to the
-// animations, or of all others. Its means are those of fewer samples than an audit's.
+// Returns the errors that bake itself measured: adds up all poses of all meshes whose deltas are fitted to the
+// animations, or of all others. The averages cover fewer samples than the averages of an audit.
 std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   std::vector<ViewerRow> rows;
   for (const Viewer& viewer : kViewers) {
@@ -137,8 +137,8 @@ std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   return rows;
 }
 
-// Rows of what the audits found, by which a file is judged after all, where there are any and no deltas are fitted to
-// the animations alone; else what bake measured.
+// Returns the errors that the audits found, which decide about a file, if there are audits and no deltas are fitted to
+// the animations alone; otherwise returns the errors that bake measured.
 std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& report, bool of_animations) {
   std::vector<ViewerRow> rows = measured_rows(bake, of_animations);
   if (!report.audit || any_of_animations(bake)) return rows;
@@ -153,13 +153,13 @@ std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& repor
   return rows;
 }
 
-// Torn edges: "1,234", or "0.7" where there are few.
+// Formats a number of torn edges: "1,234", or "0.7" if there are few.
 std::string torn(double edges) {
   if (edges < 10 && edges > 0) return formatted("{:.1g}", std::max(edges, 0.1));
   return grouped(static_cast<std::size_t>(std::lround(edges)));
 }
 
-// Says what the errors in a table of viewers are those of.
+// Says which poses the errors in a table of viewers cover.
 std::string poses_words(bool of_animations) {
   return of_animations ? "in what the file plays (targets alone, which --animations-only gives up, are not in it)"
                        : "in what the file plays, and for each target alone";
@@ -187,14 +187,14 @@ std::string viewers_text(const GltfBake& bake, const BakeReport& report) {
   return viewers_table(bake, report, false) + viewers_table(bake, report, true);
 }
 
-// "three.js, Babylon.js"
+// Returns the titles: "three.js, Babylon.js".
 std::string titles_of(const std::vector<ViewerRow>& rows) {
   std::string text;
   for (const ViewerRow& row : rows) text.append(text.empty() ? "" : ", ").append(row.viewer->title);
   return text;
 }
 
-// The row with the largest mean afterwards.
+// Returns the row with the largest average error after the bake.
 const ViewerRow& worst_of(const std::vector<ViewerRow>& rows) {
   return *std::max_element(rows.begin(), rows.end(),
                            [](const ViewerRow& a, const ViewerRow& b) { return a.after.mean < b.after.mean; });
@@ -258,7 +258,7 @@ std::string left_text(const GltfBake& bake) {
   return text;
 }
 
-// Returns whether every mesh got a candidate that is near enough.
+// Returns whether every mesh got a candidate within the tolerance.
 bool are_all_within(const GltfBake& bake) {
   return std::all_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
     return std::any_of(mesh.candidates.begin(), mesh.candidates.end(),
@@ -276,7 +276,8 @@ std::string name_of(const BakedCandidate& choice) {
   return std::string(choice.name) + (choice.animations_only ? ", animations only" : "");
 }
 
-// Prints a row for each viewer and candidate whose deltas are fitted to the animations, or each other candidate.
+// Prints a row for each viewer and each candidate: either the candidates whose deltas are fitted to the animations, or
+// all others.
 std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
@@ -300,7 +301,7 @@ std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   return any ? formatted("\n{}:\n\n{}", poses_words(of_animations), table.text()) : "";
 }
 
-// "on average (normals are off by 0.6400 degrees, before by 3.3200)": the respects, each with its figures.
+// Lists the respects with their figures: "on average (normals are off by 0.6400 degrees, before by 3.3200)".
 std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text;

@@ -8,17 +8,17 @@
 
 namespace chronormal::cli {
 
-/// Says in what respects the result is worse than the input, and in what it is better, with figures.
-/// of_animations: some deltas are fitted to the animations, and mean nothing for a target alone
+/// Says in what respects the result is worse than the input, and in what it is better, with figures. of_animations:
+/// some deltas are fitted to the animations, and have no meaning for a target alone.
 [[nodiscard]] std::string worse_text(const BeforeAndAfter& audit, bool of_animations);
-/// Whether some deltas of a result are fitted to the animations.
+/// Tells whether some deltas of a result are fitted to the animations.
 [[nodiscard]] bool any_of_animations(const GltfBake& bake);
 
 /// Says what the bake added: the table has a line for each mesh.
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// Lists the targets, bytes and errors that each candidate for each mesh would have, as the choice among them compares them.
+/// Lists the targets, bytes and errors of each candidate for each mesh, as the bake compares them.
 [[nodiscard]] std::string plan_text(const GltfBake& bake, const BakeReport& report);
 
 }  // namespace chronormal::cli

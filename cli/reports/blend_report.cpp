@@ -52,7 +52,7 @@ std::string target_name(const BlendSubject& subject, std::size_t target) {
   return name.empty() ? formatted("{}", target) : name;
 }
 
-// The heaviest ones first.
+// Lists the targets with the largest weights first.
 std::string targets_cell(const BlendSubject& subject, const BlendError& error) {
   std::vector<BlendError::Weight> weights = error.worst_weights;
   if (weights.empty()) return "-";
@@ -93,7 +93,7 @@ std::string table_of(const BlendSubject& subject) {
   return table.text();
 }
 
-// What was left out, a line each.
+// Lists what was left out, one line each.
 std::string notes(const BlendSubject& subject) {
   std::string text;
   for (const BlendErrors& errors : subject.errors) {

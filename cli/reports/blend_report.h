@@ -8,10 +8,10 @@
 
 namespace chronormal::cli {
 
-/// A table for each mesh, with a line for each number of active targets and kind of deltas.
+/// Returns a table for each mesh, with a line for each number of active targets and kind of deltas.
 [[nodiscard]] std::string blend_table(const NamedBlendComparison& input);
 
-/// A header line, and a line per mesh, number of active targets and kind of deltas.
+/// Returns a header line, and a line for each mesh, number of active targets and kind of deltas.
 [[nodiscard]] std::string blend_csv(const NamedBlendComparison& input);
 
 }  // namespace chronormal::cli

@@ -39,7 +39,7 @@ std::string headline(const NamedComparison& input) {
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
 
-// These round the digits of a bound outwards, so that the number that is printed is a bound as well.
+// Round the digits of a bound outwards, so that the printed number is a bound as well.
 std::string rounded_up(double value) { return four_decimals(std::ceil(value * 1e4) / 1e4); }
 std::string rounded_down(double value) { return four_decimals(std::floor(value * 1e4) / 1e4); }
 
@@ -47,7 +47,7 @@ std::string sample_pairs(std::size_t count, const std::string& word) {
   return formatted("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
 }
 
-// What a table does not show, a line each: shares that were treated otherwise, and what was left out.
+// Adds facts that the table does not show, one line each: shares that were treated differently, and what was left out.
 std::string notes(const Comparison& comparison, const std::string& prefix) {
   const std::size_t pairs = comparison.elements * comparison.segments;
   const std::string word(one_element(comparison.kind));
@@ -106,19 +106,19 @@ constexpr std::array<OperationColumn, 5> kOperations = {{
     {&OperationCounts::trigonometric, "trig", "trig"},
 }};
 
-// A text in LaTeX, of characters that need no package.
+// Writes a text in LaTeX with characters that need no package.
 std::string latex_text(const std::string& text) {
   std::string result;
   for (const char c : printable(text)) {
     const auto code = static_cast<unsigned char>(c);
     if (code >= 0xC0 || code == '?') {
-      result += '?';  // the first byte of a character, of which the others follow
+      result += '?';  // the first byte of a multi-byte character
     } else if (code >= 0x80 || code < 0x20) {
       continue;
     } else if (std::string_view("{}$&#%_").find(c) != std::string_view::npos) {
       result += {'\\', c};
     } else if (std::string_view("\\^~<>|\"").find(c) != std::string_view::npos) {
-      // The digits end the number, whatever follows.
+      // Braces end the number, whatever follows.
       result += formatted("{{\\ttfamily\\char{}}}", code);
     } else {
       result += c;
@@ -127,7 +127,7 @@ std::string latex_text(const std::string& text) {
   return result;
 }
 
-// The row of the paper's tables, or the name of the scheme.
+// Returns the name of the scheme in the paper's tables, or else its own name.
 std::string latex_scheme(const std::string& scheme) {
   struct Row {
     std::string_view scheme, name;
@@ -144,7 +144,7 @@ std::string latex_scheme(const std::string& scheme) {
   return "\\texttt{" + latex_text(scheme) + "}";
 }
 
-// A table with its caption; `columns` is the preamble of the tabular, and rows end with \\\\.
+// Returns a table with its caption. `columns` is the preamble of the tabular, and rows end with \\\\.
 std::string latex_table(const std::string& columns, const std::string& rows, const std::string& caption,
                         const char* label) {
   return formatted(

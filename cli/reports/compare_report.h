@@ -9,27 +9,28 @@
 
 namespace chronormal::cli {
 
-/// Columns that a table may have beside the errors.
+/// Columns that a table may have besides the errors.
 struct TableColumns {
-  bool times = true;  ///< without them it is the same on every run
+  bool times = true;  ///< without them the table is the same on every run
   bool operations = false;
 };
 
-/// One aligned table with a line per scheme.
+/// Returns one aligned table with a line for each scheme.
 [[nodiscard]] std::string compare_table(const NamedComparison& input, TableColumns columns);
 
-/// The paper's table: a line per scheme, and per input the sum and its ratio to linear.
+/// Returns the paper's table: a line for each scheme, and for each input the sum and its ratio to linear.
 [[nodiscard]] std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inputs);
 
-/// Both tables of the paper as LaTeX, for inputs that were compared by the same schemes: the sums with their ratios to
-/// linear, and the operations at random and in sequence. It needs no package, and every name is ASCII: other characters
-/// are question marks.
+/// Returns both tables of the paper as LaTeX, for inputs that were compared by the same schemes: the sums with their
+/// ratios to linear, and the operations at random and in sequence. They need no package, and every name is ASCII: other
+/// characters become question marks.
 [[nodiscard]] std::string compare_latex(const std::vector<NamedComparison>& inputs);
 
-/// A header line, and a line per input and scheme. Names with commas, quotes or line ends are quoted (RFC 4180).
+/// Returns a header line, and a line for each input and scheme. Names with commas, quotes or line ends are quoted (RFC
+/// 4180).
 [[nodiscard]] std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times);
 
-/// A field of a CSV line, in quotes where it has to be.
+/// Returns a field of a CSV line, in quotes if necessary.
 [[nodiscard]] std::string csv_field(const std::string& text);
 
 }  // namespace chronormal::cli

@@ -20,7 +20,7 @@ using Align = Table::Align;
 
 constexpr std::size_t kLongestCell = 32;
 
-// Faces that are carried along turn by the rounding of their positions.
+// Faces that move rigidly still turn by the rounding of their positions.
 constexpr double kRoundedTurn = 1e-4;  // radians
 
 std::string size_in_bytes(std::size_t bytes) {
@@ -61,7 +61,7 @@ std::string headline(const Inspected& input) {
 
 std::string fact(const char* what, const std::string& value) { return formatted("  {:<10}  {}\n", what, value); }
 
-// "5, numbered 0 to 0.2 in steps of 0.05, which are seconds"
+// Returns "5, numbered 0 to 0.2 in steps of 0.05, which are seconds".
 std::string series_words(const FileSeries& series) {
   std::string words = formatted("{}, numbered {:.10g} to {:.10g} in steps of {:.6g}", grouped(series.count),
                                 series.first, series.last, series.least_step);
@@ -137,7 +137,7 @@ const char* mode_name(int mode) {
   return mode >= 0 && mode <= 6 ? kNames[mode] : "unknown";
 }
 
-// "12 of 20", for targets that move something besides positions.
+// Returns "12 of 20", for targets that move more than positions.
 std::string share_of(std::size_t count, std::size_t all) { return all == 0 ? "-" : formatted("{} of {}", count, all); }
 
 std::string primitive_table(const InspectedGltf& gltf) {
@@ -176,7 +176,7 @@ std::string named_or_numbered(const std::string& name, const char* kind, std::si
   return name.empty() ? formatted("{} {}", kind, number) : printable(name, kLongestCell);
 }
 
-// Two decimals: exporters compute weights, and miss 0 and 1 by a little.
+// Returns two decimals: exporters compute weights, and miss 0 and 1 slightly.
 std::string weight_cell(double weight) {
   std::string text = formatted("{:.2f}", weight);
   return text == "-0.00" ? "0.00" : text;
@@ -205,7 +205,7 @@ std::string track_table(const InspectedGltf& gltf) {
   table.add_column("highest", "weight", Align::kRight);
   std::size_t rows = 0;
   for (std::size_t first = 0, next = 0; first < tracks.size(); first = next) {
-    // Tracks of one animation that run alike share a row.
+    // Tracks of one animation with the same description share a row.
     GltfTrackInspection all = tracks[first];
     const auto described = [&document](const GltfTrackInspection& each) -> const GltfTrack& {
       return document.animations()[each.animation].tracks[each.track];
@@ -240,7 +240,7 @@ std::string gltf_contents(const InspectedGltf& gltf) {
                    counted(document.animations().size(), "animation", "animations"));
 }
 
-// How many primitives are no part of what is looked at.
+// Counts the primitives that are left out of the inspection.
 std::size_t count_left_out(const InspectedGltf& gltf) {
   std::set<std::pair<std::size_t, std::size_t>> parts;
   for (const GltfPart& part : gltf.parts) parts.emplace(part.mesh, part.primitive);

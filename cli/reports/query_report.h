@@ -8,7 +8,7 @@
 
 namespace chronormal::cli {
 
-/// The facts, a line each, and the first rows of every table. input is the name of what was asked about.
+/// Returns the facts, one line each, and the first rows of every table. input is the name of the queried file.
 [[nodiscard]] std::string query_text(const std::string& input, const QueryAnswer& answer);
 
 }  // namespace chronormal::cli

@@ -9,8 +9,8 @@
 
 namespace chronormal::cli {
 
-/// The text that the command prints: it names the file that was written and its size, and has a table of the parts, the
-/// worst places, and the sentences about what was left out.
+/// Returns the text that the command prints: it names the written file and its size, and has a table of the parts, the
+/// worst places, and sentences about what was left out.
 [[nodiscard]] std::string report_text(const Report& report, const std::string& output, std::size_t bytes);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-/// What the tables of all reports have in common: how long a name and a table may be, and angles in degrees.
+/// Limits that the tables of all reports share for names and rows, and angles in degrees.
 #ifndef CLI_REPORTS_ROWS_H_
 #define CLI_REPORTS_ROWS_H_
 
@@ -8,10 +8,10 @@
 
 namespace chronormal::cli {
 
-/// How many characters a table shows of a name that comes from a file.
+/// The number of characters that a table shows of a name that comes from a file.
 inline constexpr std::size_t kLongestName = 32;
 
-/// How many rows a table has for people; --json has all of them.
+/// The number of rows of a table for people; --json has all of them.
 inline constexpr std::size_t kMostRows = 16;
 
 [[nodiscard]] constexpr double in_degrees(double radians) noexcept { return radians * kDegreesPerRadian; }

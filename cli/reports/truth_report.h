@@ -8,10 +8,10 @@
 
 namespace chronormal::cli {
 
-/// One aligned table with a line per path and scheme, and below it what a reader should make of it.
+/// Returns one aligned table with a line for each path and scheme, and below it what the figures mean.
 [[nodiscard]] std::string truth_table(const NamedTruthComparison& input);
 
-/// A header line, and a line per path and scheme.
+/// Returns a header line, and a line for each path and scheme.
 [[nodiscard]] std::string truth_csv(const NamedTruthComparison& input);
 
 }  // namespace chronormal::cli

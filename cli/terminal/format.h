@@ -1,9 +1,8 @@
-/// Text with numbers in it: the one place of the program that makes digits of them.
+/// Text with numbers in it: the only place of the program that formats them.
 ///
-/// What is computed may be infinite or no number at all, where a file has weights of 3e38 or no pair was judged. No
-/// reader of a table, of CSV or of a message has a use for "nan" or "-nan": such a number is written as "-". (JSON has
-/// no word for it either, and workflow/json/json.h writes null.) fmt::format would print it, so nothing else in cli/ calls
-/// that.
+/// A result may be infinite or NaN if a file has weights of 3e38 or no sample was judged. No reader of a table, of CSV or
+/// of a message has a use for "nan" or "-nan": such a number is written as "-". (JSON has no word for it either, and
+/// workflow/json/json.h writes null.) fmt::format would print it, so no other code in cli/ calls fmt::format.
 #ifndef CLI_TERMINAL_FORMAT_H_
 #define CLI_TERMINAL_FORMAT_H_
 
@@ -19,12 +18,12 @@
 
 namespace chronormal::cli {
 
-/// A number on its way into a text.
+/// A number to be formatted.
 struct Number {
   double value = 0;
 };
 
-/// What stands for an argument of formatted(): itself, but for a Number in place of a floating-point one.
+/// Returns the form of an argument of formatted(): a Number for floating point, otherwise the argument itself.
 template <class T>
 [[nodiscard]] const T& as_argument(const T& value) noexcept {
   return value;
@@ -36,14 +35,14 @@ template <std::floating_point T>
 template <class T>
 using Argument = decltype(as_argument(std::declval<const T&>()));
 
-/// fmt::format(), but for numbers that are not finite, which come out as "-".
+/// Does what fmt::format() does, but prints numbers that are not finite as "-".
 template <class... Args>
 [[nodiscard]] std::string formatted(fmt::format_string<Argument<Args>...> text, const Args&... args) {
   return fmt::format(text, as_argument(args)...);
 }
 
-/// A share of 0 or more in hundredths, rounded up: what is above a limit of some hundredths is not printed as the limit
-/// itself. A share that is above some hundredths by a millionth or less, which is rounding, counts as these.
+/// Rounds a share of 0 or more up to hundredths, so that a share above a limit of some hundredths is not printed as the
+/// limit itself. An excess of a millionth or less is rounding error and does not count.
 [[nodiscard]] inline double up_to_hundredths(double share) noexcept {
   return std::max(std::ceil(100 * share - 1e-4), 0.0) / 100;
 }

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kLongestEnding = 256;
 std::string who_ends = "chronormal: ";
 bool is_rank = false, is_silent = false;
-thread_local volatile std::sig_atomic_t writes_to_stderr = 0;  // the handler of SIGPIPE runs in the thread that writes
+thread_local volatile std::sig_atomic_t writes_to_stderr = 0;  // the handler of SIGPIPE runs in the writing thread
 
 void write_to_stderr(std::string_view text) noexcept {
   const int system_error = errno;
@@ -33,7 +33,7 @@ void write_to_stderr(std::string_view text) noexcept {
     }
     if (count < 0 && errno == EINTR) continue;
     if (count == 0 || errno != EAGAIN) break;
-    pollfd waiting{STDERR_FILENO, POLLOUT, 0};  // the other side made the pipe non-blocking
+    pollfd waiting{STDERR_FILENO, POLLOUT, 0};  // the other side of the pipe may have made it non-blocking
     if (::poll(&waiting, 1, -1) < 0 && errno != EINTR) break;
   }
   writes_to_stderr = 0;
@@ -60,7 +60,7 @@ void say_raw(std::string_view text) noexcept {
   if (!is_silent) write_to_stderr(text);
 }
 
-// One call to the system, so that lines of several ranks do not mix.
+// One system call writes the whole line, so that lines of several ranks do not mix.
 void say_ending(std::string_view message) noexcept {
   std::array<char, kLongestEnding> line{};
   auto end = line.begin();

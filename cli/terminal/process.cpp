@@ -36,7 +36,7 @@ volatile std::sig_atomic_t stderr_is_terminal = 0;
 std::atomic<const char*> last_words{nullptr};
 static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler may not wait");
 
-// A progress bar may stand in the line.
+// Clears the line first, since it may show a progress bar.
 void end_line_and_say(const char* message) {
   if (stderr_is_terminal != 0) say_raw("\r\033[K");
   say_ending(message);
@@ -46,15 +46,15 @@ void end_line_and_say(const char* message) {
 extern "C" void end_by_signal(int signal) {
   remove_temporaries();
   for (const Ending& ending : kEndings) {
-    // A rank stays silent: mpirun says which rank a signal has ended, and sends SIGTERM to all others.
+    // A rank stays silent: mpirun reports which rank a signal has ended, and sends SIGTERM to all others.
     if (ending.signal == signal && !speaks_as_rank()) end_line_and_say(ending.message);
   }
-  // The default action is there again (SA_RESETHAND), and comes when the handler returns.
+  // SA_RESETHAND has restored the default action, which runs when the handler returns.
   (void)std::raise(signal);
 }
 
-// A pipe that nobody reads any more. What is only said may get lost: write() fails then, and the program goes on. Where
-// data that were asked for get lost, the program ends as every other one does in front of `head`.
+// Handles a pipe that nobody reads any more. Messages may get lost: write() fails then, and the program goes on. If
+// results get lost, the program ends like every other one in front of `head`.
 extern "C" void end_by_lost_reader(int signal) {
   if (is_saying()) return;
   remove_temporaries();
@@ -68,14 +68,15 @@ extern "C" void end_by_lost_input(int /*signal*/) {
   ::_exit(kExitFailed);
 }
 
-// Where memory runs out, no destructor runs any more: not every library that JSON or threads come from survives that.
+// Ends the program without destructors if memory runs out: not every library behind JSON or threads survives unwinding
+// then.
 void end_for_want_of_memory() {
   remove_temporaries();
   end_line_and_say("out of memory");
   ::_exit(kExitFailed);
 }
 
-// The C library aborts where it gets no memory for a thread. An assertion that fails ends by the signal.
+// Handles SIGABRT: the C library aborts if it gets no memory for a thread. A failed assertion ends by the signal.
 #ifdef NDEBUG
 extern "C" void end_by_abort(int /*signal*/) {
   remove_temporaries();
@@ -103,7 +104,7 @@ bool is_ignored(int signal) {
   return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
-// The lowest numbers are given first. Each is open in the direction that it is not used in.
+// Opens closed streams. The system assigns the lowest numbers first. Each stream is opened in its unused direction.
 void open_standard_streams() {
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
     if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
@@ -114,7 +115,7 @@ void open_standard_streams() {
 }  // namespace
 
 void prepare_process() noexcept {
-  // A library that was loaded before may have set another rounding mode, or have subnormal numbers flushed to zero.
+  // A library loaded earlier may have set another rounding mode or flush subnormal numbers to zero.
   (void)std::fesetenv(FE_DFL_ENV);
   open_standard_streams();
   stderr_is_terminal = ::isatty(STDERR_FILENO);

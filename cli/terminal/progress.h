@@ -1,9 +1,9 @@
-/// A progress bar on stderr: only on a terminal, only after a moment, and gone when the work is done.
+/// A progress bar on stderr: only on a terminal, only after a moment, and removed when the work is done.
 ///
 ///     comparing [=========               ]  38 %, 12.5 segments/s, 3 min 20 s left
 ///
-/// Rate and time left are those since the work was heard of first, so that what an earlier run did counts as done and
-/// not as fast. They are shown after a few seconds.
+/// Rate and time left are measured from the first report of progress, so that work of an earlier run counts as done but
+/// does not raise the rate. They are shown after a few seconds.
 #ifndef CLI_TERMINAL_PROGRESS_H_
 #define CLI_TERMINAL_PROGRESS_H_
 
@@ -14,8 +14,8 @@
 
 namespace chronormal::cli {
 
-/// "12.5 segments/s, 3 min 20 s left" for a share that was done in so many seconds, and a share that is left, of so
-/// many things; without a name of things, the time alone.
+/// Returns "12.5 segments/s, 3 min 20 s left" if share_done of `count` things took this many seconds and share_left is
+/// left; without a name of things, returns the time alone.
 [[nodiscard]] std::string pace_text(double share_done, double seconds, double share_left, std::size_t count,
                                     const std::string& things);
 
@@ -27,12 +27,12 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress() { clear(); }
 
-  /// Returns whether it was made quiet: then nothing else is said either that is no warning.
+  /// Returns whether it was made quiet: then only warnings are printed.
   [[nodiscard]] bool is_quiet() const noexcept { return is_quiet_; }
 
-  /// A function for the library to tell how far it is. The Progress must outlive it. The rate is that of so many
-  /// things of this name, whatever the library counts; with a count of 0 it is that of what the library counts, and
-  /// there is none without a name.
+  /// Returns a function by which the library reports progress. The Progress must outlive it. The rate counts `count`
+  /// things of this name, whatever the library counts; with a count of 0 it counts the steps of the library. Without a
+  /// name there is no rate.
   [[nodiscard]] std::function<void(std::size_t done, std::size_t total)> callback(std::string label,
                                                                                   std::string things = {},
                                                                                   std::size_t count = 0);
@@ -45,7 +45,7 @@ class Progress {
   struct Work {
     std::string label, things;
     std::size_t count = 0;
-    Clock::time_point start = {};  // when it was heard of first, and how much was done then
+    Clock::time_point start = {};  // time and progress at the first report
     double done_at_start = -1;
   };
 

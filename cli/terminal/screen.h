@@ -1,7 +1,7 @@
-/// What a terminal shows: so many columns, and emphasis in colour.
+/// Properties of a terminal: its columns, and emphasis in colour.
 ///
-/// Text for people is marked where it is made, by the control sequences of terminals, which printable() lets no name
-/// have (cli/terminal/text.h). Whoever writes the text takes the marks out, unless it goes to a terminal that shows
+/// Text for people is marked where it is made, by the control sequences of terminals, which printable() removes from
+/// names (cli/terminal/text.h). The code that writes the text removes the marks, unless it goes to a terminal that shows
 /// them. JSON and CSV have none.
 #ifndef CLI_TERMINAL_SCREEN_H_
 #define CLI_TERMINAL_SCREEN_H_
@@ -12,26 +12,25 @@
 
 namespace chronormal::cli {
 
-/// How many columns lines may have: COLUMNS where it is set, else as many as the terminal has on stdout, else 80; at
-/// least 40.
+/// Returns the width of lines: COLUMNS if it is set, else the width of the terminal on stdout, else 80; at least 40.
 [[nodiscard]] std::size_t columns_of_output();
 
-/// Whether TERM says that the terminal cannot take a line back or show colours.
+/// Tells whether, according to TERM, the terminal cannot erase a line or show colours.
 [[nodiscard]] bool is_dumb_terminal();
 
-/// Whether a stream (STDOUT_FILENO) shows colours: a terminal that is not dumb, where NO_COLOR is not set. A
-/// CLICOLOR_FORCE other than 0 makes every stream one, but not against NO_COLOR.
+/// Tells whether a stream (STDOUT_FILENO) shows colours: it is a terminal that is not dumb, or CLICOLOR_FORCE is set
+/// and not 0. NO_COLOR turns colours off in any case.
 [[nodiscard]] bool shows_colour(int stream);
 
-/// The text with emphasis: of titles, of what is wrong, of what deserves a look. Nothing stays nothing.
+/// Return the text with emphasis, for titles, errors and warnings. An empty text stays empty.
 [[nodiscard]] std::string heading(std::string_view text);
 [[nodiscard]] std::string alarming(std::string_view text);
 [[nodiscard]] std::string warning(std::string_view text);
 
-/// The text without any emphasis.
+/// Returns the text without any emphasis.
 [[nodiscard]] std::string plain(std::string_view text);
 
-/// The text with a heading of every line that begins at its first column and ends in a colon.
+/// Marks as heading every line of the text that begins at its first column and ends in a colon.
 [[nodiscard]] std::string with_headings(std::string_view text);
 
 }  // namespace chronormal::cli

@@ -14,9 +14,9 @@ namespace chronormal::cli {
 namespace {
 
 constexpr std::size_t kGap = 2;           // between columns
-constexpr std::size_t kLongestShare = 2;  // of a line: longer names stand above the rest of their row
+constexpr std::size_t kLongestShare = 2;  // of a line: longer names get a line of their own
 
-// A text from a column on, in lines that break between words; a line takes at least one.
+// Breaks a text, which starts at a column, between words. A line takes at least one word.
 std::string broken(const std::string& text, std::size_t from, std::size_t columns) {
   std::string result;
   std::size_t column = from;
@@ -58,7 +58,7 @@ std::string Table::text_of(const std::vector<std::size_t>& chosen, const std::ve
       column += gap;
       text.append(gap, ' ');
       const std::string blanks(widths[c] - std::min(width, widths[c]), ' ');
-      if (width > widths[c])  // the line of a long name is its own
+      if (width > widths[c])  // long names have their own line
         text.append(cell).append("\n").append(column + widths[c], ' ');
       else if (c == chosen.back() && columns_[c].align == Align::kLeft)
         text.append(broken(cell, column, columns));
@@ -91,7 +91,7 @@ std::string Table::text(std::size_t columns) const {
   std::size_t width_of_all = kGap * (columns_.size() - 1);
   for (const std::size_t width : widths) width_of_all += width;
 
-  // Every part repeats the columns that say what a row is about.
+  // Every part repeats the columns that identify a row.
   std::vector<std::size_t> about;
   std::size_t next = 0, width_about = 0;
   for (bool is_name = false; next < columns_.size() && !is_name; ++next) {

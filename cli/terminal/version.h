@@ -1,4 +1,4 @@
-/// The version of the program, which the build system knows.
+/// The version of the program, set by the build system.
 #ifndef CLI_TERMINAL_VERSION_H_
 #define CLI_TERMINAL_VERSION_H_
 

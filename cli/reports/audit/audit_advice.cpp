@@ -12,19 +12,19 @@
 namespace chronormal::cli {
 namespace {
 
-// Names what a person can do about the errors that an audit found. The last line of the report says it.
+// Names the remedy for the errors that an audit found. The last line of the report states it.
 enum class Remedy {
-  kNone,      // no normal is off
-  kUnknown,   // none of those that could be judged, and there are others, or none
-  kTangents,  // normals are right, and bake writes no tangents
-  kViewers,   // right by the specification, and not in viewers that do otherwise
-  kRule,      // what was judged is not what a glTF file makes viewers show
-  kOriginal,  // what is off was baked before, and is never baked twice
+  kNone,      // no normal is wrong
+  kUnknown,   // no judged normal is wrong, but others could not be judged, or there were none
+  kTangents,  // normals are right; bake writes no tangents
+  kViewers,   // right by the specification, wrong in viewers that differ from it
+  kRule,      // the judged rule is not what viewers do with a glTF file
+  kOriginal,  // the wrong parts were baked before, and are never baked twice
   kTargets,   // bake takes no targets over a base
   kBake,
 };
 
-// A normal that is off by more is worth a line: a fault, or what was asked for.
+// Returns the error above which a normal is worth a line: a fault, or the requested tolerance.
 double limit_of(const Audited& input) { return std::min(kAuditFault, input.limits.degrees.value_or(kAuditFault)); }
 
 bool is_wrong(const AuditSubject& subject, double limit) { return !subject.error.is_within(limit); }
@@ -33,7 +33,7 @@ bool was_baked(const Audited& input, const AuditSubject& subject) {
   return input.document() != nullptr && subject.mesh && input.document()->meshes()[*subject.mesh].mark.has_value();
 }
 
-// Whether an animation gives a weight to what moves here.
+// Tells whether an animation drives the weight of this subject.
 bool is_driven(const Audited& input, const AuditSubject& subject) {
   if (subject.kind != AuditSubject::Kind::kTarget) return true;
   const auto drives = [&](const AuditSubject& other) {
@@ -43,7 +43,7 @@ bool is_driven(const Audited& input, const AuditSubject& subject) {
   return std::any_of(input.audit.subjects.begin(), input.audit.subjects.end(), drives);
 }
 
-// The motions that are off, of meshes that were baked before or of all others.
+// Lists the subjects with errors, of meshes that were baked before or of all others.
 std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked) {
   std::vector<const AuditSubject*> result;
   for (const AuditSubject& subject : input.audit.subjects)
@@ -51,7 +51,7 @@ std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked
   return result;
 }
 
-// The viewers in which something is off, by their titles.
+// Lists the titles of the viewers in which some normal is wrong.
 std::string wrong_viewers(const Audited& input) {
   std::string titles;
   for (const ViewerAudit& viewer : input.audit.viewers) {
@@ -75,7 +75,7 @@ Remedy remedy_of(const Audited& input) {
   return input.bake.empty() ? Remedy::kTargets : Remedy::kBake;
 }
 
-// "angle-weighted", "angle- and max-weighted": of the motions that are off.
+// Returns the weightings of the wrong subjects: "angle-weighted", "angle- and max-weighted".
 std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
   std::string text;
   for (const WeightingInfo& info : kAllWeightings) {
@@ -86,7 +86,7 @@ std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
   return text + "-weighted";
 }
 
-// Says what the user will get from `chronormal bake` on this file, as far as the audit can know it beforehand.
+// Predicts the result of `chronormal bake` on this file, as far as the audit can know it.
 std::string outcome(const Audited& input) {
   if (input.document() == nullptr) return "makes a glTF file that is right at every instant";
   const std::vector<const AuditSubject*> wrong = wrong_subjects(input, false);

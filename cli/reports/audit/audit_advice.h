@@ -1,5 +1,4 @@
-/// What to do about a file that was audited: what a command would get for this very file, and nothing that was done
-/// already or cannot help.
+/// Tells what to do about an audited file: a command for this very file, never one that was already run or cannot help.
 #ifndef CLI_REPORTS_AUDIT_ADVICE_H_
 #define CLI_REPORTS_AUDIT_ADVICE_H_
 
@@ -9,10 +8,10 @@
 
 namespace chronormal::cli {
 
-/// The last line of the report, with an empty one before it; nothing where nothing was judged.
+/// Returns the last line of the report after an empty line, or nothing if nothing was judged.
 [[nodiscard]] std::string advice(const Audited& input);
 
-/// A few words for a table: "right", "within 2", "bake it", ...
+/// Returns a few words for a table: "right", "within 2", "bake it", ...
 [[nodiscard]] std::string verdict(const Audited& input);
 
 }  // namespace chronormal::cli

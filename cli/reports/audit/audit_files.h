@@ -13,22 +13,22 @@
 
 namespace chronormal::cli {
 
-/// What is kept of one file: no more than its row and its JSON, since a folder may have thousands.
+/// The data kept for one file: only its row and its JSON, since a folder may have thousands of files.
 struct AuditedFile {
   explicit AuditedFile(const Audited& audited);
   AuditedFile(std::string file, const Error& why);
 
   std::string name;
-  std::optional<MotionError> error;  ///< nothing where it could not be judged
-  std::size_t faults = 0;            ///< lines of faults that the report of this file alone has
+  std::optional<MotionError> error;  ///< empty if the file could not be judged
+  std::size_t faults = 0;            ///< number of fault lines in the report of this file alone
   std::string verdict;               ///< a word or two
   Json json;                         ///< of audit_object(), or "input" and "error"
 };
 
-/// The table, with the worst of all files before it.
+/// Returns the table, after the worst error of all files.
 [[nodiscard]] std::string audit_files_text(const std::vector<AuditedFile>& files);
 
-/// One JSON object: "files" has one for each, and "passed" says whether all of them did.
+/// Returns one JSON object: "files" has an entry for each file, and "passed" says whether all files passed.
 [[nodiscard]] std::string audit_files_json(std::vector<AuditedFile> files, const AuditLimits& limits);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-// A face has dozens of targets that lack the same thing: one line says it of all of them, and names the worst.
+// A face has dozens of targets with the same fault: one line covers all of them, and names the worst.
 #include "cli/reports/audit/audit_findings.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Group {
   [[nodiscard]] std::size_t size() const noexcept { return targets + animations + expressions; }
 };
 
-// The groups of faults, the worst first, or of notes, in the order of the file.
+// Returns the groups of faults, the worst first, or the groups of notes in the order of the file.
 std::vector<Group> groups_of(const Audit& audit, bool faults) {
   std::vector<Group> groups;
   for (const AuditFinding& finding : audit.findings) {
@@ -57,7 +57,7 @@ std::string one_subject(const Audited& input, const AuditFinding& found) {
   return found.mesh ? mesh : "sequence";
 }
 
-// "57 targets of Head", "2 targets and 1 animation of Head".
+// Returns "57 targets of Head" or "2 targets and 1 animation of Head".
 std::string subject_of(const Audited& input, const Group& group) {
   if (group.size() == 1) return one_subject(input, *group.worst);
   std::string text;
@@ -69,7 +69,7 @@ std::string subject_of(const Audited& input, const Group& group) {
   return text + (group.worst->mesh ? " of " + of_mesh(input, *group.worst) : "");
 }
 
-// The worst error that a target of the mesh has alone.
+// Returns the worst error of a single target of the mesh.
 double worst_alone(const Audit& audit, const AuditFinding& found) {
   double worst = 0;
   for (const AuditSubject& subject : audit.subjects)

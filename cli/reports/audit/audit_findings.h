@@ -1,4 +1,4 @@
-/// What `audit` found, in words: a line for each mesh and cause.
+/// Describes the findings of `audit`: one line for each mesh and cause.
 #ifndef CLI_REPORTS_AUDIT_FINDINGS_H_
 #define CLI_REPORTS_AUDIT_FINDINGS_H_
 
@@ -9,10 +9,10 @@
 
 namespace chronormal::cli {
 
-/// How many lines of faults there are, shown or not.
+/// Counts the lines of faults, including lines that are cut.
 [[nodiscard]] std::size_t count_fault_lines(const Audit& audit);
 
-/// The lines with their title, faults the worst first, or nothing where there are none. Long lists are cut.
+/// Return the lines with their title, the worst faults first, or nothing if there are none. Long lists are cut.
 [[nodiscard]] std::string fault_lines(const Audited& input);
 [[nodiscard]] std::string note_lines(const Audited& input);
 

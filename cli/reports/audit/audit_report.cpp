@@ -23,11 +23,11 @@ namespace {
 using Align = Table::Align;
 
 constexpr std::size_t kLongestBar = 40;
-constexpr double kSeen = 0.005;                     // degrees: what two decimals show
-constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the pairs
-constexpr double kDisplaced = 1e-5;                 // a share of the size that is worth a word
+constexpr double kSeen = 0.005;                     // degrees: the smallest value that two decimals show
+constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the samples
+constexpr double kDisplaced = 1e-5;                 // smallest share of the size that is reported
 
-// "within 1 degree and 0 torn edges", in how many viewers.
+// Says in how many viewers the audit is "within 1 degree and 0 torn edges".
 std::string limits_words(const Audited& input) {
   std::string limits;
   if (input.limits.degrees)
@@ -41,7 +41,7 @@ std::string limits_words(const Audited& input) {
   return formatted("within {} in {} of {}", limits, within, counted(viewers.size(), "viewer", "viewers"));
 }
 
-// Torn edges at one sample, on average: "-" where nobody counted them.
+// Returns the torn edges at one sample, on average, or "-" if they were not counted.
 std::string torn(const MotionError& error) {
   if (error.samples == 0) return "-";
   const double edges = error.torn_edges();
@@ -49,7 +49,7 @@ std::string torn(const MotionError& error) {
   return formatted("{:.2g}", edges);
 }
 
-// Which normals are right, where these are others than usual.
+// Says how true normals are defined, if not in the usual way.
 std::string weighting_words(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.weighting == Weighting::kArea) return "";
@@ -138,8 +138,8 @@ std::string subject_table(const Audited& input) {
   return text;
 }
 
-// Prints a row of errors for each viewer. The first row is one that follows the specification; the tables that come
-// after this one are about that one alone.
+// Prints a row of errors for each viewer. The first row follows the specification, and all later tables are about it
+// alone.
 std::string viewer_table(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.viewers.empty()) return "";
@@ -220,7 +220,7 @@ std::string offset_lines(const Audited& input) {
   return text.empty() ? text : "\nAuthored offset, which is no fault:\n" + text;
 }
 
-// Names the place of the first pair that a count is about.
+// Names the place of the first sample that a count is about.
 std::string first_label(const Audited& input, std::size_t MotionError::*count, AuditPlace MotionError::*place) {
   const std::vector<AuditSubject>& subjects = input.audit.subjects;
   const auto first =

@@ -10,38 +10,39 @@
 
 namespace chronormal::cli {
 
-/// One input and what was found in it.
+/// One input with its audit.
 struct Audited {
   Input opened;
   Audit audit;
   AuditLimits limits;
-  std::string bake;  ///< the inputs as words of a command line; empty: bake takes none such
+  std::string bake;  ///< the inputs as words of a command line; empty if bake cannot take them
 
   [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
-  /// The glTF file, or nullptr.
+  /// Returns the glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
   [[nodiscard]] bool passed(const ViewerAudit& viewer) const { return limits.allow(viewer); }
-  /// Returns whether the limits are kept: in every viewer that was named, or by the rule where none was. A file in
-  /// which nothing moves keeps them.
+  /// Returns whether the limits are met: in every named viewer, or by the rule if none was named. A file in which
+  /// nothing moves meets them.
   [[nodiscard]] bool passed() const { return limits.allow(audit); }
 };
 
-/// The verdict first, tables of the motions and of the errors, what was found, and what to do. Long tables are cut.
+/// Returns the verdict first, then tables of the motions and of the errors, the findings, and what to do. Long tables
+/// are cut.
 [[nodiscard]] std::string audit_text(const Audited& input);
 
-/// "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55": where the worst error of all is.
+/// Names the place of the worst error of all: "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55".
 [[nodiscard]] std::string worst_label(const Audited& input);
 
-/// Names the place where the worst error of one viewer is.
+/// Names the place of the worst error in one viewer.
 [[nodiscard]] std::string worst_label(const Audited& input, const ViewerAudit& viewer);
 
-/// The same for the first pair that cannot be lit.
+/// Names the place of the first sample that cannot be lit.
 [[nodiscard]] std::string unlit_label(const Audited& input);
 
-/// The same for the worst pair of those whose right normal all but vanishes.
+/// Names the place of the worst sample among those whose true normal nearly vanishes.
 [[nodiscard]] std::string faint_label(const Audited& input);
 
-/// Names the first pair around which the normals of faces cancel, likewise.
+/// Names the place of the first sample around which the normals of faces cancel.
 [[nodiscard]] std::string cancelled_label(const Audited& input);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-/// How the texts of `audit` name what they speak of, and write its figures.
+/// Names the things that the texts of `audit` mention, and formats its figures.
 #ifndef CLI_REPORTS_AUDIT_WORDS_H_
 #define CLI_REPORTS_AUDIT_WORDS_H_
 
@@ -10,32 +10,32 @@
 
 namespace chronormal::cli {
 
-/// Tables and lists have so many rows; --json has all.
+/// The number of rows in tables and lists; --json has all of them.
 inline constexpr std::size_t kMostAuditRows = 16;
 
-/// Two decimals, or the power of ten of what would be none of it.
+/// Returns two decimals, or a power of ten if two decimals would be zero.
 [[nodiscard]] std::string degrees(double value);
 
-/// The same, with emphasis where it is a fault.
+/// Does the same, with emphasis if the value is a fault.
 [[nodiscard]] std::string judged_degrees(double value);
 
-/// "1 pair", "12 pairs": of a vertex and a sample.
+/// Returns "1 pair", "12 pairs": samples of a vertex at a moment.
 [[nodiscard]] std::string pairs(std::size_t count);
 
-/// "vertex 17 of Head, primitive 1", "node 3 (eye)", "target 0 (smile)", "animation 1 (talk)".
+/// Return "vertex 17 of Head, primitive 1", "node 3 (eye)", "target 0 (smile)", "animation 1 (talk)".
 [[nodiscard]] std::string vertex_words(const Audited& input, const AuditPlace& place);
 [[nodiscard]] std::string node_words(const Audited& input, std::size_t node);
 [[nodiscard]] std::string target_words(const Audited& input, std::optional<std::size_t> mesh, std::size_t target);
 [[nodiscard]] std::string animation_words(const Audited& input, std::size_t animation);
 [[nodiscard]] std::string expression_words(const Audited& input, std::size_t mesh, std::size_t expression);
 
-/// "target 0 (smile) of Head", "animation 1 (talk), node 3 (eye)", "sequence", "expression 0 (happy) of Head".
+/// Returns "target 0 (smile) of Head", "animation 1 (talk), node 3 (eye)", "sequence", "expression 0 (happy) of Head".
 [[nodiscard]] std::string subject_words(const Audited& input, const AuditSubject& subject);
 
-/// "weight 0.55", "1.25 s".
+/// Returns "weight 0.55" or "1.25 s".
 [[nodiscard]] std::string moment_words(const AuditSubject& subject, double at);
 
-/// A vertex of a motion at a moment.
+/// Names a vertex of a motion at a moment.
 [[nodiscard]] std::string place_words(const Audited& input, const AuditSubject& subject, const AuditPlace& place);
 
 }  // namespace chronormal::cli
