@@ -1,6 +1,7 @@
 #!/usr/bin/env node
-// The program on any system with Node.js: the same commands, messages and exit codes, on the files of this machine.
-// An older Node.js reads this file too, so that it says what is needed: no import and no await stand outside a function.
+// Runs the program on any system with Node.js: the same commands, messages and exit codes, on the files of this
+// machine. An older Node.js parses this file too and reports the version that it needs, so import and await occur only
+// inside functions.
 const LEAST = 18; // the "engines" of package.json
 
 if (parseInt(process.versions.node, 10) < LEAST) {

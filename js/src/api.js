@@ -1,11 +1,11 @@
-// chronormal in JavaScript: right normals for meshes that deform. Bytes go in, bytes and reports come out; nothing touches a
-// file system or the network. index.d.ts has the types.
+// chronormal in JavaScript: true normals for meshes that deform. Bytes go in; bytes and reports come out. Nothing
+// touches a file system or the network. index.d.ts has the types.
 import { ChronormalError } from './error.js';
 import { flagsOf } from './options.js';
 import { compile } from './run.js';
 import { perform } from './task.js';
 
-// Exit codes of the program: done, and done but not within the tolerance.
+// Exit codes of the program: done, and done but beyond the tolerance.
 const DONE = 0, BEYOND = 4;
 
 const bytesOf = (data) => {
@@ -15,11 +15,11 @@ const bytesOf = (data) => {
   throw new TypeError('the input has to be a Uint8Array, an ArrayBuffer or a view of one');
 };
 
-// A GLB says so in its first bytes; everything else is JSON.
+// A GLB identifies itself by its first bytes; everything else is JSON.
 const nameOf = (bytes) => (bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 ? 'input.glb' : 'input.gltf');
 
-// Does a task in a worker, which ends with it: then nothing is left, and it can be stopped in the middle. The worker gets the
-// files themselves, and no copies.
+// Does a task in a worker, which ends with it, so that nothing is left and the task can be stopped in the middle. The
+// worker gets the files themselves, not copies.
 async function inWorker(platform, task, { signal, onProgress }) {
   const module = await compile(platform); // once for all workers
   signal?.throwIfAborted();
@@ -30,7 +30,7 @@ async function inWorker(platform, task, { signal, onProgress }) {
       settle(value);
     };
     const stop = () => end(reject, signal.reason);
-    // Rejects with what is thrown here, where no caller could catch it.
+    // Rejects with errors that are thrown here, where no caller could catch them.
     const guarded = (work) => {
       try {
         work();
@@ -61,8 +61,8 @@ async function execute(platform, task, options) {
   return done;
 }
 
-// Takes copies of what is read, so that the caller may change it while the call goes on. `more` makes further arguments of
-// the folder for what is written.
+// Copies the inputs, so that the caller may change them during the call. `more` turns the folder for outputs into
+// further arguments.
 function taskOf(command, input, options, more = () => []) {
   const flags = flagsOf(command, options);
   const copyOf = (data) => new Uint8Array(bytesOf(data));
@@ -73,7 +73,7 @@ function taskOf(command, input, options, more = () => []) {
   let outputs = 'out';
   while (folders.has(outputs)) outputs += '_';
   return {
-    // A single "-" would be standard input, and what stands in brackets a list.
+    // A single "-" would mean standard input, and a name in brackets a list.
     args: [command, '--json', ...more(outputs), ...flags, '--', /^(-|\[.*\])$/s.test(name) ? `./${name}` : name],
     files,
     outputs,
@@ -85,7 +85,7 @@ const warningsOf = (stderr) => (stderr === '' ? [] : stderr.split('\n'));
 
 const resultOf = ({ stdout, stderr, code }) => ({ report: JSON.parse(stdout), warnings: warningsOf(stderr), within: code === DONE });
 
-// What a bake writes: the same file, or a GLB where the input is a sequence in another format.
+// Returns the name of a baked file: the input's, or a GLB if the input is a sequence in another format.
 const bakedName = (name) => {
   const base = name.split('/').pop();
   return /\.(glb|gltf)$/i.test(base) ? base : `${base}.glb`;

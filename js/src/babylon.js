@@ -1,10 +1,11 @@
-// Baked files in Babylon.js: before a scene is drawn, extra targets get the weights that belong to what the application, or
-// an animation, has set for the targets of the mesh itself. Babylon.js hands on the extras of nodes, not those of meshes.
+// Drives baked files in Babylon.js: before a scene is drawn, correction targets get the weights that follow from the
+// weights that the application or an animation has set for the mesh's own targets. Babylon.js passes on the extras of
+// nodes, but not of meshes.
 import { formulasOf, markOf, weightOf } from './drive.js';
 
 const attached = new WeakMap(); // of each scene: {observer, driven}
 
-// What is driven, and the meshes that show it: weights belong to a MorphTargetManager, which clones of a mesh share.
+// Returns the driven targets and the meshes that show them: weights belong to a MorphTargetManager, which clones share.
 function drivenOf(scene) {
   const driven = new Map();
   for (const mesh of scene.meshes) {
@@ -34,7 +35,7 @@ export function attach(scene) {
       const { manager, formulas, w } = driven[d];
       for (let i = 0; i < w.length; ++i) w[i] = manager.getTarget(i).influence;
       for (let k = 0; k < formulas.length; ++k) {
-        manager.getTarget(formulas[k].target).influence = weightOf(formulas[k], w); // which does nothing where it is that
+        manager.getTarget(formulas[k].target).influence = weightOf(formulas[k], w); // no effect if it is the same
       }
     }
   });

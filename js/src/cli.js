@@ -1,4 +1,4 @@
-// The program with the files and the terminal of this machine.
+// Runs the program with the files and the terminal of this machine.
 import { existsSync, readdirSync, readSync, writeSync } from 'node:fs';
 import { Buffer } from 'node:buffer';
 import process from 'node:process';
@@ -10,7 +10,7 @@ import { run } from './run.js';
 const isWindows = process.platform === 'win32';
 const inside = (path) => (isWindows ? fromWindows(path, process.cwd()) : path);
 
-// Mounts what stands at the root of the machine under the same names.
+// Mounts the entries of the machine's root under the same names.
 function mount(FS, NODEFS) {
   const roots = isWindows
     ? [...'ABCDEFGHIJKLMNOPQRSTUVWXYZ'].map((letter) => `${letter}:`).filter((drive) => existsSync(`${drive}\\`))
@@ -21,10 +21,10 @@ function mount(FS, NODEFS) {
       if (!FS.analyzePath(folder).exists) FS.mkdir(folder);
       FS.mount(NODEFS, { root: isWindows ? `${name}\\` : folder }, folder);
     } catch {
-      // No folder: a file, or a link that leads nowhere.
+      // The entry is not a folder: a file, or a dangling link.
     }
   }
-  // The program looks for share/chronormal/report.html beside itself, and takes this link for itself.
+  // The program looks for share/chronormal/report.html beside itself, and finds itself by this link.
   FS.symlink(inside(fileURLToPath(new URL('../bin/chronormal.js', import.meta.url))), '/proc/self/exe');
   FS.chdir(inside(process.cwd()));
 }
@@ -34,13 +34,13 @@ const writeAll = (stream) => (bytes) => {
     try {
       at += writeSync(stream, bytes, at);
     } catch (error) {
-      if (error.code === 'EPIPE') return; // whoever reads it has seen enough
+      if (error.code === 'EPIPE') return; // the reader has closed the pipe
       if (error.code !== 'EAGAIN') throw error;
     }
   }
 };
 
-// All of standard input, where the command line asks for it.
+// Reads all of standard input, if the command line asks for it.
 function standardInput(args) {
   if (!args.some((word) => word === '-' || word === '/dev/stdin')) return undefined;
   const pieces = [], piece = Buffer.alloc(65536);

@@ -1,6 +1,7 @@
-// The weights of extra targets, from those of a mesh's own targets (docs/formats.md): what three.js, babylon.js and playcanvas.js share.
+// Computes the weights of correction targets from the weights of a mesh's own targets (docs/formats.md), for three.js,
+// babylon.js and playcanvas.js.
 
-// What a program without us knows as version 2. Files of another are left as they are.
+// The version of the formulas that this file knows. Files of another version are left as they are.
 const VERSION = 2;
 
 /**

@@ -1,9 +1,9 @@
-// bake() as a transform of glTF-Transform: await document.transform(chronormal({ for: ['three', 'godot'] })).
+// Makes bake() a transform of glTF-Transform: await document.transform(chronormal({ for: ['three', 'godot'] })).
 import { WebIO } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { bake } from 'chronormal';
 
-// What would need encoders, and is undone when a file is read.
+// Compressions that would need encoders; reading a file undoes them.
 const COMPRESSIONS = new Set(['KHR_draco_mesh_compression', 'EXT_meshopt_compression']);
 
 async function bytesOf(document) {
@@ -15,8 +15,8 @@ async function bytesOf(document) {
   return { io, bytes: await io.writeBinary(plain) };
 }
 
-// Takes what a bake changes from one document into another, which are alike but for that: normals, extra targets, weights,
-// their tracks, and extras. All else stays the same objects.
+// Copies the changes of a bake from one document into another, which is otherwise equal: normals, correction targets,
+// weights, their tracks, and extras. All other objects stay the same.
 class Transfer {
   constructor(document) {
     this.document = document;
@@ -109,8 +109,8 @@ export function chronormal({ onReport, ...options } = {}) {
   return Object.defineProperty(transform, 'name', { value: 'chronormal' });
 }
 
-// The command below has these of the program's options. Each entry gives the name, how it is written, what its help says, and
-// what turns its text into a value.
+// The options of the program that the command below has. Each entry gives the name, its spelling, its help, and a
+// function that turns its text into a value.
 const OPTIONS = [
   ['for', '--for <VIEWERS>', 'the viewers that count, with commas between them, or all'],
   ['tolerance', '--tolerance <DEGREES>', 'how far off normals may be', Number],

@@ -1,4 +1,4 @@
-// What browsers import.
+// The entry point for browsers.
 import { apiOf } from './api.js';
 import * as browser from './platform.browser.js';
 

@@ -1,4 +1,4 @@
-// What Node.js imports.
+// The entry point for Node.js.
 import { apiOf } from './api.js';
 import * as node from './platform.node.js';
 

@@ -1,2 +1,2 @@
-// Stands inside the function that makes a module: what CommonJS has, for a file that is an ES module.
+// This code is put inside the function that makes a module. It defines the names of CommonJS, which an ES module lacks.
 var require = Module['require'], __dirname = '/';

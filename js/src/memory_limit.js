@@ -1,5 +1,5 @@
-// Linked into the module in place of Emscripten's own: up to how many bytes its memory grows, which whoever makes a
-// module may say. One page less than 4 GiB is the most that 32 bits can count.
+// Replaces Emscripten's own function in the module: returns the limit of its memory in bytes, which the caller that
+// makes a module may set. One page less than 4 GiB is the most that 32 bits can count.
 mergeInto(LibraryManager.library, {
   emscripten_get_heap_max: function () {
     return Math.min(Module['memoryLimit'] || Infinity, 4294901760);

@@ -1,11 +1,10 @@
-// The options of each function: which there are, what JavaScript value each takes, and the words of the command line that it
-// becomes. Whether a word or a number is one that the program knows, the program says. types/index.d.ts has the same for
-// compilers.
+// The options of each function: their names, their JavaScript types, and the words of the command line that they
+// become. The program checks whether it knows a word or a number. types/index.d.ts has the same for compilers.
 import { ChronormalError } from './error.js';
 
 const USAGE = 2; // the exit code of the program for a wrong call
 
-// The kinds of values: whether a value is of the kind, and what it has to be.
+// The kinds of values: a test for the kind, and its description.
 const isText = (value) => typeof value === 'string';
 const NUMBER = [(value) => typeof value === 'number' && Number.isFinite(value), 'a finite number'];
 const FLAG = [(value) => typeof value === 'boolean', 'true or false'];
@@ -16,7 +15,7 @@ const isNumber = (text) => text.trim() !== '' && Number.isFinite(Number(text));
 const RANGE = [(value) => isText(value) && value.split(':').length === 2 && value.split(':').every(isNumber), "two numbers, such as '-1:1'"];
 const NAME = [(value) => isText(value) || NUMBER[0](value), 'a string or a number'];
 
-// How a call is made: meant for the functions, and not for the program.
+// Options of a call: for the functions, not for the program.
 const isObject = (value) => typeof value === 'object' && value !== null;
 const isBytes = (value) => value instanceof ArrayBuffer || ArrayBuffer.isView(value);
 const CALL = {
@@ -28,7 +27,7 @@ const CALL = {
   memoryLimit: NUMBER,
 };
 
-// What is read, and how.
+// Options for reading the input.
 const READ = { allowExternal: FLAG, maxExpansion: NUMBER, fps: NUMBER, from: NUMBER, to: NUMBER, every: NUMBER, loop: FLAG, strict: FLAG, path: TEXT };
 const MESHES = { base: TEXT, animation: NAME };
 

@@ -1,3 +1,3 @@
-// Stands before the function that makes a module, which asks for this name of CommonJS: bundlers take it for that unless it
-// is a variable.
+// This code is put before the function that makes a module, which looks for this name of CommonJS: bundlers take the
+// module for CommonJS unless the name is a variable.
 var __filename;

@@ -1,4 +1,4 @@
-// Paths of Windows in the file system of the program, which has one root: drives are folders in it.
+// Maps paths of Windows to the file system of the program, which has one root: drives become folders in it.
 
 const ROOT = /^[A-Za-z]:(?=\\|\/|$)/;
 

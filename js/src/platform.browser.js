@@ -1,4 +1,4 @@
-// What browsers have of their own.
+// Functions that only browsers need.
 export const require = undefined;
 
 export async function read(url) {

@@ -1,4 +1,4 @@
-// What Node.js has of its own.
+// Functions that only Node.js needs.
 import { readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { Worker } from 'node:worker_threads';

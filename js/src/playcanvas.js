@@ -1,11 +1,11 @@
-// Baked files in PlayCanvas: before a frame is drawn, extra targets get the weights that belong to what the application, or an
-// animation, has set for the targets of the mesh itself. PlayCanvas hands on no extras, but the resource of a container keeps
-// the JSON of its file.
+// Drives baked files in PlayCanvas: before a frame is drawn, correction targets get the weights that follow from the
+// weights that the application or an animation has set for the mesh's own targets. PlayCanvas passes on no extras, but
+// the resource of a container keeps the JSON of its file.
 import { formulasOf, markOf, weightOf } from './drive.js';
 
 const attached = new WeakMap(); // of each application: {update, driven}
 
-// The mark of each mesh of PlayCanvas that a container has, a primitive each.
+// Returns the mark of each PlayCanvas mesh of a container; each is a primitive of the file.
 function marksOf({ gltf, renders }) {
   const nodes = (gltf.nodes ?? []).map((node) => ({ extras: node.extras, mesh: node.mesh }));
   gltf.nodes?.forEach(({ children = [] }, i) => children.forEach((child) => (nodes[child].parent = nodes[i])));
@@ -40,7 +40,7 @@ export function attach(app, ...assets) {
   const update = () => {
     for (let d = 0; d < driven.length; ++d) {
       const { meshInstance: { morphInstance }, formulas, w } = driven[d];
-      if (!morphInstance) continue; // destroyed meanwhile
+      if (!morphInstance) continue; // was destroyed meanwhile
       for (let i = 0; i < w.length; ++i) w[i] = morphInstance.getWeight(i);
       for (let k = 0; k < formulas.length; ++k) {
         const { target } = formulas[k], weight = weightOf(formulas[k], w);

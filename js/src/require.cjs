@@ -1,4 +1,5 @@
-// What require() finds on a Node.js that cannot load modules by it. There is no second build for CommonJS (README).
+// Gives an error to require() on a Node.js that cannot load ES modules by it. There is no second build for CommonJS
+// (README).
 throw new Error(
   "chronormal is a package of ES modules, which require() loads from Node.js 20.19 and 22.12 on; this is " + process.versions.node +
     ". Use import { bake } from 'chronormal' in a module, or const { bake } = await import('chronormal') anywhere",

@@ -1,9 +1,9 @@
-// One run of the program: a fresh module with files in memory, or with those of this machine, so that nothing of one run
-// is left for the next, whatever it ended with.
+// Runs the program once: makes a fresh module with files in memory, or with the files of this machine, so that nothing
+// of one run is left for the next, however it ended.
 import createProgram from './program.js';
 
-// The smallest WebAssembly module that uses vectors and exceptions, which the program needs: a runtime that does not know
-// them calls it invalid.
+// The smallest WebAssembly module that uses vectors and exceptions, which the program needs. A runtime without them
+// calls it invalid.
 const NEEDED = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 13, 1, 11, 0, 6, 64, 65, 0, 253, 17, 26, 25, 11, 11];
 const TOO_OLD = 'WebAssembly with vectors (SIMD) and exceptions is not there: chronormal needs Chrome or Edge 95, Firefox 100, Safari 16.4, \
 Node.js 18, or later, on a processor that has vectors';
@@ -36,7 +36,7 @@ export function compile(platform) {
   return compiled;
 }
 
-// What a stream gets, in pieces of this many bytes, or of a line where someone looks on.
+// Output of a stream is passed on in pieces of this many bytes, or line by line if someone watches.
 const PIECE = 65536;
 
 class Sink {
@@ -74,7 +74,7 @@ export async function run(platform, args, { prepare, finish, stdout, stderr, ter
   const module = await compile(platform);
   const out = new Sink(stdout, terminals.stdout), err = new Sink(stderr, terminals.stderr);
   let code = 1;
-  // A module that cannot start would leave its promise pending: what is thrown on the way, by prepare() too, ends the run.
+  // A module that cannot start would leave its promise pending, so errors on the way, also of prepare(), end the run.
   const program = await new Promise((resolve, reject) => createProgram({
     require: platform.require,
     thisProgram: 'chronormal',
@@ -89,7 +89,7 @@ export async function run(platform, args, { prepare, finish, stdout, stderr, ter
         Object.assign(ENV, env);
         FS.init(() => null, (byte) => out.put(byte), (byte) => err.put(byte));
         if (stdin) {
-          // A device may have no end, which a program has to think of; a file has one.
+          // A device may have no end, which a program must allow for; a file has one.
           FS.close(FS.getStream(0));
           FS.writeFile('/.stdin', stdin);
           FS.open('/.stdin', 'r');

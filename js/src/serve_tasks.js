@@ -1,4 +1,4 @@
-// A thread of its own for long work: it takes tasks one by one, and says how far each is and what came of it.
+// Does long work in a separate thread: takes tasks one by one, and reports the progress and the result of each.
 import { useCompiled } from './run.js';
 import { perform } from './task.js';
 

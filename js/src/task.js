@@ -1,4 +1,4 @@
-// A command on files in memory, as api.js describes it and worker.js or the caller's own thread does it.
+// Runs a command on files in memory, as api.js describes it, in worker.js or in the caller's own thread.
 import { run } from './run.js';
 
 const FOLDER = '/work';
@@ -7,7 +7,7 @@ const BAR = /\r([^\r[]*) \[[= ]*\]\s+(\d+) %/g;
 
 class UnusableName extends Error {}
 
-// Puts a file where its name says, which may have folders in it.
+// Writes a file under its name, which may contain folders.
 function write(FS, name, bytes) {
   try {
     let folder = '';
@@ -20,7 +20,7 @@ function write(FS, name, bytes) {
     if (!(error instanceof FS.ErrnoError)) throw error;
     throw new UnusableName(name);
   }
-  // The program has names in UTF-8 that end with a zero; and a device is no file.
+  // The program has names in UTF-8 that end with a zero, and devices are not files.
   const known = new TextDecoder().decode(new TextEncoder().encode(name));
   if (known !== name || name.includes('\0') || !FS.isFile(FS.stat(name).mode)) throw new UnusableName(name);
 }

@@ -1,5 +1,5 @@
-// Baked files in three.js: before a mesh is drawn, its extra targets get the weights that belong to what the application,
-// or a mixer, has set for the targets of the mesh itself.
+// Drives baked files in three.js: before a mesh is drawn, its correction targets get the weights that follow from the
+// weights that the application or a mixer has set for the mesh's own targets.
 import { drive as driveBy, formulasOf, markOf } from './drive.js';
 
 const attached = new WeakMap(); // of each mesh: {formulas, before, now}
@@ -39,7 +39,7 @@ export function detach(root) {
     if (!attached.has(mesh)) return;
     const { formulas, before, now } = attached.get(mesh);
     attached.delete(mesh);
-    // Whoever has put a function of its own around this one since keeps it, and this one does nothing any more.
+    // If another function was put around this one since, that function stays, and this one does nothing any more.
     if (mesh.onBeforeRender === now) {
       if (before) mesh.onBeforeRender = before;
       else delete mesh.onBeforeRender;

@@ -1,4 +1,4 @@
-// The worker of browsers.
+// The worker for browsers.
 import * as browser from './platform.browser.js';
 import { serveTasks } from './serve_tasks.js';
 

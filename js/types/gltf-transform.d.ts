@@ -1,12 +1,12 @@
 import type { Transform } from '@gltf-transform/core';
 import type { BakeOptions, GltfBakeReport } from './index.js';
 
-/** The options of bake(), but for those of its bytes and of a plan. */
+/** The options of bake(), except the options for its bytes and for a plan. */
 export interface TransformOptions extends Omit<BakeOptions, 'name' | 'resources' | 'plan'> {
   onReport?: (report: GltfBakeReport) => void;
 }
 
-/** A transform that writes right normals into a document: bake() of it, in place. */
+/** Returns a transform that bakes a document in place. */
 export function chronormal(options?: TransformOptions): Transform;
-/** Adds `gltf-transform chronormal IN OUT`: what onProgramReady is in a gltf-transform.config.mjs. */
+/** Adds the command `gltf-transform chronormal IN OUT`, as onProgramReady in a gltf-transform.config.mjs. */
 export function command(context: { program: any; io: any; Session: any }): void;

@@ -1,4 +1,4 @@
-/** Right normals for meshes that deform: audits and bakes glTF files. Nothing here touches a file system or the network. */
+/** True normals for meshes that deform: audits and bakes glTF files. Nothing here touches a file system or the network. */
 import type { AuditReport, BakeReport, CompareReport, Elements, InspectReport, PathName, PlanReport, Weighting } from './reports.js';
 
 export * from './reports.js';
@@ -6,31 +6,31 @@ export * from './reports.js';
 export type Viewer = 'three' | 'babylon' | 'playcanvas' | 'godot' | 'filament' | 'bevy' | 'gltfpack' | 'quantize' | 'meshopt';
 
 export interface Progress {
-  /** What is done, as the program's bar says it. */
+  /** The current step, as in the program's progress bar. */
   label: string;
   percent: number;
 }
 
-/** How a call is made. */
+/** Options of a call itself. */
 export interface CallOptions {
   /**
    * The name of the input, with its extension, which tells its format: walk.npz. It may have folders in it. A name that no
    * file can have is refused with code 2. Default: input.glb or input.gltf.
    */
   name?: string;
-  /** The files that a .gltf names, by their URIs, and those that options name. */
+  /** The files that a .gltf names, by their URIs, and the files that options name. */
   resources?: Record<string, Bytes>;
   /** Ends the call in the middle; its promise is rejected with the reason. */
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
-  /** false: the work is done in this thread, which waits for it, and `signal` is only looked at before. Default: in a worker. */
+  /** false: this thread does the work and waits for it, and checks `signal` only before. Default: a worker does it. */
   worker?: boolean;
-  /** The most bytes of memory that the program gets, 16 MiB at least. Default: 4 GiB, or what the machine gives. */
+  /** The limit of the program's memory in bytes, at least 16 MiB. Default: 4 GiB, or less if the machine has less. */
   memoryLimit?: number;
 }
 
 /**
- * Options that say which data are read, and how. These options and those below are options of the program, in camel case, and `chronormal help COMMAND`
+ * Options for reading the input. These options and those below are options of the program, in camel case, and `chronormal help COMMAND`
  * explains them: `maxTargets: 112` is `--max-targets 112`. Another name, or a value of another type, is refused.
  */
 export interface ReadOptions extends CallOptions {
@@ -44,14 +44,14 @@ export interface ReadOptions extends CallOptions {
   strict?: boolean;
   /**
    * How vertices move between the keyframes of a sequence, which is not glTF but .npz, for example: straight by default. Curves are cut into
-   * straight pieces whose normals are within 0.01 degrees of those of the curve, or within the tolerance that follows the name.
+   * straight pieces whose normals are within 0.01 degrees of the curve's normals, or within the tolerance that follows the name.
    */
   path?: PathName | `${'catmull-rom' | 'hermite'}:${number}`;
 }
 
-/** Which motion of a file is meant. */
+/** Options that select a motion of a file. */
 interface MotionOptions extends ReadOptions {
-  /** The mesh of which the input is a morph target: a name among `resources`. */
+  /** The base mesh if the input is a morph target: a name among `resources`. */
   base?: string;
   animation?: string | number;
 }
@@ -59,12 +59,12 @@ interface MotionOptions extends ReadOptions {
 export interface AuditOptions extends MotionOptions {
   rule?: 'gltf' | 'lerp' | 'nlerp' | 'slerp' | 'step' | 'flat';
   weighting?: Weighting;
-  /** The viewers that are judged, too. */
+  /** Viewers that are judged, too. */
   for?: Viewer | 'all' | Array<Viewer | 'all'>;
   /** @deprecated the old name of `for` */
   host?: Viewer | 'all' | Array<Viewer | 'all'>;
   samples?: number;
-  /** 'random', or a name among `resources`: poses that are judged, too. */
+  /** Poses that are judged, too: 'random', or a name among `resources`. */
   poses?: string;
   /** The weights between which each target is judged alone: '0:1' by default. */
   weights?: `${number}:${number}`;
@@ -75,7 +75,7 @@ export interface AuditOptions extends MotionOptions {
 }
 
 export interface BakeOptions extends ReadOptions {
-  /** The viewers that the result is made for. Default: those that add up deltas, and none worse in the others. */
+  /** The viewers that the result is made for. Default: all that add up deltas; no other viewer gets worse. */
   for?: Viewer | 'all' | Array<Viewer | 'all'>;
   encode?: 'smallest' | 'harmless' | 'exact' | 'endpoint' | 'keys';
   weighting?: Weighting;
@@ -87,7 +87,7 @@ export interface BakeOptions extends ReadOptions {
   animationsOnly?: boolean;
   /** 'random', or a name among `resources`. */
   poses?: string;
-  /** Says what each candidate would come to, and makes no file. */
+  /** Reports the size and the errors of each candidate, and makes no file. */
   plan?: boolean;
   denseZeros?: boolean;
   tolerance?: number;
@@ -125,9 +125,9 @@ export interface InspectOptions extends MotionOptions {
 
 export interface Judged<Report> {
   report: Report;
-  /** What the program says beside its result, a line each. */
+  /** Messages of the program besides its result, one line each. */
   warnings: string[];
-  /** false: the result is beyond the tolerance or the budget that were asked for (exit code 4). */
+  /** false: the result exceeds the requested tolerance or budget (exit code 4). */
   within: boolean;
 }
 
@@ -137,7 +137,7 @@ export interface Baked extends Judged<BakeReport> {
   files: Record<string, Uint8Array>;
 }
 
-/** What was refused or could not be done. `code` is the exit code of the program: 1 failed, 2 usage, 3 the input is invalid. */
+/** An error: the call was refused or failed. `code` is the exit code of the program: 1 failed, 2 usage, 3 the input is invalid. */
 export class ChronormalError extends Error {
   constructor(code: number, message: string);
   name: 'ChronormalError';

@@ -1,13 +1,13 @@
 /**
- * The reports of the functions: what `--json` of the commands prints (docs/cli.md). Keys may be added; none changes its meaning.
- * Angles are degrees. Vertices, faces, targets, nodes and so on are counted from 0, and null is where one does not exist.
+ * The reports of the functions, equal to the output of the commands with `--json` (docs/cli.md). Keys may be added; none changes its meaning.
+ * Angles are degrees. Vertices, faces, targets, nodes and so on are counted from 0, and null means that there is none.
  */
 
 export type Weighting = 'area' | 'angle' | 'uniform' | 'area-angle' | 'max' | 'inverse-edges' | 'inverse-roots';
 export type PathName = 'linear' | 'catmull-rom' | 'hermite';
 export type Elements = 'faces' | 'vertices' | 'corners';
 
-/** What every report begins with. */
+/** The fields that every report begins with. */
 interface Head<Command extends string, Schema extends number> {
   /** The version of the program. */
   chronormal: string;
@@ -23,22 +23,22 @@ interface CurvedPath {
   cut?: { tolerance_degrees: number; segments: number; pieces: number; faces_beyond: number; rounding: number };
 }
 
-// Of an audit.
+// Types of audits.
 
 export interface AuditPlace {
   mesh?: number;
   primitive?: number | null;
   vertex: number;
   segment?: number;
-  /** Where it is a target or an expression whose weight moves. */
+  /** Present if a target's or an expression's weight moves. */
   weight?: number;
-  /** Where it is an animation or a sequence. */
+  /** Present for an animation or a sequence. */
   time?: number;
-  /** Its number, where poses were asked for. */
+  /** The number of the pose, if poses were requested. */
   pose?: number;
 }
 
-/** How far the shown normals are from the right ones, over all pairs of a vertex and a moment. */
+/** The errors of the rendered normals over all samples. */
 export interface MotionError {
   worst_degrees: number;
   mean_degrees: number;
@@ -49,12 +49,12 @@ export interface MotionError {
   no_normal: number;
   faint: number;
   faint_worst_degrees: number;
-  /** Samples without a right normal although the faces around have an area: no tolerance allows any. */
+  /** Samples without a true normal although the faces around have an area. No tolerance allows any. */
   cancelled: number;
   unlit: number;
-  /** Edges over which errors jump by more than 10, 20 and 40 degrees: on average over the samples. Of glTF files. */
+  /** Edges over which errors jump by more than 10, 20 and 40 degrees, on average over the samples. Only for glTF files. */
   torn_edges?: [number, number, number];
-  /** Those beyond 10 degrees at the sample with most of them. */
+  /** The largest number of edges beyond 10 degrees at one sample. */
   most_torn_edges?: number;
 }
 
@@ -105,7 +105,7 @@ export interface AuthoredOffset {
   vertices: number;
   weighting: Weighting;
   weighting_detected: boolean;
-  /** Whether the right normals are weighed by polygons, of which the file has the triangles. */
+  /** True if the true normals are weighted by the polygons that the file's triangles came from. */
   polygons: boolean;
   worst_degrees: number;
   mean_degrees: number;
@@ -148,11 +148,11 @@ export interface AuditReport extends Head<'audit', 2>, MotionError, CurvedPath {
   viewers: ViewerAudit[];
   authored_offsets: AuthoredOffset[];
   findings: AuditFinding[];
-  /** What was left out of the file, or read in another way than it was meant. */
+  /** Parts of the file that were left out, or were not read as they were meant. */
   notes: string[];
 }
 
-// Of a bake.
+// Types of bakes.
 
 export interface BakeAudit {
   worst_degrees_before: number;
@@ -167,7 +167,7 @@ export interface BakeAudit {
 }
 
 export interface WholeBakeAudit extends BakeAudit {
-  /** What each viewer shows, of those that the bake is made for and that it spares; none of sequences. */
+  /** The errors in each viewer that the bake is made for or must not make worse; empty for sequences. */
   viewers: Array<BakeAudit & { viewer: string }>;
 }
 
@@ -175,7 +175,7 @@ export interface ShownErrors {
   mean_degrees: number;
   most_degrees: number;
   worst_degrees: number;
-  /** Edges over which errors jump by more than 10, 20 and 40 degrees: on average over the poses. */
+  /** Edges over which errors jump by more than 10, 20 and 40 degrees, on average over the poses. */
   torn_edges: [number, number, number];
 }
 
@@ -187,10 +187,10 @@ export interface JudgedPoses {
 
 export interface ViewerChange {
   viewer: string;
-  /** Whether the bake is made for it, and whether it shows the result better as a whole. */
+  /** named: the bake is made for the viewer. better: the result is better there as a whole. */
   named: boolean;
   better: boolean;
-  /** What the file plays, each target alone, and poses that a program sets. */
+  /** Errors in the file's animations, with each target alone, and in poses that a program sets. */
   file?: JudgedPoses;
   alone?: JudgedPoses;
   posed?: JudgedPoses;
@@ -215,7 +215,7 @@ export interface BakedMesh {
   weighting: Weighting | null;
   already_baked: boolean;
   different_normals: number;
-  /** The weights of extra targets: terms [target, factor], and [target, target, factor] of products. */
+  /** The weights of correction targets: linear terms [target, factor], and products [target, target, factor]. */
   extra_targets: Array<{ target: number; linear: number[][]; quadratic: number[][] }>;
   bytes: number;
   undriven_targets: number;
@@ -236,12 +236,12 @@ export interface BakedMesh {
 
 interface BakeHead extends Head<'bake', 3> {
   input: { name: string };
-  /** On the input: what was left out of it, or read in another way than it was meant. */
+  /** Parts of the input that were left out, or were not read as they were meant. */
   notes: string[];
   warnings: string[];
 }
 
-/** What bake() says of a glTF file. */
+/** The report of bake() for a glTF file. */
 export interface GltfBakeReport extends BakeHead {
   output: string;
   changed: boolean;
@@ -255,7 +255,7 @@ export interface GltfBakeReport extends BakeHead {
   audit?: WholeBakeAudit;
 }
 
-/** What bake() says of a sequence, of which it makes a glTF file. */
+/** The report of bake() for a sequence, which becomes a glTF file. */
 export interface SequenceBakeReport extends BakeHead, CurvedPath {
   output: string;
   encoding: string;
@@ -270,16 +270,16 @@ export interface SequenceBakeReport extends BakeHead, CurvedPath {
   audit?: WholeBakeAudit;
 }
 
-/** Which of the two it is, a key of one alone says: 'meshes' in report. */
+/** A key that only one of the two has tells them apart: 'meshes' in report. */
 export type BakeReport = GltfBakeReport | SequenceBakeReport;
 
-/** What bake() with `plan` says: what each candidate would come to. */
+/** The report of bake() with `plan`: the size and the errors of each candidate. */
 export interface PlanReport extends BakeHead {
   plan: true;
   meshes: Array<{ mesh: number; name: string; candidates: BakeCandidate[] }>;
 }
 
-// Of a comparison.
+// Types of comparisons.
 
 export interface ElementPlace {
   segment: number;
@@ -287,7 +287,7 @@ export interface ElementPlace {
   t: number;
 }
 
-/** How far the normals of a scheme are from the exact ones. */
+/** The errors of a scheme's normals. */
 interface SchemeError {
   scheme: string;
   mean_degrees: number;
@@ -323,11 +323,11 @@ interface ComparedInput {
   different_normals?: number;
 }
 
-/** What compare() says of the ways to interpolate normals. */
+/** The report of compare() on ways to interpolate normals. */
 export interface SchemesReport extends Head<'compare', 1> {
   input: ComparedInput & CurvedPath & { segments: number };
   elements: Elements;
-  /** Of vertices and corners. */
+  /** Present for vertices and corners. */
   weighting?: Weighting;
   samples: number;
   schemes: SchemeReport[];
@@ -364,7 +364,7 @@ export interface BlendedMesh {
   errors: Array<{ active: number; rows: number; deltas: DeltasError[] }>;
 }
 
-/** What compare() with `blend` says of deltas that viewers add up. */
+/** The report of compare() with `blend` on deltas that viewers add up. */
 export interface BlendReport extends Head<'compare', 1> {
   input: string;
   weights: 'random' | 'animation';
@@ -374,7 +374,7 @@ export interface BlendReport extends Head<'compare', 1> {
   still_meshes: number;
 }
 
-/** What compare() with `truth` says of keyframes that were left out. */
+/** The report of compare() with `truth` on keyframes that were left out. */
 export interface TruthReport extends Head<'compare', 1> {
   input: ComparedInput;
   elements: Elements;
@@ -415,7 +415,7 @@ export interface FigureReport extends Head<'compare', 1> {
 
 export type CompareReport = SchemesReport | BlendReport | TruthReport | FigureReport;
 
-// Of an inspection.
+// Types of inspections.
 
 interface FoundFaces {
   count: number;
@@ -427,7 +427,7 @@ interface FoundVertices {
   first_vertex: number | null;
 }
 
-/** Faces that suffer from something, and pairs of them with a keyframe or a segment. */
+/** Faces with a problem, and pairs of a face with a keyframe or a segment where it occurs. */
 export interface FacePlaces<Place> {
   faces: number;
   pairs: number;
@@ -475,7 +475,7 @@ export interface InspectedPrimitive {
   tangents: boolean;
   draco: boolean;
   targets: Array<{ positions: boolean; normals: boolean; tangents: boolean }>;
-  /** These are there where it has triangles. */
+  /** Present, with the fields below, if the primitive has triangles. */
   triangles?: number;
   doubled_vertices?: number;
   split_normals?: number;
@@ -520,12 +520,12 @@ export interface InspectedGltf {
   }>;
 }
 
-/** What has faces has all of this; a glTF file without any has `input`, `gltf` and `trouble`. */
+/** An input with faces has all of these; a glTF file without faces has `input`, `gltf` and `trouble`. */
 export interface InspectReport extends Head<'inspect', 1> {
   input: { name: string; vertices: number; faces: number; keyframes: number; segments: number };
-  /** The numbers in the names of the files of a sequence, where these tell them apart. */
+  /** The numbers in the file names of a sequence, if they tell the files apart. */
   files?: { count: number; first: number; last: number; least_step: number; most_step: number; are_seconds: boolean };
-  /** What a person should know of how the input was read, in sentences. */
+  /** Notes for people on how the input was read, in sentences. */
   notes: string[];
   kind?: 'mesh' | 'targets' | 'sequence';
   time?: { first: number; last: number } | null;
