@@ -1,4 +1,4 @@
-/// How the program starts and ends: its standard streams, and the signals that it gets.
+/// Starts and ends the program: handles its standard streams, and the signals that it gets.
 ///
 ///     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU   temporary files are removed, a line is printed, and the signal ends the
 ///                                                 program (128 + n to a shell); ignored signals stay ignored

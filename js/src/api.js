@@ -92,8 +92,8 @@ const bakedName = (name) => {
 };
 
 /**
- * The functions of the package on a platform, which is platform.browser.js or platform.node.js. Each of index.js and
- * index.node.js imports its own, so that neither ever loads what only the other has, and no module has a side effect.
+ * Returns the functions of the package on a platform, which is platform.browser.js or platform.node.js. index.js and
+ * index.node.js each import their own, so that neither loads code of the other, and no module has a side effect.
  */
 export function apiOf(platform) {
   const report = (command) => async (input, options = {}) => resultOf(await execute(platform, taskOf(command, input, options), options));

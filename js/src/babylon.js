@@ -25,7 +25,7 @@ function drivenOf(scene) {
  * Drives all meshes of baked files that are in a scene, until detach(). Meshes that come later need another attach().
  * Costs a few operations for each target and frame, and allocates nothing.
  * @param {import('@babylonjs/core').Scene} scene
- * @returns {import('@babylonjs/core').AbstractMesh[]} the meshes that have extra targets with formulas
+ * @returns {import('@babylonjs/core').AbstractMesh[]} the meshes that have correction targets with formulas
  */
 export function attach(scene) {
   if (attached.has(scene)) scene.onBeforeRenderObservable.remove(attached.get(scene).observer);
@@ -43,7 +43,7 @@ export function attach(scene) {
   return driven.flatMap(({ meshes }) => meshes);
 }
 
-/** Leaves the meshes of a scene to the application again; extra targets get the weight 0. */
+/** Leaves the meshes of a scene to the application again; correction targets get the weight 0. */
 export function detach(scene) {
   if (!attached.has(scene)) return;
   const { observer, driven } = attached.get(scene);

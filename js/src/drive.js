@@ -5,9 +5,9 @@
 const VERSION = 2;
 
 /**
- * The formulas of a mark, extras.chronormal of a mesh with so many targets, in arrays that evaluating walks through without
- * allocating. Targets without a formula are driven by the animations of the file alone, and not touched. Extra targets are
- * the last ones of a mesh: one that has another number of targets by now has others, and none of them is touched.
+ * Returns the formulas of a mark, extras.chronormal of a mesh with this many targets, in arrays that can be evaluated
+ * without allocating. Targets without a formula are driven by the animations of the file alone, and not touched.
+ * Correction targets are the last ones of a mesh: if the number of targets has changed since the bake, none is touched.
  */
 export function formulasOf(mark, count) {
   if (mark?.version !== VERSION || !Array.isArray(mark.extras) || mark.extras.at(-1)?.target !== count - 1) return [];
@@ -21,7 +21,7 @@ export function formulasOf(mark, count) {
     }));
 }
 
-/** The weight of an extra target, from the weights w of all targets. */
+/** Returns the weight of a correction target, from the weights w of all targets. */
 export function weightOf({ first, second, factor }, w) {
   let sum = 0;
   for (let n = 0; n < factor.length; ++n) {
@@ -30,14 +30,14 @@ export function weightOf({ first, second, factor }, w) {
   return sum;
 }
 
-/** Writes the weights of extra targets into w. */
+/** Writes the weights of correction targets into w. */
 export function drive(formulas, w) {
   for (let k = 0; k < formulas.length; ++k) w[formulas[k].target] = weightOf(formulas[k], w);
 }
 
 /**
- * The mark of a mesh: its own, or else that of the nearest object above. A mesh of several primitives is a node with a
- * child for each, and gltfpack puts a mesh into a new node below that with the extras.
+ * Returns the mark of a mesh, or else the mark of the nearest object above. A mesh of several primitives is a node with
+ * a child for each, and gltfpack puts a mesh into a new node below the node with the extras.
  */
 export function markOf(object, extrasOf) {
   for (; object; object = object.parent) {

@@ -1,4 +1,4 @@
-/** What the program refused, or could not do: its exit code and its own words, which name the place. */
+/** An error of the program: its exit code and its message, which names the place. */
 export class ChronormalError extends Error {
   constructor(code, message) {
     super(message);

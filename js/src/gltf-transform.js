@@ -92,7 +92,7 @@ function same(a, b) {
 }
 
 /**
- * A transform that writes right normals into a document. Options are those of bake(); the report goes to
+ * Returns a transform that bakes a document in place. Options are as in bake(); the report goes to
  * options.onReport, and warnings to the document's logger.
  */
 export function chronormal({ onReport, ...options } = {}) {
@@ -122,7 +122,7 @@ const OPTIONS = [
 ];
 
 /**
- * Adds the command `gltf-transform chronormal IN OUT` to the command line of glTF-Transform: what onProgramReady is in a
+ * Adds the command `gltf-transform chronormal IN OUT` to the command line of glTF-Transform, as onProgramReady in a
  * gltf-transform.config.mjs.
  */
 export function command({ program, io, Session }) {

@@ -67,9 +67,9 @@ function refuseName(name, command, known) {
 }
 
 /**
- * The words of the command line for the options of a call.
- * @throws {ChronormalError} code 2, where an option has another name
- * @throws {TypeError} where a value is of another kind
+ * Returns the words of the command line for the options of a call.
+ * @throws {ChronormalError} code 2 if an option has an unknown name
+ * @throws {TypeError} if a value is of another kind
  */
 export function flagsOf(command, options) {
   if (!isObject(options)) throw new TypeError('options: it has to be an object');

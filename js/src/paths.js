@@ -3,7 +3,7 @@
 const ROOT = /^[A-Za-z]:(?=\\|\/|$)/;
 
 /**
- * A path of Windows, or a word of the command line that may be one or have one after `=`, as the program reads it:
+ * Converts a path of Windows, or a word of the command line that may be or contain one after `=`, for the program:
  * C:\models\face.glb is /C:/models/face.glb, and \models\face.glb is on the drive of the folder cwd.
  */
 export function fromWindows(word, cwd) {

@@ -7,7 +7,7 @@ export async function read(url) {
   return new Uint8Array(await response.arrayBuffer());
 }
 
-/** Starts worker.js; onMessage gets what it says, onError what ends it. */
+/** Starts worker.js; onMessage gets its messages, onError the error that ends it. */
 export function startWorker(onMessage, onError) {
   const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
   worker.onmessage = ({ data }) => onMessage(data);
@@ -15,7 +15,7 @@ export function startWorker(onMessage, onError) {
   return worker;
 }
 
-/** In a worker: answers each message by what answer(message, say) says. */
+/** In a worker: answers each message by the messages that answer(message, say) sends. */
 export async function serve(answer) {
   self.onmessage = ({ data }) => answer(data, (reply, transfer = []) => self.postMessage(reply, transfer));
 }

@@ -7,7 +7,7 @@ export const require = createRequire(import.meta.url);
 
 export const read = (url) => readFile(url);
 
-/** Starts worker.node.js; onMessage gets what it says, onError what ends it. */
+/** Starts worker.node.js; onMessage gets its messages, onError the error that ends it. */
 export function startWorker(onMessage, onError) {
   const worker = new Worker(new URL('./worker.node.js', import.meta.url));
   worker.on('message', onMessage);
@@ -15,7 +15,7 @@ export function startWorker(onMessage, onError) {
   return worker;
 }
 
-/** In a worker: answers each message by what answer(message, say) says. */
+/** In a worker: answers each message by the messages that answer(message, say) sends. */
 export async function serve(answer) {
   const { parentPort } = await import('node:worker_threads');
   parentPort.on('message', (message) => answer(message, (reply, transfer) => parentPort.postMessage(reply, transfer)));

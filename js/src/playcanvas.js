@@ -23,7 +23,7 @@ function marksOf({ gltf, renders }) {
  * attach(). Costs a few operations for each target and frame, and allocates nothing.
  * @param {import('playcanvas').AppBase} app
  * @param {...import('playcanvas').Asset} assets containers, loaded
- * @returns {import('playcanvas').MeshInstance[]} those that have extra targets with formulas
+ * @returns {import('playcanvas').MeshInstance[]} the meshes that have correction targets with formulas
  */
 export function attach(app, ...assets) {
   if (attached.has(app)) app.off('prerender', attached.get(app).update);
@@ -53,7 +53,7 @@ export function attach(app, ...assets) {
   return driven.map(({ meshInstance }) => meshInstance);
 }
 
-/** Leaves the meshes of an application to it again; extra targets get the weight 0. */
+/** Leaves the meshes of an application to it again; correction targets get the weight 0. */
 export function detach(app) {
   if (!attached.has(app)) return;
   const { update, driven } = attached.get(app);

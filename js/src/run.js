@@ -10,7 +10,7 @@ Node.js 18, or later, on a processor that has vectors';
 
 let compiled; // the module, once for all runs
 
-/** Takes a module that another thread has compiled. */
+/** Uses a module that another thread has compiled. */
 export function useCompiled(module) {
   compiled ??= Promise.resolve(module);
 }
@@ -25,7 +25,7 @@ async function compileWith(platform) {
 }
 
 /**
- * Compiles the program, unless that was done before. What it takes is the most of a short run.
+ * Compiles the program, unless it is already compiled. A short run spends most of its time on this.
  * @returns {Promise<WebAssembly.Module>}
  */
 export function compile(platform) {
@@ -58,17 +58,17 @@ class Sink {
 
 /**
  * Runs the program.
- * @param {typeof import('./platform.browser.js')} platform where this runs
+ * @param {typeof import('./platform.browser.js')} platform the platform on which this runs
  * @param {string[]} args the command line, without the name of the program
- * @param {object} world what it meets:
- *   prepare(FS, NODEFS)   puts files into its file system, before it starts
- *   finish(FS)            takes what it left there; its result is that of run()
+ * @param {object} world the environment of the program:
+ *   prepare(FS, NODEFS)   puts files into its file system before it starts
+ *   finish(FS)            takes its files out again; the return value becomes `result`
  *   stdout, stderr        get bytes (Uint8Array) as they come
- *   terminals             {stdout, stderr}: which of them is a terminal
- *   stdin                 what is on standard input (Uint8Array)
+ *   terminals             {stdout, stderr}: tell which of them is a terminal
+ *   stdin                 the content of standard input (Uint8Array)
  *   env                   variables of the environment
- *   memoryLimit           the most bytes that it gets, 16 MiB at least
- * @returns {Promise<{code: number, result: any}>} the exit code, and what finish() returned
+ *   memoryLimit           the limit of its memory in bytes, at least 16 MiB
+ * @returns {Promise<{code: number, result: any}>} the exit code, and the value that finish() returned
  */
 export async function run(platform, args, { prepare, finish, stdout, stderr, terminals = {}, stdin, env = {}, memoryLimit }) {
   const module = await compile(platform);

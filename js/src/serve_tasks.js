@@ -2,7 +2,7 @@
 import { useCompiled } from './run.js';
 import { perform } from './task.js';
 
-/** Serves tasks on a platform. Messages are {task, wantsProgress}, and the compiled module where the caller has it. */
+/** Serves tasks on a platform. Messages are {task, wantsProgress}, and the compiled module if the caller has it. */
 export const serveTasks = (platform) => platform.serve(async ({ task, wantsProgress, module }, say) => {
   try {
     if (module) useCompiled(module);

@@ -26,9 +26,10 @@ function write(FS, name, bytes) {
 }
 
 /**
- * @param {typeof import('./platform.browser.js')} platform where this runs
+ * Runs a task.
+ * @param {typeof import('./platform.browser.js')} platform the platform on which this runs
  * @param {{args: string[], files: Object<string, Uint8Array>, outputs: string, memoryLimit?: number}} task the
- *   command line; the files that it finds, by their names; the folder whose files are the result; the most bytes of memory
+ *   command line; the files that it finds, by their names; the folder whose files are the result; the limit of memory in bytes
  * @param {(progress: {label: string, percent: number}) => void} [onProgress]
  * @returns {Promise<{code: number, stdout: string, stderr: string, files: Object<string, Uint8Array>}>}
  */

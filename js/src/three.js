@@ -11,9 +11,10 @@ function formulasOfMesh(mesh) {
 
 /**
  * Drives all meshes of a baked file below an object, until detach(). A clone has to be attached itself: three.js does not
- * copy what is done before drawing. Costs a few operations for each extra target and drawing, and allocates nothing.
+ * copy functions that run before drawing. Costs a few operations for each correction target and drawing, and
+ * allocates nothing.
  * @param {import('three').Object3D} root
- * @returns {import('three').Mesh[]} the meshes that have extra targets with formulas
+ * @returns {import('three').Mesh[]} the meshes that have correction targets with formulas
  */
 export function attach(root) {
   const meshes = [];
@@ -33,7 +34,7 @@ export function attach(root) {
   return meshes;
 }
 
-/** Leaves the meshes below an object to the application again; extra targets get the weight 0. */
+/** Leaves the meshes below an object to the application again; correction targets get the weight 0. */
 export function detach(root) {
   root.traverse((mesh) => {
     if (!attached.has(mesh)) return;
@@ -49,8 +50,8 @@ export function detach(root) {
 }
 
 /**
- * Sets the weights of extra targets below an object once, for what is not drawn itself: a mesh whose weights
- * InstancedMesh.setMorphAt() takes.
+ * Sets the weights of correction targets below an object once, for meshes that are not drawn themselves but whose
+ * weights InstancedMesh.setMorphAt() takes.
  * @param {import('three').Object3D} root
  */
 export function drive(root) {

@@ -1,4 +1,4 @@
-// Numbers the vertices and faces that a judged part needs, and computes its right normals.
+// Numbers the vertices and faces that a judged part needs, and computes its true normals.
 #include "workflow/audit/judged_part.h"
 
 #include <algorithm>

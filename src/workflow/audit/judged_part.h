@@ -1,4 +1,4 @@
-/// The part of a mesh that an audit looks at, and its right normals. Private to workflow.
+/// The part of a mesh that an audit looks at, and its true normals. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_JUDGED_PART_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_JUDGED_PART_H_
 
