@@ -1,5 +1,5 @@
-/// Divides the work of a command and resumes it: --shard, --resume, and the ranks that mpirun starts. Commands know none
-/// of the three: a CommandRun makes a SegmentRun (workflow/segments/segment_run.h) from them.
+/// Divides the work of a command and resumes it: --shard, --resume, and the ranks that mpirun starts. Commands know
+/// none of the three: a CommandRun makes a SegmentRun (workflow/segments/segment_run.h) from them.
 ///
 ///     const auto run = options.run.begin("compare", tables(options), options.input, options.common);
 ///     CompareRun segments;
@@ -9,8 +9,8 @@
 ///     run->finish(text);
 ///
 /// With --resume, OUT.journal describes the run (version, command, options, input files with their sizes and times of
-/// change) and records what is done. It stays if the run ends too early, for whatever reason, and is removed when OUT is
-/// whole.
+/// change) and records what is done. It stays if the run ends too early, for whatever reason, and is removed when OUT
+/// is whole.
 #ifndef CLI_OPTIONS_RUN_H_
 #define CLI_OPTIONS_RUN_H_
 

@@ -1,10 +1,11 @@
 // Ranks by MPI. Texts are sent as bytes: first their number, then the bytes in blocks that MPI can count; an error is
-// one message. A waiting rank sleeps between polls, since the ranks of one machine share its cores, and looks for errors
-// whenever it waits: the first rank for errors of the others, the others for the message of the first that all must end.
+// one message. A waiting rank sleeps between polls, since the ranks of one machine share its cores, and looks for
+// errors whenever it waits: the first rank for errors of the others, the others for the message of the first that all
+// must end.
 //
 // The first rank must send this message itself. mpirun would send SIGTERM, and soon after that SIGKILL; Open MPI means
-// to wait a second in between, but when one rank ends, its signal cuts this short for all others. On a busy machine they
-// were killed before they had removed their files.
+// to wait a second in between, but when one rank ends, its signal cuts this short for all others. On a busy machine
+// they were killed before they had removed their files.
 #include <mpi.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 /// Text with numbers in it: the only place of the program that formats them.
 ///
-/// A result may be infinite or NaN if a file has weights of 3e38 or no sample was judged. No reader of a table, of CSV or
-/// of a message has a use for "nan" or "-nan": such a number is written as "-". (JSON has no word for it either, and
+/// A result may be infinite or NaN if a file has weights of 3e38 or no sample was judged. No reader of a table, of CSV
+/// or of a message has a use for "nan" or "-nan": such a number is written as "-". (JSON has no word for it either, and
 /// workflow/json/json.h writes null.) fmt::format would print it, so no other code in cli/ calls fmt::format.
 #ifndef CLI_TERMINAL_FORMAT_H_
 #define CLI_TERMINAL_FORMAT_H_

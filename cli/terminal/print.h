@@ -1,7 +1,7 @@
 /// The only place where the program prints: results to stdout, everything else to stderr.
 ///
-/// Either stream may be full, closed, or a pipe that nobody reads. Results must arrive, or the command fails; messages may
-/// get lost. Control characters of names in files and arguments are printed as printable() returns them
+/// Either stream may be full, closed, or a pipe that nobody reads. Results must arrive, or the command fails; messages
+/// may get lost. Control characters of names in files and arguments are printed as printable() returns them
 /// (cli/terminal/text.h).
 #ifndef CLI_TERMINAL_PRINT_H_
 #define CLI_TERMINAL_PRINT_H_

@@ -1,6 +1,6 @@
 /// Starts and ends the program: handles its standard streams, and the signals that it gets.
 ///
-///     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU   temporary files are removed, a line is printed, and the signal ends the
+///     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU   temporary files are removed, a line is printed, the signal ends the
 ///                                                 program (128 + n to a shell); ignored signals stay ignored
 ///     SIGBUS                                      an input that is mapped became shorter: the same, with exit code 1
 ///     SIGXFSZ                                     ignored: writing beyond the limit is an error like any other

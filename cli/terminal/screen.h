@@ -1,8 +1,8 @@
 /// Properties of a terminal: its columns, and emphasis in colour.
 ///
 /// Text for people is marked where it is made, by the control sequences of terminals, which printable() removes from
-/// names (cli/terminal/text.h). The code that writes the text removes the marks, unless it goes to a terminal that shows
-/// them. JSON and CSV have none.
+/// names (cli/terminal/text.h). The code that writes the text removes the marks, unless it goes to a terminal that
+/// shows them. JSON and CSV have none.
 #ifndef CLI_TERMINAL_SCREEN_H_
 #define CLI_TERMINAL_SCREEN_H_
 

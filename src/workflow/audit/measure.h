@@ -91,7 +91,7 @@ inline void add_segment(const SegmentErrors& found, AuditSubject& subject) {
 void finish(Audit& result);
 
 // A source is a motion together with the normals that are rendered on the way:
-//     place(segment, t, positions)   writes the positions of the part; returns false if nothing differs from the last call
+//     place(segment, t, positions)   writes the positions of the part; false if nothing differs from the last call
 //     forget()                       makes the next call differ
 //     turn(positions, normals)       turns the normals of the part into true directions, and keeps their lengths
 //     begin(start, end)              gets the normals of elements at both ends before the samples (if kNeedsEnds)
@@ -99,11 +99,11 @@ void finish(Audit& result);
 //     shown(output)                  returns a normal of any length, zero if there is none
 //     seen(i, n)                     returns a normal of the i-th output as it reaches the screen
 //     right(output, n)               returns the true direction for a normal of the geometry
-//     hides(output, n)               tells whether the true normal has no direction on the screen; it is not judged then
+//     hides(output, n)               tells whether the true normal has no direction on the screen and is not judged
 //     at(segment, t, output)         returns the place in terms for people
 //
 // Segments tell where to measure:
-//     look_over(look)                calls look(segment) for segments that determine the largest normals; returns a Status
+//     look_over(look)                calls look(segment) for segments that determine the largest normals; a Status
 //     maximize(numbers)              replaces each number by the largest of all processes that have other segments
 //     over(subject, work)            adds work(segment), the errors of each measured segment, to its subject; a Status
 

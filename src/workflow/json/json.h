@@ -73,7 +73,7 @@ struct BakeReport {
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// Lists the targets, bytes and errors that each candidate for each mesh would have, as --encode smallest compares them.
+/// Lists the targets, bytes and errors of each candidate for each mesh, as --encode smallest compares them.
 [[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
 
 /// Returns the text of an answer; input is the name of the queried file. Columns are arrays, named as in a .npz file.

@@ -12,8 +12,8 @@
 /// Worst      at most kMostWorstPlaces vertices, each at its largest error, which is above kLeastPlace; none within
 ///            kPlaceDistance of another of the same mesh.
 /// Thinned    a page above the size limit is thinned out, and says so: first it drops keyframes and samples between the
-///            worst places, then triangles far from these places, which become fewer and are not judged. Everything that
-///            the normals around a worst place depend on is kept as it is.
+///            worst places, then triangles far from these places, which become fewer and are not judged. Everything
+///            that the normals around a worst place depend on is kept as it is.
 /// Threads    uses all cores; gives the same bytes on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_H_
