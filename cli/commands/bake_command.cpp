@@ -333,7 +333,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
 }
 
-// Without -o the last of several files is the output, if it can be: IN OUT.
+// Finds the output. Without -o it is the last of several files, if that can be one: IN OUT.
 Status take_output(BakeArguments& options) {
   std::vector<std::string>& files = options.input.files;
   if (options.output) {

@@ -103,7 +103,7 @@ std::string row(const std::string& name, const std::string& text, std::size_t co
 
 bool takes_several(const Option& option) { return std::holds_alternative<std::vector<std::string>*>(option.target); }
 
-// "-o, --output OUT"
+// Returns the spelling for help: "-o, --output OUT".
 std::string spelled(const Option& option) {
   std::string text = option.spelling;
   if (const std::size_t comma = text.find(','); comma < text.find(' ')) text.insert(comma + 1, 1, ' ');

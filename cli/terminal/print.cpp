@@ -60,7 +60,7 @@ void say_raw(std::string_view text) noexcept {
   if (!is_silent) write_to_stderr(text);
 }
 
-// One system call writes the whole line, so that lines of several ranks do not mix.
+// Writes the whole line in one system call, so that lines of several ranks do not mix.
 void say_ending(std::string_view message) noexcept {
   std::array<char, kLongestEnding> line{};
   auto end = line.begin();

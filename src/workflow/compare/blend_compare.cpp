@@ -236,7 +236,7 @@ class BlendMeter {
     for (std::size_t p = 0; p < parts.size(); ++p) errors.deltas[p % methods].quality.add(parts[p]);
   }
 
-  // A normal that cannot be lit counts as the largest error that a method can have.
+  // Adds an error. A normal that cannot be lit counts as the largest possible error.
   static void add(const Vec3d& shown, const Vec3d& right, const ErrorPlace& place, Quality& quality) {
     const bool is_lit = is_finite(shown) && shown != Vec3d{};
     if (!is_lit) ++quality.missing;

@@ -8,7 +8,7 @@ Json json_of_command(const char* command, int schema) {
   return {{"chronormal", CHRONORMAL_VERSION}, {"command", command}, {"schema", schema}};
 }
 
-// JSON leaves control characters from DEL on unescaped; escaping them gives the same strings.
+// Returns the text, and escapes control characters from DEL on, which JSON need not escape; they stay the same strings.
 std::string json_text(const Json& json) {
   return escaped_for_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n';
 }

@@ -5,9 +5,9 @@
 ///     chronormal merge part_*.json -o all.json                   as compare ... --json --no-times -o all.json
 ///
 /// A part of a comparison or an audit is a JSON object. It describes the whole task, and has the sums of each segment
-/// of the share with all of their bits. Only merge reads it, and only if both have the same version of this format.
-/// A part of samples is a .npy array of the rows of its share, followed by a JSON object that gives their position
-/// among all rows. Both kinds end with a checksum of all earlier bytes and have the TaskChecksums of the task, so that a part
+/// of the share with all of their bits. Only merge reads it, and only if both have the same version of this format. A
+/// part of samples is a .npy array of the rows of its share, followed by a JSON object that gives their position among
+/// all rows. Both kinds end with a checksum of all earlier bytes and have the TaskChecksums of the task, so that a part
 /// that is damaged, or that belongs to another input or task, is never joined.
 ///
 /// Threads    everything here is pure, apart from reading and writing files. Private to workflow and the program.
