@@ -6,12 +6,12 @@
 
 #include "chronormal_c.h"
 
-#define EXPECT(condition)                                                               \
-  do {                                                                                  \
-    if (!(condition)) {                                                                 \
+#define EXPECT(condition)                                                                     \
+  do {                                                                                        \
+    if (!(condition)) {                                                                       \
       fprintf(stderr, "line %d: %s (%s)\n", __LINE__, #condition, chronormal_last_message()); \
-      return 1;                                                                         \
-    }                                                                                   \
+      return 1;                                                                               \
+    }                                                                                         \
   } while (0)
 
 /* A vertex as an engine has it: its position is not alone. */
@@ -22,8 +22,10 @@ typedef struct vertex {
 
 /* A tent of four faces over a square, whose tip moves sideways while the square is bent. */
 static const uint32_t kCorners[12] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
-static const vertex kFrom[5] = {{{0, 0, 0}, {0}}, {{2, 0, 0}, {0}}, {{2, 2, 0}, {0}}, {{0, 2, 0}, {0}}, {{1, 1, 1}, {0}}};
-static const vertex kTo[5] = {{{0, 0, 1}, {0}}, {{2, 0, -1}, {0}}, {{2, 2, 1}, {0}}, {{0, 2, -1}, {0}}, {{3, 1, 2}, {0}}};
+static const vertex kFrom[5] = {
+    {{0, 0, 0}, {0}}, {{2, 0, 0}, {0}}, {{2, 2, 0}, {0}}, {{0, 2, 0}, {0}}, {{1, 1, 1}, {0}}};
+static const vertex kTo[5] = {
+    {{0, 0, 1}, {0}}, {{2, 0, -1}, {0}}, {{2, 2, 1}, {0}}, {{0, 2, -1}, {0}}, {{3, 1, 2}, {0}}};
 
 static double at(int v, int c, double t) { return (1 - t) * kFrom[v].position[c] + t * kTo[v].position[c]; }
 
@@ -43,7 +45,8 @@ static void truth(int elements, int i, double t, double n[3]) {
   for (int face = 0; face < 4; ++face) {
     int counts = elements == CHRONORMAL_FACES ? face == i : 0;
     for (int corner = 0; corner < 3; ++corner)
-      if (elements != CHRONORMAL_FACES) counts |= (int)kCorners[3 * face + corner] == (elements == CHRONORMAL_VERTICES ? i : (int)kCorners[i]);
+      if (elements != CHRONORMAL_FACES)
+        counts |= (int)kCorners[3 * face + corner] == (elements == CHRONORMAL_VERTICES ? i : (int)kCorners[i]);
     if (counts) add_face(face, t, n);
   }
   const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
@@ -63,10 +66,12 @@ static int check_curves(int elements, size_t size) {
     const double t = step / 8.0;
     vertex shown[12];
     size_t zeros = 99;
-    EXPECT(chronormal_curves_unit_normals(curves, t, (chronormal_result){shown[0].position, sizeof(vertex)}, &zeros) == CHRONORMAL_DONE);
+    EXPECT(chronormal_curves_unit_normals(curves, t, (chronormal_result){shown[0].position, sizeof(vertex)}, &zeros) ==
+           CHRONORMAL_DONE);
     EXPECT(zeros == 0);
     float degrees[12];
-    EXPECT(chronormal_curves_errors(curves, t, (chronormal_vectors){shown[0].position, sizeof(vertex)}, degrees) == CHRONORMAL_DONE);
+    EXPECT(chronormal_curves_errors(curves, t, (chronormal_vectors){shown[0].position, sizeof(vertex)}, degrees) ==
+           CHRONORMAL_DONE);
     for (size_t i = 0; i < size; ++i) {
       double n[3];
       truth(elements, (int)i, t, n);
@@ -109,7 +114,8 @@ static int check_outputs(void) {
   int16_t octahedral[5][2];
   uint32_t bits[5];
   size_t zeros = 99;
-  for (int k = 0; k < 3; ++k) EXPECT(chronormal_curves_unit_normals(curves, times[k], (chronormal_result){whole[k], 0}, NULL) == CHRONORMAL_DONE);
+  for (int k = 0; k < 3; ++k)
+    EXPECT(chronormal_curves_unit_normals(curves, times[k], (chronormal_result){whole[k], 0}, NULL) == CHRONORMAL_DONE);
   chronormal_output outputs[3];
   for (size_t first = 0; first < 5; first += 2) { /* 0 and 1, 2 and 3, 4 */
     for (int k = 0; k < 3; ++k) {
@@ -187,12 +193,14 @@ static int check_blend(void) {
   const float sideways[3] = {0, 1, 0};
   const chronormal_target targets[2] = {{5, NULL, {deltas, 0}}, {1, &tip, {sideways, 0}}};
   chronormal_blend* blend = NULL;
-  EXPECT(chronormal_blend_create(&mesh, (chronormal_vectors){kFrom[0].position, sizeof(vertex)}, targets, 2, NULL, &blend) == CHRONORMAL_DONE);
+  EXPECT(chronormal_blend_create(&mesh, (chronormal_vectors){kFrom[0].position, sizeof(vertex)}, targets, 2, NULL,
+                                 &blend) == CHRONORMAL_DONE);
   EXPECT(chronormal_blend_size(blend) == 5);
   const double weights[2] = {0.375, 0};
   float normals[15];
   size_t zeros = 99;
-  EXPECT(chronormal_blend_unit_normals(blend, weights, (chronormal_result){normals, 0}, &zeros) == CHRONORMAL_DONE && zeros == 0);
+  EXPECT(chronormal_blend_unit_normals(blend, weights, (chronormal_result){normals, 0}, &zeros) == CHRONORMAL_DONE &&
+         zeros == 0);
   for (int v = 0; v < 5; ++v) {
     double n[3];
     truth(CHRONORMAL_VERTICES, v, 0.375, n);
@@ -246,7 +254,8 @@ static int check_motion(const char* folder) {
     FILE* file = fopen(names[k], "w");
     EXPECT(file != NULL);
     for (int v = 0; v < 5; ++v) fprintf(file, "v %g %g %g\n", at(v, 0, k), at(v, 1, k), at(v, 2, k));
-    for (int f = 0; f < 4; ++f) fprintf(file, "f %u %u %u\n", kCorners[3 * f] + 1, kCorners[3 * f + 1] + 1, kCorners[3 * f + 2] + 1);
+    for (int f = 0; f < 4; ++f)
+      fprintf(file, "f %u %u %u\n", kCorners[3 * f] + 1, kCorners[3 * f + 1] + 1, kCorners[3 * f + 2] + 1);
     EXPECT(fclose(file) == 0);
   }
   chronormal_motion* motion = NULL;
@@ -278,7 +287,8 @@ static int check_motion(const char* folder) {
 static int check_misuse(void) {
   const uint32_t beyond[3] = {0, 1, 5};
   const chronormal_mesh mesh = {5, 4, kCorners, NULL}, wrong = {5, 1, beyond, NULL};
-  const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)}, nothing = {NULL, 0}, crooked = {kFrom[0].position, 13};
+  const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)}, nothing = {NULL, 0},
+                           crooked = {kFrom[0].position, 13};
   chronormal_curves* curves = NULL;
   EXPECT(chronormal_curves_create(NULL, from, from, NULL, &curves) == CHRONORMAL_USAGE);
   EXPECT(chronormal_curves_create(&mesh, from, nothing, NULL, &curves) == CHRONORMAL_USAGE);
@@ -307,6 +317,7 @@ static int check_misuse(void) {
 int main(int count, char** arguments) {
   EXPECT(count == 3 && strcmp(chronormal_version(), arguments[1]) == 0);
   EXPECT(strcmp(chronormal_last_message(), "") == 0);
-  if (check_curves(CHRONORMAL_FACES, 4) || check_curves(CHRONORMAL_VERTICES, 5) || check_curves(CHRONORMAL_CORNERS, 12)) return 1;
+  if (check_curves(CHRONORMAL_FACES, 4) || check_curves(CHRONORMAL_VERTICES, 5) || check_curves(CHRONORMAL_CORNERS, 12))
+    return 1;
   return check_outputs() || check_newer_options() || check_blend() || check_motion(arguments[2]) || check_misuse();
 }

@@ -15,9 +15,9 @@
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/compare.h"
-#include "workflow/compare/face_figure.h"
 #include "chronormal/workflow/inspect.h"
 #include "chronormal/workflow/query.h"
+#include "workflow/compare/face_figure.h"
 
 namespace chronormal::inline internal {
 

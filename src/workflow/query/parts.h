@@ -29,7 +29,8 @@ namespace chronormal::inline internal {
                                        std::span<const SegmentPart> parts, std::uint64_t bytes_per_row,
                                        const QuerySpan& span) {
   const std::uint64_t rows = std::uint64_t{parts.size()} * rows_of_part;
-  return expansion_of(span).check(bytes_per_row * rows, "the answer for every " + std::string(what) + " of every segment");
+  return expansion_of(span).check(bytes_per_row * rows,
+                                  "the answer for every " + std::string(what) + " of every segment");
 }
 
 /// The vertices or corners whose normals are asked for: each with its vertex, and with the faces that its normal is the

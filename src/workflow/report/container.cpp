@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "io/bytes/binary.h"
-#include "workflow/json/object.h"
 #include "io/gltf/model/gltf_bake_mark.h"
+#include "workflow/json/object.h"
 #include "workflow/report/worst_figures.h"
 
 namespace chronormal::inline internal {
