@@ -73,8 +73,8 @@ Vec3d surface_velocity(const Segment& segment, const Ball& ball, const Crossing&
 /// Mirrors a velocity about a unit normal, elastically.
 Vec3d reflect(const Vec3d& velocity, const Vec3d& normal) { return velocity - (2 * dot(velocity, normal)) * normal; }
 
-/// The same response by other means, from positions alone: the contact time by bisection of the volume, recomputed from
-/// the corners at each step, and the normal by their cross product.
+/// Computes the same response by other means, from positions alone: the contact time by bisection of the volume,
+/// recomputed from the corners at each step, and the normal by their cross product.
 Vec3d independent_response(const Segment& segment, const Ball& ball, const Crossing& contact) {
   const std::array<Line, 3> moving = corners(segment, contact.face);
   const auto normal = [&moving](double t) {

@@ -1,5 +1,5 @@
-// How fast the error of each scheme falls as keyframes get closer, and what is left of the exact normals of straight
-// paths once the motion between keyframes is curved. docs/theory.md shows the output and proves the orders.
+// Measures how fast the error of each scheme falls as keyframes get closer, and what is left of the exact normals of
+// straight paths once the motion between keyframes is curved. docs/theory.md shows the output and proves the orders.
 //
 // Two smooth motions are sampled at the ends of 1, 2, 4, 8 and 16 segments: the built-in column, in which each layer
 // now truly turns, and a sheet that waves of random direction and speed run through. The first rows hold schemes
@@ -27,8 +27,8 @@ constexpr std::array<std::size_t, 5> kSegments = {1, 2, 4, 8, 16};
 
 constexpr int kSamples = 21;
 
-/// What the tangential acceleration of the exact normals makes of order 2 (eq. 55), in mean degrees: all of it, that
-/// along their path, and that across it.
+/// Returns what the tangential acceleration of the exact normals makes of order 2 (eq. 55), in mean degrees: all of it,
+/// that along their path, and that across it.
 struct Leading {
   double all = 0, along = 0, across = 0;
 };

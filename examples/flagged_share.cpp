@@ -1,4 +1,4 @@
-// How many elements float32 cannot carry, by the kind of triangle, and how far the results are from double.
+// Counts the elements that float32 cannot carry, by the kind of triangle, and how far the results are from double.
 // docs/theory.md shows the output.
 
 #include <algorithm>

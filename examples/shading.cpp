@@ -45,7 +45,7 @@ struct Normals {
   }
 };
 
-/// What a ray through one sample meets first: a face, and where in it.
+/// Holds what a ray through one sample meets first: a face, and where in it.
 struct Hit {
   std::size_t face = 0;
   std::array<double, 3> weights{};

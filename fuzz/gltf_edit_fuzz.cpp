@@ -3,8 +3,8 @@
 //     set /meshes/0/weights [0, 1]
 //     append /extras/list null
 //
-// What is no glTF file by itself becomes the extras of one. An edit is refused, or gives JSON in which every token
-// beside the pointers that it names is the old one, and the value of the last change is where it was put.
+// An input that is no glTF file by itself becomes the extras of one. An edit is refused, or gives JSON in which every
+// token beside the pointers that it names is the old one, and the value of the last change is where it was put.
 #include "chronormal/io/gltf_document.h"
 
 #include <algorithm>

@@ -27,13 +27,13 @@ async function bundled(entry, options = {}) {
 
 const styles = () => [readFileSync(fileURLToPath(import.meta.resolve('uplot/dist/uPlot.min.css')), 'utf8'), readFileSync(source('style.css'), 'utf8')].join('\n');
 
-// What stands in a script or a style must not end it.
+// Escapes text so that it cannot end the script or style around it.
 const inScript = (text) => text.replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
 
 // Fills the marks of a template; the text is taken as it is.
 const filled = (template, parts) => Object.entries(parts).reduce((page, [mark, text]) => page.replace(mark, () => text), template);
 
-// Whose work is inside: the licences of libraries, in a comment at the end of the page.
+// Names the authors of the work inside: the licences of libraries, in a comment at the end of the page.
 const licenceOf = (name) => readFileSync(join(dirname(fileURLToPath(import.meta.resolve(name))), '..', 'LICENSE'), 'utf8');
 function licences(more = {}) {
   const own = readFileSync(fileURLToPath(new URL('../LICENSE', import.meta.url)), 'utf8');

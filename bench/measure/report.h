@@ -1,4 +1,4 @@
-/// What a run says: tables for people, one JSON object for tools/make_page benchmarks.
+/// The output of a run: tables for people, one JSON object for tools/make_page benchmarks.
 #ifndef BENCH_MEASURE_REPORT_H_
 #define BENCH_MEASURE_REPORT_H_
 

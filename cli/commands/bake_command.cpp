@@ -269,7 +269,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (how.encoding == BakeEncoding::kKeys && how.tolerance.value_or(kHarmlessTolerance) < kLeastKeyTolerance)
     return misuse("--tolerance", "of --encode keys it must be 0.001 degrees or more");
   if (how.encoding == BakeEncoding::kKeys && options.input.is_curved()) {
-    // What is promised is about the curves: the pieces that they were cut into take their share of it.
+    // The promise is about the curves: the pieces that they were cut into take their share of it.
     const double asked = how.tolerance.value_or(kHarmlessTolerance),
                  pieces = make_path(options.input.path).value().tolerance;
     how.tolerance = asked - pieces;

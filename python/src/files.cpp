@@ -70,7 +70,7 @@ class ReadMotion : public ZeroedObject {
       : own_(std::make_unique<Motion>(motion_of(positions, offsets, corners, times))),
         motion_(own_.get()),
         name_("arrays") {}
-  // Of what state() has put into a pickle.
+  // Reads what state() has put into a pickle.
   explicit ReadMotion(const py::tuple& state);
   [[nodiscard]] py::tuple state() const;
 
@@ -266,7 +266,7 @@ ReadMotion::ReadMotion(const py::tuple& state) {
   motion_ = own_.get();
 }
 
-// What a call is about: files that were opened, or a Motion of Python, and the object in which its bytes lie.
+// The subject of a call: files that were opened, or a Motion of Python, and the object in which its bytes lie.
 struct Opened {
   std::optional<Input> input;
   const ReadMotion* made = nullptr;

@@ -273,7 +273,7 @@ TEST(Layers, the_oracle_shares_no_code_with_the_product) {
   EXPECT_EQ(text.find("#include \"chronormal"), std::string::npos);
 }
 
-// What an umbrella header includes of the folders.
+// Lists what an umbrella header includes of the folders.
 std::vector<std::string> listed_by(const std::string& umbrella) {
   std::vector<std::string> listed;
   for (const std::string& line : lines_of(read(kRoot / "include/chronormal" / umbrella))) {

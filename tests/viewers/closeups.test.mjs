@@ -25,7 +25,7 @@ const SHOWN = 'mirrored';  // the model of the picture
 const TORN = 10;         // degrees by which errors jump over an edge
 const NEAR = 0.35;       // how much of a model is seen, and how far around a vertex edges count as near
 
-// What viewers that add up deltas keep of the error in these pixels, and what Filament does, which keeps unit normals.
+// The share that viewers which add up deltas keep of the error in these pixels, and what Filament does, which keeps unit normals.
 // `facets` becomes hard by angles in a pose: no file holds that.
 const KEPT = { three: 1 / 8, babylon: 1 / 8, filament: 4 / 5 };
 const ROUNDING = 0.1;    // degrees that a viewer loses to eight bits of a texture, and to its own interpolation

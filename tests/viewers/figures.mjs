@@ -1,4 +1,4 @@
-// What the panel of a face shows, held against `compare --face` of the program, and its pictures against what follows from these numbers.
+// Tests of the panel of a face: what it shows, held against `compare --face` of the program, and its pictures against what follows from these numbers.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -73,7 +73,7 @@ export async function assertShown(page, expected) {
     const along = (axis) => 135 * zoom * (dot(normal, axis) - dot(middle, axis));
     assert.ok(Math.hypot(x - (170 + along(right)), y - (160 - along(up))) < 0.05 * zoom, `${name} is drawn elsewhere`);
   }
-  // What was drawn last is on top: the mark of the exact normal.
+  // The last thing drawn is on top: the mark of the exact normal.
   const last = shown.marks.at(-1), wanted = [1, 3, 5].map((i) => parseInt(last.fill.slice(i, i + 2), 16));
   assert.equal(last.name, 'exact');
   last.pixel.forEach((value, c) => assert.ok(Math.abs(value - wanted[c]) < 12, `the pixel of the exact normal is ${last.pixel}, not ${wanted}`));

@@ -35,7 +35,7 @@ window.compareInViewer = async (viewer, files, animation, moments, size) => {
   return results;
 };
 
-// What a viewer draws of each file at a time of an animation, held against the still file `truth`: {compared, picture},
+// Holds what a viewer draws of each file at a time of an animation, held against the still file `truth`: {compared, picture},
 // what compareNormals() says of each, and all of them beside the truth, lit alike, as a PNG in a data URL.
 window.closeUpInViewer = async (viewer, files, animation, { time, truth, view }, size) => {
   const { play, drawNormals, dispose, normalsAreOfView = false } = viewers[viewer];
@@ -75,7 +75,7 @@ window.sheetOfCloseUps = async (pictures, { width, height }) => {
   return urlOf(sheet, 'image/jpeg');
 };
 
-// What a function makes of each picture of normals that a viewer draws of a file, at times of its first animation.
+// Returns what a function makes of each picture of normals that a viewer draws of a file, at times of its first animation.
 async function ofPictures(viewer, file, times, view, size, made) {
   const { play, drawNormals, dispose } = viewers[viewer];
   const model = await loaded(viewer, file);

@@ -1,4 +1,4 @@
-// What is left of a bake after other people's tools: gltf-transform and gltfpack, as people run them. Run by ctest as
+// Tests what is left of a bake after other people's tools: gltf-transform and gltfpack, as people run them. Run by ctest as
 // `pipelines`; docs/web.md has the tables, whose lines and figures are checked here.
 //
 //   CHRONORMAL_PROGRAM        the program

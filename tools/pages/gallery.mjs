@@ -10,7 +10,7 @@ import { openPages } from '../../tests/viewers/web_page.mjs';
 
 const data = (name) => join(process.env.CHRONORMAL_DATA, name);
 
-// What is shown, and from where: `from` is a direction, `near` a share of the distance at which all is seen, `at` where the camera
+// The subjects, and from where each is seen: `from` is a direction, `near` a share of the distance at which all is seen, `at` where the camera
 // looks, in shares of the box of the mesh. The moment is that of the largest mean error.
 const SUBJECTS = [
   { name: 'face', input: [data('rigs/ict_capture.glb')], from: [0.4, 0.02, 1], near: 0.46, at: [0.5, 0.53, 0.65], scale: 20 },

@@ -18,7 +18,7 @@ SUZANNE, FACE = DATA / "rigs/blender_suzanne_two_keys.glb", DATA / "rigs/ict_cap
 STRESS, DANCE = DATA / "gltf/MorphStressTest/glTF/MorphStressTest.gltf", DATA / "sequences/rumba_13"
 OUT = ["-o", "out.glb"]
 
-# What is measured: its words, the arguments, and how often; the least time counts.
+# The calls that are measured: their words, the arguments, and how often; the least time counts.
 CASES = [
     ("`--version`: the start alone", ["--version"], 5),
     ("`audit` of MorphStressTest", ["audit", STRESS], 3),

@@ -42,7 +42,7 @@ export function makeBakePanel(input, { plan, bake }) {
     comparison(input), planned);
 }
 
-// What a bake made of it.
+// Holds the result of a bake.
 function comparison({ came, baked }) {
   if (!baked) return null;
   const row = (title, { audit }) => ({ cells: [title, degreesText(audit.mean_degrees), degreesText(audit.worst_degrees)] });

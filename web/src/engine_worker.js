@@ -8,5 +8,5 @@ serveTasks({
   },
 });
 
-// What nobody waits for, such as a module for which there is no memory.
+// Reports errors that nobody waits for, such as a module for which there is no memory.
 self.addEventListener('unhandledrejection', ({ reason }) => self.postMessage({ failed: String(reason?.message ?? reason) }));

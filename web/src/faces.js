@@ -20,7 +20,7 @@ export function faceOfNumber(part, number) {
 
 const vectorAt = (array, v) => [array[3 * v], array[3 * v + 1], array[3 * v + 2]];
 
-// Of keyframes that hold only what differs from the first.
+// Completes keyframes that hold only what differs from the first.
 function keyframeAt(keyframes, k, v) {
   const keyframe = keyframes.positions[k];
   if (ArrayBuffer.isView(keyframe)) return vectorAt(keyframe, v);

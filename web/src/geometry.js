@@ -5,10 +5,10 @@
 /** No element: a vertex of a flat primitive, or one without a face. */
 export const NONE = 0xffffffff;
 
-// What is left of terms that cancel is their rounding, and no direction.
+// Terms that cancel leave their rounding, which is no direction.
 const ROUNDING = 1e-13;
 
-// What a corner adds where the vector area of its face is n: n itself times the result. dot is e.f of its edges, sine the length
+// Returns what a corner adds where the vector area of its face is n: n itself times the result. dot is e.f of its edges, sine the length
 // of e x f, squares the product of e.e and f.f, and area is |n|.
 const WEIGHTS = {
   area: () => 1,
@@ -52,7 +52,7 @@ function addAreas({ triangles }, slots, p, normals, sizes) {
   }
 }
 
-// The same by another weighting, and of polygons. slots has the element of each corner, or starts where those of each corner begin
+// Does the same by another weighting, and for polygons. slots has the element of each corner, or starts where those of each corner begin
 // in slots.
 function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, normals, sizes) {
   const weightOf = WEIGHTS[weighting];
@@ -98,7 +98,7 @@ function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, norm
   }
 }
 
-// Which elements add up each corner: those that pairs of a corner and an element name, or else those of its vertex.
+// Lists the elements that add up each corner: those that pairs of a corner and an element name, or else those of its vertex.
 function elementsOfCorners({ element, elements, triangles, backs }, corners, terms) {
   if (!terms) {
     const slots = Uint32Array.from(corners, (v) => (element[v] === NONE ? elements : element[v]));

@@ -53,7 +53,7 @@ export const shownPlaces = ({ worst }) => worst.filter(({ degrees }) => degrees 
 export function worstPlaces(report, onVisit) {
   const places = shownPlaces(report);
   if (places.length === 0) return null;
-  // What all of them are in need not be said.
+  // A property that all of them share need not be said.
   const pieces = places.map(({ label }) => label.split(', '));
   const same = pieces[0].findIndex((piece, i) => i === pieces[0].length - 1 || pieces.some((other) => other[i] !== piece));
   const item = ({ part, motion, sample, degrees, label }, i) => {
@@ -101,7 +101,7 @@ export function weightSliders(player) {
 
 const TORN = '99.9 % of all errors are below that column. Over a torn edge the error jumps by more than 10 degrees: a fold is seen that the surface does not have. They are counted at a moment, on average.';
 
-// How many edges are torn at a moment, on average; nothing where edges are not known.
+// Returns how many edges are torn at a moment, on average; nothing where edges are not known.
 const tornText = ({ torn_edges: torn }) => (torn?.[0] === undefined ? '' : torn[0] > 0 && torn[0] < 10 ? torn[0].toFixed(1) : count(Math.round(torn[0])));
 
 /** What each viewer shows of the file, the whole audit in a row. */

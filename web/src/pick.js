@@ -1,4 +1,4 @@
-// What a ray meets: which vertex is under the pointer, and from where a vertex can be seen.
+// Finds where a ray meets the mesh: which vertex is under the pointer, and from where a vertex can be seen.
 
 /**
  * The nearest triangle that a ray meets.

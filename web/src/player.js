@@ -1,4 +1,4 @@
-// What is shown at the moment: which part, which motion and where in it, or weights set by hand; for which viewer, by which scheme.
+// Holds the state that is shown: which part, which motion and where in it, or weights set by hand; for which viewer, by which scheme.
 import { drive, formulasOf } from '../../js/src/drive.js';
 import { makeSequence } from './sequence.js';
 import { SCHEMES } from './schemes.js';

@@ -68,7 +68,7 @@ export function makeSequence(part) {
     computeNormals(p, n, sizes);
   }
 
-  // What belongs to a segment, and to a scheme in it: kept until another one is asked for.
+  // Keeps the data of a segment, and of a scheme in it, until another one is asked for.
   let segment = {}, fit = {};
   function enter(number) {
     if (segment.number === number) return;

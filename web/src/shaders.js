@@ -1,4 +1,4 @@
-// How a mesh is drawn: by the normals that are shown or those that are right, lit or as colours, or the angle between them.
+// Shaders that draw a mesh: by the normals that are shown or those that are right, lit or as colours, or the angle between them.
 
 export const LIT = 0, NORMALS = 1, ERROR = 2, PLAIN = 3;
 

@@ -73,7 +73,7 @@ function turnsOf({ element, normals }, base) {
   return turns;
 }
 
-// Whether a vertex is judged: its right normal looks at something that some target moves, or some target turns that or the vertex.
+// Tells whether a vertex is judged: its right normal looks at something that some target moves, or some target turns that or the vertex.
 function judgedVertices({ vertices, triangles, element, elements, truth }, moved, shown) {
   const has = ({ offsets }, v) => offsets[v] < offsets[v + 1];
   const elementMoves = new Uint8Array(elements), judged = new Uint8Array(vertices);

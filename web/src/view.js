@@ -121,7 +121,7 @@ export function makeView(stage, onPoint, onPick) {
     requestAnimationFrame(draw);
   }
 
-  // Of what is a number: weights of a file may be none, and then positions are none either.
+  // Takes numbers alone: weights of a file may be none, and then positions are none either.
   function bounds() {
     const { positions } = surface, least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity];
     for (const triangles of [part.triangles, part.coarse ?? []]) {
@@ -154,7 +154,7 @@ export function makeView(stage, onPoint, onPick) {
     step(begin);
   }
 
-  // How far away a sphere fills the smaller side of a pane.
+  // Returns how far away a sphere fills the smaller side of a pane.
   function distanceOf(size) {
     const [{ width, height }] = panes(), aspect = width / Math.max(height, 1);
     const half = Math.tan((camera.fov * Math.PI) / 360) * Math.min(1, aspect);

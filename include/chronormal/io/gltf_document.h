@@ -37,7 +37,7 @@ inline namespace internal {
 class Expansion;  // how much a file may make us hold or write
 }
 
-// What a bake leaves in a glTF file about itself: how normals are encoded, and what drives the targets that it added
+// The mark of a bake in a glTF file: how normals are encoded, and what drives the targets that it added
 // (docs/formats.md).
 //
 // Threads    values
@@ -88,7 +88,7 @@ inline constexpr std::array<BakeEncodingName, 5> kBakeEncodings = {{{BakeEncodin
 /// Finds an encoding by its name; returns nothing for an unknown name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;
 
-/// What a bake leaves in extras.chronormal of a mesh (docs/formats.md), for instance
+/// The mark that a bake leaves in extras.chronormal of a mesh (docs/formats.md), for instance
 ///     {"version": 2, "encode": "exact", "sequence": false,
 ///      "extras": [{"target": 2, "linear": [], "quadratic": [[0, 1, 1.0]]}]}
 struct GltfBakeMark {

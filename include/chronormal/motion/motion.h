@@ -55,7 +55,7 @@ class Topology {
 
   /// Builds triangles from three corners each. Errors and cost as for polygons().
   [[nodiscard]] static Result<Topology> triangles(std::size_t vertex_count, std::vector<std::uint32_t> corners);
-  /// The same of an index buffer of 16 bits, which is copied.
+  /// Does the same for an index buffer of 16 bits, which is copied.
   [[nodiscard]] static Result<Topology> triangles(std::size_t vertex_count, std::span<const std::uint16_t> corners);
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertex_count_; }

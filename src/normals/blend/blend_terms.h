@@ -34,8 +34,8 @@ struct BlendTerm {
 
 class BlendTerms {
  public:
-  /// Of the faces of a set, or of the elements of groups. Lists the faces that each target moves. set must be valid
-  /// (motion/motion.h) and groups those of its topology. O(corners + sizes of targets, log).
+  /// Tells of the faces of a set, or of the elements of groups. Lists the faces that each target moves. set must be
+  /// valid (motion/motion.h) and groups those of its topology. O(corners + sizes of targets, log).
   explicit BlendTerms(const BlendSet& set) : BlendTerms(set, nullptr) {}
   BlendTerms(const BlendSet& set, const NormalGroups& groups) : BlendTerms(set, &groups) {}
 

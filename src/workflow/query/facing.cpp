@@ -18,7 +18,7 @@ struct Interval {
   std::array<double, 2> from{}, to{};
 };
 
-// Of a face, vertex or corner.
+// Names a face, vertex or corner.
 struct Front {
   std::size_t element = 0;
   Interval when;

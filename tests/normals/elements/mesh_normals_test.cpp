@@ -158,7 +158,7 @@ TEST(MeshNormals, a_fitted_weighting_states_its_bound) {
   EXPECT_EQ(normals_at(normals.value(), 0), shown);
 }
 
-// What is shared is decided by the first segment, in which 4 and 5 lie where 1 and 2 do; the others may be elsewhere.
+// Sharing is decided by the first segment, in which 4 and 5 lie where 1 and 2 do; the others may be elsewhere.
 TEST(MeshNormals, another_object_knows_who_shares_a_normal_and_nothing_of_where_vertices_are) {
   std::vector<float> apart = kTo;
   apart[3 * 4] += 0.25F;

@@ -35,7 +35,7 @@ MotionStream stream_of(std::size_t keyframes, std::vector<std::size_t>& reads) {
   return MotionStream(std::move(outline), read, 0);
 }
 
-// What a segment is worth, from what is in memory.
+// Returns what a segment is worth, from what is in memory.
 Numbered looked_at(const Motion& motion, std::size_t s) {
   const auto& [from, to] = motion.segments[s];
   if (motion.keyframes[from].positions.empty() || motion.keyframes[to].positions.empty()) {

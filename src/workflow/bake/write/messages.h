@@ -15,7 +15,7 @@ namespace chronormal::inline internal {
 /// Returns the name of a correction target in a mesh whose targets have names: "chronormal w0*w1".
 [[nodiscard]] std::string name_of_extra(const GltfExtraTarget& extra);
 
-/// What drives the extra targets of all meshes, as the text of a file (docs/formats.md).
+/// Writes how to drive the correction targets of all meshes, as the text of a file (docs/formats.md).
 [[nodiscard]] std::string drivers_file(const GltfDocument& document, const std::vector<BakedMesh>& meshes);
 
 /// A sentence about a mesh.
