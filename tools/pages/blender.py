@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/blender.md, in a window of Blender with the add-on. Run by tools/make_page blender:
+"""Draws the pictures of docs/artists.md, in a window of Blender with the add-on. Run by tools/make_page blender:
 
     blender --factory-startup --enable-event-simulate --python blender.py -- PROGRAM MODELS FOLDER
 

@@ -1,4 +1,4 @@
-"""Draws the picture of docs/vtk.md, the stock filter of VTK beside ours half-way through a morph, and prints the table of
+"""Draws the picture of docs/simulation.md, the stock filter of VTK beside ours half-way through a morph, and prints the table of
 that page, the errors of both on the built-in morphs.
 
     vtk.py PROGRAM [--check]
