@@ -253,7 +253,7 @@ chronormal_status chronormal_curves_write(const chronormal_curves* curves, const
         return is_real ? normals.unit_normals(times[k], result, range) : 0;
       });
     };
-    // Where anything is wrong, no output is written.
+    // No output is written unless all of the arguments are right.
     for (std::size_t k = 0; k < count; ++k) {
       if (!(times[k] >= 0 && times[k] <= 1)) return misuse("times", "t lies between 0 and 1, the two ends");
       if (const auto checked = write(k, false); !checked) return fail(checked.error());

@@ -137,7 +137,7 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///               (the direction half way between the unit normals at both ends, which lerp and nlerp have as their
 ///               mean), and ends_off (degrees from mean_unit to it): one row for each segment and face
 ///     span      the same without segment, over all parts together, weighed by their duration; not for targets
-/// Of vertices or corners, the column is `vertex` or `corner`, and all is made from integers. Errors: of make_groups();
+/// For vertices or corners the column is `vertex` or `corner`, and integers decide all. Errors: of make_groups();
 /// of segment_parts().
 [[nodiscard]] Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span = {},
                                                 const QueryProgress& progress = {},

@@ -3,7 +3,7 @@
 ///
 /// "Nearly" means that |n(t)| falls below kCollapseShare of the largest control normal: far above what float32 rounds,
 /// so that a face which was made to collapse and then rounded is among them, and far below any length that was meant.
-/// Whether it vanishes indeed is another question, which analysis/signs.h decides exactly.
+/// The functions of analysis/signs.h decide exactly whether it vanishes.
 ///
 /// Source     docs/theory.md, section 3; the minima of |n(t)| are the roots of a cubic (core/polynomial.h).
 /// Threads    pure: no allocation, no throw.

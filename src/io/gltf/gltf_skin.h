@@ -5,7 +5,7 @@
 ///                     vertex of the mesh to where that joint carries it (section 3.7.3.3 of the specification). The
 ///                     place of the node that has the skin does not matter.
 ///
-/// None of this is checked when a document is opened, so that a file whose skin makes no sense can still be read by
+/// Opening a document checks nothing of this, so that a file whose skin makes no sense can still be read by
 /// callers that do not need it.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
 #define CHRONORMAL_IO_GLTF_GLTF_SKIN_H_

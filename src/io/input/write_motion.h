@@ -10,7 +10,7 @@
 
 namespace chronormal::inline internal {
 
-/// The same, where expansion is that of the file that the motion came from: a file for each keyframe repeats all faces.
+/// Does the same within the expansion of the input: a file for each keyframe repeats all faces.
 /// Errors: also those of expansion.check().
 [[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion,
                                   bool weld = true);
