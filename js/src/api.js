@@ -1,6 +1,7 @@
 // chronormal in JavaScript: true normals for meshes that deform. Bytes go in; bytes and reports come out. Nothing
 // touches a file system or the network. index.d.ts has the types.
 import { ChronormalError } from './error.js';
+import { readNpy } from './npy.js';
 import { flagsOf } from './options.js';
 import { compile } from './run.js';
 import { perform } from './task.js';
@@ -62,8 +63,8 @@ async function execute(platform, task, options) {
 }
 
 // Copies the inputs, so that the caller may change them during the call. `more` turns the folder for outputs into
-// further arguments.
-function taskOf(command, input, options, more = () => []) {
+// arguments that say what is written.
+function taskOf(command, input, options, more = () => ['--json']) {
   const flags = flagsOf(command, options);
   const copyOf = (data) => new Uint8Array(bytesOf(data));
   const bytes = copyOf(input), name = options.name ?? nameOf(bytes);
@@ -74,7 +75,7 @@ function taskOf(command, input, options, more = () => []) {
   while (folders.has(outputs)) outputs += '_';
   return {
     // A single "-" would mean standard input, and a name in brackets a list.
-    args: [command, '--json', ...more(outputs), ...flags, '--', /^(-|\[.*\])$/s.test(name) ? `./${name}` : name],
+    args: [command, ...more(outputs), ...flags, '--', /^(-|\[.*\])$/s.test(name) ? `./${name}` : name],
     files,
     outputs,
     memoryLimit: options.memoryLimit,
@@ -103,9 +104,14 @@ export function apiOf(platform) {
     compare: report('compare'),
     async bake(input, options = {}) {
       const base = bakedName(String(options?.name ?? nameOf(bytesOf(input))));
-      const done = await execute(platform, taskOf('bake', input, options, (outputs) => ['-o', `${outputs}/${base}`]), options);
+      const done = await execute(platform, taskOf('bake', input, options, (outputs) => ['--json', '-o', `${outputs}/${base}`]), options);
       const { [base]: bytes, ...files } = done.files;
       return { bytes, files, ...resultOf(done) };
+    },
+    async sample(input, options = {}) {
+      const { files, stderr } = await execute(platform, taskOf('sample', input, options, (outputs) => ['-o', `${outputs}/normals.npy`]), options);
+      const { numbers, shape } = readNpy(files['normals.npy']);
+      return { normals: numbers, shape, warnings: warningsOf(stderr) };
     },
   };
 }

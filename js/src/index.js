@@ -3,4 +3,4 @@ import { apiOf } from './api.js';
 import * as browser from './platform.browser.js';
 
 export { ChronormalError } from './error.js';
-export const { audit, bake, compare, inspect } = /* @__PURE__ */ apiOf(browser);
+export const { audit, bake, compare, inspect, sample } = /* @__PURE__ */ apiOf(browser);

@@ -14,6 +14,11 @@ const LIST = [(value) => isWord(value) || (Array.isArray(value) && value.length 
 const isNumber = (text) => text.trim() !== '' && Number.isFinite(Number(text));
 const RANGE = [(value) => isText(value) && value.split(':').length === 2 && value.split(':').every(isNumber), "two numbers, such as '-1:1'"];
 const NAME = [(value) => isText(value) || NUMBER[0](value), 'a string or a number'];
+const WORD = [isWord, 'a word'];
+const isNumbers = (value) => Array.isArray(value) && value.length > 0 && value.every(NUMBER[0]);
+const TIMES = [(value) => isText(value) || NUMBER[0](value) || isNumbers(value), "a number, an array of numbers, or a string such as '0:0.1:2'"];
+const isPoses = (value) => Array.isArray(value) && value.length > 0 && value.every(isNumbers);
+const WEIGHTS = [(value) => isText(value) || isNumbers(value) || isPoses(value), 'an array of numbers, an array of such arrays, or a string'];
 
 // Options of a call: for the functions, not for the program.
 const isObject = (value) => typeof value === 'object' && value !== null;
@@ -45,6 +50,10 @@ const OPTIONS = {
     weighting: TEXT, certify: FLAG, tolerance: NUMBER, face: NAME, blend: NUMBER, active: NUMBER, seed: NUMBER, truth: NUMBER, noTimes: FLAG,
   },
   inspect: { ...READ, ...MESHES, world: FLAG },
+  sample: {
+    ...READ, ...MESHES, world: FLAG, times: TIMES, weights: WEIGHTS, scheme: WORD, step: NUMBER, elements: TEXT, crease: NUMBER, hardEdges: WORD,
+    noWeld: FLAG, weighting: TEXT, length: TEXT,
+  },
 };
 
 const flagOf = (name) => `--${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}`;
@@ -80,8 +89,11 @@ export function flagsOf(command, options) {
     const [isRight, what] = known[name];
     if (!isRight(value)) throw new TypeError(`${name}: it has to be ${what}`);
     if (Object.hasOwn(CALL, name) || value === false) continue;
-    flags.push(flagOf(name));
-    if (value !== true) flags.push(Array.isArray(value) ? value.join(',') : String(value));
+    // Each array in an array repeats the option, as --weights for several poses.
+    for (const each of isPoses(value) ? value : [value]) {
+      flags.push(flagOf(name));
+      if (each !== true) flags.push(Array.isArray(each) ? each.join(',') : String(each));
+    }
   }
   return flags;
 }

@@ -123,6 +123,33 @@ export interface InspectOptions extends MotionOptions {
   world?: boolean;
 }
 
+export interface SampleOptions extends MotionOptions {
+  world?: boolean;
+  /** Seconds: one or several, `FIRST:STEP:LAST`, or `keys`. */
+  times?: number | number[] | string;
+  /** A weight for each morph target, or such an array for each pose; or `NAME=WEIGHT,NAME=WEIGHT`, and other targets are at 0. */
+  weights?: number[] | number[][] | string;
+  /** Interpolates between the exact normals at the ends of each segment. Default: all normals are exact. */
+  scheme?: Scheme;
+  /** Plays the scheme in so many steps a segment, each made from the one before. */
+  step?: number;
+  elements?: Elements;
+  crease?: number;
+  hardEdges?: 'groups' | 'normals';
+  noWeld?: boolean;
+  weighting?: Weighting;
+  /** 'area': the length of a face's normal is twice its area. Default: 'unit'. */
+  length?: 'unit' | 'area';
+}
+
+export interface Sampled {
+  /** x, y and z of each normal, in the order of `shape`; (0, 0, 0) where there is none. */
+  normals: Float32Array;
+  /** The numbers of times or poses, of elements, and of coordinates, which are 3. */
+  shape: number[];
+  warnings: string[];
+}
+
 export interface Judged<Report> {
   report: Report;
   /** Messages of the program besides its result, one line each. */
@@ -152,3 +179,4 @@ export function bake(input: Bytes, options: BakeOptions & { plan: true }): Promi
 export function audit(input: Bytes, options?: AuditOptions): Promise<Judged<AuditReport>>;
 export function inspect(input: Bytes, options?: InspectOptions): Promise<Judged<InspectReport>>;
 export function compare(input: Bytes, options?: CompareOptions): Promise<Judged<CompareReport>>;
+export function sample(input: Bytes, options?: SampleOptions): Promise<Sampled>;

@@ -331,7 +331,7 @@ def audit(source: _Source = None, *, rule: str | None = None, weighting: _Weight
 def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int = 21,
             access: Literal["random", "sequential"] = "random", elements: _Elements = "faces", crease: float = 180.0,
             weld: bool = True, times: bool = False, certify: bool = False, tolerance: float | None = None,
-            sample: str | None = None, base: _Path | None = None, fps: float = 1.0, animation: str | int | None = None,
+            face: int | tuple[int, int] | None = None, sample: str | None = None, base: _Path | None = None, fps: float = 1.0, animation: str | int | None = None,
             world: bool = False, path: str = "linear", loop: bool = False, strict: bool = False) -> dict[str, Any]:
     """Return ways to interpolate normals held against the exact ones: the dict of `chronormal compare --json`.
 
@@ -339,11 +339,20 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
     times      whether measured times are in it, which differ from run to run
     certify    whether to bound the largest error of each scheme at any time
     tolerance  degrees: certify, and find the cheapest scheme that is never off by more
+    face       one face, in segment 0, or (face, segment): the dict of `--face`, with what each scheme makes of its normal; of the
+               options above it takes schemes and samples
     source     as for read(), or a Motion; sample, base, fps, animation, world, path, loop, strict: as for read()
     """
     if access not in ("random", "sequential"):
         raise ValueError("access: it must be random or sequential")
     opened = _source(source, sample, base, fps, animation, world, path, loop=loop, strict=strict)
+    if face is not None:
+        for name, given in {"access": access != "random", "elements": elements != "faces", "crease": crease != 180, "weld": not weld,
+                            "times": times, "certify": certify, "tolerance": tolerance is not None}.items():
+            if given:
+                raise ValueError(f"{name}: it does not go with face, which looks at one face")
+        number, segment = face if isinstance(face, tuple) else (face, 0)
+        return _json.loads(_chronormal.figure_of_face(opened, list(schemes), samples, number, segment))
     text, _ = _chronormal.compare(opened, list(schemes), samples, access == "sequential", elements, crease, weld, times,
                                   False, certify, tolerance)
     return _json.loads(text)
@@ -434,15 +443,17 @@ def collapse(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None
 
 def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, direction: ArrayLike | None = None,
            eye: ArrayLike | None = None, eye_to: ArrayLike | None = None, silhouettes: bool = False,
-           start: float | None = None, end: float | None = None) -> dict[str, NDArray[Any]]:
-    """Return when faces show their front to a viewer: a dict of arrays with a row for each interval.
+           start: float | None = None, end: float | None = None, elements: _Elements = "faces", crease: float | None = None,
+           weld: bool = True) -> dict[str, NDArray[Any]]:
+    """Return when faces show their front to somebody who looks: a dict of arrays with a row for each interval.
 
     positions, faces, times, start, end   as for collapse()
     direction    (3,) the viewer is infinitely far away in this direction; or
     eye, eye_to  (3,) the viewer is at eye, and moves straight to eye_to over all times; None: stands still
     silhouettes  whether to list edges between a front and a back, too
+    elements, crease, weld   as for curves(): "vertices" and "corners" are judged by their own normals, from where they are
 
-    segment, face             where
+    segment, face             where; vertex or corner in place of face for these elements
     from, from_upper          the interval begins between these t of the segment
     to_lower, to              and ends between these
     silhouette_vertices, silhouette_faces   (rows, 2), with silhouette_segment, silhouette_from, ... as above
@@ -456,7 +467,7 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
     if first.shape != (3,) or last.shape != (3,):
         raise ValueError("direction: a place or a direction is an array of 3 numbers")
     return _chronormal.query_facing(*_keyframes(positions, faces, times), start, end, eye is not None, first, last,
-                                    silhouettes)
+                                    silhouettes, elements, crease, weld)
 
 
 def contain(positions: ArrayLike, faces: _Faces, points: ArrayLike, times: ArrayLike | None = None, *,
@@ -494,12 +505,13 @@ def cones(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *
 
 
 def shutter(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, start: float | None = None,
-            end: float | None = None) -> dict[str, NDArray[Any]]:
+            end: float | None = None, elements: _Elements = "faces", crease: float | None = None, weld: bool = True) -> dict[str, NDArray[Any]]:
     """Return mean normals while a shutter is open: a dict of arrays with a row for each segment and face.
 
     positions, faces, times, start, end   as for collapse()
+    elements, crease, weld   as for curves()
 
-    segment, face   where
+    segment, face   where; vertex or corner in place of face for these elements
     mean            (rows, 3) mean of n(t), whose length is twice the area of a triangle
     mean_unit       (rows, 3) mean of the unit normal, and error: how far the exact one may be from it
     length          of mean_unit: 1 where normals stay the same, 0 where they cancel
@@ -507,4 +519,4 @@ def shutter(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None,
     ends, ends_off  (rows, 3) the direction that interpolation between the ends has as its mean, and how many degrees it is off
     span_face, span_mean ...   the same over all segments together, where there are several
     """
-    return _chronormal.query_shutter(*_keyframes(positions, faces, times), start, end)
+    return _chronormal.query_shutter(*_keyframes(positions, faces, times), start, end, elements, crease, weld)

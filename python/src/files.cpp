@@ -369,6 +369,17 @@ py::tuple compare_source(const py::dict& source, const std::vector<std::string>&
   return py::make_tuple(compare_json({std::move(found)}, false, with_times), dicts_of(std::move(tables)));
 }
 
+std::string figure_of_face(const py::dict& source, const std::vector<std::string>& schemes, std::size_t samples,
+                           std::size_t face, std::size_t segment) {
+  Opened input = open(source, KeepShading::kNone);
+  const FaceFigure figure = without_gil([&]() -> Result<FaceFigure> {
+    const Result<const Motion*> motion = input.motion();
+    if (!motion) return motion.error();
+    return face_figure(*motion.value(), {face, segment, schemes, samples});
+  });
+  return face_figure_json(input.name(), figure);
+}
+
 std::string inspect_source(const py::dict& source) {
   require(source["motion"].is_none(), "source", "inspect() looks at what files hold: give files or bytes");
   Input input = open_files(source, true, KeepShading::kNone);
@@ -440,6 +451,7 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
 void add_files(py::module_& module) {
   module.def("audit", &audit_source);
   module.def("compare", &compare_source);
+  module.def("figure_of_face", &figure_of_face);
   module.def("inspect", &inspect_source);
   module.def("bake", &bake_source);
   module.def("schemes", [] {

@@ -3,6 +3,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "arguments.h"
 #include "computation.h"
 
 namespace chronormal::python {
@@ -48,11 +49,13 @@ py::dict ask_collapse(const Positions& positions, const Indices& offsets, const 
 
 py::dict ask_facing(const Positions& positions, const Indices& offsets, const Indices& corners,
                     const Array<double>& times, std::optional<double> start, std::optional<double> end, bool is_eye,
-                    const Array<double>& from, const Array<double>& to, bool silhouettes) {
+                    const Array<double>& from, const Array<double>& to, bool silhouettes, const std::string& elements,
+                    std::optional<double> crease, bool weld) {
+  const ElementOptions asked = element_options(elements, crease, weld);
   const Motion motion = motion_of(positions, offsets, corners, times);
   const auto vector = [](const Array<double>& a) { return Vec3d{a.at(0), a.at(1), a.at(2)}; };
   const View view{is_eye, vector(from), vector(to)};
-  return answer_of([&] { return query_facing(motion, view, silhouettes, {start, end}); });
+  return answer_of([&] { return query_facing(motion, view, silhouettes, {start, end}, {}, asked); });
 }
 
 PointPaths paths_of(const Array<double>& points) {
@@ -90,9 +93,11 @@ py::dict ask_cones(const Positions& positions, const Indices& offsets, const Ind
 }
 
 py::dict ask_shutter(const Positions& positions, const Indices& offsets, const Indices& corners,
-                     const Array<double>& times, std::optional<double> start, std::optional<double> end) {
+                     const Array<double>& times, std::optional<double> start, std::optional<double> end,
+                     const std::string& elements, std::optional<double> crease, bool weld) {
+  const ElementOptions asked = element_options(elements, crease, weld);
   const Motion motion = motion_of(positions, offsets, corners, times);
-  return answer_of([&] { return query_shutter(motion, {start, end}); });
+  return answer_of([&] { return query_shutter(motion, {start, end}, {}, asked); });
 }
 
 py::tuple cut(const Positions& positions, const Indices& offsets, const Indices& corners, const Array<double>& times,

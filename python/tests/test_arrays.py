@@ -63,7 +63,8 @@ class MotionTest(unittest.TestCase):
             np.savez(file, positions=self.positions, faces=self.faces, times=self.times)
             for ask in (cn.audit, lambda source: cn.audit(source, rule="slerp", samples=7, tolerance=2),
                         lambda source: cn.compare(source, schemes=["linear", "slerp"]),
-                        lambda source: cn.compare(source, elements="vertices", tolerance=1)):
+                        lambda source: cn.compare(source, elements="vertices", tolerance=1),
+                        lambda source: cn.compare(source, face=(1, 2), schemes=["linear"])):
                 found, expected = ask(self.motion), ask(file)
                 found.pop("input"), expected.pop("input")
                 self.assertEqual(found, expected)
@@ -86,6 +87,23 @@ class MotionTest(unittest.TestCase):
             cn.motion(self.positions[:1], self.faces)
         with self.assertRaises(ValueError):
             cn.motion(self.positions, self.faces, self.times[::-1])
+
+    def test_a_figure_has_the_exact_normals_of_its_face_and_the_errors_of_schemes(self):
+        figure = cn.compare(self.motion, face=(1, 2), schemes=["linear", "quaternion:edge"], samples=11)["figure"]
+        t = np.linspace(0, 1, 11)
+        ends = [unit(n) for n in np.array(figure["normals"]).reshape(-1, 3)[[0, -1]]]
+        corners = (1 - t)[:, None, None] * self.positions[2][self.faces[1]] + t[:, None, None] * self.positions[3][self.faces[1]]
+        exact = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        np.testing.assert_allclose(np.array(figure["normals"]).reshape(-1, 3), unit(exact), atol=1e-6)
+        np.testing.assert_allclose(figure["lengths"], np.linalg.norm(exact, axis=1), rtol=1e-6)
+        linear = unit((1 - t)[:, None] * ends[0] + t[:, None] * ends[1])
+        degrees = np.degrees(np.arccos(np.clip((linear * unit(exact)).sum(1), -1, 1)))
+        np.testing.assert_allclose(figure["schemes"][0]["degrees"], degrees, atol=1e-3)
+        self.assertEqual(figure["schemes"][1]["scheme"], "quaternion:edge")
+        with self.assertRaisesRegex(ValueError, "there is no face"):
+            cn.compare(self.motion, face=10**6)
+        with self.assertRaisesRegex(ValueError, "^certify: it does not go with face"):
+            cn.compare(self.motion, face=0, certify=True)
 
     def test_is_pickled_and_copied_with_all_it_has(self):
         quads = cn.motion(self.positions, [[0, 1, 7, 6], [1, 2, 8]])

@@ -56,6 +56,36 @@ class QueryTest(unittest.TestCase):
             clear = np.abs(sides) > 1e-9
             np.testing.assert_array_equal(is_front[clear], (sides > 0)[clear])
 
+    def test_random_vertices_and_corners_show_the_sides_of_their_own_normals(self):
+        random = np.random.default_rng(55)
+        faces = np.array([[i, (i + 1) % 40, 40 + i % 9] for i in range(40)] + [[i, (i + 7) % 40, 40 + i % 5] for i in range(40)])
+        positions = random.uniform(-1, 1, (2, 49, 3)).astype(np.float32)
+        eye = np.float32([3, 1, 2])
+        for elements, column, where in (("vertices", "vertex", np.arange(49)), ("corners", "corner", faces.ravel())):
+            found = cn.facing(positions, faces, eye=eye, elements=elements)
+            index = found[column]
+            for t in random.uniform(0, 1, 20):
+                points = (1 - t) * positions[0].astype(float) + t * positions[1]
+                corners, sums = points[faces], np.zeros((49, 3))
+                for k in range(3):
+                    np.add.at(sums, faces[:, k], np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+                sides = np.einsum("nk,nk->n", sums[where], eye - points[where])
+                is_front = np.zeros(len(where), bool)
+                is_front[index[(found["from"] <= t) & (t <= found["to"])]] = True
+                clear = np.abs(sides) > 1e-9
+                self.assertTrue(clear.any())
+                np.testing.assert_array_equal(is_front[clear], (sides > 0)[clear])
+
+    def test_means_of_vertices_are_those_of_many_samples(self):
+        random = np.random.default_rng(56)
+        positions = random.uniform(-1, 1, (2, 4, 3)).astype(np.float32)
+        faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1]])
+        found = cn.shutter(positions, faces, elements="vertices")
+        times = (np.arange(20000) + 0.5) / 20000
+        normals = cn.curves(positions[0], positions[1], faces).unit_normals(times).astype(float)
+        np.testing.assert_allclose(found["mean_unit"][np.argsort(found["vertex"])], normals.mean(0)[np.sort(found["vertex"])],
+                                   atol=1e-3)
+
     def test_misuse_names_the_argument(self):
         for arguments, place in (({}, "direction"), ({"eye": [1, 2]}, "direction"), ({"eye_to": [1, 2, 3]}, "direction"),
                                  ({"direction": [0, 0, 1], "eye_to": [1, 2, 3]}, "eye_to"),
@@ -66,6 +96,10 @@ class QueryTest(unittest.TestCase):
             cn.collapse(SQUARE, FACES)
         with self.assertRaisesRegex(ValueError, "times"):
             cn.collapse(KEYFRAMES, FACES, times=[0, 1])
+        with self.assertRaisesRegex(ValueError, "edges"):
+            cn.facing(KEYFRAMES, FACES, direction=[0, 0, 1], elements="edges")
+        with self.assertRaisesRegex(ValueError, "crease"):
+            cn.shutter(KEYFRAMES, FACES, crease=30, elements="vertices")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ import { randomNumbers } from './random.mjs';
 const { folder, installed, tarball, remove, load, native, wasm, node } = install();
 after(remove);
 
-const { bake, audit, inspect, compare, ChronormalError } = await load('index.node.js');
+const { bake, audit, inspect, compare, sample, ChronormalError } = await load('index.node.js');
 const readme = readFileSync(join(installed, 'README.md'), 'utf8');
 
 // The face has two targets and an animation: convert makes it from the built-in bumps, and it is not baked yet.
@@ -103,6 +103,27 @@ test('a sequence on curved paths has the report and the bytes of the command lin
   assert.deepEqual(Buffer.from(bytes), readFileSync(join(folder, 'turn.glb')));
   assert.equal(report.path, path);
   await assert.rejects(audit(turn, { name, path: 'round' }), /there is no path 'round'/);
+});
+
+test('sampled normals are those that the command line writes', async () => {
+  for (const [options, flags] of [
+    [{ weights: [0.5, 0.25] }, ['--weights', '0.5,0.25']],
+    [{ weights: [[1, 0], [0, 1], [-0.5, 2]], elements: 'faces' }, ['--weights', '1,0', '--weights', '0,1', '--weights', '-0.5,2', '--elements', 'faces']],
+    [{ animation: 0, times: [0, 0.25, 0.5], scheme: 'quaternion:matrix' }, ['--animation', '0', '--times', '0,0.25,0.5', '--scheme', 'quaternion:matrix']],
+    [{ animation: 0, times: 'keys', elements: 'corners', crease: 30 }, ['--animation', '0', '--times', 'keys', '--elements', 'corners', '--crease', '30']],
+  ]) {
+    const { status, stderr } = native(['sample', 'bumps.glb', ...flags, '-o', 'sampled.npy']);
+    assert.equal(status, 0, stderr);
+    const file = readFileSync(join(folder, 'sampled.npy')), header = file.subarray(10, 10 + file.readUInt16LE(8)).toString();
+    rmSync(join(folder, 'sampled.npy'));
+    for (const worker of [true, false]) {
+      const { normals, shape } = await sample(face, { ...options, worker });
+      assert.ok(header.includes(`'shape': (${shape.join(', ')})`), header);
+      assert.deepEqual(Buffer.from(normals.buffer, normals.byteOffset, normals.byteLength), file.subarray(10 + file.readUInt16LE(8)));
+    }
+  }
+  await assert.rejects(sample(face, { weights: [0.5] }), { name: 'ChronormalError', code: 2 });
+  await assert.rejects(sample(face, { weights: [] }), TypeError);
 });
 
 test('wrong input is refused in the words of the program, and the next call works', async () => {
@@ -303,7 +324,7 @@ test('npx chronormal report writes the page of the program', () => {
 
 test('messages name the kind of a file, and have no long fractions', async () => {
   const picture = readFileSync(join(installed, 'head.png'));
-  for (const call of [audit, bake, inspect, compare]) {
+  for (const call of [audit, bake, inspect, compare, sample]) {
     await assert.rejects(call(picture), { name: 'ChronormalError', code: 3, message: 'input.gltf, byte 0: this is a PNG image, not glTF' });
   }
   await assert.rejects(inspect(new TextEncoder().encode('<!DOCTYPE html><p>404')), /an HTML page, not glTF/);

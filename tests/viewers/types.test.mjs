@@ -13,12 +13,12 @@ const { folder, remove, load, native } = install();
 after(remove);
 
 const { flagsOf } = await load('options.js');
-const COMMANDS = ['audit', 'bake', 'compare', 'inspect'];
+const COMMANDS = ['audit', 'bake', 'compare', 'inspect', 'sample'];
 const REPORTS = { audit: 'AuditReport', bake: 'BakeReport', compare: 'CompareReport', inspect: 'InspectReport' };
 
 // The options that only a call has, and the options of the program that serve people and files of a system.
 const CALL = ['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit'];
-const FOR_PEOPLE = ['help', 'json', 'csv', 'output', 'force', 'quiet', 'sample', 'each', 'errors', 'drivers', 'shard', 'resume', 'table'];
+const FOR_PEOPLE = ['help', 'json', 'csv', 'output', 'force', 'quiet', 'sample', 'each', 'errors', 'drivers', 'shard', 'resume', 'table', 'format'];
 
 const listed = (name) => readFileSync(new URL(`../cli/${name}`, import.meta.url), 'utf8').trim().split('\n').map((line) => line.split(' '));
 const optionsOf = (command) => listed('stable_options.txt').filter(([of, option]) => of === command && !FOR_PEOPLE.includes(option.slice(2)))
@@ -37,7 +37,7 @@ function checked(text) {
 
 test('the types are right', () => {
   const { faults } = checked(`
-import { audit, bake, inspect, ChronormalError, type Baked } from 'chronormal';
+import { audit, bake, inspect, sample, ChronormalError, type Baked } from 'chronormal';
 import { chronormal, command } from 'chronormal/gltf-transform';
 import { attach as attachBabylon, detach as detachBabylon } from 'chronormal/babylon';
 import { attach as attachPlayCanvas, detach as detachPlayCanvas } from 'chronormal/playcanvas';
@@ -56,6 +56,8 @@ export async function use(input: Uint8Array, document: Document): Promise<number
   await audit(bytes, { name: 'walk.npz', path: 'catmull-rom' });
   await audit(bytes, { for: 'three', weights: '-1:1' });
   await bake(input, { for: 'three' });
+  const { normals, shape } = await sample(bytes, { weights: [[0, 1], [1, 0]] });
+  const first: number = normals[0] * shape[0];
   // @ts-expect-error: a plan is no file
   (await bake(input, { plan: true })).bytes;
   // @ts-expect-error: there is no such option
@@ -66,7 +68,7 @@ export async function use(input: Uint8Array, document: Document): Promise<number
   await audit(bytes, { name: 'walk.npz', path: 'round' });
   // @ts-expect-error: there is no such viewer
   await bake(input, { for: ['four'] });
-  return within ? report.schema : bytes.length;
+  return within ? report.schema : bytes.length + first;
 }
 
 export function live(root: Object3D, scene: Scene, app: AppBase, asset: Asset): number {
@@ -116,8 +118,8 @@ test('what compilers refuse is refused when it runs, and nothing else', () => {
   const knows = (command, flags) => {
     const key = [command, ...flags].join('\0');
     if (!known.has(key)) {
-      const { stderr } = native([command, 'bumps.glb', ...flags, '--json', '--force', '-o', 'out.glb']);
-      known.set(key, !/: there (is|are) no \w+ '|: it must be harmless|not in \{/.test(stderr));
+      const { stderr } = native([command, 'bumps.glb', ...flags, ...(command === 'sample' ? [] : ['--json']), '--force', '-o', `out.${command === 'sample' ? 'npy' : 'glb'}`]);
+      known.set(key, !/: there (is|are) no \w+ '|: it must be (harmless|groups|unit)|not in \{/.test(stderr));
     }
     return known.get(key);
   };
@@ -163,7 +165,7 @@ test('reports have the types of theirs, and every key that may be in one', () =>
   // Some keys belong to several inputs, which a call does not have.
   const elsewhere = (path) => /^(audit (error|files)|compare inputs)/.test(path);
   const parts = (type) => (type.isUnion() ? type.types.flatMap(parts) : [type]);
-  for (const [command, path] of listed('stable_json.txt').filter(([command, path]) => COMMANDS.includes(command) && !elsewhere(`${command} ${path}`))) {
+  for (const [command, path] of listed('stable_json.txt').filter(([command, path]) => command in REPORTS && !elsewhere(`${command} ${path}`))) {
     let types = parts(checker.getTypeOfSymbol(exported.find(({ name }) => name === command)));
     for (const key of path.split('.')) {
       types = types.flatMap((type) => checker.getPropertyOfType(type, key.replace(/\[\]$/, '')) ?? []).map((symbol) => checker.getTypeOfSymbol(symbol)).flatMap(parts);
