@@ -56,20 +56,22 @@ class QueryTest(unittest.TestCase):
             clear = np.abs(sides) > 1e-9
             np.testing.assert_array_equal(is_front[clear], (sides > 0)[clear])
 
-    def test_random_vertices_and_corners_show_the_sides_of_their_own_normals(self):
+    def test_random_vertices_and_hard_corners_show_the_sides_of_their_own_normals(self):
         random = np.random.default_rng(55)
         faces = np.array([[i, (i + 1) % 40, 40 + i % 9] for i in range(40)] + [[i, (i + 7) % 40, 40 + i % 5] for i in range(40)])
         positions = random.uniform(-1, 1, (2, 49, 3)).astype(np.float32)
         eye = np.float32([3, 1, 2])
         for elements, column, where in (("vertices", "vertex", np.arange(49)), ("corners", "corner", faces.ravel())):
-            found = cn.facing(positions, faces, eye=eye, elements=elements)
+            found = cn.facing(positions, faces, eye=eye, elements=elements, crease=0 if elements == "corners" else None)
             index = found[column]
             for t in random.uniform(0, 1, 20):
                 points = (1 - t) * positions[0].astype(float) + t * positions[1]
                 corners, sums = points[faces], np.zeros((49, 3))
+                of_faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
                 for k in range(3):
-                    np.add.at(sums, faces[:, k], np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
-                sides = np.einsum("nk,nk->n", sums[where], eye - points[where])
+                    np.add.at(sums, faces[:, k], of_faces)
+                normals = sums if elements == "vertices" else np.repeat(of_faces, 3, axis=0)
+                sides = np.einsum("nk,nk->n", normals, eye - points[where])
                 is_front = np.zeros(len(where), bool)
                 is_front[index[(found["from"] <= t) & (t <= found["to"])]] = True
                 clear = np.abs(sides) > 1e-9
