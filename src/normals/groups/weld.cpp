@@ -104,7 +104,7 @@ Points separate_points(std::size_t vertex_count) {
 
 inline namespace internal {
 
-Result<WeldedPoints> weld_from_start(MotionStream& stream) {
+Result<WeldedPoints> weld_from_start(MotionStream& stream, bool keeps_sides_apart) {
   constexpr std::size_t kMany = std::size_t{1} << 14;
   const Motion& motion = stream.motion();
   std::vector<std::uint32_t> order = separate_points(motion.topology.vertex_count()).point_of_vertex;
@@ -135,6 +135,7 @@ Result<WeldedPoints> weld_from_start(MotionStream& stream) {
   }
   if (result.at_start.point_of_vertex.empty()) result.at_start = points_of(order.size(), {});
   result.always = points_of(order.size(), found);
+  if (!keeps_sides_apart) return result;
   keep_sides_apart(motion.topology, result.at_start);
   keep_sides_apart(motion.topology, result.always);
   return result;

@@ -13,8 +13,9 @@ struct WeldedPoints {
   Points at_start;  ///< vertices that coincide in keyframe 0 are one point
 };
 
-/// Welds at keyframe 0 and in all keyframes at once. Errors: from the stream.
-[[nodiscard]] Result<WeldedPoints> weld_from_start(MotionStream& stream);
+/// Welds at keyframe 0 and in all keyframes at once. If sides are not kept apart (sides.h), vertices are one point
+/// wherever they share a place. Errors: from the stream.
+[[nodiscard]] Result<WeldedPoints> weld_from_start(MotionStream& stream, bool keeps_sides_apart = true);
 
 }  // namespace chronormal::inline internal
 

@@ -333,7 +333,8 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   baked.report.weighting = truth.rule().weighting;
   if (truth.is_plain()) {
     shading.value().groups.forget_corners();
-    shading.value().point_of_vertex = std::vector<std::uint32_t>();  // only the truth needed it
+    shading.value().point_of_vertex = {};  // only the truth needed these
+    shading.value().place_of_vertex = {};
   }
   for (const GltfPrimitive& primitive : mesh.primitives) {
     if (primitive.has_faces() && !primitive.has_normals && !options.smooth) ++baked.report.left_flat;

@@ -15,6 +15,7 @@
 #include "core/blocks.h"
 #include "core/vector_area.h"
 #include "normals/groups/sides.h"
+#include "normals/groups/weld.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -129,10 +130,8 @@ Points to_points(const std::vector<std::uint32_t>& class_of_vertex, std::size_t 
   return points;
 }
 
-// Joins vertices that share a place in the base and move alike in every target: it starts from the classes of the base,
-// and each target splits them. The motion is the base alone.
-Points weld(const Motion& base, const std::vector<BlendTarget>& targets) {
-  Points points = weld_coincident(base);
+// Splits points of the base whose vertices move differently in any target.
+Points split_by_targets(Points points, const std::vector<BlendTarget>& targets) {
   for (const BlendTarget& target : targets) {
     const std::size_t count = target.vertices.size();
     std::vector<std::uint32_t> order(count);
@@ -212,7 +211,16 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
   Motion base;  // borrows the arrays for a while
   base.topology = std::move(shading.set.topology);
   base.keyframes.push_back({std::move(shading.set.base), 0, ""});
-  Points points = options.weld ? weld(base, shading.set.targets) : separate_points(has_normal.size());
+  Points points = separate_points(has_normal.size());
+  if (options.weld) {
+    MotionStream stream(base);
+    Points places = weld_from_start(stream, false).value().always;
+    points = places;
+    keep_sides_apart(base.topology, points);
+    const bool any_sides = points.count != places.count;
+    points = split_by_targets(std::move(points), shading.set.targets);
+    if (any_sides) shading.place_of_vertex = split_by_targets(std::move(places), shading.set.targets).point_of_vertex;
+  }
   shading.point_of_vertex = points.point_of_vertex;
   Result<Points> all = Points{};
   if (std::find(has_normal.begin(), has_normal.end(), false) == has_normal.end()) {

@@ -50,8 +50,10 @@ struct GltfShading {
   /// (V) The element of each vertex; kNoElement if it has no face, or its primitive is flat.
   std::vector<std::uint32_t> element_of_vertex;
   /// (V) The point of each vertex, a number below V. Vertices are one point if they share a place in the base, and the
-  /// deltas of all targets. Only the author's truth needs it.
+  /// deltas of all targets, but the two sides of a sheet are two points. Only the author's truth needs it.
   std::vector<std::uint32_t> point_of_vertex;
+  /// (V) Numbers points again, with both sides of a sheet as one; empty if there are no such sides.
+  std::vector<std::uint32_t> place_of_vertex;
   /// Marks corners of faces on the back of the side whose normal their vertex shows; elements leave these corners out.
   /// Empty if there are none.
   std::vector<bool> at_the_back;
@@ -67,6 +69,9 @@ struct GltfShading {
   std::size_t emptied = 0;
   std::size_t split_by_crease = 0;  ///< vertices that a crease would have split
 
+  [[nodiscard]] std::uint32_t place_of(std::uint32_t vertex) const noexcept {
+    return place_of_vertex.empty() ? point_of_vertex[vertex] : place_of_vertex[vertex];
+  }
   /// Returns the number of targets that move vertices by themselves: all but correction targets.
   [[nodiscard]] std::size_t own_targets() const noexcept {
     return set.targets.size() - (mark ? mark->extras.size() : 0);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;  // degrees, degrees, a share
 constexpr double kOff = 0.001;                                      // degrees: above, a normal does not follow the rule
+constexpr double kNothingLeft = 180;                                // degrees, where both sides of a sheet add up to 0
 constexpr std::size_t kMostKeys = 48, kMostAsked = 5000, kMostFollowers = 20000, kAskedAtOnce = 64;
 constexpr std::uint32_t kNoVertex = GltfShading::kNoElement;
 // Candidates are sums over own corners or whole points, over triangles or quads, by each weighting.
@@ -95,12 +96,10 @@ double quantile(std::vector<float>& values, double share) {
 // Mends a rule around the normals that do not follow it.
 class Mending {
  public:
-  Mending(const GltfShading& shading, Polygons& polygons, Weighting weighting, const Sides& sides,
-          std::span<const std::uint32_t> vertex_of)
+  Mending(const GltfShading& shading, Polygons& polygons, Weighting weighting, std::span<const std::uint32_t> vertex_of)
       : shading_(shading),
         polygons_(polygons),
         weighting_(weighting),
-        sides_(sides),
         vertex_of_(vertex_of),
         base_(shading),
         whole_(vertex_of.size()),
@@ -155,7 +154,7 @@ class Mending {
     point_offsets_.assign(shading_.point_of_vertex.size() + 1, 0);
     const auto each = [&](const auto& visit) {
       for (std::uint32_t c = 0; c < corners.size(); ++c)
-        if (shading_.at_the_back.empty() || !shading_.at_the_back[c]) visit(shading_.point_of_vertex[corners[c]], c);
+        if (shading_.at_the_back.empty() || !shading_.at_the_back[c]) visit(shading_.place_of(corners[c]), c);
     };
     each([&](std::uint32_t p, std::uint32_t) { ++point_offsets_[p + 1]; });
     for (std::size_t p = 1; p < point_offsets_.size(); ++p) point_offsets_[p] += point_offsets_[p - 1];
@@ -166,7 +165,7 @@ class Mending {
 
   [[nodiscard]] std::span<const std::uint32_t> corners_of(std::uint32_t element, bool whole) const {
     if (!whole) return shading_.groups.corners(element);
-    const std::uint32_t p = shading_.point_of_vertex[vertex_of_[element]];
+    const std::uint32_t p = shading_.place_of(vertex_of_[element]);
     return {corners_at_.data() + point_offsets_[p], corners_at_.data() + point_offsets_[p + 1]};
   }
 
@@ -177,7 +176,7 @@ class Mending {
     friend bool operator==(const Part&, const Part&) = default;
   };
 
-  [[nodiscard]] Vec3d unit_sum(const std::vector<Part>& parts, std::uint32_t element, const StoredKey& key) const {
+  [[nodiscard]] Vec3d unit_sum(const std::vector<Part>& parts, const StoredKey& key) const {
     Vec3d sum;
     for (const Part& part : parts) {
       const auto loop = polygons_.corners(part.polygon);
@@ -187,7 +186,7 @@ class Mending {
       sum = sum + corner_term(weighting_, n, key.position(loop[(part.corner + 1) % loop.size()]) - here,
                               key.position(loop[(part.corner + loop.size() - 1) % loop.size()]) - here);
     }
-    return sides_(element, unit(sum));
+    return unit(sum);
   }
 
   // Returns the worst distance of an element from its sums, in degrees: at keys, the distance that the base does not
@@ -205,14 +204,18 @@ class Mending {
       if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(part);
     }
     const std::uint32_t shown = vertex_of_[element];
-    const Vec3d z0 = unit_sum(parts, element, base_), s0 = base_.normal(shown);
+    const Vec3d s0 = base_.normal(shown);
+    Vec3d z0 = unit_sum(parts, base_);
+    if (z0 == Vec3d{} && whole) return kNothingLeft;
     if (z0 == Vec3d{} || s0 == Vec3d{}) return 0;
+    const double side = dot(z0, s0) < 0 ? -1 : 1;  // that the author shows
+    z0 = side * z0;
     double worst = 0;
     bool any = false;
     std::vector<OffsetEdge> edges;
     for (const StoredKey& key : keys_) {
       if (!key.turns(shown)) continue;
-      const Vec3d z = unit_sum(parts, element, key), s = key.normal(shown);
+      const Vec3d z = side * unit_sum(parts, key), s = key.normal(shown);
       if (z == Vec3d{} || s == Vec3d{}) continue;
       if (!any) {
         any = true;
@@ -289,7 +292,6 @@ class Mending {
   const GltfShading& shading_;
   Polygons& polygons_;
   Weighting weighting_;
-  const Sides& sides_;
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<StoredKey> keys_;
@@ -315,6 +317,7 @@ class Candidates {
       for (const std::uint32_t e : followers_.back()) wanted[e] = true;
     }
     const bool any_shared = is_any_point_shared();
+    const std::vector<bool> has_sides = places_with_sides();
     for (const Polygons* polygons : {&plain, &quads}) {
       if (polygons == &quads && !any_quads) continue;
       of_kinds_.emplace_back(shading, *polygons, weighting, none, wanted);
@@ -322,7 +325,8 @@ class Candidates {
       std::vector<bool> several(shading.groups.size());
       for (std::uint32_t e = 0; any_shared && e < several.size(); ++e)
         for (const std::uint32_t f : shading.groups.faces(e))
-          if (polygons->of_triangle(f) != polygons->of_triangle(shading.groups.faces(e)[0])) several[e] = true;
+          if (polygons->of_triangle(f) != polygons->of_triangle(shading.groups.faces(e)[0]))
+            several[e] = vertex_of[e] == kNoVertex || has_sides.empty() || !has_sides[shading.place_of(vertex_of[e])];
       if (any_shared) of_kinds_.emplace_back(shading, *polygons, weighting, several, wanted);
       sums_of_kind_.push_back(of_kinds_.size() - 1);
     }
@@ -332,11 +336,10 @@ class Candidates {
     std::size_t paired = 0;
     for (std::size_t t = 0; t < shading.set.topology.face_count(); t += quads.triangle_count(t))
       paired += quads.triangle_count(t) == 2 ? 2U : 0U;
-    constexpr double kMostly = 0.9;
+    constexpr double kMostly = 0.75;  // the rest are caps and poles
     is_of_quads_ = static_cast<double>(paired) > kMostly * static_cast<double>(shading.set.topology.face_count());
   }
 
-  [[nodiscard]] const Sides& sides() const { return *sides_; }
   [[nodiscard]] std::size_t count() const { return sums_of_kind_.size() * kWeightings.size(); }
   static constexpr std::size_t area() { return 0; }
   [[nodiscard]] static Weighting weighting_of(std::size_t c) { return kWeightings[c % kWeightings.size()].weighting; }
@@ -417,6 +420,20 @@ class Candidates {
       at_point = e;
     }
     return false;
+  }
+
+  // Tells at which places the two sides of a sheet meet, whose normals would cancel; empty if there are none.
+  [[nodiscard]] std::vector<bool> places_with_sides() const {
+    std::vector<bool> result;
+    if (shading_.place_of_vertex.empty()) return result;
+    result.resize(shading_.place_of_vertex.size());
+    std::vector<std::uint32_t> point(result.size(), kNoVertex);
+    for (std::uint32_t v = 0; v < result.size(); ++v) {
+      std::uint32_t& first = point[shading_.place_of(v)];
+      if (first == kNoVertex) first = shading_.point_of_vertex[v];
+      if (first != shading_.point_of_vertex[v]) result[shading_.place_of(v)] = true;
+    }
+    return result;
   }
 
   // Returns up to about `most` elements whose normals a key turns, evenly spread.
@@ -529,7 +546,7 @@ FoundRule find_author_rule(const GltfShading& shading) {
       rule.weighting = Candidates::weighting_of(found);
       rule.is_followed = true;
       if (candidates.do_all_follow(found)) return true;
-      Mending mending(shading, tried, Candidates::weighting_of(found), candidates.sides(), vertex_of);
+      Mending mending(shading, tried, Candidates::weighting_of(found), vertex_of);
       mending.choose_whole_points();
       mending.mend_polygons();
       mending.choose_whole_points();

@@ -3,7 +3,6 @@
 /// The tool that made a mesh weighed polygons or triangles in its own way, and its stored normals show which. The
 /// normals of targets at weight 1 decide, with the offset of the base carried along: a flat base or a cube is the same
 /// by all rules, but its targets are not. The base decides only if no target tells.
-/// of the base: a base that is flat or a cube is the same by all rules, and its targets are not.
 ///
 ///     candidates   five weightings, of triangles or quads, of an element's own corners or its whole point
 ///     tells        a stored normal around which two candidates differ by more than 0.1 degrees: elsewhere all agree
@@ -14,7 +13,7 @@
 ///                  triangles by area, which are exact at every time
 ///
 /// The rule is mended around the normals that do not follow it: triangles in a row become larger polygons, quads are
-/// split, and elements add up their whole point, if that makes a normal follow exactly. Changes that only bring normals
+/// split, and elements add up their whole point (both sides of what only looks like a sheet, too), if that makes a normal follow exactly. Changes that only bring normals
 /// nearer are not made: that may be chance.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_

@@ -119,7 +119,7 @@ AuthorSums::AuthorSums(const GltfShading& shading, const Polygons& polygons, Wei
       const std::uint32_t e = shading.element_of_vertex[v];
       if (!is_wanted(e) || !whole_point[e] || is_listed[e]) continue;
       is_listed[e] = true;
-      std::uint32_t& list = list_of_point[shading.point_of_vertex[v]];
+      std::uint32_t& list = list_of_point[shading.place_of(v)];
       if (list == kNone) {
         list = static_cast<std::uint32_t>(whole_at.size());
         whole_at.emplace_back();
@@ -138,7 +138,7 @@ AuthorSums::AuthorSums(const GltfShading& shading, const Polygons& polygons, Wei
         any = true;
         add(e, c);
       }
-      const std::uint32_t list = whole_at.empty() ? kNone : list_of_point[shading.point_of_vertex[loop[c]]];
+      const std::uint32_t list = whole_at.empty() ? kNone : list_of_point[shading.place_of(loop[c])];
       if (list == kNone) continue;
       any = true;
       for (const std::uint32_t whole : whole_at[list]) add(whole, c);
