@@ -14,6 +14,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;  // degrees, degrees, a share
+constexpr double kExactly = 0.003;                                  // degrees
 constexpr double kOff = 0.001;                                      // degrees: above, a normal does not follow the rule
 constexpr double kNothingLeft = 180;                                // degrees, where both sides of a sheet add up to 0
 constexpr std::size_t kMostKeys = 48, kMostAsked = 5000, kMostFollowers = 20000, kAskedAtOnce = 64;
@@ -362,23 +363,27 @@ class Candidates {
         best = area();
       }
       if (!(distance[best] <= follows)) continue;
-      // Among candidates that are equally near, takes the one that most normals follow exactly. If several do, it
-      // prefers quads if the file was cut from them and has keys, and otherwise triangles and own corners.
-      constexpr double kAlike = 0.003, kAsMany = 0.005;
-      std::size_t found = best;
-      double most = -1;
-      for (std::size_t c = 0; c < count(); ++c) {
-        if (weighting_of(c) != weighting_of(best) || distance[c] > distance[best] + kAlike) continue;
-        const auto near = std::count_if(of->told[c].begin(), of->told[c].end(), [](float d) { return d <= kAlike; });
-        const double following = static_cast<double>(near) / static_cast<double>(of->told[c].size());
-        const bool is_cut = of == &keys_ && is_of_quads_ && is_of_polygons(c) && !is_of_polygons(found);
-        if (following < most + (is_cut ? -kAsMany : kAsMany)) continue;
-        most = std::fmax(most, following);
-        found = c;
-      }
-      distance_ = distance[found];
-      telling_ = of->told[0].size();
-      spread_ = quantile(of->spread, 0.5);
+      const std::size_t found = most_followed(*of, [&](std::size_t c) {
+        return weighting_of(c) == weighting_of(best) && distance[c] <= distance[best] + kExactly;
+      });
+      note(*of, found, distance[found]);
+      return found;
+    }
+    return std::nullopt;
+  }
+
+  // Returns the candidate that the most normals follow exactly, by keys or, if no key tells, by the base: the rule of
+  // the mesh even if most of it was cut or bent later. Returns nothing if less than a tenth of the normals follow any,
+  // or nearly as many follow area.
+  [[nodiscard]] std::optional<std::size_t> followed() {
+    constexpr double kTenth = 0.1, kClearly = 1.5, kThird = 1.0 / 3;
+    for (Distances* of : {&keys_, &of_base_}) {
+      if (of->told[0].empty()) continue;
+      const std::size_t found = most_followed(*of, [](std::size_t) { return true; });
+      const double most = following(*of, found), by_area = following(*of, area());
+      const bool is_clear = most > kClearly * by_area || 1 - most < kThird * (1 - by_area);
+      if (most < kTenth || !is_clear) continue;
+      note(*of, found, quantile(of->told[found], kTenth));
       return found;
     }
     return std::nullopt;
@@ -410,6 +415,36 @@ class Candidates {
   [[nodiscard]] double spread() const { return spread_; }
 
  private:
+  // Returns the share of normals that follow a candidate exactly.
+  [[nodiscard]] static double following(const Distances& of, std::size_t c) {
+    const auto near = std::count_if(of.told[c].begin(), of.told[c].end(), [](float d) { return d <= kExactly; });
+    return static_cast<double>(near) / static_cast<double>(of.told[c].size());
+  }
+
+  // Returns the candidate that the most normals follow, among those that may be. If several are followed alike, prefers
+  // quads if the file was cut from them and has keys, and otherwise triangles and own corners.
+  template <class MayBe>
+  [[nodiscard]] std::size_t most_followed(const Distances& of, const MayBe& may_be) const {
+    constexpr double kAlike = 0.005;
+    std::optional<std::size_t> found;
+    double most = -1;
+    for (std::size_t c = 0; c < count(); ++c) {
+      if (!may_be(c)) continue;
+      const double share = following(of, c);
+      const bool is_cut = &of == &keys_ && is_of_quads_ && is_of_polygons(c) && found && !is_of_polygons(*found);
+      if (found && share < most + (is_cut ? -kAlike : kAlike)) continue;
+      most = std::fmax(most, share);
+      found = c;
+    }
+    return *found;
+  }
+
+  void note(Distances& of, std::size_t found, double distance) {
+    distance_ = distance;
+    telling_ = of.told[found].size();
+    spread_ = quantile(of.spread, 0.5);
+  }
+
   // Returns whether several elements show parts of one point.
   [[nodiscard]] bool is_any_point_shared() const {
     std::vector<std::uint32_t> element(shading_.point_of_vertex.size(), kNoVertex);
@@ -558,10 +593,7 @@ FoundRule find_author_rule(const GltfShading& shading) {
       rule.is_followed = false;
       return false;
     };
-    // A rule that a tenth of the normals follow exactly is the rule of the mesh, even if most of it was cut or bent
-    // later.
-    constexpr double kTenth = 0.1, kExactly = 0.003, kMuchClearer = 1.0 / 3;
-    std::optional<std::size_t> found = candidates.closest(kTenth, kExactly, kMuchClearer, false);
+    std::optional<std::size_t> found = candidates.followed();
     if (!found || !accept(*found, false)) {
       found = candidates.closest(0.5, kFollowsRule, kClear, true);
       if (candidates.are_quads_as_good() && !Candidates::is_of_polygons(found.value_or(candidates.area())))

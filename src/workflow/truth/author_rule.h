@@ -7,14 +7,14 @@
 ///     candidates   five weightings, of triangles or quads, of an element's own corners or its whole point
 ///     tells        a stored normal around which two candidates differ by more than 0.1 degrees: elsewhere all agree
 ///     distance     of a candidate: a quantile, over the normals that tell, of the angle to the stored one
-///     found        the candidate that a tenth of these normals follow to 0.003 degrees, at a third of the distance of
-///                  triangles by area, even if much of the mesh was bent by hand; else the candidate with the smallest
-///                  median, if that is at most a degree, and two thirds of the median of triangles by area; else
-///                  triangles by area, which are exact at every time
+///     found        the candidate that the most normals follow to 0.003 degrees, if a tenth of them do, and clearly more
+///                  than follow triangles by area: much of the mesh may be bent by hand. Else the candidate with the
+///                  smallest median, if that is at most a degree, and two thirds of the median of triangles by area;
+///                  else triangles by area, which are exact at every time
 ///
 /// The rule is mended around the normals that do not follow it: triangles in a row become larger polygons, quads are
-/// split, and elements add up their whole point (both sides of what only looks like a sheet, too), if that makes a normal follow exactly. Changes that only bring normals
-/// nearer are not made: that may be chance.
+/// split, and elements add up their whole point (both sides of what only looks like a sheet, too), if that makes a
+/// normal follow exactly. Changes that only bring normals nearer are not made: that may be chance.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 
