@@ -1,4 +1,4 @@
-// Makes the pages, each one file with everything in it.
+// Makes the pages, each as one file that contains everything.
 //
 //   node web/build.mjs report OUT.html              the page of a report, without data (docs/artists.md)
 //   node web/build.mjs page PACKAGE OUT.html        the page with the engine inside; PACKAGE is the npm package with the wasm module
@@ -30,10 +30,10 @@ const styles = () => [readFileSync(fileURLToPath(import.meta.resolve('uplot/dist
 // Escapes text so that it cannot end the script or style around it.
 const inScript = (text) => text.replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
 
-// Fills the marks of a template; the text is taken as it is.
+// Replaces the marks of a template by texts. The texts are inserted literally: "$" has no special meaning.
 const filled = (template, parts) => Object.entries(parts).reduce((page, [mark, text]) => page.replace(mark, () => text), template);
 
-// Names the authors of the work inside: the licences of libraries, in a comment at the end of the page.
+// Returns the licence of a library. The page ends with a comment that has the licences of all libraries inside.
 const licenceOf = (name) => readFileSync(join(dirname(fileURLToPath(import.meta.resolve(name))), '..', 'LICENSE'), 'utf8');
 function licences(more = {}) {
   const own = readFileSync(fileURLToPath(new URL('../LICENSE', import.meta.url)), 'utf8');
@@ -47,11 +47,11 @@ async function reportPage() {
   return filled(readFileSync(source('report.html'), 'utf8'), { '/*style*/': styles(), '/*script*/': inScript(script) }) + licences();
 }
 
-// The module and its worker, as text that the page makes a worker of.
+// Returns the wasm module, and its worker as text that the page starts a worker from.
 async function enginePage(folder) {
   const wasm = gzipSync(readFileSync(join(folder, 'src/program.wasm')), { level: 9 });
   const program = { name: 'program', setup: (made) => made.onResolve({ filter: /\/program\.js$/ }, () => ({ path: join(resolve(folder), 'src/program.js') })) };
-  // run.js names the module beside it, which the page hands over instead.
+  // run.js looks for the module beside its own address. The page hands the module over, so any address will do.
   const define = { 'import.meta.url': '"file:///engine/src/run.js"' };
   const worker = await bundled(source('engine_worker.js'), { plugins: [program], external: ['fs', 'path', 'crypto'], define });
   const script = await bundled(source('page.js'), { define: { ENGINE_WORKER: JSON.stringify(worker) } });

@@ -1,8 +1,8 @@
-// Measures what a step of a slider costs: the page's own work, without the drawing.
+// Measures how long a step of a slider takes in the page's own code, without the drawing.
 //
 //   chronormal report FACE.glb -o face.bin --no-plan && node web/measure.mjs face.bin
 //
-// Each target in turn is moved alone, all others resting at the weights of the worst moment; then the first animation is played.
+// Moves each target alone, with all others at their weights of the worst moment; then plays the first animation.
 import { readFileSync } from 'node:fs';
 import { readContainer } from './src/data.js';
 import { makePlayer } from './src/player.js';
@@ -13,7 +13,7 @@ const { part } = player;
 const count = (n) => n.toLocaleString('en');
 console.log(`${part.name}: ${count(part.vertices)} vertices, ${count(part.triangles.length / 3)} triangles, ${part.targets?.length ?? 0} targets, by ${part.weighting}`);
 
-// Time of the processor beside that on the clock, which grows where others use the machine.
+// Measures processor time as well as elapsed time, since elapsed time grows when other programs use the machine.
 function measure(what, steps, step) {
   for (let i = 0; i < 50; ++i) step(i % steps);
   const before = process.cpuUsage();

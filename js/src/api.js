@@ -6,7 +6,7 @@ import { flagsOf } from './options.js';
 import { compile } from './run.js';
 import { perform } from './task.js';
 
-// Exit codes of the program: done, and done but beyond the tolerance.
+// The exit codes for success, and for a result that exceeds the tolerance.
 const DONE = 0, BEYOND = 4;
 
 const bytesOf = (data) => {
@@ -19,10 +19,10 @@ const bytesOf = (data) => {
 // A GLB identifies itself by its first bytes; everything else is JSON.
 const nameOf = (bytes) => (bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 ? 'input.glb' : 'input.gltf');
 
-// Does a task in a worker, which ends with it, so that nothing is left and the task can be stopped in the middle. The
-// worker gets the files themselves, not copies.
+// Does a task in a worker, which ends with it, so that no memory stays in use and the task can be stopped in the
+// middle. The worker gets the files themselves, not copies.
 async function inWorker(platform, task, { signal, onProgress }) {
-  const module = await compile(platform); // once for all workers
+  const module = await compile(platform); // compiled once for all workers
   signal?.throwIfAborted();
   return new Promise((resolve, reject) => {
     const end = (settle, value) => {
@@ -31,7 +31,7 @@ async function inWorker(platform, task, { signal, onProgress }) {
       settle(value);
     };
     const stop = () => end(reject, signal.reason);
-    // Rejects with errors that are thrown here, where no caller could catch them.
+    // Reports errors thrown by `work` to the caller: in an event handler, nobody else would catch them.
     const guarded = (work) => {
       try {
         work();
@@ -62,8 +62,8 @@ async function execute(platform, task, options) {
   return done;
 }
 
-// Copies the inputs, so that the caller may change them during the call. `more` turns the folder for outputs into
-// arguments that say what is written.
+// Copies the inputs, so that the caller may change them during the call. `more` gets the name of the folder for outputs
+// and returns the arguments that say what is written.
 function taskOf(command, input, options, more = () => ['--json']) {
   const flags = flagsOf(command, options);
   const copyOf = (data) => new Uint8Array(bytesOf(data));

@@ -3,7 +3,7 @@
 // nodes, but not of meshes.
 import { formulasOf, markOf, weightOf } from './drive.js';
 
-const attached = new WeakMap(); // of each scene: {observer, driven}
+const attached = new WeakMap(); // for each scene: {observer, driven}
 
 // Returns the driven targets and the meshes that show them: weights belong to a MorphTargetManager, which clones share.
 function drivenOf(scene) {
@@ -35,7 +35,8 @@ export function attach(scene) {
       const { manager, formulas, w } = driven[d];
       for (let i = 0; i < w.length; ++i) w[i] = manager.getTarget(i).influence;
       for (let k = 0; k < formulas.length; ++k) {
-        manager.getTarget(formulas[k].target).influence = weightOf(formulas[k], w); // no effect if it is the same
+        // has no effect if the weight is unchanged
+        manager.getTarget(formulas[k].target).influence = weightOf(formulas[k], w);
       }
     }
   });

@@ -40,7 +40,7 @@ const writeAll = (stream) => (bytes) => {
   }
 };
 
-// Reads all of standard input, if the command line asks for it.
+// Reads standard input to its end, if the command line asks for it.
 function standardInput(args) {
   if (!args.some((word) => word === '-' || word === '/dev/stdin')) return undefined;
   const pieces = [], piece = Buffer.alloc(65536);

@@ -16,7 +16,7 @@ export function formulasOf(mark, count) {
     .map(({ target, linear, quadratic }) => ({
       target,
       first: Int32Array.from([...linear.map(([i]) => i), ...quadratic.map(([i]) => i)]),
-      second: Int32Array.from([...linear.map(() => -1), ...quadratic.map(([, j]) => j)]), // -1: none
+      second: Int32Array.from([...linear.map(() => -1), ...quadratic.map(([, j]) => j)]), // -1 for a linear term
       factor: Float64Array.from([...linear.map(([, a]) => a), ...quadratic.map(([, , q]) => q)]),
     }));
 }

@@ -1,9 +1,9 @@
-// Makes bake() a transform of glTF-Transform: await document.transform(chronormal({ for: ['three', 'godot'] })).
+// A transform of glTF-Transform that bakes: await document.transform(chronormal({ for: ['three', 'godot'] })).
 import { WebIO } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { bake } from 'chronormal';
 
-// Compressions that would need encoders; reading a file undoes them.
+// The compressions that would need encoders. Reading a file undoes them, so the result is not compressed.
 const COMPRESSIONS = new Set(['KHR_draco_mesh_compression', 'EXT_meshopt_compression']);
 
 async function bytesOf(document) {

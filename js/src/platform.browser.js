@@ -15,7 +15,7 @@ export function startWorker(onMessage, onError) {
   return worker;
 }
 
-/** In a worker: answers each message by the messages that answer(message, say) sends. */
+/** Called in a worker: answers each message by the messages that answer(message, say) sends. */
 export async function serve(answer) {
   self.onmessage = ({ data }) => answer(data, (reply, transfer = []) => self.postMessage(reply, transfer));
 }

@@ -15,7 +15,7 @@ export function startWorker(onMessage, onError) {
   return worker;
 }
 
-/** In a worker: answers each message by the messages that answer(message, say) sends. */
+/** Called in a worker: answers each message by the messages that answer(message, say) sends. */
 export async function serve(answer) {
   const { parentPort } = await import('node:worker_threads');
   parentPort.on('message', (message) => answer(message, (reply, transfer) => parentPort.postMessage(reply, transfer)));

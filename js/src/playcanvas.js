@@ -3,9 +3,9 @@
 // the resource of a container keeps the JSON of its file.
 import { formulasOf, markOf, weightOf } from './drive.js';
 
-const attached = new WeakMap(); // of each application: {update, driven}
+const attached = new WeakMap(); // for each application: {update, driven}
 
-// Returns the mark of each PlayCanvas mesh of a container; each is a primitive of the file.
+// Returns the mark of each PlayCanvas mesh of a container. A PlayCanvas mesh is a primitive of the file.
 function marksOf({ gltf, renders }) {
   const nodes = (gltf.nodes ?? []).map((node) => ({ extras: node.extras, mesh: node.mesh }));
   gltf.nodes?.forEach(({ children = [] }, i) => children.forEach((child) => (nodes[child].parent = nodes[i])));
@@ -40,7 +40,7 @@ export function attach(app, ...assets) {
   const update = () => {
     for (let d = 0; d < driven.length; ++d) {
       const { meshInstance: { morphInstance }, formulas, w } = driven[d];
-      if (!morphInstance) continue; // was destroyed meanwhile
+      if (!morphInstance) continue; // destroyed in the meantime
       for (let i = 0; i < w.length; ++i) w[i] = morphInstance.getWeight(i);
       for (let k = 0; k < formulas.length; ++k) {
         const { target } = formulas[k], weight = weightOf(formulas[k], w);

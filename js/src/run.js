@@ -1,5 +1,5 @@
-// Runs the program once: makes a fresh module with files in memory, or with the files of this machine, so that nothing
-// of one run is left for the next, however it ended.
+// Runs the program once: makes a fresh module with files in memory, or with the files of this machine, so that a run
+// never sees the state of an earlier one, even if that one crashed.
 import createProgram from './program.js';
 
 // The smallest WebAssembly module that uses vectors and exceptions, which the program needs. A runtime without them
@@ -8,7 +8,7 @@ const NEEDED = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 
 const TOO_OLD = 'WebAssembly with vectors (SIMD) and exceptions is not there: chronormal needs Chrome or Edge 95, Firefox 100, Safari 16.4, \
 Node.js 18, or later, on a processor that has vectors';
 
-let compiled; // the module, once for all runs
+let compiled; // the compiled module, for all runs
 
 /** Uses a module that another thread has compiled. */
 export function useCompiled(module) {
@@ -31,7 +31,7 @@ async function compileWith(platform) {
 export function compile(platform) {
   if (!compiled) {
     compiled = compileWith(platform);
-    compiled.catch(() => { compiled = undefined; }); // the next call tries again
+    compiled.catch(() => { compiled = undefined; }); // so that the next call tries again
   }
   return compiled;
 }
@@ -48,7 +48,8 @@ class Sink {
   }
   put(byte) {
     this.bytes[this.count++] = byte;
-    if (this.count === PIECE || (this.byLine && (byte === 10 || byte === 37))) this.flush(); // a bar ends with "%"
+    // byte 37 is "%", which ends a progress bar
+    if (this.count === PIECE || (this.byLine && (byte === 10 || byte === 37))) this.flush();
   }
   flush() {
     if (this.count > 0) this.write(this.bytes.slice(0, this.count));
@@ -89,7 +90,8 @@ export async function run(platform, args, { prepare, finish, stdout, stderr, ter
         Object.assign(ENV, env);
         FS.init(() => null, (byte) => out.put(byte), (byte) => err.put(byte));
         if (stdin) {
-          // A device may have no end, which a program must allow for; a file has one.
+          // The program reads a device to an end that may never come, so standard input becomes a file, whose end is
+          // known.
           FS.close(FS.getStream(0));
           FS.writeFile('/.stdin', stdin);
           FS.open('/.stdin', 'r');

@@ -2,7 +2,7 @@
 // weights that the application or a mixer has set for the mesh's own targets.
 import { drive as driveBy, formulasOf, markOf } from './drive.js';
 
-const attached = new WeakMap(); // of each mesh: {formulas, before, now}
+const attached = new WeakMap(); // for each mesh: {formulas, before, now}
 
 function formulasOfMesh(mesh) {
   const w = mesh.morphTargetInfluences;
@@ -40,7 +40,7 @@ export function detach(root) {
     if (!attached.has(mesh)) return;
     const { formulas, before, now } = attached.get(mesh);
     attached.delete(mesh);
-    // If another function was put around this one since, that function stays, and this one does nothing any more.
+    // If other code has wrapped this function since, the wrapper stays, and the wrapped function does nothing any more.
     if (mesh.onBeforeRender === now) {
       if (before) mesh.onBeforeRender = before;
       else delete mesh.onBeforeRender;

@@ -59,17 +59,17 @@ interface MotionOptions extends ReadOptions {
 export interface AuditOptions extends MotionOptions {
   rule?: 'gltf' | 'lerp' | 'nlerp' | 'slerp' | 'step' | 'flat';
   weighting?: Weighting;
-  /** Viewers that are judged, too. */
+  /** Further viewers whose normals are judged. */
   for?: Viewer | 'all' | Array<Viewer | 'all'>;
   /** @deprecated the old name of `for` */
   host?: Viewer | 'all' | Array<Viewer | 'all'>;
   samples?: number;
-  /** Poses that are judged, too: 'random', or a name among `resources`. */
+  /** Further poses that are judged: 'random', or a name among `resources`. */
   poses?: string;
-  /** The weights between which each target is judged alone: '0:1' by default. */
+  /** The two weights between which each target is moved alone: '0:1' by default. */
   weights?: `${number}:${number}`;
   tolerance?: number;
-  /** The most edges of a glTF file that may be torn at a moment. */
+  /** The largest number of edges of a glTF file that may be torn at one moment. */
   tears?: number;
   noWeld?: boolean;
 }
@@ -85,7 +85,7 @@ export interface BakeOptions extends ReadOptions {
   maxBytes?: number;
   maxTargets?: number;
   animationsOnly?: boolean;
-  /** 'random', or a name among `resources`. */
+  /** The poses to bake for, too: 'random', or a name among `resources`. */
   poses?: string;
   /** Reports the size and the errors of each candidate, and makes no file. */
   plan?: boolean;
@@ -110,7 +110,7 @@ export interface CompareOptions extends MotionOptions {
   access?: 'random' | 'sequential';
   certify?: boolean;
   tolerance?: number;
-  /** One face, by its number, or by FACE:SEGMENT: what each scheme makes of its normal. */
+  /** The face to report, as its number or as FACE:SEGMENT: the report has its normals by each scheme. */
   face?: number | string;
   blend?: number;
   active?: number;
@@ -154,13 +154,13 @@ export interface Judged<Report> {
   report: Report;
   /** Messages of the program besides its result, one line each. */
   warnings: string[];
-  /** false: the result exceeds the requested tolerance or budget (exit code 4). */
+  /** False if the result exceeds the requested tolerance or budget (exit code 4). */
   within: boolean;
 }
 
 export interface Baked extends Judged<BakeReport> {
   bytes: Uint8Array;
-  /** The files beside a .gltf, by their names. */
+  /** The files that belong to a .gltf, by their names. */
   files: Record<string, Uint8Array>;
 }
 
@@ -171,7 +171,7 @@ export class ChronormalError extends Error {
   code: number;
 }
 
-/** Is copied before a call returns its promise, as resources are: the caller may use the memory again at once. */
+/** The content of a file. A call copies it before it returns its promise, so the caller may reuse the memory at once. */
 export type Bytes = Uint8Array | ArrayBuffer | ArrayBufferView;
 
 export function bake(input: Bytes, options?: BakeOptions & { plan?: false }): Promise<Baked>;

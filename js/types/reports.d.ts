@@ -15,7 +15,7 @@ interface Head<Command extends string, Schema extends number> {
   schema: Schema;
 }
 
-/** Curves that were cut into straight pieces. */
+/** The curves of a path that was cut into straight pieces. */
 interface CurvedPath {
   path?: PathName;
   bend?: number;
@@ -187,7 +187,7 @@ export interface JudgedPoses {
 
 export interface ViewerChange {
   viewer: string;
-  /** named: the bake is made for the viewer. better: the result is better there as a whole. */
+  /** `named` is true if the bake is made for this viewer; `better` if its errors became smaller as a whole. */
   named: boolean;
   better: boolean;
   /** Errors in the file's animations, with each target alone, and in poses that a program sets. */
@@ -397,7 +397,7 @@ export interface SchemeFigure {
   tangents: number[] | null;
 }
 
-/** What compare() with `face` says of one face, from which Figures 1 to 3 of the paper are drawn. */
+/** The report of compare() with `face`: all values of one face, from which Figures 1 to 3 of the paper are drawn. */
 export interface FigureReport extends Head<'compare', 1> {
   input: string;
   figure: {

@@ -1,4 +1,4 @@
-// The panel of a bake: for which viewers, how right, how large; the plan of it, and the bake itself.
+// The panel of a bake: the viewers to bake for, the tolerance, the limits of size, the plan, and the bake itself.
 import { degreesText } from './colors.js';
 import { h, panel, table } from './dom.js';
 import { choiceTable } from './panels.js';
@@ -8,11 +8,11 @@ const VIEWERS = [
   ['gltfpack', 'after gltfpack'], ['quantize', 'after quantize'], ['meshopt', 'after meshopt'],
 ];
 
-/** The viewers that add up deltas: a plain bake is made for these, and makes nothing worse in others that show files. */
+/** The viewers that add up deltas. A plain bake is made for these viewers, and no other viewer becomes worse. */
 const ADDING_UP = ['three', 'babylon', 'playcanvas', 'bevy'];
 
 /**
- * @param input of page.js; its member `options` is what was chosen: {viewers, tolerance, maxTargets, maxBytes}, viewers empty for the usual ones
+ * @param input of page.js; its member `options` has the user's choices: {viewers, tolerance, maxTargets, maxBytes}, with no viewers for the default ones
  * @param {{plan: () => void, bake: () => void}} acts
  */
 export function makeBakePanel(input, { plan, bake }) {
@@ -42,7 +42,7 @@ export function makeBakePanel(input, { plan, bake }) {
     comparison(input), planned);
 }
 
-// Holds the result of a bake.
+// Shows the result of a bake beside the input.
 function comparison({ came, baked }) {
   if (!baked) return null;
   const row = (title, { audit }) => ({ cells: [title, degreesText(audit.mean_degrees), degreesText(audit.worst_degrees)] });

@@ -9,7 +9,7 @@ const isArray = (value) => typeof value?.type === 'string' && Number.isInteger(v
 
 /**
  * @param {Uint8Array} bytes a container
- * @returns {object} its JSON, with a typed array in place of each {offset, type, count} below "parts"
+ * @returns {object} its JSON, with in which each {offset, type, count} below "parts" is replaced by a typed array
  */
 export function readContainer(bytes) {
   if (bytes.length < HEADER || new TextDecoder().decode(bytes.subarray(0, 8)) !== MAGIC) throw new Error('the data of this page are no report');
@@ -45,7 +45,7 @@ export function readContainer(bytes) {
   return { ...report, parts: withArrays(report.parts) };
 }
 
-/** Bytes of their base64, in whole groups of four. */
+/** Decodes base64, whose length must be a multiple of four. */
 export function fromBase64(text) {
   let binary;
   try {
@@ -58,7 +58,7 @@ export function fromBase64(text) {
   return bytes;
 }
 
-/** What gzip made shorter, as it was. */
+/** Returns the content of a gzip file. */
 export async function unzipped(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
   return new Uint8Array(await new Response(stream).arrayBuffer().catch(() => Promise.reject(damaged())));

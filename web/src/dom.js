@@ -1,6 +1,7 @@
-// Elements of the page. Text is only ever set as text: names in files are other people's.
+// Makes elements of the page. Text is only ever set as text, never as HTML: names in files come from strangers.
 
-/** h('button', { onclick, className, ... }, children...): children are elements or text; null and false are left out. */
+/** Makes an element: h('button', { onclick, className, ... }, children...). Children are elements or text; null and
+ * false are left out. */
 export function h(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
@@ -12,7 +13,7 @@ export function h(tag, properties = {}, ...children) {
   return made;
 }
 
-/** A group of buttons of which one is pressed. choices: [[value, text, title]]. */
+/** Makes a group of buttons of which exactly one is pressed. choices: [[value, text, title]]. */
 export function segmented(label, choices, onChoose) {
   const buttons = choices.map(([value, text, title]) => h('button', { type: 'button', title: title ?? text, onclick: () => onChoose(value) }, text));
   const group = h('div', { className: 'segmented', role: 'group', 'aria-label': label }, buttons);
@@ -20,11 +21,11 @@ export function segmented(label, choices, onChoose) {
   return group;
 }
 
-/** A panel that opens and closes. */
+/** Makes a panel that opens and closes. */
 export const panel = (title, isOpen, ...children) =>
   h('details', { className: 'panel', open: isOpen }, h('summary', {}, title), h('div', { className: 'content' }, children));
 
-/** A table; cells are text, or elements. Columns of numbers are those whose title ends with a space. */
+/** Makes a table whose cells are text or elements. A title that ends with a space marks a column of numbers. */
 export function table(caption, titles, rows) {
   const numbers = titles.map((title) => title.endsWith(' '));
   const cell = (tag, value, i) => h(tag, { className: numbers[i] ? 'number' : '' }, value);

@@ -1,10 +1,10 @@
-// The program inside the page: runs commands in a worker of their own, which can be stopped in the middle.
+// The program inside the page. Each command runs in its own worker, which can be stopped in the middle.
 import { fromBase64, unzipped } from './data.js';
 
-const DONE = 0, BEYOND = 4; // exit codes: done, and done but not within the tolerance
+const DONE = 0, BEYOND = 4; // exit codes: success, and a result that exceeds the tolerance
 const OUTPUTS = 'out';
 
-/** What the program refused, or could not do: its exit code and its own words. */
+/** An error of the program: its exit code and its message. */
 export class EngineError extends Error {
   constructor(code, message) {
     super(message);
@@ -13,7 +13,8 @@ export class EngineError extends Error {
 }
 
 /**
- * @param {HTMLElement} element holds the module, as base64 of gzip
+ * Makes the engine of the page.
+ * @param {HTMLElement} element contains the module, as base64 of gzip
  * @param {string} workerSource the script of engine_worker.js
  */
 export function makeEngine(element, workerSource) {
@@ -22,7 +23,7 @@ export function makeEngine(element, workerSource) {
   const compile = () => (module ??= unzipped(fromBase64(element.textContent)).then((bytes) => WebAssembly.compile(bytes)));
 
   /**
-   * Runs a command. Files are {name: Uint8Array}; what it writes below out/ is in the result.
+   * Runs a command. Files are {name: Uint8Array}. The result contains all files that the command writes below out/.
    * @returns {Promise<{code: number, stdout: string, stderr: string, files: Object<string, Uint8Array>}>}
    */
   return async function run(args, files, { signal, onProgress }) {

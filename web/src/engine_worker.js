@@ -1,4 +1,5 @@
-// The thread of the program: the tasks of the npm package (js/src), on a module that the page hands over with each of them.
+// The worker of the program. It runs the tasks of the npm package (js/src) on a module that the page sends with each
+// task.
 import { serveTasks } from '../../js/src/serve_tasks.js';
 
 serveTasks({
@@ -8,5 +9,5 @@ serveTasks({
   },
 });
 
-// Reports errors that nobody waits for, such as a module for which there is no memory.
+// Reports errors that no code awaits, such as too little memory for the module.
 self.addEventListener('unhandledrejection', ({ reason }) => self.postMessage({ failed: String(reason?.message ?? reason) }));

@@ -1,23 +1,25 @@
-// The panel of one face: Figures 1 to 3 of the paper for it, at a t that one chooses, with its corners to drag where the program is at hand.
+// The panel of one face: Figures 1 to 3 of the paper for this face at any t. If the program is available, its corners
+// can be dragged.
 import { h, panel, table } from './dom.js';
 import { degreesText } from './colors.js';
 import { faceOf, faceOfNumber, wayOf } from './faces.js';
 import { GRAPH, SPHERE, TRIANGLE, cornersInPicture, errorFigure, frameOf, inksOf, lengthFigure, liftedFrom, lookOf, nearOf, s, sphereFigure, stageOf, triangleFigure, turned,
   viewOf } from './figures.js';
 
-/** The schemes of the panel, as `report` stores them too. */
+/** The schemes that the panel shows; `report` stores figures of the same schemes. */
 export const FIGURE_SCHEMES = ['linear', 'quadratic', 'cubic', 'slerp', 'decasteljau:4', 'quaternion:matrix', 'quaternion:optimal'];
 const FIRST_SHOWN = ['linear', 'slerp', 'decasteljau:4', 'quaternion:matrix'];
-const STEP = 6; // of a picture, by which an arrow key moves a corner; with Shift five times as many
-const TURN = 0.01; // radians for each pixel
+const STEP = 6; // pixels of the picture by which an arrow key moves a corner; five times as many with Shift
+const TURN = 0.01; // radians per pixel
 
 const letterOf = (i) => String.fromCharCode(97 + (i % 26));
 
 /**
+ * Makes the panel of one face.
  * @param player from makePlayer()
  * @param {{outline(corners: number[]): void}} view gets the corners of the face that is shown
- * @param {((way: {from: number[][], to: number[][]}) => Promise<object>) | undefined} compute asks the program for the figure of a way;
- *   undefined where there is no program, and figures are those of the report alone
+ * @param {((way: {from: number[][], to: number[][]}) => Promise<object>) | undefined} compute asks the program for the figures of a
+ *   face that moves straight from one triangle to another; undefined without a program: the report's own figures are shown then
  */
 export function makeFacePanel(report, player, view, compute) {
   const stored = report.figures ?? [];
@@ -61,7 +63,7 @@ export function makeFacePanel(report, player, view, compute) {
     choose(faceOf(player.part, found.triangle));
   }
 
-  // Takes a face; its figure comes from the program, or from the report.
+  // Shows a face. Its figure comes from the program, or else from the report.
   function choose(found) {
     if (!found) {
       words.textContent = `There is no such face; the numbers end at ${(player.part.faces?.at(-1) ?? player.part.triangles.length / 3 - 1).toLocaleString('en')}.`;
@@ -95,7 +97,7 @@ export function makeFacePanel(report, player, view, compute) {
     take(known, true);
   }
 
-  // The last way that was wanted is asked for as soon as the program is free.
+  // Requests a figure. While the program is busy, only the latest request is kept; it is sent when the program is free.
   async function ask(next, isNew) {
     wanted = { next, isNew: isNew || wanted?.isNew };
     if (isAsking) return;
@@ -167,7 +169,7 @@ export function makeFacePanel(report, player, view, compute) {
     draw();
   }
 
-  // M and the frames at both ends, whose columns are the tangent, the binormal and the normal.
+  // Fills in the matrix M and the frames at both ends, whose columns are the tangent, the binormal and the normal.
   function fillFrames() {
     const built = figure.schemes.find(({ scheme, tangents }) => scheme === construction && tangents), isOpen = frames.open;
     frames.hidden = !built;
@@ -187,7 +189,7 @@ export function makeFacePanel(report, player, view, compute) {
     draw();
   }
 
-  // Corners that can be dragged, by hand or by keys.
+  // Makes handles on the corners, which can be dragged by the mouse or moved by keys.
   function makeHandles() {
     const count = figure.from.length;
     handles.replaceChildren(...(compute ? [...figure.from, ...figure.to].map((_, i) => {
@@ -240,7 +242,7 @@ export function makeFacePanel(report, player, view, compute) {
     ask(way, false);
   }
 
-  // Both pictures turn together.
+  // Dragging either picture turns both.
   for (const picture of [triangle, sphere]) {
     let last;
     picture.addEventListener('pointerdown', (event) => {
@@ -270,7 +272,7 @@ export function makeFacePanel(report, player, view, compute) {
     });
   }
 
-  /** The four pictures in one file, as they are shown. */
+  /** Returns the four pictures as one SVG file, as they are on the screen. */
   function svgOf() {
     const inks = inksOf(isDark()), gap = 12, width = 2 * TRIANGLE.width + 3 * gap, below = Math.max(TRIANGLE.height, SPHERE.height) + 2 * gap, height = below + GRAPH.height + gap + 24;
     const spots = [[gap, gap], [2 * gap + TRIANGLE.width, gap], [gap, below], [2 * gap + GRAPH.width, below]];
@@ -296,7 +298,7 @@ export function makeFacePanel(report, player, view, compute) {
     box,
     /** Shows the face of a triangle of the part that the player has. */
     pick: (index) => choose(faceOf(player.part, index)),
-    /** The player has another part: the face is none of it. */
+    /** Hides the face, which is not part of the part that the player shows now. */
     leave() {
       face = figure = undefined;
       body.hidden = true;
@@ -308,7 +310,7 @@ export function makeFacePanel(report, player, view, compute) {
     svg: () => new XMLSerializer().serializeToString(svgOf()),
     figure: () => figure,
     way: () => way,
-    /** {view, stage, sample, near, ...}: how the pictures are drawn. */
+    /** {view, stage, sample, near, ...}: the settings by which the pictures are drawn. */
     look,
   };
 }

@@ -1,7 +1,8 @@
-// Faces of a part: their numbers, their corners, and the straight way on which they move. Nothing is drawn here.
+// Faces of a part: their numbers, their corners, and the straight paths on which they move. This file draws nothing.
 import { segmentAt } from './motions.js';
 
-/** The face of a triangle of a part, whose triangles are a fan: {number, triangle, corners}; triangle is the first of them. */
+/** Returns the face that a triangle of a part belongs to, as {number, triangle, corners}. The triangles of a face are a
+ * fan; `triangle` is the first of them. */
 export function faceOf({ triangles, faces }, triangle) {
   let first = triangle, end = triangle + 1;
   const isSame = (t) => faces && faces[t] === faces[triangle];
@@ -12,7 +13,7 @@ export function faceOf({ triangles, faces }, triangle) {
   return { number: faces ? faces[first] : first, triangle: first, corners };
 }
 
-/** The face of a number, or undefined where the part has none. */
+/** Returns the face with a number, or undefined if the part has no such face. */
 export function faceOfNumber(part, number) {
   const triangle = part.faces ? part.faces.indexOf(number) : number;
   return Number.isInteger(number) && triangle >= 0 && 3 * triangle < part.triangles.length ? faceOf(part, triangle) : undefined;
@@ -20,7 +21,7 @@ export function faceOfNumber(part, number) {
 
 const vectorAt = (array, v) => [array[3 * v], array[3 * v + 1], array[3 * v + 2]];
 
-// Completes keyframes that hold only what differs from the first.
+// Returns vertex v of keyframe k. Later keyframes store only the differences from the first one.
 function keyframeAt(keyframes, k, v) {
   const keyframe = keyframes.positions[k];
   if (ArrayBuffer.isView(keyframe)) return vectorAt(keyframe, v);
@@ -38,8 +39,8 @@ function blendedAt({ positions, targets }, weights, v) {
 }
 
 /**
- * The straight way of a face at the moment that a player shows: in a sequence that of its segment; in a glTF file that from the base to the
- * moment, or to weight 1 of a target.
+ * Returns the straight path of a face at the moment that a player shows. In a sequence it is the path of the current
+ * segment; in a glTF file it goes from the base to the pose of the moment, or to weight 1 of a target.
  * @returns {{from: number[][], to: number[][], t: number, segment: number, words: string}}
  */
 export function wayOf(player, { corners }) {
@@ -63,7 +64,7 @@ export function wayOf(player, { corners }) {
 
 const objOf = (corners) => `${corners.map((p) => `v ${p.join(' ')}`).join('\n')}\nf ${corners.map((_, i) => i + 1).join(' ')}\n`;
 
-/** The command of the program that makes the figures of a face on its way, and its files. */
+/** Returns the command line that computes the figures of a face on its path, and the files that the command reads. */
 export function commandOf({ from, to }, schemes, samples) {
   const bytes = (corners) => new TextEncoder().encode(objOf(corners));
   return {

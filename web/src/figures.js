@@ -1,9 +1,9 @@
-// Figures 1 to 3 of the paper for one face, as SVG that needs no style sheet. Every normal, length, angle, frame and point is the
-// program's (`compare --face`); here they are turned, projected and drawn.
+// Draws Figures 1 to 3 of the paper for one face, as SVG that needs no style sheet. The program (`compare --face`) has
+// computed every normal, length, angle, frame and point; this file only turns, projects and draws them.
 
 const SPACE = 'http://www.w3.org/2000/svg';
 
-/** An element of SVG; attributes that are undefined are left out. */
+/** Makes an element of SVG. Attributes that are undefined are left out. */
 export function s(tag, attributes = {}, ...children) {
   const made = document.createElementNS(SPACE, tag);
   for (const [name, value] of Object.entries(attributes)) if (value !== undefined) made.setAttribute(name, value);
@@ -20,28 +20,29 @@ const unit = (a) => {
 };
 const isZero = (a) => a[0] === 0 && a[1] === 0 && a[2] === 0;
 
-/** Vector i of a flat array. */
+/** Returns vector i of a flat array. */
 export const vector = (flat, i) => [flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]];
 const vectors = (flat) => Array.from({ length: flat.length / 3 }, (_, i) => vector(flat, i));
 
-// Each scheme keeps its colour, on light and on dark ground, and its dashes, so that they can be told apart without colours.
+// Each scheme has its own colour, for a light and for a dark background, and its own dashes, so that schemes can be
+// told apart without colours.
 const LOOKS = {
   linear: ['#0b67b2', '#6cb8f5', ''], quadratic: ['#b3470a', '#ff9566', '7 3'], cubic: ['#18714a', '#6fd3a4', '2 3'], slerp: ['#6d28d9', '#b794f6', '9 3 2 3'],
   'decasteljau:4': ['#a21caf', '#f08ce8', '5 2'], 'quaternion:matrix': ['#0e7490', '#5fd4e6', '12 4'], 'quaternion:optimal': ['#be123c', '#ff7d95', '3 2'],
 };
 
-/** {colour, dashes} of a scheme. */
+/** Returns the {colour, dashes} of a scheme. */
 export const lookOf = (scheme, isDark) => {
   const [light, dark, dashes] = LOOKS[scheme] ?? ['#5b5b5b', '#b0b0b0', '1 2'];
   return { colour: isDark ? dark : light, dashes: dashes || undefined };
 };
 
-/** Inks of a theme. */
+/** Returns the colours of a theme. */
 export const inksOf = (isDark) => isDark
   ? { isDark, ink: '#eceae6', quiet: '#a3a099', line: '#43474c', sheet: '#1f2124', start: '#6cb8f5', end: '#ff9566', ball: '#2a2d31' }
   : { isDark, ink: '#1d1c1a', quiet: '#66625c', line: '#d0ccc4', sheet: '#ffffff', start: '#0b67b2', end: '#c2410c', ball: '#f1efec' };
 
-/** Looks at a face so that its normals lean away from the viewer, from one end on the left to the other on the right. */
+/** Returns a view of a face in which its normals lean away from the viewer, and move from left to right. */
 export function viewOf({ normals, from }) {
   const all = vectors(normals).filter((n) => !isZero(n)), first = all[0] ?? [0, 0, 1], last = all.at(-1) ?? first;
   const middle = unit(all.reduce((sum, n) => plus(sum, 1, n), [0, 0, 0])), up = isZero(middle) ? unit(cross(first, [0.6, 0.8, 0.02])) : middle;
@@ -52,7 +53,7 @@ export function viewOf({ normals, from }) {
   return turned({ right: unit(right), up: cross(up, unit(right)), towards: up }, 0, 0.6);
 }
 
-/** A view turned by angles to the right and down. */
+/** Returns a view turned by angles to the right and down. */
 export function turned({ right, up, towards }, across, down) {
   const turn = (a, b, angle) => [plus(a.map((c) => c * Math.cos(angle)), Math.sin(angle), b), plus(b.map((c) => c * Math.cos(angle)), -Math.sin(angle), a)];
   const [newRight, between] = turn(right, towards, -across), [newUp, newTowards] = turn(up, between, down);
@@ -75,7 +76,8 @@ function arrow([x0, y0], [x1, y1], stroke, width, more = {}) {
     s('polygon', { points: place(tip), fill: stroke }));
 }
 
-/** Where the face is drawn: centres at both ends, of which one moves along, and the length that fills the picture as it is first seen. */
+/** Returns the place where the face is drawn: its centres at both ends, between which the picture moves along, and the
+ * length that fills the picture in the first view. */
 export function stageOf({ from, to }, view) {
   const centreOf = (corners) => corners.reduce((sum, p) => plus(sum, 1 / corners.length, p), [0, 0, 0]), centres = [centreOf(from), centreOf(to)];
   const { width, height, y, reach } = TRIANGLE, ways = [from, to].flatMap((corners, end) => corners.map((p) => plus(p, -1, centres[end])));
@@ -90,7 +92,7 @@ export const TRIANGLE = { width: 340, height: 300, x: 170, y: 170, reach: 130, n
 export const SPHERE = { width: 340, height: 320, x: 170, y: 160, radius: 135 };
 export const GRAPH = { width: 340, height: 130, left: 38, right: 332, top: 20, bottom: 110 };
 
-/** The places of all corners in the picture: those at t = 0, then those at t = 1. */
+/** Returns the places of all corners in the picture: first at t = 0, then at t = 1. */
 export function cornersInPicture({ from, to }, { centres, size }, view) {
   const { x, y, reach } = TRIANGLE;
   return [from, to].flatMap((corners, end) => corners.map((p) => {
@@ -99,10 +101,10 @@ export function cornersInPicture({ from, to }, { centres, size }, view) {
   }));
 }
 
-/** A way in the picture as a way in space. */
+/** Converts a displacement in the picture into a displacement in space. */
 export const liftedFrom = (dx, dy, { size }, { right, up }) => plus(right.map((c) => (c * dx * size) / TRIANGLE.reach), (-dy * size) / TRIANGLE.reach, up);
 
-/** Figure 1: the face on its way, its exact normal at a sample, and those of the schemes that are shown. */
+/** Draws Figure 1: the face on its path, its exact normal at a sample, and the normals of the selected schemes. */
 export function triangleFigure(figure, { view, stage, sample, shown, inks }) {
   const t = figure.t[sample], places = cornersInPicture(figure, stage, view), count = figure.from.length;
   const start = places.slice(0, count), end = places.slice(count), now = start.map(([x, y], i) => [x + t * (end[i][0] - x), y + t * (end[i][1] - y)]);
@@ -124,14 +126,15 @@ export function triangleFigure(figure, { view, stage, sample, shown, inks }) {
     isZero(exact) ? null : arrow(origin, normalTo(exact), inks.ink, 2.4, { 'data-scheme': 'exact' }));
 }
 
-/** How much larger than its whole the sphere is drawn, so that short paths can be told apart, and what is in the middle then. */
+/** Returns the zoom of the sphere that makes short paths large enough to be told apart, and the direction at the middle
+ * of the zoomed picture. */
 export function nearOf({ normals, schemes }) {
   const all = [normals, ...schemes.map((one) => one.normals)].flatMap(vectors).filter((n) => !isZero(n)), middle = unit(all.reduce((sum, n) => plus(sum, 1, n), [0, 0, 0]));
   const spread = Math.max(...all.map((n) => Math.hypot(...plus(n, -1, middle))), 0.01);
   return { zoom: Math.max(0.75 / spread, 1), middle };
 }
 
-// Lines on the sphere through points, as great circles between them, in front and behind.
+// Returns lines on the sphere through points, as great circles between them; lines in front and behind are separate.
 function spherePath(points, view) {
   const fine = [];
   points.forEach((p, i) => {
@@ -155,7 +158,7 @@ function spherePath(points, view) {
   return parts;
 }
 const onSheet = (x, y) => [SPHERE.x + SPHERE.radius * x, SPHERE.y - SPHERE.radius * y];
-// A view with the zoom of the sphere in it: directions are projected to where they are drawn.
+// Returns a view that includes the zoom of the sphere, so that projected directions are where they are drawn.
 const nearer = (view, { zoom, middle }) => (zoom === 1 ? view : { ...view, zoom, centre: project(view, middle) });
 
 const drawn = (points, view, stroke, width, dashes, more = {}) => Object.entries(spherePath(points, view)).reverse().filter(([, d]) => d).map(([side, d]) =>
@@ -166,14 +169,14 @@ function mark(p, view, fill, radius, more = {}) {
   return s('circle', { cx: number(cx), cy: number(cy), r: radius, fill, opacity: z < 0 ? 0.35 : undefined, ...more });
 }
 
-// The points of de Casteljau's levels at a sample, that of the nodes first.
+// Returns the points of all levels of de Casteljau's algorithm at a sample. The first level is the nodes.
 function levelsOf({ nodes, points }, sample) {
   const levels = [vectors(nodes)], count = levels[0].length, all = (count * (count - 1)) / 2;
   for (let from = sample * all, size = count - 1; size > 0; from += size, --size) levels.push(Array.from({ length: size }, (_, i) => vector(points, from + i)));
   return levels;
 }
 
-/** The frame of a quaternion at a sample: tangent, binormal = normal x tangent, normal. */
+/** Returns the frame of a quaternion at a sample: tangent, binormal = normal x tangent, normal. */
 export const frameOf = ({ tangents, normals }, sample) => {
   const t = vector(tangents, sample), n = vector(normals, sample);
   return { t, b: cross(n, t), n };
@@ -186,7 +189,7 @@ function frameAxes(scheme, sample, view, stroke, width, name) {
   }).flat();
 }
 
-/** Figure 3: the unit sphere with the paths of normals, and the construction of one scheme at a sample. */
+/** Draws Figure 3: the unit sphere with the paths of normals, and the construction of one scheme at a sample. */
 export function sphereFigure(figure, { view: whole, near, sample, shown, construction, inks }) {
   const view = nearer(whole, near), [ballX, ballY] = project(view, [0, 0, 0]), [cx, cy] = onSheet(ballX, ballY);
   const exact = vectors(figure.normals), schemes = figure.schemes.filter(({ scheme }) => shown.has(scheme));
@@ -210,7 +213,7 @@ export function sphereFigure(figure, { view: whole, near, sample, shown, constru
     isZero(exact[sample]) ? null : mark(exact[sample], view, inks.ink, 5, { 'data-mark': 'exact', stroke: inks.sheet }));
 }
 
-/** A graph over t: lines are {name, values, colour, width, dashes}; null is no value. */
+/** Draws a graph over t. Lines are {name, values, colour, width, dashes}; null leaves a gap. */
 export function graphFigure(figure, title, unitName, lines, sample, inks) {
   const { left, right, top, bottom } = GRAPH, most = Math.max(0, ...lines.flatMap(({ values }) => values.filter((v) => v !== null)));
   const scale = most > 0 ? 1.06 * most : 1, x = (t) => left + t * (right - left), y = (v) => bottom - (v / scale) * (bottom - top);
@@ -231,7 +234,8 @@ export function graphFigure(figure, title, unitName, lines, sample, inks) {
     s('line', { x1: number(x(figure.t[sample])), x2: number(x(figure.t[sample])), y1: top, y2: bottom, stroke: inks.quiet }));
 }
 
-/** Figure 2: lengths before normals are made unit vectors; those of the exact one, twice the area, as shares of the largest. */
+/** Draws Figure 2: the lengths of interpolated normals before they are made unit vectors. The length of the exact
+ * normal, twice the area, is a share of its maximum. */
 export function lengthFigure(figure, { sample, shown, inks }) {
   const most = Math.max(...figure.lengths) || 1;
   const lines = figure.schemes.filter(({ scheme, lengths }) => shown.has(scheme) && lengths).map(({ scheme, lengths }) => {
@@ -242,7 +246,7 @@ export function lengthFigure(figure, { sample, shown, inks }) {
   return graphFigure(figure, 'length before it is made 1 (thick: the area)', '', lines, sample, inks);
 }
 
-/** The angle to the exact normal. */
+/** Draws the angle between the normals of each scheme and the exact normals. */
 export function errorFigure(figure, { sample, shown, inks }) {
   const lines = figure.schemes.filter(({ scheme }) => shown.has(scheme)).map(({ scheme, degrees }) => {
     const { colour, dashes } = lookOf(scheme, inks.isDark);

@@ -1,15 +1,16 @@
-// Right normals from positions: the cross products of faces, added up over those who share a normal (docs/theory.md, sections 1,
-// 8 and 9), and what the author of a file shows beyond that (docs/formats.md). Everything is double, and nothing is allocated
-// in a step.
+// True normals from positions: the cross products of faces, summed over the corners that share a normal
+// (docs/theory.md, sections 1, 8 and 9), and the offsets and polygons of a file's author (docs/formats.md). All
+// arithmetic is in double, and a step allocates nothing.
 
-/** No element: a vertex of a flat primitive, or one without a face. */
+/** Marks a vertex that belongs to no element: a vertex of a flat primitive, or one without a face. */
 export const NONE = 0xffffffff;
 
-// Terms that cancel leave their rounding, which is no direction.
+// Terms that cancel out leave a rounding error. A sum below this share of its terms is treated as zero, since it has no
+// direction.
 const ROUNDING = 1e-13;
 
-// Returns what a corner adds where the vector area of its face is n: n itself times the result. dot is e.f of its edges, sine the length
-// of e x f, squares the product of e.e and f.f, and area is |n|.
+// Factors by which the vector area n of a face is multiplied for one of its corners, by the weighting. dot is e.f of
+// the two edges at the corner, sine the length of e x f, squares the product of e.e and f.f, and area is |n|.
 const WEIGHTS = {
   area: () => 1,
   uniform: (area) => 1 / area,
@@ -19,7 +20,7 @@ const WEIGHTS = {
   'inverse-roots': (area, dot, sine, squares) => 1 / (Math.sqrt(Math.sqrt(squares)) * area),
 };
 
-// Polygons: the triangles of one face follow each other as its fan.
+// Returns the polygons behind the triangles: consecutive triangles of one face are its fan.
 function cornersOfFaces(triangles, faces) {
   const offsets = [0], corners = [];
   for (let t = 0; t < faces.length; ++t) {
@@ -34,7 +35,7 @@ function cornersOfFaces(triangles, faces) {
   return { offsets: Uint32Array.from(offsets), corners: Uint32Array.from(corners) };
 }
 
-// Adds the terms of all triangles by area, which is most of the time of a step.
+// Adds the area-weighted terms of all triangles. Most of the time of a step is spent here.
 function addAreas({ triangles }, slots, p, normals, sizes) {
   for (let t = 0; t < triangles.length; t += 3) {
     const a = 3 * triangles[t], b = 3 * triangles[t + 1], c = 3 * triangles[t + 2];
@@ -52,8 +53,9 @@ function addAreas({ triangles }, slots, p, normals, sizes) {
   }
 }
 
-// Does the same by another weighting, and for polygons. slots has the element of each corner, or starts where those of each corner begin
-// in slots.
+// Adds the terms of all polygons by a weighting other than area, or of faces with more than three corners. `slots` has
+// the element of each corner; if `starts` is given, a corner c has several elements, from slots[starts[c]] to
+// slots[starts[c + 1]].
 function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, normals, sizes) {
   const weightOf = WEIGHTS[weighting];
   for (let f = 0; f + 1 < offsets.length; ++f) {
@@ -81,7 +83,7 @@ function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, norm
         (tx = cx), (ty = cy), (tz = cz), (weight = 1 / squares);
       } else {
         weight = weightOf(area, ex * fx + ey * fy + ez * fz, Math.sqrt(cx * cx + cy * cy + cz * cz), squares);
-        if (weight === Infinity) continue; // an edge without length
+        if (weight === Infinity) continue; // an edge has length zero
       }
       tx *= weight;
       ty *= weight;
@@ -98,7 +100,8 @@ function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, norm
   }
 }
 
-// Lists the elements that add up each corner: those that pairs of a corner and an element name, or else those of its vertex.
+// Lists the elements to which each corner contributes. `terms` are pairs of a corner and an element; without them, a
+// corner contributes to the element of its vertex.
 function elementsOfCorners({ element, elements, triangles, backs }, corners, terms) {
   if (!terms) {
     const slots = Uint32Array.from(corners, (v) => (element[v] === NONE ? elements : element[v]));
@@ -112,11 +115,12 @@ function elementsOfCorners({ element, elements, triangles, backs }, corners, ter
 }
 
 /**
- * How sums of face normals are computed.
+ * Returns a function that sums face normals over elements.
  * @param part of a report
- * @param sums its `truth`, where what that adds up is wanted, and not the triangles
- * @returns {(positions: Float64Array, normals: Float64Array, sizes: Float64Array) => void} writes n of each element, of any
- *   length, and the size of what it was added up from; both arrays have one more element, for corners without any
+ * @param sums the `truth` of the part, to sum the author's polygons; by default the triangles are summed
+ * @returns {(positions: Float64Array, normals: Float64Array, sizes: Float64Array) => void} writes the sum n of each element, not
+ *   normalised, and the sum of the sizes of its terms, which bounds the rounding error; both arrays have one more element, for
+ *   corners without an element
  */
 export function normalsOf(part, { polygons: given, terms } = {}) {
   const { triangles, faces, elements, weighting } = part;
@@ -136,7 +140,8 @@ export function normalsOf(part, { polygons: given, terms } = {}) {
   };
 }
 
-// Turns the sums of some elements as their author did, whose additions the surface carries along.
+// Returns a function that rotates the sums of some elements as their author did. The author's rotations relative to the
+// surface move with the surface.
 function offsetsOf({ elements, sides, first, edges, references, turned, base, targets }) {
   const now = new Float64Array(base.length);
   return (p, weights, normals) => {
@@ -154,7 +159,7 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
       const size = Math.sqrt(normals[at] ** 2 + normals[at + 1] ** 2 + normals[at + 2] ** 2), scale = sides[f] / size;
       if (size === 0) continue;
       const zx = scale * normals[at], zy = scale * normals[at + 1], zz = scale * normals[at + 2];
-      // The mean angle of the edges to z, and the direction in which the reference leaves.
+      // These are the mean angle of the edges to z, and the direction in which the reference edge leaves the vertex.
       let angles = 0, count = 0, xx = 0, xy = 0, xz = 0;
       for (let i = first[f]; i < first[f + 1]; ++i) {
         const a = 3 * edges[2 * i], b = 3 * edges[2 * i + 1], ex = p[b] - p[a], ey = p[b + 1] - p[a + 1], ez = p[b + 2] - p[a + 2];
@@ -169,7 +174,8 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
         }
       }
       if (isTurned) {
-        // The smallest rotation from z of the base; where the two are opposite, half a turn about something across.
+        // Applies the smallest rotation from z of the base. If the two directions are opposite, it turns by 180 degrees
+        // about a perpendicular axis.
         const bx = turned[t], by = turned[t + 1], bz = turned[t + 2], ux = turned[t + 3], uy = turned[t + 4], uz = turned[t + 5];
         const sx = by * zz - bz * zy, sy = bz * zx - bx * zz, sz = bx * zy - by * zx, cosine = bx * zx + by * zy + bz * zz;
         const along = cosine > -1 + 1e-12 ? (sx * ux + sy * uy + sz * uz) / (1 + cosine) : 0;
@@ -188,10 +194,10 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
 }
 
 /**
- * How the truth of a part that has `truth` is computed: what its author would see.
+ * Returns a function that computes the true normals of a part that has `truth`: the normals that its author sees.
  * @param part of a report, of a glTF file
  * @returns {(positions: Float64Array, weights: ArrayLike<number>, normals: Float64Array, right: Float64Array) => void} writes the
- *   truth of each element from what normalsOf(part) computed; where there is none, that itself
+ *   true normal of each element into `right`; an element without one gets its vector from `normals`, the result of normalsOf(part)
  */
 export function truthOf(part) {
   const { truth, elements } = part;
@@ -208,19 +214,20 @@ export function truthOf(part) {
   };
 }
 
-/** As set() of typed arrays, which takes five times as long where the types differ. */
+/** Copies an array of numbers. Unlike set() of typed arrays, which is five times slower when the types differ, this loop
+ * is always fast. */
 export function copy(from, to) {
   for (let i = 0; i < from.length; ++i) to[i] = from[i];
 }
 
-/** The unit vector of three numbers from `at` on, or zero. */
+/** Returns the unit vector of three numbers that begin at index `at`, or zero. */
 export function unitAt(array, at, result = [0, 0, 0]) {
   const length = Math.hypot(array[at], array[at + 1], array[at + 2]);
   for (let c = 0; c < 3; ++c) result[c] = length > 0 ? array[at + c] / length : 0;
   return result;
 }
 
-/** The angle between two vectors, in degrees. */
+/** Returns the angle between two vectors, in degrees. */
 export function degreesBetween(ax, ay, az, bx, by, bz) {
   const x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
   return (Math.atan2(Math.sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz) * 180) / Math.PI;

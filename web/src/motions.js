@@ -1,12 +1,12 @@
-// Where a motion is: `at` counts its samples, and a fraction lies between two of them.
+// Places in a motion. A place `at` is a number of a sample; a fraction lies between two samples.
 
-/** The time or weight at a place. */
+/** Returns the time or weight at a place. */
 export function valueAt({ at: values }, at) {
   const from = Math.min(Math.floor(at), values.length - 1), to = Math.min(from + 1, values.length - 1);
   return values[from] + (at - from) * (values[to] - values[from]);
 }
 
-/** The place of a time or weight; where two samples have it, that of the later one. */
+/** Returns the place of a time or weight. If two samples have the same one, the result is the later sample. */
 export function placeOf({ at: values }, value) {
   let low = 0, high = values.length - 1;
   while (low < high) {
@@ -18,7 +18,7 @@ export function placeOf({ at: values }, value) {
   return low + Math.min(Math.max((value - values[low]) / (values[low + 1] - values[low]), 0), 1);
 }
 
-/** The sample before or after, which is at another time. */
+/** Returns the closest sample before or after a place that has another time. */
 export function neighbour({ at: values }, at, step) {
   const last = values.length - 1, start = valueAt({ at: values }, at);
   let next = step > 0 ? Math.floor(at) + 1 : Math.ceil(at) - 1;
@@ -26,10 +26,11 @@ export function neighbour({ at: values }, at, step) {
   return Math.min(Math.max(next, 0), last);
 }
 
-// A sample whose keyframes were left out of the report.
+// Marks a sample whose keyframes were left out of the report.
 const LEFT_OUT = 0xffffffff;
 
-/** Segment and t of a motion of keyframes at a place; where its keyframes were left out, those of the nearest place that has some. */
+/** Returns the segment and t of a place in a motion of keyframes. If its keyframes were left out, the nearest place with
+ * keyframes is used. */
 export function segmentAt({ segment, t }, at) {
   const last = segment.length - 1, from = Math.min(Math.floor(at), last), to = Math.min(from + 1, last);
   if (segment[from] !== LEFT_OUT) return [segment[from], t[from] + (segment[from] === segment[to] ? (at - from) * (t[to] - t[from]) : 0)];
@@ -39,16 +40,16 @@ export function segmentAt({ segment, t }, at) {
   }
 }
 
-/** The sample at which the numbers of a motion are the worst. */
+/** Returns the sample with the largest error of a motion. */
 export const worstSample = ({ worst }) => worst.reduce((best, value, i) => (value > worst[best] || !(worst[best] >= 0) ? i : best), 0);
 
-/** A sample for people: "jawOpen at 0.55", "talk at 1.25 s". */
+/** Returns words for a sample: "jawOpen at 0.55", "talk at 1.25 s". */
 export function momentOf(motion, sample) {
   const name = motion.name || (motion.kind === 'target' ? `target ${motion.target}` : motion.kind === 'expression' ? `expression ${motion.expression}` : '');
   return `${name ? `${name} at ` : ''}${+motion.at[sample].toFixed(3)}${motion.seconds ? ' s' : ''}`;
 }
 
-/** What a motion is called, for people. */
+/** Returns the name of a motion for people. */
 export function nameOf(motion) {
   if (motion.kind === 'target') return motion.name || `target ${motion.target}`;
   if (motion.kind === 'track') return `animation ${motion.name || motion.animation}`;

@@ -1,4 +1,5 @@
-// chronormal in a page: files are dropped, shown, baked and taken away again, all inside the browser.
+// chronormal as a page: a person drops files, looks at them, bakes them and saves the results. Everything happens
+// inside the browser.
 import { readContainer } from './data.js';
 import { h, segmented } from './dom.js';
 import { EngineError, makeEngine } from './engine.js';
@@ -28,7 +29,7 @@ const message = h('div', { className: 'message', role: 'alert', hidden: true });
 const busy = h('div', { className: 'busy', role: 'status', hidden: true });
 work.append(message, busy);
 
-/** Says what went wrong until the next thing is done; details are the words of the program. */
+/** Shows an error until the next action begins. `details` are the messages of the program. */
 function say(text, details) {
   message.hidden = !text;
   message.classList.remove('mild');
@@ -36,14 +37,15 @@ function say(text, details) {
     h('button', { type: 'button', className: 'plain', onclick: () => say() }, 'Close')] : []));
 }
 
-/** Says something beside a result, whose details are there for those who ask. */
+/** Shows a remark beside a result; `details` are hidden until a person opens them. */
 function remark(text, details) {
   say(text);
   message.classList.add('mild');
   message.firstChild.append(h('details', {}, h('summary', {}, 'What the program says'), h('pre', {}, details)));
 }
 
-/** Runs a step of several commands with a bar and a button that stops it; returns what it returns, or undefined where it failed. */
+/** Runs a step of several commands, with a progress bar and a button that stops it. Returns the result of the step, or
+ * undefined if it failed. */
 async function during(title, step) {
   if (abort) return undefined;
   abort = new AbortController();
@@ -82,7 +84,7 @@ async function reportOf(call, { args, bytes }) {
   return readContainer(files['report.bin']);
 }
 
-// Reads a file into bytes; returns why it could not.
+// Reads a file into `bytes`. Returns the reason if this fails.
 async function read(file, bytes) {
   try {
     bytes[file.name] = new Uint8Array(await file.arrayBuffer());
@@ -92,7 +94,8 @@ async function read(file, bytes) {
   }
 }
 
-// Reads the files of an input; returns why they cannot be used, or undefined. What lies beside a .gltf may be anything.
+// Reads the files of an input. Returns the reason if they cannot be used, or undefined. Files beside a .gltf may have
+// any content.
 async function load({ args, files }, bytes) {
   for (const file of files) {
     const isInput = args.includes(file.name);
@@ -122,13 +125,13 @@ async function open(input) {
   show(inputs.at(-1), 'came');
 }
 
-// The figures of a face on its way, at twice the samples of a table.
+// Computes the figures of a face on its path, with twice as many samples as a table has.
 async function figureOf(way) {
   const { args, files } = commandOf(way, FIGURE_SCHEMES, 41), { stdout } = await run(args, files, { signal: new AbortController().signal, onProgress() {} });
   return JSON.parse(stdout).figure;
 }
 
-// A morph of our own, for those who have no file at hand.
+// Loads a generated morph, for people who have no file at hand.
 async function example() {
   const made = await during('Making an example', (call) => call(['convert', '--sample', 'bumps', '-o', 'out/bumps.glb'], {}));
   if (made) await open({ name: 'bumps.glb', args: ['bumps.glb'], bytes: { 'bumps.glb': made.files['bumps.glb'] } });

@@ -1,4 +1,4 @@
-// The panels beside the picture: what there is to choose from, and the tables of the report.
+// The panels beside the picture: the choices, and the tables of the report.
 import { h, panel, table } from './dom.js';
 import { degreesText } from './colors.js';
 import { momentOf, nameOf, worstSample } from './motions.js';
@@ -15,13 +15,13 @@ const select = (label, options, value, onChoose) => {
 const viewerTitle = (report, name) =>
   name === 'specification' ? 'glTF to the letter' : report.audit?.viewers?.find((viewer) => viewer.name === name)?.title ?? name;
 
-/** What a viewer shows, in the label above the picture. */
+/** Returns the label above the picture that says which viewer's normals it shows. */
 export const shownBy = (report, player) => {
   if (report.kind !== 'gltf') return player.scheme === 'linear' ? 'As shown: normals interpolated between keyframes' : `As shown by ${player.scheme}`;
   return player.viewer === 'specification' ? 'As shown' : `As shown: ${viewerTitle(report, player.viewer)}`;
 };
 
-/** Which part, which motion, and for a glTF file which viewer. */
+/** Makes the menus that choose the part, the motion, and for a glTF file the viewer. */
 export function choosers(report, player) {
   const box = h('div', { className: 'choosers' });
   const fill = () => {
@@ -46,14 +46,14 @@ export function choosers(report, player) {
   return { box, fill };
 }
 
-/** The worst places that are off by more than next to nothing, worst first. */
+/** Returns the worst places with an error that is not negligible, worst first. */
 export const shownPlaces = ({ worst }) => worst.filter(({ degrees }) => degrees >= 0.0005);
 
-/** The worst places, each of which can be visited. */
+/** Makes the list of the worst places. A click on a place calls onVisit. */
 export function worstPlaces(report, onVisit) {
   const places = shownPlaces(report);
   if (places.length === 0) return null;
-  // A property that all of them share need not be said.
+  // Properties that all places share are left out of their labels.
   const pieces = places.map(({ label }) => label.split(', '));
   const same = pieces[0].findIndex((piece, i) => i === pieces[0].length - 1 || pieces.some((other) => other[i] !== piece));
   const item = ({ part, motion, sample, degrees, label }, i) => {
@@ -65,7 +65,7 @@ export function worstPlaces(report, onVisit) {
   return panel(`Worst places (${places.length})`, true, list);
 }
 
-/** A slider for each target that is no extra one. */
+/** Makes a slider for each target of the file that is not a correction target. */
 export function weightSliders(player) {
   const list = h('div', { className: 'weights' }), reset = h('button', { type: 'button', className: 'plain', onclick: player.rest }, 'All to 0');
   const note = h('p', { className: 'note' });
@@ -101,10 +101,10 @@ export function weightSliders(player) {
 
 const TORN = '99.9 % of all errors are below that column. Over a torn edge the error jumps by more than 10 degrees: a fold is seen that the surface does not have. They are counted at a moment, on average.';
 
-// Returns how many edges are torn at a moment, on average; nothing where edges are not known.
+// Returns the number of torn edges at a moment, on average, or an empty text if it is not known.
 const tornText = ({ torn_edges: torn }) => (torn?.[0] === undefined ? '' : torn[0] > 0 && torn[0] < 10 ? torn[0].toFixed(1) : count(Math.round(torn[0])));
 
-/** What each viewer shows of the file, the whole audit in a row. */
+/** Makes a table of the audit, with a row for each viewer. */
 export function viewerTable({ audit }) {
   if (!audit?.viewers?.length) return null;
   const row = (title, error) => {
@@ -116,7 +116,7 @@ export function viewerTable({ audit }) {
     h('p', { className: 'note' }, TORN));
 }
 
-/** What a bake would come to, by candidate: the table of `bake --plan`. */
+/** Makes a table of the size and errors of each candidate of a bake, like `bake --plan`. */
 export function choiceTable({ plan, plan_message: message }) {
   if (!plan) return message ? panel('What a bake would write', false, h('p', { className: 'note' }, message)) : null;
   const tables = plan.meshes.filter(({ candidates }) => candidates?.length).map(({ mesh, name, candidates }) => {
@@ -131,7 +131,7 @@ export function choiceTable({ plan, plan_message: message }) {
     h('p', { className: 'note' }, 'Degrees along the animations of the file. The one with a mark is what bake writes.'));
 }
 
-/** How the schemes compare on this motion; one of them can be shown by a click. */
+/** Makes a table of the errors of each scheme on this motion. A click on a scheme shows its normals. */
 export function schemeTable(report, player) {
   const found = report.compare?.schemes;
   if (!found?.length) return null;
@@ -142,11 +142,11 @@ export function schemeTable(report, player) {
   return panel('Ways to interpolate', true, table('Schemes', ['scheme', 'mean ', 'worst '], rows));
 }
 
-/** What was left out of the report. */
+/** Makes a panel that lists the parts of the input that the report leaves out. */
 export const notes = ({ thinned }) =>
   thinned?.length ? panel('What was left out here', true, h('ul', {}, thinned.map((sentence) => h('li', {}, sentence)))) : null;
 
-/** What is wrong with the file, in a sentence. */
+/** Returns a sentence that says how well the file's normals fit. */
 export function verdict({ audit }) {
   if (!audit) return '';
   const { worst_degrees: worst, mean_degrees: mean, judged } = audit;

@@ -1,9 +1,11 @@
-// Finds where a ray meets the mesh: which vertex is under the pointer, and from where a vertex can be seen.
+// Finds where a ray meets the mesh: for the vertex under the pointer, and for directions from which a vertex is
+// visible.
 
 /**
- * The nearest triangle that a ray meets.
- * @returns {{distance: number, vertex: number, triangle: number}} in lengths of the direction, Infinity where there is none; the triangle, and
- *   its corner that is nearest to where it is met, or -1. Positions are (V x 3)
+ * Finds the nearest triangle that a ray meets.
+ * @returns {{distance: number, vertex: number, triangle: number}} the distance, in lengths of the direction, or Infinity if the ray
+ *   meets nothing; the triangle; and its corner nearest to the point of intersection. The last two are -1 if the ray meets nothing.
+ *   Positions are (V x 3)
  */
 export function meet(positions, triangles, origin, direction) {
   const [ox, oy, oz] = origin, [dx, dy, dz] = direction;

@@ -1,15 +1,17 @@
-// Holds the state that is shown: which part, which motion and where in it, or weights set by hand; for which viewer, by which scheme.
+// Holds the state of what is shown: the part, the motion and the place in it, or weights set by hand; the viewer, and
+// the scheme.
 import { drive, formulasOf } from '../../js/src/drive.js';
 import { makeSequence } from './sequence.js';
 import { SCHEMES } from './schemes.js';
 import { makeSurface, weightsAt } from './surface.js';
 import { neighbour, placeOf, segmentAt, valueAt, worstSample } from './motions.js';
 
-const TOUR = 3; // seconds that a motion without a time takes
+const TOUR = 3; // seconds that a motion without times plays
 
 /**
+ * Makes a player.
  * @param report from readContainer()
- * @param {(what: 'part' | 'motion' | 'step') => void} onChange hears what has changed; "part" includes "motion", and that "step"
+ * @param {(what: 'part' | 'motion' | 'step') => void} onChange is told what changed: a change of "part" is followed by "motion", and "motion" by "step"
  */
 export function makePlayer(report, onChange) {
   const surfaces = new Map();
@@ -59,7 +61,7 @@ export function makePlayer(report, onChange) {
     onChange('motion');
     step();
   };
-  /** Goes to a place of report.worst; returns its vertex. */
+  /** Goes to a place in report.worst and returns its vertex. */
   player.visit = ({ part, motion, sample, vertex }) => {
     player.pause();
     if (player.viewer !== 'specification') player.chooseViewer('specification');

@@ -1,17 +1,18 @@
-// The error over the motion, as a plot that follows the slider; a click goes there.
+// A plot of the error over the motion. It marks the place of the slider; a click moves the slider there.
 import uPlot from 'uplot';
 import { degreesText } from './colors.js';
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// uPlot wants no two points at one place, and a motion has one for each side of a key.
+// uPlot allows no two points at the same x, but a motion has two samples at a key, one for each side, so the second is
+// moved slightly.
 const spread = (at) => {
   const x = Float64Array.from(at), gap = (x[x.length - 1] - x[0] || 1) * 1e-9;
   for (let i = 1; i < x.length; ++i) if (x[i] <= x[i - 1]) x[i] = x[i - 1] + gap;
   return x;
 };
 
-/** @param {(x: number) => void} onGo hears the time or weight that was clicked */
+/** Makes a plot. @param {(x: number) => void} onGo is called with the time or weight that was clicked */
 export function makePlot(parent, onGo) {
   let plot, shown, now = 0;
   const line = {

@@ -1,7 +1,7 @@
-// Ways to interpolate the unit normals of elements between two keyframes (docs/theory.md, section 4). Each gets exact unit normals at
-// equidistant t, and writes unit normals; one vector after the other.
+// Ways to interpolate the unit normals of elements between two keyframes (docs/theory.md, section 4). Each scheme gets
+// exact unit normals at equidistant t, and writes unit normals. Arrays have three numbers for each element.
 
-// Applies a rule of three numbers to all elements: rule(units, at, result).
+// Turns a rule for one vector, rule(units, at, result), into a scheme that applies the rule to all elements.
 const each = (rule) => (units, t, result, exact) => {
   const make = rule(t, exact);
   for (let at = 0; at < result.length; at += 3) {
@@ -11,7 +11,7 @@ const each = (rule) => (units, t, result, exact) => {
   }
 };
 
-// 4.3: the polynomial of Lagrange through K + 1 unit normals; its weights depend on t alone.
+// Section 4.3: Lagrange's polynomial through K + 1 unit normals. Its weights depend only on t.
 function lagrange(intervals) {
   const rule = (t) => {
     const weights = Array.from({ length: intervals + 1 }, (_, i) => {
@@ -30,7 +30,7 @@ function lagrange(intervals) {
   return { intervals, evaluate: each(rule) };
 }
 
-// 4.4: along the great circle. Equal ends stay; opposite ones turn about a perpendicular.
+// Section 4.4: interpolates along the great circle. Equal ends stay; opposite ends turn about a perpendicular axis.
 function alongArc(a, i, b, j, t, result, at) {
   const d = a[i] * b[j] + a[i + 1] * b[j + 1] + a[i + 2] * b[j + 2];
   const x = a[i + 1] * b[j + 2] - a[i + 2] * b[j + 1], y = a[i + 2] * b[j] - a[i] * b[j + 2], z = a[i] * b[j + 1] - a[i + 1] * b[j];
@@ -45,7 +45,7 @@ function alongArc(a, i, b, j, t, result, at) {
 
 const slerp = { intervals: 1, evaluate: each((t) => (units, at, result) => alongArc(units[0], at, units[1], at, t, result, at)) };
 
-// The algorithm of de Casteljau, each of whose lines is an arc, over K exact normals.
+// De Casteljau's algorithm over K exact normals, with arcs of great circles in place of lines.
 function deCasteljau(points) {
   const work = new Float64Array(3 * points);
   const rule = (t) => (units, at, result) => {
@@ -56,7 +56,8 @@ function deCasteljau(points) {
   return { intervals: points - 1, evaluate: each(rule) };
 }
 
-// 4.7: the circle through the exact normals at t = 0, 1/2 and 1; timed: so that it is at the middle one at t = 1/2.
+// Section 4.7: the circle through the exact normals at t = 0, 1/2 and 1. If isTimed, it passes the middle normal at t =
+// 1/2.
 function circle(isTimed) {
   const rule = (t) => (units, at, result) => {
     const [a, m, b] = units, ax = a[at], ay = a[at + 1], az = a[at + 2];
@@ -82,7 +83,7 @@ function circle(isTimed) {
   return { intervals: 2, evaluate: each(rule) };
 }
 
-// 4.2: n(t) itself, and its direction.
+// Section 4.2: the polynomial n(t), normalised.
 const polynomial = {
   intervals: 1,
   evaluate: each((t, exact) => (units, at, result) => {
@@ -90,7 +91,7 @@ const polynomial = {
   }),
 };
 
-/** The schemes that a page can show, as `compare` names them. */
+/** The schemes that a page can show, by their names in `compare`. */
 export const SCHEMES = {
   linear: { ...lagrange(1), title: 'linear: between the normals of the keyframes, then normalised' },
   slerp: { ...slerp, title: 'slerp: along the great circle' },

@@ -1,9 +1,10 @@
-// A sequence of keyframes at a moment: where its vertices are, what a scheme shows that interpolates normals between keyframes,
-// what it should show, and the angle between the two. All arrays are made once; a step fills them.
+// A sequence of keyframes at a moment: the positions of its vertices, the rendered normals of a scheme that
+// interpolates between keyframes, the true normals, and the angles between the two. All arrays are allocated once; a
+// step fills them.
 import { NONE, copy, degreesBetween, normalsOf, unitAt } from './geometry.js';
 import { schemeOf } from './schemes.js';
 
-// A keyframe holds all numbers, or those that differ from the first one.
+// Returns a complete keyframe from one that stores either all numbers or only the differences from the first keyframe.
 function whole(values, first) {
   if (!values.indices) return values;
   const result = first.slice();
@@ -23,7 +24,7 @@ function perpendicular(a) {
   return unitAt(cross(a, axis), 0);
 }
 
-// v turned by the smallest rotation from one unit vector to another.
+// Returns v, turned by the smallest rotation from one unit vector to another.
 function turned(from, to, v) {
   const sine = cross(from, to), cosine = dot(from, to), length = Math.hypot(...sine);
   if (cosine < 0 && length < 1e-12) {
@@ -34,7 +35,8 @@ function turned(from, to, v) {
   return sum(sum(scaled(cosine, v), cross(sine, v)), scaled((1 - cosine) * dot(axis, v), axis));
 }
 
-// A direction turned as the author turned the geometry at a keyframe, by no more than `allowed`.
+// Returns a direction, turned like the author's stored normal relative to the geometry's normal at a keyframe, but by
+// at most `allowed` radians.
 function offsetBy(geometry, stored, allowed, direction) {
   if (isZero(geometry) || isZero(stored) || allowed === undefined) return direction;
   if (anglesBetween(geometry, stored) <= allowed) return turned(geometry, stored, direction);
@@ -44,8 +46,9 @@ function offsetBy(geometry, stored, allowed, direction) {
 }
 
 /**
+ * Makes the surface of a sequence.
  * @param part of a report, of kind "sequence" or "targets"
- * @returns what is drawn, as makeSurface() of surface.js has it, and pose(segment, t, scheme, least)
+ * @returns the arrays that are drawn, like makeSurface() of surface.js, and pose(segment, t, scheme, least)
  */
 export function makeSequence(part) {
   const { vertices: V, elements: E, element, keyframes } = part;
@@ -68,7 +71,8 @@ export function makeSequence(part) {
     computeNormals(p, n, sizes);
   }
 
-  // Keeps the data of a segment, and of a scheme in it, until another one is asked for.
+  // The data of the current segment, and of the current scheme in it. They are computed anew when another segment or
+  // scheme is shown.
   let segment = {}, fit = {};
   function enter(number) {
     if (segment.number === number) return;
@@ -76,7 +80,7 @@ export function makeSequence(part) {
     segment = { number, from: positionsOf(a), to: positionsOf(b), storedFrom: storedOf(a), storedTo: storedOf(b) };
     fit = {};
   }
-  // Unit normals of all elements at t = 0, 1/K, ..., 1; at the ends their limits.
+  // Returns the unit normals of all elements at t = 0, 1/K, ..., 1. At the two ends they are limits.
   function unitsAt(intervals) {
     const units = [];
     for (let i = 0; i <= intervals; ++i) {
@@ -95,7 +99,7 @@ export function makeSequence(part) {
     return units;
   }
 
-  // The offsets of authors, where each keyframe has normals of its own.
+  // The largest angle of the author's offset at each vertex, if each keyframe has its own normals.
   const allowed = new Float64Array(keyframes.normals ? V : 0);
   if (keyframes.normals) {
     enter(0);
@@ -142,7 +146,8 @@ export function makeSequence(part) {
     }
   }
 
-  /** scheme: a name of schemes.js; "stored" shows the stored normals of both keyframes, where there are any. */
+  /** Computes all arrays at a moment. `scheme` is a name in schemes.js, or "stored" to interpolate the stored normals of
+   * both keyframes. */
   surface.pose = (number, t, scheme, least) => {
     enter(number);
     const { intervals, evaluate } = schemeOf(scheme);

@@ -1,4 +1,5 @@
-// Shaders that draw a mesh: by the normals that are shown or those that are right, lit or as colours, or the angle between them.
+// Shaders that draw a mesh with its rendered or its true normals, lit or as colours, or with the angle between the two
+// as colours.
 
 export const LIT = 0, NORMALS = 1, ERROR = 2, PLAIN = 3;
 
@@ -19,7 +20,8 @@ void main() {
   gl_Position = projectionMatrix * position4;
 }`;
 
-// A studio: a key light with a sharp highlight, which shows every bump of the normals, a fill and a rim, all fixed to the camera.
+// A studio of three lights that are fixed to the camera: a key light with a sharp highlight, which reveals every bump
+// of the normals, a fill light and a rim light.
 export const fragmentShader = `
 uniform int mode;
 uniform float scale;
@@ -51,7 +53,8 @@ void main() {
   bool hasNone = dot(vNormal, vNormal) < 1e-8;
   bool isJudged = vDegrees > -0.5;
   vec3 n = hasNone ? face : normalize(vNormal);
-  // The back of a face has the opposite normal; not where it is seen from its edge, as behind silhouettes: there it is as beside it.
+  // The back of a face gets the opposite normal. Near silhouettes, where the face is seen almost from its edge, the
+  // normal stays like that of the visible neighbours.
   if (!gl_FrontFacing && !hasNone && abs(dot(face, eye)) > 0.3) n = -n;
   if (mode == ${ERROR}) {
     float depth = 0.72 + 0.28 * max(dot(face, eye), 0.0);

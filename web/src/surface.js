@@ -1,12 +1,12 @@
-// A mesh with morph targets at given weights: where its vertices are, what a viewer shows, what it should show, and the angle
-// between the two (docs/viewers.md). All arrays are made once; a step fills them.
+// A mesh with morph targets at given weights: the positions of its vertices, the normals that a viewer renders, the
+// true normals, and the angles between the two (docs/viewers.md). All arrays are allocated once; a step fills them.
 import { NONE, copy, degreesBetween, normalsOf, truthOf } from './geometry.js';
 
-// The largest float32: what is beyond cannot be lit.
+// The largest float32. A larger component cannot be lit.
 const MOST = 3.4028234663852886e38;
 
-// The deltas of all targets, vertex after vertex: those of v are from offsets[v] to offsets[v + 1], each with its target. A vertex
-// is added up in registers, which takes a quarter of the time that target after target takes.
+// Returns the deltas of all targets in order of the vertices: the deltas of vertex v are from offsets[v] to offsets[v +
+// 1], each with its target. Summing a vertex in registers takes a quarter of the time of adding target after target.
 function byVertex(targets, member, vertices) {
   const isMoved = (values, n) => values[n] !== 0 || values[n + 1] !== 0 || values[n + 2] !== 0;
   const offsets = new Uint32Array(vertices + 1);
@@ -27,7 +27,7 @@ function byVertex(targets, member, vertices) {
   return { offsets, of, deltas };
 }
 
-// base (or zero) and weighted deltas, in double.
+// Adds the weighted deltas to the base, or to zero, in double.
 function addUp(base, { offsets, of, deltas }, weights, sums) {
   for (let v = 0, at = 0; v + 1 < offsets.length; ++v, at += 3) {
     let x = 0, y = 0, z = 0;
@@ -48,15 +48,16 @@ function addUp(base, { offsets, of, deltas }, weights, sums) {
   }
 }
 
-// The nearest 16-bit float, halves away from zero.
+// Returns the nearest 16-bit float; halves are rounded away from zero.
 function half(value) {
   if (value === 0 || !Number.isFinite(value)) return value;
   const step = 2 ** Math.max(Math.floor(Math.log2(Math.abs(value))) - 10, -24);
   return Math.sign(value) * Math.floor(Math.abs(value) / step + 0.5) * step;
 }
 
-// The smallest rotation from the right normal of the base to the stored normal, per vertex: its axis, as long as the sine, and its cosine. Where the two
-// look to opposite sides, both are those of the other side, which the sign of the cosine says.
+// Returns the smallest rotation from the true normal of the base to the stored normal, for each vertex: the axis, with
+// the sine as its length, and the cosine. If the two normals are on opposite sides, the axis belongs to the opposite
+// normal, and the cosine is negative.
 function turnsOf({ element, normals }, base) {
   const turns = new Float64Array(4 * element.length);
   for (let v = 0; v < element.length; ++v) {
@@ -73,7 +74,8 @@ function turnsOf({ element, normals }, base) {
   return turns;
 }
 
-// Tells whether a vertex is judged: its right normal looks at something that some target moves, or some target turns that or the vertex.
+// Returns for each vertex whether its normal is judged: some target must move the surface around the vertex or change
+// its normal.
 function judgedVertices({ vertices, triangles, element, elements, truth }, moved, shown) {
   const has = ({ offsets }, v) => offsets[v] < offsets[v + 1];
   const elementMoves = new Uint8Array(elements), judged = new Uint8Array(vertices);
@@ -95,7 +97,7 @@ function judgedVertices({ vertices, triangles, element, elements, truth }, moved
   return judged;
 }
 
-/** Weights with a number for each target at a moment of a motion: `at` counts samples, and is linear between two of them. */
+/** Writes the weight of each target at a place of a motion. `at` counts samples; between two samples weights are linear. */
 export function weightsAt(motion, viewer, at, result) {
   const track = motion.weights.find(({ viewers }) => viewers.includes(viewer)) ?? motion.weights[0];
   const count = track.targets.length, from = Math.min(Math.floor(at), motion.at.length - 1), to = Math.min(from + 1, motion.at.length - 1);
@@ -109,9 +111,11 @@ export function weightsAt(motion, viewer, at, result) {
 }
 
 /**
+ * Makes the surface of a part.
  * @param part of a report, of kind "gltf"
- * @returns what is drawn: positions, shown and right normals (V x 3, float32), degrees (V: -1 where nothing is judged), and
- *   pose(weights, viewer, least), which fills them. weights are those that the viewer plays: it is held against the normals there.
+ * @returns the arrays that are drawn: positions, rendered (`shown`) and true (`right`) normals (V x 3, float32), and degrees (V; -1 for
+ *   vertices that are not judged); and pose(weights, viewer, least), which fills them. The weights are those that this viewer plays,
+ *   and the true normals are computed from the same weights.
  */
 export function makeSurface(part) {
   const { vertices: V, elements: E, element } = part;
@@ -120,7 +124,7 @@ export function makeSurface(part) {
   const judged = judgedVertices(part, moved, shownBy);
   const computeNormals = normalsOf(part), computeTruth = part.truth ? truthOf(part) : undefined;
   const p = new Float64Array(3 * V), sums = new Float64Array(3 * V), kept = new Float64Array(part.targets.length);
-  // Sums over triangles say whether an element has a normal, and the truth says which.
+  // The sums over triangles decide whether an element has a normal; the truth gives the normal's direction.
   const n = new Float64Array(3 * E + 3), r = computeTruth ? new Float64Array(3 * E + 3) : n, sizes = new Float64Array(E + 1);
   p.set(part.positions);
   computeNormals(p, n, sizes);
@@ -170,7 +174,7 @@ export function makeSurface(part) {
       right[at + 2] = rz;
       const limit = least && e < least.length ? least[e] : 0;
       if (!judged[v]) degrees[v] = 0;
-      // Where weights are no numbers, sizes are none either, and what is shown cannot be lit.
+      // If weights are NaN or infinite, the sizes are too, and the rendered normal cannot be lit.
       else if (unlit && !(sizes[e] <= limit)) degrees[v] = 180;
       else if (!(size > limit)) degrees[v] = -1;
       else degrees[v] = degreesBetween(Math.fround(sx), Math.fround(sy), Math.fround(sz), rx, ry, rz);

@@ -1,7 +1,7 @@
-// Dark or light: as the system says, until the button is pressed.
+// The theme, dark or light. It follows the system until a person presses the button.
 import { h } from './dom.js';
 
-/** @param {() => void} onChange hears that colours are others now */
+/** Makes the button of the theme. @param {() => void} onChange is called after the colours have changed */
 export function makeTheme(onChange) {
   const system = matchMedia('(prefers-color-scheme: dark)');
   let chosen;
@@ -21,7 +21,7 @@ export function makeTheme(onChange) {
   return { button, toggle };
 }
 
-/** The mark of chronormal: a surface, and its normal. */
+/** Makes the logo of chronormal: a surface, and its normal. */
 export function logo() {
   const space = 'http://www.w3.org/2000/svg', svg = document.createElementNS(space, 'svg');
   svg.setAttribute('viewBox', '0 0 20 20');

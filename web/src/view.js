@@ -1,4 +1,4 @@
-// The picture: a mesh twice with one camera, as it is shown and as it should be, side by side or with a wipe between them.
+// The picture: the rendered and the true mesh with one camera, side by side or on the two sides of a wipe.
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, LineBasicMaterial, LineLoop, Mesh, PerspectiveCamera, Scene, ShaderMaterial, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { VIRIDIS, degreesText } from './colors.js';
@@ -7,7 +7,7 @@ import { meet } from './pick.js';
 
 const MODES = { lit: LIT, normals: NORMALS, error: ERROR };
 
-const FLIGHT = 600; // milliseconds
+const FLIGHT = 600; // milliseconds that the camera takes to fly to a place
 const ease = (x) => x * x * (3 - 2 * x);
 const calm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
@@ -19,9 +19,10 @@ const element = (parent, name) => {
 };
 
 /**
- * @param {HTMLElement} stage gets a canvas, and what lies above it
- * @param {(found: {vertex: number, triangle: number, x: number, y: number} | null) => void} onPoint hears which vertex is under the pointer
- * @param {(triangle: number) => void} onPick hears which triangle was clicked
+ * Makes the picture.
+ * @param {HTMLElement} stage gets a canvas, and the labels above it
+ * @param {(found: {vertex: number, triangle: number, x: number, y: number} | null) => void} onPoint is called with the vertex under the pointer
+ * @param {(triangle: number) => void} onPick is called with the triangle that was clicked
  */
 export function makeView(stage, onPoint, onPick) {
   const renderer = new WebGLRenderer({ antialias: true, alpha: true });
@@ -39,7 +40,7 @@ export function makeView(stage, onPoint, onPick) {
   };
   const material = new ShaderMaterial({ uniforms, vertexShader, fragmentShader, side: DoubleSide });
   const plain = new ShaderMaterial({ uniforms: { ...uniforms, mode: { value: PLAIN } }, vertexShader, fragmentShader, side: DoubleSide });
-  // The face that someone has picked, seen through what is before it.
+  // Outlines the face that a person has picked. The outline is visible through the parts of the mesh before it.
   const outline = new LineLoop(new BufferGeometry(), new LineBasicMaterial({ color: 0xff8a00, depthTest: false }));
   let outlined = [];
   Object.assign(outline, { frustumCulled: false, renderOrder: 1, visible: false });
@@ -61,7 +62,7 @@ export function makeView(stage, onPoint, onPick) {
   const handle = element(stage, 'wipe');
   Object.assign(handle, { tabIndex: 0, role: 'slider', ariaLabel: 'Where the picture changes from one side to the other' });
 
-  // The rectangles of both sides in CSS pixels, from the top left, and what part of them is seen.
+  // Returns the rectangles of both sides in CSS pixels from the top left, each with the visible part of it.
   function panes() {
     const width = stage.clientWidth, height = stage.clientHeight;
     if (view.layout === 'wipe') {
@@ -121,7 +122,8 @@ export function makeView(stage, onPoint, onPick) {
     requestAnimationFrame(draw);
   }
 
-  // Takes numbers alone: weights of a file may be none, and then positions are none either.
+  // Returns the box around the mesh. The comparisons skip NaN: a file's weights may be NaN, and then positions are NaN
+  // as well.
   function bounds() {
     const { positions } = surface, least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity];
     for (const triangles of [part.triangles, part.coarse ?? []]) {
@@ -138,7 +140,7 @@ export function makeView(stage, onPoint, onPick) {
     return { centre, low, high, size: high.distanceTo(centre) || 1 };
   }
 
-  // The camera goes there in a while, or at once for those who want no motion.
+  // Moves the camera in a short flight, or at once for people who have asked the system for reduced motion.
   function fly(position, target, onEnd) {
     const from = camera.position.clone(), to = controls.target.clone(), begin = performance.now(), mine = ++flight;
     const step = (now) => {
@@ -154,14 +156,14 @@ export function makeView(stage, onPoint, onPick) {
     step(begin);
   }
 
-  // Returns how far away a sphere fills the smaller side of a pane.
+  // Returns the distance at which a sphere of this radius fills the smaller side of a pane.
   function distanceOf(size) {
     const [{ width, height }] = panes(), aspect = width / Math.max(height, 1);
     const half = Math.tan((camera.fov * Math.PI) / 360) * Math.min(1, aspect);
     return (size * 1.02) / half;
   }
 
-  /** Shows another mesh; surface has the arrays that are drawn (surface.js). */
+  /** Shows another mesh. newSurface has the arrays that are drawn (surface.js). */
   view.show = (newPart, newSurface) => {
     [part, surface] = [newPart, newSurface];
     for (const mesh of meshes) scene.remove(mesh);
@@ -170,7 +172,7 @@ export function makeView(stage, onPoint, onPick) {
       ([name, member, size]) => [name, new BufferAttribute(surface[member], size).setUsage(DynamicDrawUsage)]);
     const geometryOf = (triangles) => {
       const geometry = new BufferGeometry();
-      geometry.boundingSphere = new Sphere(); // by which nothing is culled, and nothing need be put in order
+      geometry.boundingSphere = new Sphere(); // an empty sphere, so that nothing is culled or sorted
       for (const [name, attribute] of attributes) geometry.setAttribute(name, attribute);
       return geometry.setIndex(new BufferAttribute(triangles, 1));
     };
@@ -184,14 +186,14 @@ export function makeView(stage, onPoint, onPick) {
     view.outline([]);
   };
 
-  /** The arrays of the surface have changed. */
+  /** Draws again after the arrays of the surface have changed. */
   view.update = () => {
     for (const [, attribute] of attributes) attribute.needsUpdate = true;
     placeOutline();
     request();
   };
 
-  /** Outlines the face with these corners; none: no face. */
+  /** Outlines the face with these corners, or no face if there are none. */
   view.outline = (corners) => {
     outlined = corners;
     outline.geometry.dispose();
@@ -200,7 +202,7 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  /** The whole mesh, from a little beside. */
+  /** Moves the camera so that the whole mesh is seen, from slightly beside the front. */
   view.frame = (atOnce) => {
     const { centre, size } = bounds();
     radius = size;
@@ -217,7 +219,8 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  /** Looks at a point, in shares of the box of the mesh, from a direction and a share of the distance at which all is seen. */
+  /** Looks at a point, given as shares of the box of the mesh, from a direction. `near` is a share of the distance at
+   * which the whole mesh is seen. */
   view.look = (shares, direction, near) => {
     const { low, high } = bounds();
     ++flight;
@@ -227,8 +230,8 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  // The way from a vertex to a camera that sees it: of some directions around its normal the first that is free for `distance`, or else the
-  // freest of them, shortened.
+  // Returns the vector from a vertex to a camera that sees it. Of several directions around the normal, the first along
+  // which nothing is in the way for `distance` is taken, or else the one with the most room, shortened to that room.
   function freeWay(target, normal, towards, distance) {
     const [side, up] = [new Vector3(normal.y, normal.z, normal.x).cross(normal), normal.clone()].map((v) => v.normalize());
     up.cross(side);
@@ -244,7 +247,8 @@ export function makeView(stage, onPoint, onPick) {
     return best.direction.clone().setLength(Math.max(Math.min(distance, 0.9 * best.free), 0.03 * radius));
   }
 
-  /** Goes near a vertex, and looks at it from where it can be seen, if possible from where its right normal points. */
+  /** Moves the camera near a vertex, to a direction from which it is visible, if possible the direction of its true
+   * normal. */
   view.visit = (vertex) => {
     marked = vertex;
     const target = new Vector3().fromArray(surface.positions, 3 * vertex);
@@ -259,7 +263,8 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  /** "side" or "wipe"; the camera comes nearer or goes away, so that as much is seen as before. */
+  /** Chooses the layout "side" or "wipe". The distance of the camera changes, so that the same part of the mesh stays in
+   * view. */
   view.setLayout = (layout) => {
     const before = distanceOf(1);
     view.layout = layout;
@@ -297,7 +302,7 @@ export function makeView(stage, onPoint, onPick) {
     pointed = event;
   });
   renderer.domElement.addEventListener('pointerleave', () => onPoint(null));
-  // A click is no drag, which ends with one as well.
+  // The end of a drag also causes a click event. Only a click that ends near its start picks a face.
   let pressed = [0, 0];
   renderer.domElement.addEventListener('pointerdown', (event) => (pressed = [event.clientX, event.clientY]));
   renderer.domElement.addEventListener('click', (event) => {
@@ -332,7 +337,7 @@ export function makeView(stage, onPoint, onPick) {
   });
   resized.observe(stage);
 
-  /** Gives back what the graphics card holds. */
+  /** Releases the memory of the graphics card. */
   view.close = () => {
     ++flight;
     surface = undefined;

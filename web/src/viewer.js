@@ -15,7 +15,7 @@ const KEYS = [
 
 const SCALES = [0.1, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 
-/** What a vertex is called in the file. */
+/** Returns the label of a vertex, as it is called in the file. */
 function labelOf(part, vertex) {
   const found = part.primitives.findIndex(({ first, count }) => vertex >= first && vertex < first + count);
   const primitive = part.primitives[found], number = part.labels ? part.labels[vertex] : vertex - (primitive?.first ?? 0);
@@ -25,10 +25,11 @@ function labelOf(part, vertex) {
 }
 
 /**
+ * Fills an element with a report.
  * @param {HTMLElement} root is filled
  * @param report from readContainer()
- * @param compute asks the program for the figures of a face (face_panel.js); undefined where it is not at hand
- * @returns {{player, view, visit, key, restyle}} what tests and the pages around this use
+ * @param compute asks the program for the figures of a face (face_panel.js); undefined without a program
+ * @returns {{player, view, visit, key, restyle}} the parts that tests and the pages around this one use
  */
 export function makeViewer(root, report, compute) {
   const stage = h('div', { className: 'stage' }), tip = h('div', { className: 'tip', hidden: true });
@@ -89,7 +90,7 @@ export function makeViewer(root, report, compute) {
     view.setLayout(layout);
     layouts.choose(layout);
   }
-  // Where most of the errors are seen: what 99 percent are below, or else the worst.
+  // Ends the colour scale at the 99th percentile of the errors, or else at the worst error.
   function setScale() {
     const { motion } = player, subject = motion && report.audit?.subjects?.[motion.subject ?? -1];
     const typical = subject?.percentile_99_degrees ?? (motion ? motion.worst[worstSample(motion)] : 1);
@@ -140,7 +141,7 @@ export function makeViewer(root, report, compute) {
       view.update();
     }
   }
-  // The numbers of the rule that the audit judged, or of the scheme that is shown.
+  // Plots the errors that the audit computed for the viewer, or the errors of the scheme that is shown.
   function showPlot() {
     const { motion } = player;
     plotBox.hidden = !motion || motion.at.length < 2;
@@ -165,7 +166,7 @@ export function makeViewer(root, report, compute) {
     1: () => setMode('lit'), 2: () => setMode('normals'), 3: () => setMode('error'), w: () => setLayout(view.layout === 'side' ? 'wipe' : 'side'),
     n: next, p: previous, f: () => view.frame(), '?': () => help.showModal(),
   };
-  /** Does what a key stands for; returns whether it stands for something. */
+  /** Handles a key. Returns true if the key has a meaning. */
   function key({ key: name, shiftKey, target, ctrlKey, metaKey, altKey }) {
     const act = keys[name.length === 1 ? name.toLowerCase() : name];
     const isOwn = target.closest('select, dialog, input:not(.time), summary') || (name === ' ' && target.closest('button'));
