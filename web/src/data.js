@@ -9,7 +9,7 @@ const isArray = (value) => typeof value?.type === 'string' && Number.isInteger(v
 
 /**
  * @param {Uint8Array} bytes a container
- * @returns {object} its JSON, with in which each {offset, type, count} below "parts" is replaced by a typed array
+ * @returns {object} its JSON, in which each {offset, type, count} below "parts" is replaced by a typed array
  */
 export function readContainer(bytes) {
   if (bytes.length < HEADER || new TextDecoder().decode(bytes.subarray(0, 8)) !== MAGIC) throw new Error('the data of this page are no report');
