@@ -1,5 +1,5 @@
-// chronormal_bench (./run bench) measures the speed of every path, against the memory of this machine and against what
-// people use today. docs/benchmarks.md is made from its --json.
+// chronormal_bench (./run bench) measures the speed of every path, and compares it with the speed of this machine's
+// memory and with libraries that people use today. docs/benchmarks.md is made from its --json.
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -46,7 +46,7 @@ std::vector<Size> parse_sizes(const std::string& list) {
   return sizes;
 }
 
-// Fails early, before ten minutes of work are lost.
+// Fails early if the file cannot be written, before ten minutes of work are lost.
 void check_writable(const std::string& json) {
   if (json.empty() || json == "-") return;
   if (!std::ofstream(json, std::ios::binary | std::ios::app))
@@ -65,7 +65,7 @@ Report measure(const SuiteOptions& options, const std::vector<Size>& sizes) {
   for (const bool shuffled : {false, true}) {
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       Size size = sizes[i];
-      // Small meshes lie in some cache, whatever their order.
+      // Small meshes fit into a cache, where their order does not matter.
       if (shuffled && size.elements < kShuffledFrom && i + 1 < sizes.size()) continue;
       size.shuffled = shuffled;
       run_faces(suite, size);

@@ -1,14 +1,15 @@
-"""Right normals for shape keys: the Blender add-on of chronormal.
+"""True normals for shape keys: the Blender add-on of chronormal.
 
-Viewers add up one normal delta for each shape key. That is right at the keys and wrong between and beyond them, so that highlights
-slide and folds open where the surface has none. The add-on
+Viewers add up one normal delta for each shape key. The sum is right at the keys but wrong between and beyond them:
+highlights slide, and folds appear where the surface has none. The add-on
 
-    export.py   bakes right normals into the file that File > Export > glTF 2.0 has just written,
+    export.py   bakes true normals into the file that File > Export > glTF 2.0 has just written,
     look.py     shows in the viewport where a viewer would be wrong, and by how many degrees,
     baked.py    recognises a baked file that is imported, so that the next export begins with the author's own keys,
 
-and program.py runs the program `chronormal`, which does the baking. shown.py reads what a viewer would show from an exported file,
-truth.py asks Blender for its own normals, and settings.py has the preferences. docs/artists.md is the manual.
+and program.py runs the program `chronormal`, which does the baking. shown.py computes from an exported file the
+normals that a viewer would render, truth.py asks Blender for its own normals, and settings.py has the preferences.
+docs/artists.md is the manual.
 """
 # SPDX-License-Identifier: MIT
 
@@ -32,7 +33,7 @@ glTF2_post_export_callback = export.before_writing
 glTF2ImportUserExtension = baked.RecogniseBakedFiles
 
 if bpy.app.version >= (4, 2, 0):
-    # Since 4.2 the exporter calls draw_export() of add-ons that extend it, in place of panels.
+    # Since version 4.2, the exporter calls draw_export() of add-ons that extend it; earlier versions show a panel.
     glTF2ExportUserExtension = export.NoFurtherHooks
     draw_export = export.draw_in_exporter
 

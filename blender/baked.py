@@ -1,8 +1,9 @@
 """Recognises meshes that were baked before they were imported.
 
-A bake adds morph targets that move no vertex, and says in `extras.chronormal` which ones (docs/formats.md). Blender makes shape
-keys of them, which turn nothing, since Blender computes normals by itself. Here they become idle: named so, without animation,
-and muted, so that the exporter leaves them out. The mark goes as well, so that the next export bakes the author's keys anew.
+A bake adds correction targets, which move no vertex, and lists them in `extras.chronormal` (docs/formats.md).
+Blender makes shape keys of them. The keys have no effect, since Blender computes normals by itself. This module
+makes the keys idle: it renames them, removes their animation and mutes them, so that the exporter leaves them out.
+It also removes the mark in the extras, so that the next export bakes the author's keys anew.
 """
 # SPDX-License-Identifier: MIT
 
@@ -43,9 +44,9 @@ def _actions_of(keys: bpy.types.Key) -> Iterable[bpy.types.Action]:
 
 
 def make_idle(mesh: bpy.types.Mesh, names: list[str | None] | None = None) -> int:
-    """Makes the correction keys of a baked mesh idle, and takes its mark away; returns how many there were.
+    """Makes the correction keys of a baked mesh idle, and removes its mark. Returns the number of these keys.
 
-    `names` are those of the keys that the importer made of the targets, None where it made none.
+    `names` are the names of the keys that the importer made from the targets, with None for a target without a key.
     """
     mark = mark_of(mesh)
     if mark is None:
@@ -76,7 +77,8 @@ def make_idle(mesh: bpy.types.Mesh, names: list[str | None] | None = None) -> in
 
 
 def _names_of_keys(gltf: Any, node: Any) -> list[str | None] | None:
-    """Returns the name of the key that each target of a node's mesh became, if this importer says that."""
+    """Returns the names of the keys that were made from the targets of a node's mesh, or None if this importer does
+    not tell them."""
     index = getattr(node, "mesh_node_idx", None)
     if index is None:
         return None
@@ -84,7 +86,8 @@ def _names_of_keys(gltf: Any, node: Any) -> list[str | None] | None:
 
 
 class RecogniseBakedFiles:
-    """What Blender's importer of glTF calls. It swallows exceptions, so that a file is imported whatever happens here."""
+    """The class whose hooks Blender's importer of glTF calls. The importer swallows exceptions, so a file is imported
+    even if a hook fails."""
 
     def gather_import_scene_after_animation_hook(self, _gltf_scene: Any, _blender_scene: Any, gltf: Any) -> None:
         meshes = count = 0
@@ -93,7 +96,7 @@ class RecogniseBakedFiles:
             if o is not None and o.type == "MESH" and mark_of(o.data) is not None:
                 meshes += 1
                 count += make_idle(o.data, _names_of_keys(gltf, node))
-        # A node above has the mark after gltfpack.
+        # gltfpack moves a mesh into a new node, so the mark may be on a node above.
         for _, o in objects:
             if o is not None and mark_of(o) is not None:
                 del o[MARK]

@@ -12,10 +12,10 @@ DEGREES = "Normal error in degrees"
 # Colours from no error to the largest one of the scale, as they look on the screen (sRGB).
 RAMP = ((0.80, 0.82, 0.84), (0.97, 0.87, 0.35), (0.96, 0.55, 0.16), (0.84, 0.15, 0.12), (0.45, 0.02, 0.25))
 
-# hide() keeps here what it takes away: the name of a mesh, and the degrees of its corners.
+# The names of meshes and the degrees of their corners that hide() has removed, for show().
 _hidden: list[tuple[str, numpy.ndarray]] = []
 
-# The number of degrees that has the last colour.
+# The number of degrees at the end of the colour scale.
 _top = 10.0
 
 # The colour attribute that was active before ours, by the name of the mesh.
@@ -23,14 +23,14 @@ _active_before: dict[str, str] = {}
 
 
 def ramp(shares: numpy.ndarray) -> numpy.ndarray:
-    """Returns a colour for each share of the scale, (n, 4)."""
+    """Returns a colour for each position on the scale from 0 to 1, as (n, 4)."""
     knots = numpy.linspace(0, 1, len(RAMP))
     channels = [numpy.interp(shares, knots, [colour[c] for colour in RAMP]) for c in range(3)]
     return numpy.stack([*channels, numpy.ones_like(shares)], axis=1).astype(numpy.float32)
 
 
 def paint(mesh: bpy.types.Mesh, degrees: numpy.ndarray, top: float) -> None:
-    """Gives every corner of a mesh its error and a colour for it."""
+    """Adds to a mesh, for every corner, its error and a colour for the error."""
     global _top
     _top = top
     clear(mesh)
@@ -44,7 +44,7 @@ def paint(mesh: bpy.types.Mesh, degrees: numpy.ndarray, top: float) -> None:
 
 
 def clear(mesh: bpy.types.Mesh) -> bool:
-    """Takes the attributes away; returns whether there were some."""
+    """Removes the attributes; returns whether there were any."""
     names = [name for name in (COLOUR, DEGREES) if name in mesh.attributes]
     for name in names:
         mesh.attributes.remove(mesh.attributes[name])
@@ -55,7 +55,7 @@ def clear(mesh: bpy.types.Mesh) -> bool:
 
 
 def hide() -> None:
-    """Takes the attributes of all meshes away for an export, which would write them into the file."""
+    """Removes the attributes of all meshes before an export, since the exporter would write them into the file."""
     _hidden.clear()
     for mesh in bpy.data.meshes:
         attribute = mesh.attributes.get(DEGREES)
@@ -67,7 +67,7 @@ def hide() -> None:
 
 
 def show() -> None:
-    """Puts back what hide() took away."""
+    """Restores the attributes that hide() removed."""
     for name, degrees in _hidden:
         mesh = bpy.data.meshes.get(name)
         if mesh is not None and len(mesh.loops) == len(degrees):

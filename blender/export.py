@@ -1,8 +1,9 @@
-"""Bakes right normals into a glTF file as soon as Blender's exporter has written it.
+"""Bakes true normals into a glTF file as soon as Blender's exporter has written it.
 
-The exporter calls glTF2_post_export_callback before it writes the file, so there is no hook for what comes after. Therefore
-before_export() puts a function in the place of the one that writes, for one export and only if baking is switched on;
-that function takes itself out again as the first thing it does. While baking is off, the exporter is not touched at all.
+The exporter calls glTF2_post_export_callback before it writes the file, so there is no hook after the file is
+written. Therefore before_export() replaces the exporter's function that writes, for one export and only if baking
+is switched on; the replacement first puts the original function back. While baking is off, the exporter is not
+touched at all.
 """
 # SPDX-License-Identifier: MIT
 
@@ -19,12 +20,12 @@ import bpy
 from . import colours, program, settings
 from .say import say
 
-# The modules that have the function that writes: of Blender 3.4, and by its later name.
+# The modules that may contain the function that writes: the name in Blender 3.4, and the later name.
 _WRITERS = ("io_scene_gltf2.io.exp.gltf2_io_export", "io_scene_gltf2.io.exp.export")
 _WRITE = "save_gltf"
 _PARAMETERS = ["gltf", "export_settings", "encoder", "glb_buffer"]
 
-# The module whose function is replaced at the moment, that function, and ours.
+# The module whose function is replaced at the moment, its original function, and the replacement.
 _replaced: tuple[ModuleType, Callable[..., Any], Callable[..., Any]] | None = None
 
 # True while the add-on itself exports, to look at the result.
@@ -32,7 +33,7 @@ is_paused = False
 
 
 def writer() -> ModuleType | None:
-    """Returns the exporter's module that writes files, or None if its function is not as this add-on knows it."""
+    """Returns the exporter's module that writes files, or None if its function does not look as this add-on expects."""
     for name in _WRITERS:
         try:
             module = importlib.import_module(name)
@@ -45,7 +46,7 @@ def writer() -> ModuleType | None:
 
 
 def _put_back() -> None:
-    """Gives the exporter its own function back, unless another add-on has replaced it since."""
+    """Puts the exporter's own function back, unless another add-on has replaced it since."""
     global _replaced
     if _replaced is None:
         return
@@ -81,12 +82,12 @@ def before_export(export_settings: dict[str, Any]) -> None:
 
 
 def before_writing(_export_settings: dict[str, Any]) -> None:
-    """Ends what before_export() did to the scene. The exporter calls this when it has read the scene."""
+    """Restores the scene after before_export(). The exporter calls this when it has read the scene."""
     colours.show()
 
 
 def _bake_or_say_why(path: Path) -> tuple[str, str]:
-    """Bakes a file that stands. No error may get to the exporter, whose file is written and whole."""
+    """Bakes a file that has been written. Exceptions must not reach the exporter, whose file is complete by now."""
     try:
         return bake_in_place(path)
     except Exception as error:  # pylint: disable=broad-except
@@ -94,7 +95,7 @@ def _bake_or_say_why(path: Path) -> tuple[str, str]:
 
 
 def bake_in_place(path: Path) -> tuple[str, str]:
-    """Bakes a file that stands, and returns what to report. Whatever fails, the file is left as it is."""
+    """Bakes a file that has been written, and returns the report. If anything fails, the file is unchanged."""
     try:
         found = program.find(settings.program_path())
         outcome = program.bake(found, path, path, settings.get().options())
@@ -108,7 +109,7 @@ def bake_in_place(path: Path) -> tuple[str, str]:
 
 
 def verdict(report: dict[str, Any]) -> str:
-    """Puts the report of `chronormal bake --json` into a sentence."""
+    """Turns the report of `chronormal bake --json` into a sentence."""
     meshes = report.get("meshes", [])
     if meshes and all(mesh["already_baked"] for mesh in meshes):
         return "Normals were left alone: this file was baked before."
@@ -159,7 +160,7 @@ def _hint(layout: bpy.types.UILayout, text: str) -> None:
         lines.label(text=line)
 
 def _lines(text: str, width: int) -> list[str]:
-    """Breaks a text into lines, which Blender's labels do not do."""
+    """Breaks a text into lines, since Blender's labels do not wrap."""
     lines = [""]
     for word in text.split():
         if lines[-1] and len(lines[-1]) + 1 + len(word) > width:

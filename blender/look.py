@@ -1,8 +1,8 @@
 """The panel "Check shape-key normals": shows where a viewer would show wrong normals, and by how many degrees.
 
-The object is exported by itself into a temporary file, which is baked as well if that is asked for. What a viewer shows of that
-file (shown.py) is held against the normals that Blender evaluates at the same values of the keys (truth.py), for every corner of
-every face.
+The object is exported by itself into a temporary file, which is also baked if the user asks for this. The normals
+that a viewer renders from that file (shown.py) are compared with the normals that Blender evaluates at the same
+values of the keys (truth.py), for every corner of every face.
 """
 # SPDX-License-Identifier: MIT
 
@@ -18,10 +18,10 @@ from mathutils import Vector
 
 from . import baked, colours, program, settings, shown, truth
 
-# So many frames and pairs of keys are looked at, and so many of each kind are listed.
+# The largest numbers of frames and of pairs of keys that are checked.
 MOST_FRAMES, MOST_PAIRS = 250, 100
 LISTED_FRAMES, LISTED_KEYS, LISTED_PAIRS, LISTED_PLACES = 3, 6, 6, 5
-# Places of the list are apart by this share of the object's size.
+# The smallest distance between listed places, as a share of the object's size.
 APART = 0.1
 # Errors below this many degrees are not listed.
 VISIBLE = 0.1
@@ -29,20 +29,21 @@ VISIBLE = 0.1
 
 @dataclass
 class Pose:
-    """Values of the keys to look at, and what they are called."""
+    """The values of the keys in one pose to check, and the name of the pose."""
 
-    kind: str  # as in Finding.kind
+    kind: str  # one of the kinds of Finding.kind
     name: str
     weights: numpy.ndarray
     frame: int | None = None
-    time: float | None = None  # in the exported file
+    time: float | None = None  # time in the exported file
     mean: float = 0
     worst: float = 0
 
 
 @dataclass
 class Found:
-    """Poses with their errors in degrees, and of every corner the worst of them: how large, and in which pose."""
+    """The checked poses with their errors in degrees, and for every corner its worst error and the pose in which it
+    occurs."""
 
     poses: list[Pose]
     worst: numpy.ndarray
@@ -54,7 +55,7 @@ class Found:
 
 
 class Judge:
-    """Holds a file against Blender's normals."""
+    """Compares a file with Blender's normals."""
 
     def __init__(self, subject: truth.Subject, is_baked: bool, frames: list[int], values: numpy.ndarray) -> None:
         self.subject, self.frames = subject, frames
@@ -69,12 +70,13 @@ class Judge:
             self.file = shown.read(_baked(path))
 
     def errors(self, weights: numpy.ndarray, time: float | None = None) -> numpy.ndarray:
-        """Returns the error of every corner in degrees where the author's keys have these weights."""
+        """Returns the error of every corner in degrees for these weights of the author's keys."""
         normals = self.file.normals_at(self.file.weights(weights, time))
         return shown.degrees_between(normals[self.vertices], shown.unit(self.subject.normals(weights)))
 
     def judge(self, poses: Iterable[Pose]) -> Found:
-        """Judges poses one by one. Only the worst error of each corner is kept, as there may be many of both."""
+        """Judges poses one by one. Only the worst error of each corner is kept, since poses times corners can be too
+        many for memory."""
         found = Found([], numpy.full(len(self.vertices), -1, numpy.float32), numpy.zeros(len(self.vertices), numpy.int32))
         for pose in poses:
             errors = self.errors(pose.weights, pose.time)
@@ -101,14 +103,14 @@ def _baked(path: Path) -> Path:
 
 
 def frames_of(scene: bpy.types.Scene) -> list[int]:
-    """Returns the frames of the timeline, evenly left out where there are very many, and the current frame."""
+    """Returns the frames of the timeline, evenly thinned out if they are very many, and the current frame."""
     step = max(1, -(-(scene.frame_end - scene.frame_start + 1) // MOST_FRAMES))
     frames = set(range(scene.frame_start, scene.frame_end + 1, step)) | {scene.frame_end, scene.frame_current}
     return sorted(frames)
 
 
 def play(scene: bpy.types.Scene, o: bpy.types.Object, frames: list[int]) -> numpy.ndarray:
-    """Returns the values of the keys at frames, whatever drives them: (frames, keys)."""
+    """Returns the values of the keys at frames, as (frames, keys), whether an animation or a driver sets them."""
     current, subframe, now = scene.frame_current, scene.frame_subframe, truth.values_now(o)
     values = []
     for frame in frames:
@@ -122,7 +124,7 @@ def play(scene: bpy.types.Scene, o: bpy.types.Object, frames: list[int]) -> nump
 
 
 def poses_now(judge: Judge, scene: bpy.types.Scene, now: numpy.ndarray) -> Iterator[Pose]:
-    """Returns the sliders as they are: at the time of the current frame, if its animation puts them there."""
+    """Returns the pose of the sliders, with the time of the current frame if its animation sets them so."""
     time = judge.time_of(scene.frame_current)
     if time is not None and not numpy.allclose(judge.plain.track.at(time), now, atol=1e-4):
         time = None
@@ -135,7 +137,7 @@ def poses_over_time(judge: Judge, values: numpy.ndarray) -> Iterator[Pose]:
 
 
 def poses_of_keys(judge: Judge) -> Iterator[Pose]:
-    """Returns each key alone, and pairs of keys that turn the same normals."""
+    """Returns the poses with one key alone, and with pairs of keys that change the same normals."""
     keys = judge.subject.keys
     for k, key in enumerate(keys):
         for weight in (0.25, 0.5, 0.75, 1.0):
@@ -157,7 +159,7 @@ class Finding(bpy.types.PropertyGroup):
     kind: bpy.props.EnumProperty(items=[(name, name, "") for name in ("NOW", "FRAME", "KEY", "PAIR", "PLACE")])
     label: bpy.props.StringProperty()
     degrees: bpy.props.FloatProperty()
-    weights: bpy.props.StringProperty()  # JSON; empty: not to be set
+    weights: bpy.props.StringProperty()  # JSON; empty if the pose cannot be set by weights
     frame: bpy.props.IntProperty(default=-(1 << 30))
     vertex: bpy.props.IntProperty(default=-1)
 
@@ -175,11 +177,11 @@ def _repaint(state: "State", context: bpy.types.Context) -> None:
 
 
 def _keep(_state: "State", _colour: object) -> None:
-    """Leaves a colour of the scale as it is, without greying it out as Blender does with what has no setter."""
+    """Ignores changes of a colour of the scale. A property without a setter would be greyed out in Blender."""
 
 
 class State(bpy.types.PropertyGroup):
-    """What the panel shows. It belongs to the window manager, so that it never gets into a file."""
+    """The content of the panel. It belongs to the window manager, so it is never written into a file."""
 
     judged: bpy.props.EnumProperty(
         name="File",
@@ -213,7 +215,8 @@ def _add(state: State, kind: str, label: str, degrees: float, weights: numpy.nda
 
 
 def _list_poses(state: State, poses: list[Pose]) -> None:
-    """Lists the worst frames, none near another one, and the worst keys and pairs; of a key the weight at which it is worst."""
+    """Lists the worst frames that are not close to each other, and the worst keys and pairs, each key with its worst
+    weight."""
     near = APART * sum(pose.kind == "FRAME" for pose in poses)
     for kind, most in (("FRAME", LISTED_FRAMES), ("KEY", LISTED_KEYS), ("PAIR", LISTED_PAIRS)):
         seen: set[tuple[int, ...]] = set()
@@ -228,7 +231,7 @@ def _list_poses(state: State, poses: list[Pose]) -> None:
 
 
 def _list_places(state: State, mesh: bpy.types.Mesh, found: Found) -> None:
-    """Lists the vertices with the largest errors, none near another one."""
+    """Lists the vertices with the largest errors that are not close to each other."""
     vertices = numpy.empty(len(mesh.loops), numpy.int32)
     mesh.loops.foreach_get("vertex_index", vertices)
     places = truth.places(mesh.vertices)
@@ -273,7 +276,7 @@ def paint(context: bpy.types.Context, o: bpy.types.Object, found: Found) -> None
 
 
 class _Looking:
-    """What the operators share."""
+    """The code that the operators share."""
 
     bl_options = {"REGISTER", "UNDO"}
 
@@ -353,7 +356,7 @@ class CHRONORMAL_OT_jump(_Looking, bpy.types.Operator):
 
 
 def _show_vertex(context: bpy.types.Context, o: bpy.types.Object, index: int) -> None:
-    """Turns the view to a vertex, as it is deformed now."""
+    """Turns the view to a vertex at its current, deformed position."""
     view = getattr(context.space_data, "region_3d", None)
     if view is None:
         return

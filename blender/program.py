@@ -25,12 +25,12 @@ BEYOND_TOLERANCE = 4
 
 
 class Unavailable(Exception):
-    """There is no program that can be run. The text says what to do."""
+    """An error: there is no program that can be run. The text says what the user can do."""
 
 
 @dataclass
 class Outcome:
-    """The end of a run of the program: its exit code, its report, and the sentences that it printed."""
+    """The result of a run of the program: its exit code, its report, and the sentences that it printed."""
 
     code: int
     report: dict[str, Any] = field(default_factory=dict)
@@ -56,7 +56,7 @@ def shipped(folder: Path = Path(__file__).parent) -> Path | None:
 
 
 def make_executable(path: Path) -> None:
-    """Allows a file to be run. Blender unpacks add-ons without the permissions that their files had."""
+    """Allows a file to be run. Blender unpacks add-ons without the permissions of their files."""
     if os.access(path, os.X_OK):
         return
     try:
@@ -66,7 +66,7 @@ def make_executable(path: Path) -> None:
 
 
 def find(preferred: str) -> Path:
-    """Returns the program that the preferences name, or else the one that ships in bin/, or else one on PATH."""
+    """Returns the program that the preferences name, or else the one in bin/, or else one on PATH."""
     if preferred:
         path = Path(preferred)
         if not path.is_file():
@@ -85,12 +85,12 @@ def find(preferred: str) -> Path:
                       f"{platform.machine()}. Name one in Edit > Preferences > Add-ons > Right normals for shape keys.")
 
 
-# Messages of the program name options; the panel has these labels for them.
+# The labels of the panel for the options that messages of the program name.
 _OPTIONS = {"--tolerance": "Tolerance", "--max-targets": "Most targets", "--max-bytes": "Most KB", "--for": "Viewers"}
 
 
 def sentences(text: str) -> list[str]:
-    """Takes the lines that the program printed for people, in the words of the panel."""
+    """Returns the lines that the program printed for people, with the panel's labels in place of options."""
     result = []
     for line in text.splitlines():
         line = line.removeprefix("chronormal bake: ").strip()
@@ -103,7 +103,7 @@ def sentences(text: str) -> list[str]:
 
 
 def bake(path: Path, source: Path, result: Path, options: list[str]) -> Outcome:
-    """Bakes a glTF file. The result may be the source, which is then replaced as a whole or not at all."""
+    """Bakes a glTF file. The result may be the same file as the source; replacing it is all or nothing."""
     command = [str(path), "bake", str(source), "-o", str(result), "--force", "--json", "--quiet", *options]
     without_console = getattr(subprocess, "CREATE_NO_WINDOW", 0)
     try:

@@ -1,4 +1,4 @@
-"""Tells the user what happened, in the report of the operator that is running."""
+"""Tells the user the result, in the report of the operator that is running."""
 # SPDX-License-Identifier: MIT
 
 from __future__ import annotations
@@ -7,12 +7,12 @@ import sys
 
 import bpy
 
-# The last sentence and its level, for scripts.
+# The last sentence and its level, which scripts can read.
 last: tuple[str, str] = ("", "")
 
 
 def _running_operator() -> bpy.types.Operator | None:
-    """Finds the operator on whose behalf this code is called: the exporter hands it to none of its hooks."""
+    """Finds the operator that is running, since the exporter does not pass it to its hooks."""
     frame = sys._getframe(1)  # pylint: disable=protected-access
     while frame is not None:
         owner = frame.f_locals.get("self")

@@ -1,6 +1,7 @@
-"""The preferences of the add-on, which hold the settings of the export as well.
+"""The preferences of the add-on, which also hold the settings of the export.
 
-Properties of a scene would be written into glTF files as custom properties, even while the add-on is off; preferences never are.
+Properties of a scene would be written into glTF files as custom properties, even while the add-on is off.
+Preferences never are.
 """
 # SPDX-License-Identifier: MIT
 

@@ -1,7 +1,7 @@
-"""Reads from a GLB what a viewer shows of it: normals at given weights of its morph targets.
+"""Computes from a GLB the normals that a viewer renders at given weights of its morph targets.
 
-This is the rule of glTF 2.0, by which three.js, Babylon.js, PlayCanvas and Bevy go: the normal of the base plus the weighted deltas
-of all targets, brought to length 1.
+The rule is that of glTF 2.0, which three.js, Babylon.js, PlayCanvas and Bevy follow: the normal of the base plus
+the weighted deltas of all targets, normalised.
 """
 # SPDX-License-Identifier: MIT
 
@@ -21,7 +21,7 @@ _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 
 
 class Unreadable(Exception):
-    """The file has no morph targets, or something that this reader does not know."""
+    """An error: the file has no morph targets, or uses a feature that this reader does not know."""
 
 
 def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
@@ -35,7 +35,7 @@ def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
 
 
 class _Arrays:
-    """The arrays of a document, by the index of their accessor."""
+    """The arrays of a document, keyed by the index of the accessor."""
 
     def __init__(self, document: dict[str, Any], binary: bytes) -> None:
         self.document, self.binary = document, binary
@@ -92,7 +92,7 @@ class Track:
 
 @dataclass
 class Shown:
-    """One mesh of a file: positions, normals and their deltas for each target, and what drives the targets."""
+    """One mesh of a file: positions and normals, their deltas for each target, and the animation of the weights."""
 
     positions: numpy.ndarray        # (vertices, 3)
     normals: numpy.ndarray          # (vertices, 3)
@@ -102,9 +102,10 @@ class Shown:
     track: Track | None
 
     def weights(self, own: numpy.ndarray, time: float | None = None) -> numpy.ndarray:
-        """Returns the weights of all targets where the author's keys have the weights `own`.
+        """Returns the weights of all targets for the weights `own` of the author's keys.
 
-        At a time, the file's own animation gives those of the correction targets; else their formulas in the mark do.
+        At a time, the file's animation gives the weights of correction targets; without a time, the formulas in the
+        mark do.
         """
         result = numpy.zeros(len(self.normal_deltas))
         if time is not None and self.track is not None:
@@ -118,7 +119,7 @@ class Shown:
         return result
 
     def normals_at(self, weights: numpy.ndarray) -> numpy.ndarray:
-        """Returns the unit normals that a viewer shows, (vertices, 3)."""
+        """Returns the unit normals that a viewer renders, (vertices, 3)."""
         total = self.normals.astype(numpy.float32)
         for target in numpy.flatnonzero(weights):
             total = total + numpy.float32(weights[target]) * self.normal_deltas[target]
@@ -131,12 +132,12 @@ def unit(vectors: numpy.ndarray) -> numpy.ndarray:
 
 
 def degrees_between(a: numpy.ndarray, b: numpy.ndarray) -> numpy.ndarray:
-    """Returns the angles between unit vectors, also of tiny ones to full precision."""
+    """Returns the angles between unit vectors in degrees; tiny angles have full precision, too."""
     return numpy.degrees(2 * numpy.arctan2(numpy.linalg.norm(a - b, axis=-1), numpy.linalg.norm(a + b, axis=-1)))
 
 
 def read(path: Path) -> Shown:
-    """Reads the first mesh of a GLB, all of its primitives one after the other."""
+    """Reads the first mesh of a GLB, and joins its primitives in their order."""
     document, binary = _chunks(path.read_bytes())
     arrays = _Arrays(document, binary)
     if not document.get("meshes"):

@@ -1,7 +1,7 @@
-"""Asks Blender for its own normals of an object with shape keys, and exports that object by itself.
+"""Gets Blender's own normals of an object with shape keys, and exports the object by itself.
 
-Both are done with a copy in a scene of its own, so that nothing of the user's scene changes: a copy without modifiers, since the
-exporter leaves modifiers of meshes with shape keys out, and without an animation, so that every key can be set.
+Both use a copy in a separate scene, so that the user's scene does not change. The copy has no modifiers, since the
+exporter leaves out modifiers of meshes with shape keys, and no animation, so that every key can be set.
 """
 # SPDX-License-Identifier: MIT
 
@@ -17,7 +17,7 @@ from . import export, shown
 
 NAME = "chronormal look"
 
-# glTF's axes are x, z, -y of Blender's.
+# The axes of glTF are Blender's x, z and -y.
 _AXES, _SIGNS = [0, 2, 1], numpy.float32([1, 1, -1])
 
 _EXPORT = {
@@ -30,11 +30,11 @@ _EXPORT = {
 
 
 class Refused(Exception):
-    """The object cannot be looked at. The text says why."""
+    """An error: the object cannot be checked. The text says why."""
 
 
 def exported_keys(mesh: bpy.types.Mesh) -> list[bpy.types.ShapeKey]:
-    """Returns the keys that the exporter writes, in its order."""
+    """Returns the keys that the exporter writes, in the exporter's order."""
     if mesh.shape_keys is None:
         return []
     return [key for key in mesh.shape_keys.key_blocks if key != key.relative_key and not key.mute]
@@ -45,7 +45,8 @@ def values_now(o: bpy.types.Object) -> numpy.ndarray:
 
 
 class Subject:
-    """A copy of an object, whose keys are set by weights. Use it in a `with` statement, which takes it away again."""
+    """A copy of an object whose keys can be set by weights. Use it in a `with` statement, which removes the copy in
+    the end."""
 
     def __init__(self, o: bpy.types.Object) -> None:
         if not exported_keys(o.data):
@@ -80,7 +81,7 @@ class Subject:
             bpy.data.actions.remove(action)
 
     def normals(self, weights: numpy.ndarray) -> numpy.ndarray:
-        """Returns the normals of all corners that Blender evaluates, (corners, 3), in the axes of glTF."""
+        """Returns the normals that Blender evaluates at all corners, (corners, 3), in the axes of glTF."""
         for key, weight in zip(self.keys, weights):
             key.slider_min, key.slider_max = min(-10, weight), max(10, weight)
             key.value = weight
@@ -92,13 +93,13 @@ class Subject:
         if hasattr(mesh, "calc_normals_split"):
             mesh.calc_normals_split()
             mesh.loops.foreach_get("normal", result)
-        else:  # Blender 4.1 and later
+        else:  # for Blender 4.1 and later
             mesh.corner_normals.foreach_get("vector", result)
         instance.to_mesh_clear()
         return result.reshape(-1, 3)[:, _AXES] * _SIGNS
 
     def animate(self, frames: list[int], values: numpy.ndarray) -> None:
-        """Gives the copy linear keyframes: values is (frames, keys)."""
+        """Animates the copy with linear keyframes; `values` is (frames, keys)."""
         self.mesh.shape_keys.animation_data_create().action = bpy.data.actions.new(NAME)
         curves = self.mesh.shape_keys.animation_data.action.fcurves
         for key, column in zip(self.keys, values.T):
@@ -117,7 +118,7 @@ class Subject:
             bpy.data.actions.remove(action)
 
     def export(self) -> Path:
-        """Exports the copy, by Blender's own exporter, and returns the path of the GLB."""
+        """Exports the copy by Blender's own exporter, and returns the path of the GLB."""
         path = Path(self.folder.name) / "plain.glb"
         known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
         options = {name: value for name, value in _EXPORT.items() if name in known}
@@ -132,10 +133,10 @@ class Subject:
         return path
 
     def corners_to_vertices(self, plain: shown.Shown) -> numpy.ndarray:
-        """Finds the vertex of an exported file that each corner of the mesh became.
+        """Finds for each corner of the mesh the vertex of an exported file that it became.
 
-        It lies where the corner's vertex is, in the base and in every key; and of several such vertices, it is the one
-        with the nearest normals there, in the base and in every key.
+        The vertex is at the same position as the corner, in the base and in every key. If there are several such
+        vertices, it is the one whose normals are nearest, in the base and in every key.
         """
         mesh = self.mesh
         base = places(mesh.shape_keys.reference_key.data)
@@ -148,7 +149,7 @@ class Subject:
         mesh.loops.foreach_get("vertex_index", vertices)
         of_corners, of_file = groups[vertices], groups[len(in_blender):]
 
-        # Pairs of a corner and a vertex of the same place: those of corner c are first[c] ... first[c + 1].
+        # Lists pairs of a corner and a vertex at the same place: the pairs of corner c are first[c] ... first[c + 1].
         order = numpy.argsort(of_file, kind="stable")
         begins = numpy.searchsorted(of_file[order], of_corners, side="left")
         counts = numpy.searchsorted(of_file[order], of_corners, side="right") - begins
@@ -160,10 +161,10 @@ class Subject:
         apart = numpy.zeros(len(corner), numpy.float32)
         for n in range(len(self.keys) + 1):
             weights = numpy.zeros(len(self.keys))
-            weights[n - 1:n] = 1  # the base first, which leaves all at 0
+            weights[n - 1:n] = 1  # the base comes first and has all weights 0
             here, there = self.normals(weights), plain.normals_at(plain.weights(weights))
             apart += ((here[corner] - there[vertex]) ** 2).sum(axis=1)
-        # The nearest of each corner stands first among its pairs.
+        # Sorts the pairs so that the nearest vertex of each corner comes first.
         best = numpy.lexsort((apart, corner))
         return vertex[best[first[:-1]]]
 
@@ -179,6 +180,6 @@ def _as_gltf(vectors: numpy.ndarray) -> numpy.ndarray:
 
 
 def _rows(table: numpy.ndarray) -> numpy.ndarray:
-    """Makes each row of a table one value that can be compared. Adding 0 makes -0 the same as 0."""
+    """Returns one comparable value for each row of a table. Adding 0 turns -0 into 0."""
     table = numpy.ascontiguousarray(table + numpy.float32(0))
     return table.view(numpy.dtype((numpy.void, table.dtype.itemsize * table.shape[1]))).ravel()

@@ -61,7 +61,8 @@ double angle_in_degrees(const Vec3d& right, const Vec3d& shown) noexcept {
 
 constexpr std::size_t kPacked = 3 * sizeof(float);
 
-// Errors: kUsage for no memory, and for a stride that is no multiple of 4 or makes vectors overlap.
+// Makes a view of vectors. Errors: kUsage for a null pointer, or for a stride that is not a multiple of 4 or that makes
+// vectors overlap.
 template <class T>
 Result<VectorView<T>> view_of(T* data, std::size_t stride, std::size_t count, const char* place) {
   if (count == 0) return VectorView<T>{};
@@ -94,8 +95,8 @@ Result<Topology> topology_of(const chronormal_mesh* mesh) {
                             {mesh->corners, mesh->corners + offsets.back()});
 }
 
-// Checks a structure that begins with its size: one of a newer header may have more fields, of which this library knows
-// nothing, so that they must be 0.
+// Checks a structure that begins with its size. A structure of a newer header may have further fields, which this
+// library does not know: they must be 0.
 template <class Struct>
 Status check_size(const Struct& given, const char* name) {
   const std::string place = std::string(name) + ".size";
@@ -110,7 +111,7 @@ Status check_size(const Struct& given, const char* name) {
   return Success{};
 }
 
-// Errors: kUsage with the name of the field.
+// Converts the options. Errors: kUsage with the name of the field.
 Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
   MeshNormalsOptions options;
   if (given == nullptr) return options;
@@ -132,8 +133,8 @@ Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
   return options;
 }
 
-// Calls write(result, range) with what an output stands for: a view of vectors, or a span of four bytes each. Returns
-// the number of zeros. Errors: kUsage.
+// Calls write(result, range) with the view that an output describes: vectors, or spans of four bytes each. Returns the
+// number of zero normals. Errors: kUsage.
 template <class Write>
 Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, const Write& write) {
   if (given == nullptr) return Error{ErrorCode::kUsage, "output", "the pointer is NULL"};
@@ -175,7 +176,7 @@ struct chronormal_motion {
   const Motion* motion;
   SampleOptions options;
   NormalSampler sampler;
-  std::unique_ptr<Motion> pieces = {};  // straight pieces of curves; empty without curves
+  std::unique_ptr<Motion> pieces = {};  // the straight pieces of curves; empty for straight paths
 };
 
 const char* chronormal_version(void) { return CHRONORMAL_VERSION; }
@@ -253,7 +254,7 @@ chronormal_status chronormal_curves_write(const chronormal_curves* curves, const
         return is_real ? normals.unit_normals(times[k], result, range) : 0;
       });
     };
-    // No output is written unless all of the arguments are right.
+    // Checks all arguments before any output is written.
     for (std::size_t k = 0; k < count; ++k) {
       if (!(times[k] >= 0 && times[k] <= 1)) return misuse("times", "t lies between 0 and 1, the two ends");
       if (const auto checked = write(k, false); !checked) return fail(checked.error());

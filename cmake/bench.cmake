@@ -1,4 +1,4 @@
-# The benchmarks (./run bench): rivals that are not there are left out, and that is said.
+# The benchmarks (./run bench). Libraries that are not installed are left out, with a message.
 find_package(benchmark QUIET)
 if(NOT benchmark_FOUND)
   message(STATUS "Google Benchmark was not found (Debian: libbenchmark-dev): the benchmarks are not built")

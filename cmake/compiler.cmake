@@ -1,14 +1,15 @@
-# What every target of the project is compiled with.
+# The compiler options of every target of the project.
 #
 #   -ffp-contract=off                   a * b + c stays two roundings: the same bits from every compiler
 #   -fno-math-errno -fno-trapping-math  let sqrt and selects become vector instructions; results do not change
 #
-# A parent project keeps its own build type and flags: what is set for all targets is set where this is the whole project.
+# A parent project keeps its own build type and flags: options for all targets are only set if this is the whole
+# project.
 if(PROJECT_IS_TOP_LEVEL)
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
   endif()
-  set(CMAKE_CXX_FLAGS_RELEASE "-O3")  # NDEBUG is a matter of the product alone: chronormal_product_flags
+  set(CMAKE_CXX_FLAGS_RELEASE "-O3")  # chronormal_product_flags alone decides about NDEBUG
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g")
   set(CMAKE_CXX_STANDARD 20)
   set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -22,8 +23,8 @@ target_compile_options(
   INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
             -ffp-contract=off -fno-math-errno -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_BUILD_TYPE STREQUAL "Release")
-  # At -O2, GCC 12 warns of overruns in string + char* that cannot happen (its bug 105651). At -O3 it does not, so that
-  # ./test has these warnings.
+  # At -O2, GCC 12 falsely warns of overruns in string + char* (its bug 105651), so these warnings are off. At -O3,
+  # which ./test uses, GCC does not warn falsely, and the warnings are on.
   target_compile_options(chronormal_flags INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
                                                     -Wno-stringop-overread)
 endif()
@@ -39,7 +40,7 @@ if(CHRONORMAL_FUZZ)
   target_compile_options(chronormal_flags INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# The product as users get it has no assertions in Release, so that this is what tests and benchmarks run. Its assertions
+# In Release, the product has no assertions, and tests and benchmarks run this product, since users get it. Assertions
 # are on under sanitizers, in fuzz targets, and in every other build type.
 add_library(chronormal_product_flags INTERFACE)
 target_link_libraries(chronormal_product_flags INTERFACE chronormal_flags)

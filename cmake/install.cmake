@@ -1,5 +1,6 @@
-# `cmake --install`: what is built of the libraries and the program, headers, and what find_package(chronormal) and
-# pkg-config need. The package has the component `io` where chronormal_io was built, and `c` where chronormal_c was.
+# `cmake --install` installs the libraries and the program as far as they were built, the headers, and the files that
+# find_package(chronormal) and pkg-config need. The package has the component `io` if chronormal_io was built, and `c`
+# if chronormal_c was.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -8,9 +9,10 @@ set(config_folder ${PROJECT_BINARY_DIR}/package)
 set(pkg_config_folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH prefix_from_pkg_config /${pkg_config_folder} /)  # so that a package may be moved
 
-# chronormal_install_pkg_config(TARGET REQUIRES LIBS): what pkg-config says of a library.
+# chronormal_install_pkg_config(TARGET REQUIRES LIBS): installs the description of a library for pkg-config.
 function(chronormal_install_pkg_config target requires libraries)
-  # Of static libraries: whoever links them links what they need, so that this is in Requires and not in Requires.private.
+  # A program that links static libraries must also link the libraries that they need, so these are in Requires, not in
+  # Requires.private.
   file(CONFIGURE OUTPUT ${config_folder}/${target}.pc CONTENT
 "prefix=\${pcfiledir}/@prefix_from_pkg_config@
 libdir=\${prefix}/@CMAKE_INSTALL_LIBDIR@
@@ -26,7 +28,7 @@ Libs: -L\${libdir} -l@target@@libraries@
   install(FILES ${config_folder}/${target}.pc DESTINATION ${pkg_config_folder})
 endfunction()
 
-# chronormal_install_library(TARGET PKG_CONFIG_REQUIRES PKG_CONFIG_LIBS)
+# chronormal_install_library(TARGET PKG_CONFIG_REQUIRES PKG_CONFIG_LIBS): installs a library with its description.
 function(chronormal_install_library target requires libraries)
   install(TARGETS ${target} EXPORT ${target}Targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT ${target}Targets NAMESPACE chronormal:: DESTINATION ${package_folder})
@@ -68,7 +70,8 @@ if(CHRONORMAL_PROGRAM)
   install(FILES ${written}/chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${written}/_chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
   install(FILES ${written}/chronormal.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-  # The page of reports, where ./run report built it: beside the folders of all builds, where their programs look for it.
+  # Installs the page of reports, if ./run report has built it. It is in a folder beside all builds, where their
+  # programs look for it.
   install(FILES ${PROJECT_BINARY_DIR}/../share/chronormal/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/chronormal
           OPTIONAL)
 endif()
@@ -79,16 +82,16 @@ install(FILES ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOC
 file(CONFIGURE OUTPUT ${config_folder}/chronormalConfig.cmake CONTENT
 "include(CMakeFindDependencyMacro)
 
-# The component c, a shared library, needs nothing else: neither the others nor what these are linked with.
+# The component c is a shared library that needs neither the other components nor their dependencies.
 set(chronormal_c_file \${CMAKE_CURRENT_LIST_DIR}/chronormal_cTargets.cmake)
 if(EXISTS \${chronormal_c_file} AND (NOT chronormal_FIND_COMPONENTS OR \"c\" IN_LIST chronormal_FIND_COMPONENTS))
   include(\${chronormal_c_file})
   set(chronormal_c_FOUND TRUE)
 endif()
 
-# The component core, unless c alone was asked for.
+# The component core is loaded unless c alone was requested.
 if(NOT \"\${chronormal_FIND_COMPONENTS}\" STREQUAL \"c\")
-  if(\"@CHRONORMAL_HIGHWAY@\")  # whether the library was built over Google Highway
+  if(\"@CHRONORMAL_HIGHWAY@\")  # true if the library was built with Google Highway
     find_dependency(hwy)
   endif()
   find_dependency(Threads)
@@ -96,7 +99,7 @@ if(NOT \"\${chronormal_FIND_COMPONENTS}\" STREQUAL \"c\")
   set(chronormal_core_FOUND TRUE)
 endif()
 
-# The component io, where it is installed and not something else alone was asked for.
+# The component io is loaded if it is installed and no other component alone was requested.
 set(chronormal_io_file \${CMAKE_CURRENT_LIST_DIR}/chronormal_ioTargets.cmake)
 if(EXISTS \${chronormal_io_file} AND (NOT chronormal_FIND_COMPONENTS OR \"io\" IN_LIST chronormal_FIND_COMPONENTS))
   find_dependency(ZLIB)
@@ -117,7 +120,7 @@ write_basic_package_version_file(${config_folder}/chronormalConfigVersion.cmake 
 install(FILES ${config_folder}/chronormalConfig.cmake ${config_folder}/chronormalConfigVersion.cmake
         DESTINATION ${package_folder})
 
-# `cpack` in the build folder makes a Debian package of all of it, which depends on the shared libraries that it uses.
+# `cpack` in the build folder makes a Debian package of the whole product, which depends on the shared libraries in use.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME chronormal)
 set(CPACK_PACKAGE_CONTACT "the authors of chronormal <chronormal@users.noreply.github.com>")

@@ -1,7 +1,7 @@
-# Other libraries that compute normals, to compare with (./run bench installs and uses them).
+# The other libraries that benchmarks compare with. ./run bench installs and uses them.
 find_package(OpenMesh QUIET)
 find_package(VTK QUIET COMPONENTS CommonCore CommonDataModel FiltersCore FiltersModeling)
-# CGAL would complain about build types that are not Release.
+# Silences CGAL, which complains about build types that are not Release.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL QUIET)
 if(NOT TARGET OpenMeshCore OR NOT VTK_FOUND OR NOT CGAL_FOUND)
@@ -13,7 +13,7 @@ endif()
 file(GLOB peer_sources CONFIGURE_DEPENDS bench/peers/*.cpp)
 add_library(chronormal_peers STATIC ${peer_sources})
 target_include_directories(chronormal_peers PUBLIC ${PROJECT_SOURCE_DIR}/bench)
-# Without assertions in Release, as the product: OpenMesh checks every handle where there are any.
+# Turns off assertions in Release, as in the product: otherwise OpenMesh would check every handle.
 target_link_libraries(chronormal_peers PUBLIC chronormal PRIVATE chronormal_product_flags OpenMeshCore VTK::CommonCore
                                                                  VTK::CommonDataModel VTK::FiltersCore VTK::FiltersModeling
                                                                  CGAL::CGAL)

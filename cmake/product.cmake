@@ -1,9 +1,9 @@
-# The product: two libraries and the program. Everything is described once, by chronormal_add_product(), and built once
-# for users and, where tests are built, once more under sanitizers for the tests alone.
+# The product: two libraries and the program. chronormal_add_product() describes the product once. It is built once for
+# users and, if tests are built, once more with sanitizers for the tests.
 #
 #   chronormal       core, simd, motion, normals, schemes, analysis
 #   chronormal_io    io and workflow                                      (CHRONORMAL_IO)
-#   chronormal_c     the same for C, as a shared library that is only what chronormal_c.h names   (CHRONORMAL_C)
+#   chronormal_c     a shared library with the functions of chronormal_c.h for C   (CHRONORMAL_C)
 #   chronormal_cli   the program                                          (CHRONORMAL_PROGRAM)
 if(EMSCRIPTEN)
   include(cmake/wasm.cmake)
@@ -45,7 +45,7 @@ list(FILTER kernel_sources INCLUDE REGEX "/kernels/")
 file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/io/*.cpp src/workflow/*.cpp)
 file(GLOB_RECURSE cli_sources CONFIGURE_DEPENDS cli/*.cpp)
 if(CHRONORMAL_MPI)
-  set(MPI_CXX_SKIP_MPICXX ON)  # the bindings for C are enough
+  set(MPI_CXX_SKIP_MPICXX ON)  # only the bindings for C are used
   find_package(MPI REQUIRED COMPONENTS CXX)
   list(FILTER cli_sources EXCLUDE REGEX "/ranks/alone\\.cpp$")
 else()
@@ -58,10 +58,10 @@ if(CHRONORMAL_REPORT_PAGE)
                               COMPILE_DEFINITIONS CHRONORMAL_REPORT_PAGE="${CHRONORMAL_REPORT_PAGE}")
 endif()
 
-# chronormal_compile_together(TARGET SOURCES...): where CHRONORMAL_UNITY asks for it, up to eight files of a folder are one
-# to the compiler, which reads their headers and makes their templates once. Files of different folders are never
-# together, so that what a file calls its own things concerns its folder alone. Kernels, which are compiled once for every
-# instruction set, and files with options of their own stay by themselves.
+# chronormal_compile_together(TARGET SOURCES...): with CHRONORMAL_UNITY, compiles up to eight files of a folder as one,
+# so that the compiler reads their headers and instantiates their templates only once. Files of different folders are
+# never combined, so private names may be equal in different folders. Kernels, which are compiled once for every
+# instruction set, and files with their own options are compiled separately.
 function(chronormal_compile_together target)
   if(NOT CHRONORMAL_UNITY)
     return()
@@ -92,19 +92,19 @@ function(chronormal_compile_together target)
     endforeach()
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  # GCC takes such a group for the file of another, and wonders what is private to the .cpp files in it.
+  # In such a group, GCC takes private types of one .cpp file for types of a header, and warns about them.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
-# A shared object, such as an engine's plugin, can be linked from the static libraries, and exports nothing of them.
+# A shared object, such as an engine's plugin, can be linked from the static libraries, and exports none of their names.
 set(position_independent ON)
 if(EMSCRIPTEN)
-  set(position_independent OFF)  # a module is linked whole, and is smaller so
+  set(position_independent OFF)  # a wasm module is linked whole, and is smaller without
 endif()
 set(linkable POSITION_INDEPENDENT_CODE ${position_independent} CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
 
-# chronormal_add_product(SUFFIX FLAGS): the three targets with this suffix to their names, compiled with what the
-# interface library FLAGS says.
+# chronormal_add_product(SUFFIX FLAGS): adds the targets with this suffix in their names, compiled with the options of
+# the interface library FLAGS.
 function(chronormal_add_product suffix flags)
   add_library(chronormal${suffix} STATIC ${library_sources})
   target_include_directories(chronormal${suffix} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
@@ -115,13 +115,14 @@ function(chronormal_add_product suffix flags)
   target_link_libraries(chronormal${suffix} PRIVATE $<BUILD_INTERFACE:${flags}>)
   if(CHRONORMAL_HIGHWAY)
     target_link_libraries(chronormal${suffix} PRIVATE hwy::hwy)
-    # Kernels are compiled for every x86-64 (Highway's plain C++), SSE4, AVX2 and AVX-512, and nothing between them.
-    # Vectors whose size is not known to the compiler (SVE) cannot be members of structs, as ours are.
+    # Kernels are compiled for four levels of x86-64: baseline (Highway's plain C++), SSE4, AVX2 and AVX-512. Vectors
+    # whose size the compiler does not know (SVE) cannot be members of structs, which our kernels need.
     target_compile_definitions(
       chronormal${suffix}
       PRIVATE CHRONORMAL_HIGHWAY "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
-      # GCC 12 forgets the pragma by which Highway asks for these instructions in constructors that it writes itself.
+      # Highway enables these instructions by a pragma, which GCC 12 ignores in constructors that the compiler
+      # generates.
       target_compile_options(chronormal${suffix} PRIVATE -march=armv8-a+crypto)
     endif()
   endif()
@@ -130,7 +131,7 @@ function(chronormal_add_product suffix flags)
   endif()
 
   if(EMSCRIPTEN)
-    target_link_libraries(chronormal${suffix} PRIVATE fmt::fmt)  # and fast_float: numbers from text and to text
+    target_link_libraries(chronormal${suffix} PRIVATE fmt::fmt)  # and fast_float, which read and write numbers as text
     target_compile_options(chronormal${suffix} PRIVATE -msimd128)
   endif()
 
@@ -140,7 +141,8 @@ function(chronormal_add_product suffix flags)
   add_library(chronormal_io${suffix} STATIC ${io_sources})
   set_target_properties(chronormal_io${suffix} PROPERTIES ${linkable})
   chronormal_compile_together(chronormal_io${suffix} ${io_sources})
-  # Most files include these, which are parsed once. A file must still include what it uses: ./test --full clang sees that.
+  # Most files include these headers, so they are parsed once. Each file must still include the headers that it uses;
+  # ./test --full clang checks this.
   target_precompile_headers(chronormal_io${suffix} PRIVATE <algorithm> <functional> <map> <memory> <optional> <string> <string_view>
                                                            <vector> <nlohmann/json.hpp>)
   target_include_directories(chronormal_io${suffix} PRIVATE src)
@@ -157,7 +159,7 @@ function(chronormal_add_product suffix flags)
   chronormal_compile_together(chronormal_cli${suffix} ${cli_sources})
   target_precompile_headers(chronormal_cli${suffix} PRIVATE <algorithm> <functional> <map> <memory> <optional> <string> <string_view>
                                                             <vector> <fmt/format.h> <nlohmann/json.hpp>)
-  # No loop that takes time is in the program: these are in the libraries.
+  # The program is compiled for size, since all loops that take time are in the libraries.
   if(EMSCRIPTEN)
     target_compile_options(chronormal_cli${suffix} PRIVATE ${for_size})
   elseif(PROJECT_IS_TOP_LEVEL)
@@ -168,7 +170,8 @@ function(chronormal_add_product suffix flags)
   target_link_libraries(chronormal_cli${suffix} PRIVATE chronormal_io${suffix} ${flags} CLI11::CLI11 fmt::fmt
                                                         nlohmann_json::nlohmann_json)
   if(CHRONORMAL_STATIC)
-    target_link_options(chronormal_cli${suffix} PRIVATE -static-pie)  # which the system may load anywhere
+    # A program that the system may load at any address.
+    target_link_options(chronormal_cli${suffix} PRIVATE -static-pie)
   endif()
   if(CHRONORMAL_MPI)
     target_link_libraries(chronormal_cli${suffix} PRIVATE MPI::MPI_CXX)
@@ -176,7 +179,7 @@ function(chronormal_add_product suffix flags)
 endfunction()
 
 chronormal_add_product("" chronormal_product_flags)
-# The same names in this build tree as in a package.
+# These targets have the same names in this build tree as in an installed package.
 add_library(chronormal::chronormal ALIAS chronormal)
 if(CHRONORMAL_IO)
   add_library(chronormal::chronormal_io ALIAS chronormal_io)
@@ -194,20 +197,21 @@ if(CHRONORMAL_C)
 endif()
 
 if(CHRONORMAL_FUZZ)
-  # What is fuzzed are the readers, which call no kernels; those take a long time to compile under sanitizers.
+  # Fuzzing exercises the readers, which call no kernels. Kernels take long to compile with sanitizers, so they have
+  # none.
   set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
 elseif(CHRONORMAL_SANITIZED)
-  # The address and undefined behaviour sanitizers, at an optimisation that compiles fast. Left out are checks that
-  # double the time to compile: a null pointer is a crash anyway, and clang's build (./test --full fuzz) has them all.
+  # The address and undefined behaviour sanitizers, at an optimisation level that compiles fast. Checks that double the
+  # compile time are left out: a null pointer crashes anyway, and clang's build (./test --full fuzz) has all checks.
   set(sanitizers -fsanitize=address,undefined -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=all)
   add_library(chronormal_sanitized_flags INTERFACE)
   target_link_libraries(chronormal_sanitized_flags INTERFACE chronormal_flags)
   target_compile_options(chronormal_sanitized_flags INTERFACE -O1 -g1 -fno-omit-frame-pointer ${sanitizers}
                                                               -fno-sanitize-address-use-after-scope)
-  # Sanitizers describe every place in .data. Its pointers, 1.5 million, would be relocated at each start of a program
-  # that lies at any address, and the tests start thousands.
+  # Sanitizers describe every place in .data by pointers. A program that may be loaded at any address would relocate all
+  # 1.5 million pointers at each start, and the tests start thousands of programs.
   target_link_options(chronormal_sanitized_flags INTERFACE ${sanitizers} -no-pie)
   chronormal_add_product(_sanitized chronormal_sanitized_flags)
-  # Static libraries carry no link options of their own.
+  # Static libraries do not pass on link options by themselves.
   target_link_options(chronormal_sanitized INTERFACE ${sanitizers})
 endif()

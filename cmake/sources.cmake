@@ -1,19 +1,20 @@
-# The libraries that find_package() finds elsewhere, compiled from Debian's sources, which tools/wasm.sh unpacks into
-# build/wasm-sources, and only as far as they are needed. Libraries that are headers alone are those of the system.
+# The libraries that find_package() normally finds, compiled from Debian's sources, which tools/wasm.sh unpacks into
+# build/wasm-sources. Only the parts that the product needs are compiled. Header-only libraries are the system's.
 #
 # This is for the wasm module, and for programs that run on machines where nothing is installed (CHRONORMAL_STATIC).
-enable_language(C)  # zlib
+enable_language(C)  # for zlib
 set(sources ${PROJECT_SOURCE_DIR}/build/wasm-sources)
 if(NOT EXISTS ${sources})
   message(FATAL_ERROR "the sources of libraries are not in ${sources}: `./run npm` and `./run dist` get them")
 endif()
 set(headers ${PROJECT_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${headers})
-foreach(header fmt CLI nlohmann fast_float)  # and nothing else of /usr/include, which may be for another system
+# Only these headers of /usr/include, since others may not fit the target system.
+foreach(header fmt CLI nlohmann fast_float)
   file(CREATE_LINK /usr/include/${header} ${headers}/${header} SYMBOLIC)
 endforeach()
 
-# chronormal_source_library(NAME FOLDER FILES...): a library of files in a folder of the sources.
+# chronormal_source_library(NAME FOLDER FILES...): makes a library from files in a folder of the sources.
 function(chronormal_source_library name folder)
   file(GLOB root ${sources}/${folder})
   list(TRANSFORM ARGN PREPEND ${root}/ OUTPUT_VARIABLE patterns)
@@ -42,7 +43,7 @@ chronormal_source_library(meshoptimizer meshoptimizer-* src/indexcodec.cpp src/v
 target_include_directories(meshoptimizer SYSTEM PUBLIC ${root}/src)
 add_library(meshoptimizer::meshoptimizer ALIAS meshoptimizer)
 
-# Draco, as far as a decoder needs it.
+# Draco: the parts that a decoder needs.
 set(code src/draco/compression)
 chronormal_source_library(
   draco draco-* src/draco/attributes/*.cc src/draco/core/*.cc src/draco/mesh/*.cc src/draco/point_cloud/*.cc

@@ -11,7 +11,7 @@ using namespace chronormal;
 
 constexpr std::uint32_t kSide = 65;  // vertices
 
-// A flat sheet, 2 wide.
+// Returns a flat sheet that is 2 wide.
 BlendSet sheet() {
   BlendSet set;
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -38,7 +38,7 @@ BlendTarget bump(const BlendSet& set, const char* name, float x, float y, const 
   return BlendTarget::from_dense(deltas, name);
 }
 
-// Returns the largest angle between these normals and normals of the blended positions in float32, in radians.
+// Returns the largest angle in radians between these normals and the normals of blended positions in float32.
 double largest_difference(const BlendSet& set, const NormalGroups& groups, const std::vector<double>& weights,
                           const std::vector<float>& normals) {
   std::vector<double> blended(set.base.size());
@@ -59,7 +59,7 @@ double largest_difference(const BlendSet& set, const NormalGroups& groups, const
 }  // namespace
 
 int main() {
-  // Make three targets as a face has them: two that overlap, and one elsewhere.
+  // Make three targets like those of a face: two that overlap, and one elsewhere.
   BlendSet set = sheet();
   set.targets = {bump(set, "smile", -0.4F, 0, {0.1F, 0, 0.3F}), bump(set, "puff", -0.2F, 0, {-0.1F, 0.1F, 0.2F}),
                  bump(set, "brow", 0.5F, 0.5F, {0, 0.1F, 0.2F})};
@@ -68,7 +68,7 @@ int main() {
     return 1;
   }
 
-  // Predict the cost before anything is made.
+  // Predict the cost before anything is computed.
   const NormalGroups groups = NormalGroups::of_vertices(set.topology, separate_points(kSide * kSide));
   const BlendCost cost = predict_blend_cost(set, groups);
   std::printf("%zu pairs overlap, %zu KiB of terms\n", cost.overlapping_pairs, (cost.bytes - cost.least_bytes) / 1024);
@@ -79,7 +79,7 @@ int main() {
     done = normals.unit_normals(weights, VectorView<float>::packed(xyz.data(), normals.size()));
     return xyz;
   };
-  // Do what engines do: add a delta for each target, which is right where it is alone and its weight is 1.
+  // Do what engines do: add the normal deltas of all targets, which is right only for one target with the weight 1.
   BlendEvaluation done;
   const std::vector<float> base = unit_normals({0, 0, 0}, done), smile = unit_normals({1, 0, 0}, done),
                            puff = unit_normals({0, 1, 0}, done), brow = unit_normals({0, 0, 1}, done);

@@ -1,10 +1,10 @@
 // Collision response with the normal at the contact time: balls thrown at a sheet that waves.
 //
 // A ball (a point here) moves on a straight line, and so does every vertex of the sheet. Containment::crossings() finds
-// where it goes through: the face, the time, and the unit normal of the face at that time. It takes closed meshes
-// alone, so that it can promise that no contact is missed; the sheet becomes the top of a cushion. At the contact the
-// velocity relative to the sheet is mirrored, and the normal decides where the ball goes. An error of the normal turns
-// the outgoing direction by up to twice as much.
+// where a ball crosses the surface: the face, the time, and the unit normal of the face at that time. It promises that
+// no contact is missed, which is only possible for closed meshes, so the sheet becomes the top of a cushion. At the
+// contact the velocity relative to the sheet is mirrored, so the normal decides where the ball goes: an error of the
+// normal changes the outgoing direction by up to twice as much.
 
 #include <array>
 #include <cmath>
@@ -26,7 +26,7 @@ struct Ball {
   Vec3d position, velocity;  // at t = 0; lengths, lengths per segment
 };
 
-/// A vertex as it moves: a line from one end of the segment to the other.
+/// A moving vertex: a line from one end of the segment to the other.
 struct Line {
   Vec3d from, to;
 };
@@ -36,9 +36,11 @@ std::array<Line, 3> corners(const Segment& segment, std::size_t face) {
   return {line(v[0]), line(v[1]), line(v[2])};
 }
 
-/// The motion of a closed mesh: the faces of the sheet, and one from every edge of its border to a vertex below.
+/// Returns the motion of a closed mesh: the faces of the sheet, and a face from every edge of its border to a vertex
+/// below.
 Motion cushion(Motion sheet) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> passed;  // from a to b, minus from b to a
+  // Faces that have the edge from a to b, minus faces that have it from b to a.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> passed;
   const std::span<const std::uint32_t> corners = sheet.topology.corners();
   for (std::size_t c = 0; c < corners.size(); ++c) {
     const std::uint32_t a = corners[c], b = corners[c % 3 == 2 ? c - 2 : c + 1];
@@ -55,8 +57,8 @@ Motion cushion(Motion sheet) {
   return sheet;
 }
 
-/// The velocity of the sheet where a ball meets it: the three areas between the ball and the edges, as shares of the
-/// face, weigh the corners.
+/// Returns the velocity of the sheet where a ball meets it. The weight of a corner is the area between the ball and the
+/// opposite edge, as a share of the face.
 Vec3d surface_velocity(const Segment& segment, const Ball& ball, const Crossing& contact) {
   const std::array<Line, 3> moving = corners(segment, contact.face);
   const Vec3d p = ball.position + contact.t * ball.velocity;
@@ -70,11 +72,11 @@ Vec3d surface_velocity(const Segment& segment, const Ball& ball, const Crossing&
   return velocity;
 }
 
-/// Mirrors a velocity about a unit normal, elastically.
+/// Reflects a velocity elastically at a plane with a unit normal.
 Vec3d reflect(const Vec3d& velocity, const Vec3d& normal) { return velocity - (2 * dot(velocity, normal)) * normal; }
 
-/// Computes the same response by other means, from positions alone: the contact time by bisection of the volume,
-/// recomputed from the corners at each step, and the normal by their cross product.
+/// Computes the same response independently, from positions alone: the contact time by bisection of the volume,
+/// recomputed from the corners at each step, and the normal by the cross product.
 Vec3d independent_response(const Segment& segment, const Ball& ball, const Crossing& contact) {
   const std::array<Line, 3> moving = corners(segment, contact.face);
   const auto normal = [&moving](double t) {
@@ -92,8 +94,8 @@ Vec3d independent_response(const Segment& segment, const Ball& ball, const Cross
   return reflect(ball.velocity - surface_velocity(segment, ball, contact), unit(normal(before)));
 }
 
-/// By how much the ball is outside the face that it is said to meet, as a share of the face: the areas of the three
-/// triangles between the ball and the edges add up to more than the face has.
+/// Returns how far the ball is outside the face that it meets, as a share of the face's area: the areas of the three
+/// triangles between the ball and the edges exceed the area of the face.
 double area_outside(const Segment& segment, const Ball& ball, const Crossing& contact) {
   const Vec3d p = ball.position + contact.t * ball.velocity;
   std::array<Vec3d, 3> to;
@@ -108,7 +110,7 @@ double area_outside(const Segment& segment, const Ball& ball, const Crossing& co
 }  // namespace
 
 int main() {
-  // A wave runs through the sheet, by a fifth of a wavelength within the segment.
+  // Makes a sheet with a wave that moves by a fifth of a wavelength within the segment.
   const Motion motion = cushion(make_builtin_morph("cloth").value());
   const Segment segment = motion.segment(1);
   const Containment containment =
@@ -126,7 +128,7 @@ int main() {
   const std::vector<Crossing> crossings =
       containment.crossings(segment, VectorView<const float>::packed(from), VectorView<const float>::packed(to));
 
-  // The normals that the response could use, and how far they send the balls off their way.
+  // A normal that the response could use, and the errors of the directions in which balls then leave.
   struct Choice {
     const char* name;
     double sum = 0, max = 0;  // degrees
@@ -138,14 +140,14 @@ int main() {
   std::uint32_t last = kBalls;
   double energy_error = 0, difference = 0, outside = 0;
   for (const Crossing& contact : crossings) {
-    if (contact.point == last) continue;  // the first of each ball is the contact
+    if (contact.point == last) continue;  // the first crossing of each ball is its contact
     last = contact.point;
     const Ball& ball = balls[contact.point];
     ++hits;
     outside = std::fmax(outside, area_outside(segment, ball, contact));
 
-    // In the frame of the surface the collision is a mirror; adding the velocity of the surface leads back to the
-    // world.
+    // In the frame of the surface the collision is a reflection; adding the velocity of the surface returns to the
+    // frame of the world.
     const double t = contact.t;
     ControlNormals n;
     face_control_normals(segment, {contact.face, 1}, {&n, 1});

@@ -1,11 +1,12 @@
-// Measures how fast the error of each scheme falls as keyframes get closer, and what is left of the exact normals of
-// straight paths once the motion between keyframes is curved. docs/theory.md shows the output and proves the orders.
+// Measures how fast the error of each scheme falls as keyframes get closer, and how far the exact normals of straight
+// paths are from the true ones if the motion between keyframes is curved. docs/theory.md shows the output and proves
+// the orders.
 //
 // Two smooth motions are sampled at the ends of 1, 2, 4, 8 and 16 segments: the built-in column, in which each layer
-// now truly turns, and a sheet that waves of random direction and speed run through. The first rows hold schemes
-// against the exact normals of straight segments, as everywhere; the last four hold normals of straight segments and of
-// curved paths against those of the motion itself. Fails where a measured order is not the proven one, or the error
-// of order 2 in 16 segments not what eq. 55 makes of the control normals.
+// turns continuously, and a sheet that waves of random direction and speed run through. The first rows compare schemes
+// with the exact normals of straight segments; the last four compare normals of straight segments and of curved paths
+// with the normals of the motion itself. Fails if a measured order differs from the proven one, or if the error of
+// order 2 in 16 segments differs from the prediction of eq. 55.
 
 #include <array>
 #include <cmath>
@@ -27,16 +28,16 @@ constexpr std::array<std::size_t, 5> kSegments = {1, 2, 4, 8, 16};
 
 constexpr int kSamples = 21;
 
-/// Returns what the tangential acceleration of the exact normals makes of order 2 (eq. 55), in mean degrees: all of it,
-/// that along their path, and that across it.
+/// The prediction of eq. 55 for the error of order 2, from the tangential acceleration of the exact normals, in mean
+/// degrees: the whole acceleration, its part along the path of the normal, and its part across the path.
 struct Leading {
   double all = 0, along = 0, across = 0;
 };
 
 struct Row {
   const char* name;
-  double order;                        // what docs/theory.md proves; 0: rounding alone
-  double Leading::*leading = nullptr;  // where it also says how large the error is
+  double order;                        // the order that docs/theory.md proves; 0 if only rounding remains
+  double Leading::*leading = nullptr;  // the prediction of the error, if docs/theory.md has one
   double divisor = 1;
 };
 
@@ -57,7 +58,7 @@ constexpr Row kSchemes[] = {{"quaternion:random:1", 1},
 
 using Errors = std::array<double, kSegments.size()>;  // mean degrees
 
-/// A motion that is known at every time from 0 to 1.
+/// A motion with known positions at every time from 0 to 1.
 struct SmoothMotion {
   const char* name;
   Topology topology;
@@ -136,7 +137,7 @@ Leading leading_terms(const Motion& sampled) {
   for (std::size_t s = 0; s < sampled.segments.size(); ++s) {
     face_control_normals(sampled.segment(s), {0, faces}, normals);
     for (const ControlNormals& c : normals) {
-      // n(t) and its derivatives at t = 1/2, and eq. 54.
+      // Compute n(t) and its derivatives at t = 1/2, and from these eq. 54.
       const Vec3d n = 0.25 * (c.n0 + 2.0 * c.m + c.n1), d1 = c.n1 - c.n0, d2 = 2.0 * (c.n0 - 2.0 * c.m + c.n1);
       const double size = length(n);
       const Vec3d u = (1 / size) * n;
@@ -148,13 +149,13 @@ Leading leading_terms(const Motion& sampled) {
       sum.across += std::fabs(dot(a, cross(u, u1))) / length(u1);
     }
   }
-  double mean = 0;  // of t (1 - t) / 2 over the samples
+  double mean = 0;  // mean of t (1 - t) / 2 over the samples
   for (int i = 0; i < kSamples; ++i) mean += i * (kSamples - 1.0 - i) / (2 * kSamples * std::pow(kSamples - 1.0, 2));
   const double factor = mean * kDegreesPerRadian / static_cast<double>(faces * sampled.segments.size());
   return {factor * sum.all, factor * sum.along, factor * sum.across};
 }
 
-/// Normals of straight segments against those of the motion itself: exact ones, and end normals interpolated.
+/// The errors against the motion itself: of the exact normals of straight segments, and of interpolated end normals.
 struct AgainstMotion {
   double exact = 0, linear = 0;  // mean degrees
 };
@@ -181,7 +182,8 @@ AgainstMotion against_motion(const SmoothMotion& smooth, const Motion& sampled) 
   return {sum.exact * degrees, sum.linear * degrees};
 }
 
-/// The cubic of segment s on a curved path, from positions in double: those of keyframes in float32 would hide order 4.
+/// Returns the cubic of segment s on a curved path. Positions are in double, since the rounding of float32 keyframes
+/// would hide order 4.
 CubicSegment curve_of(const SmoothMotion& smooth, std::size_t segments, std::size_t s, PathKind path) {
   std::vector<double> times;
   for (std::size_t k = 0; k <= segments; ++k) times.push_back(static_cast<double>(k) / static_cast<double>(segments));
@@ -192,7 +194,7 @@ CubicSegment curve_of(const SmoothMotion& smooth, std::size_t segments, std::siz
       for (std::size_t v = 0; v < p.size(); ++v) result[v] = result[v] + share * p[v];
     };
     if (path == PathKind::kHermite) {
-      // The derivative of the motion, by five points.
+      // Approximates the derivative of the motion by five points.
       constexpr double kStep = 1e-3;
       for (const auto& [share, steps] : {std::pair{1.0, -2.0}, {-8.0, -1.0}, {8.0, 1.0}, {-1.0, 2.0}})
         add(share / (12 * kStep), times[key] + steps * kStep);
@@ -212,7 +214,7 @@ CubicSegment curve_of(const SmoothMotion& smooth, std::size_t segments, std::siz
   return curve;
 }
 
-/// The exact normals of curved paths against those of the motion itself, in mean degrees.
+/// Compares the exact normals of curved paths with the normals of the motion itself, in mean degrees.
 double curve_against_motion(const SmoothMotion& smooth, std::size_t segments, PathKind path) {
   double sum = 0;
   std::size_t count = 0;

@@ -1,9 +1,9 @@
 // Back-face culling at time t: which faces of a morph face the eye, between the keyframes.
 //
-// A face is seen from its front where n(t).(eye - a(t)) > 0, a being any of its corners. Two shortcuts are common and
-// wrong: to interpolate the end normals, and to skip a face that is back-facing at both keyframes. Exact normals decide
-// every instant right, and find_facing() whole segments: it gives the instants at which a face turns, so that a face
-// which never shows its front can be skipped safely.
+// A face shows its front if n(t).(eye - a(t)) > 0, where a is any of its corners. Two shortcuts are common and wrong:
+// to interpolate the end normals, and to skip a face that is back-facing at both keyframes. Exact normals give the
+// right answer at every instant. find_facing() answers for whole segments: it returns the instants at which a face
+// turns, so a face that never shows its front can be skipped safely.
 
 #include <algorithm>
 #include <cmath>
@@ -19,15 +19,16 @@ using namespace chronormal;
 
 constexpr Vec3d kEye{4, -5, 2};
 constexpr int kSamples = 21;
-constexpr double kGrazing = 2e-6;  // rad between face and line of sight; below, float32 may not decide (it has 1e-6)
+// Smallest angle in rad between a face and the line of sight that float32 must decide (its error is 1e-6)
+constexpr double kGrazing = 2e-6;
 
 Vec3d corner_at(const Segment& segment, std::size_t face, double t) {
   const std::uint32_t v = segment.topology->face(face)[0];
   return lerp(to_double(segment.from[v]), to_double(segment.to[v]), t);
 }
 
-/// A time at which a face that is hidden at both ends of the segment is seen, in the middle between two changes; -1 if
-/// there is none.
+/// Returns a time at which a face that is hidden at both ends of the segment is seen, in the middle between two
+/// changes, or -1 if there is none.
 double time_seen(const Facing& facing) {
   for (std::size_t i = 0; i + 1 < facing.count; ++i)
     if (facing.at[i].after == Side::kFront) return (facing.at[i].upper + facing.at[i + 1].lower) / 2;
@@ -48,7 +49,7 @@ struct Count {
   }
 };
 
-/// The sine of the angle between a face and the line of sight, positive in front; by the reference, from positions
+/// Returns the sine of the angle between a face and the line of sight, positive in front. This reference uses positions
 /// alone.
 double reference_facing(const Segment& segment, std::size_t face, double t) {
   Vec3d n;
@@ -82,7 +83,7 @@ Count count(const Segment& segment) {
     }
   }
 
-  // Decide for whole segments: does a face that is hidden at both ends come round between?
+  // Decide for whole segments whether a face that is hidden at both ends is seen in between.
   for (std::size_t f = 0; f < faces; ++f) {
     const Facing facing = find_facing(segment, f, control[f], View::of_eye(kEye));
     if (facing.first() != Side::kBack || facing.last() != Side::kBack) continue;
@@ -95,7 +96,8 @@ Count count(const Segment& segment) {
 }
 
 /// Lists the first faces of a segment that turn towards a far-away eye and away again. Returns the largest sine between
-/// a face and the line of sight at these times, by the reference: zero but for rounding, as the face is seen edge on.
+/// a face and the line of sight at these times by the reference, which is zero up to rounding, since the face is seen
+/// edge on.
 double print_turns(const Segment& segment, const Vec3d& direction, int wanted) {
   double largest = 0;
   for (std::size_t f = 0; f < segment.topology->face_count() && wanted > 0; ++f) {

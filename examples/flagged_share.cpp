@@ -1,5 +1,5 @@
-// Counts the elements that float32 cannot carry, by the kind of triangle, and how far the results are from double.
-// docs/theory.md shows the output.
+// Counts the elements that float32 cannot represent accurately, for several kinds of triangles, and measures the
+// difference of the results from double. docs/theory.md shows the output.
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +15,10 @@ using namespace chronormal;
 
 struct Family {
   const char* name;
-  double size;    // of the edges
-  double motion;  // of the vertices, in sizes; below 0: both ends are independent
+  double size;    // length of the edges
+  double motion;  // displacement of the vertices, in sizes; if negative, both ends are independent
   double needle;  // height of the triangle, in sizes
-  double offset;  // of the triangle from the origin, in sizes
+  double offset;  // distance of the triangle from the origin, in sizes
 };
 
 constexpr Family kFamilies[] = {

@@ -8,9 +8,9 @@
 
 #include "chronormal/chronormal.h"
 
-// An engine's frame loop: a flag of four keyframes at 24 a second, shown 60 times a second. The normals of a frame are
-// written by eight jobs, a range of vertices each, while another prepares the next segment; a slider then shapes the
-// flag.
+// An engine's frame loop: a flag of four keyframes at 24 a second, shown 60 times a second. Eight jobs write the
+// normals of a frame, each for a range of vertices, while another job prepares the next segment. Then a slider changes
+// the shape of the flag.
 namespace {
 
 using namespace chronormal;
@@ -41,7 +41,7 @@ std::vector<std::uint32_t> triangles() {
   return corners;
 }
 
-// Stands for the job system of the engine. Here a job is a thread.
+// Stands in for the job system of an engine. A job is a thread here.
 template <class Job>
 void run_jobs(const Job& job) {
   std::vector<std::thread> threads;
@@ -66,7 +66,7 @@ int main() {
   MeshNormals normals = MeshNormals::make(topology, {.tolerance = kCompactTolerance}).value();
   if (!normals.set_segment(at(0), at(1))) return 1;
 
-  // The engine's vertex buffer: position and normal side by side, 24 bytes a vertex.
+  // The engine's vertex buffer has position and normal side by side, 24 bytes per vertex.
   std::vector<float> buffer(6 * normals.size());
   const auto in_buffer = VectorView<float>::strided(buffer.data() + 3, normals.size(), 24);
   std::size_t segment = 0;
@@ -84,19 +84,20 @@ int main() {
     const double t = time - static_cast<double>(segment);
     std::atomic<std::size_t> zeros = 0;
     run_jobs([&](std::size_t job) {
-      if (job == 0) (void)normals.prepare(0.4);  // two and a half frames a segment
+      if (job == 0) (void)normals.prepare(0.4);  // there are two and a half frames per segment
       zeros += normals.unit_normals(t, in_buffer, share_of(job, normals.size()));
     });
     std::printf("%5d %8zu  %.2f %17zu\n", frame, segment, t, zeros.load());
 
-    // Check that the jobs wrote what one call writes.
+    // Check that the jobs wrote the same normals as one call for all vertices.
     std::vector<float> whole(3 * normals.size());
     normals.unit_normals(t, VectorView<float>::packed(whole));
     for (std::size_t i = 0; i < normals.size(); ++i)
       if (VectorView<float>::packed(whole)[i] != in_buffer[i]) return 1;
   }
 
-  // Make a slider rig of the flag at rest and one shape. Weights are set once for a frame; any thread writes a range.
+  // Make a slider rig of the flag at rest and one morph target. Weights are set once per frame; then any thread writes
+  // a range.
   std::vector<float> deltas(keyframes[0].size());
   for (std::size_t i = 0; i < deltas.size(); ++i) deltas[i] = keyframes[2][i] - keyframes[0][i];
   if (!normals.set_targets({topology, keyframes[0], {BlendTarget::from_dense(deltas, "blow")}})) return 1;

@@ -8,7 +8,8 @@ namespace {
 
 using namespace chronormal;
 
-// Returns a keyframe of the strip: vertices 0 and 1 are at x = 0, and so on; 4 and 5 are at the places of 2 and 3.
+// Returns a keyframe of the strip. Vertices 0 and 1 are at x = 0, the next two at x = 1, and so on; 4 and 5 are at the
+// places of 2 and 3.
 Motion::Keyframe strip(double time, float down) {
   constexpr float kX[] = {0, 1, 1, 2, 2.5F, 3}, kHeight[] = {0, 0.3F, 0.3F, 0, -1, -2};
   Motion::Keyframe keyframe{{}, time, {}};
@@ -22,8 +23,8 @@ Motion::Keyframe strip(double time, float down) {
 }  // namespace
 
 int main() {
-  // A strip of four quads, folded along the edge between the second and the third, that opens flat over one second. At
-  // the edge between the first two it is cut, as at a seam of texture: vertices 2, 3 and 4, 5 are at the same places.
+  // A strip of four quads, folded along the edge between the second and the third, that opens flat over one second. The
+  // edge between the first two is cut, like a texture seam: vertices 4 and 5 are at the places of 2 and 3.
   Motion motion;
   motion.topology =
       Topology::polygons(12, {0, 4, 8, 12, 16}, {0, 2, 3, 1, 4, 6, 7, 5, 6, 8, 9, 7, 8, 10, 11, 9}).value();
@@ -36,10 +37,10 @@ int main() {
     std::fprintf(stderr, "%s\n", groups.error().text().c_str());
     return 1;
   }
-  // Prepare each segment once: sums of the control normals of faces, exact for every t between.
+  // Prepare each segment once. The control normals are sums over faces, and are exact for every t in the segment.
   const NormalCurves curves = NormalCurves::of_groups(motion.segment(0), groups.value());
 
-  // Evaluate as often as you like: the different normals as a stream, then a copy to every corner that shows them.
+  // Evaluate as often as needed: first write one normal for each group, then copy it to all corners of the group.
   const std::size_t corners = groups.value().element_of_output().size();
   std::vector<float> different(3 * curves.size()), normals(3 * corners);
   std::printf("%zu corners, %zu different normals\n", corners, curves.size());
@@ -49,7 +50,7 @@ int main() {
     groups.value().copy_to_outputs(VectorView<const float>::packed(different.data(), curves.size()),
                                    VectorView<float>::packed(normals.data(), corners));
     std::printf("%.2f", t);
-    for (const std::size_t corner : {1U, 4U, 5U, 8U})  // of faces 0, 1, 1 and 2
+    for (const std::size_t corner : {1U, 4U, 5U, 8U})  // the corners of faces 0, 1, 1 and 2 at the edges
       std::printf("   (%5.2f, %5.2f)", normals[3 * corner], normals[3 * corner + 2]);
     std::printf("\n");
   }

@@ -1,4 +1,4 @@
-/// Checks what must hold for the result of every reader of motions and caches, whatever the bytes are.
+/// Checks invariants of the result of every reader of motions and caches, for any bytes.
 #ifndef CHRONORMAL_FUZZ_CACHE_INVARIANTS_H_
 #define CHRONORMAL_FUZZ_CACHE_INVARIANTS_H_
 
@@ -33,7 +33,8 @@ inline void check_cache_invariants(const Result<PositionCache>& result, std::siz
   }
 }
 
-/// Does the same for a motion of at most most_per_byte x byte_count positions, which validate() must accept.
+/// Aborts unless the result of reading byte_count bytes is an error with code, place and message, or a valid motion of
+/// at most most_per_byte x byte_count positions.
 inline void check_motion_invariants(const Result<Motion>& result, std::size_t byte_count, std::size_t most_per_byte) {
   if (!result) return check_error(result.error());
   const Motion& motion = result.value();

@@ -3,8 +3,8 @@
 //     set /meshes/0/weights [0, 1]
 //     append /extras/list null
 //
-// An input that is no glTF file by itself becomes the extras of one. An edit is refused, or gives JSON in which every
-// token beside the pointers that it names is the old one, and the value of the last change is where it was put.
+// An input that is not a glTF file becomes the extras of a small glTF file. An edit must either be refused, or give
+// JSON in which all tokens outside of the edited pointers are unchanged, and the last change has its value.
 #include "chronormal/io/gltf_document.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Change {
   std::string pointer, value;
 };
 
-// Takes a line off the front of the text.
+// Removes the first line of the text and returns it.
 std::string_view take_line(std::string_view& text) {
   const std::string_view line = text.substr(0, text.find('\n'));
   text.remove_prefix(std::min(text.size(), line.size() + 1));

@@ -1,5 +1,5 @@
-// Fuzz target of the glTF reader: whatever the bytes are, everything that is read is an error with a place, or keeps
-// its promises.
+// Fuzz target of the glTF reader: for any bytes, every function that reads returns an error with a place, or a result
+// that satisfies its contract.
 #include "chronormal/io/gltf_document.h"
 
 #include <cstdint>

@@ -1,5 +1,4 @@
-/// Checks what must hold for everything that can be read from a glTF file, whatever its bytes are. The tests use it
-/// too.
+/// Checks invariants of everything that can be read from a glTF file, for any bytes. The tests use these checks too.
 #ifndef CHRONORMAL_FUZZ_GLTF_INVARIANTS_H_
 #define CHRONORMAL_FUZZ_GLTF_INVARIANTS_H_
 
@@ -18,13 +17,13 @@
 
 namespace chronormal::fuzz {
 
-/// The results of reading all of a file.
+/// The results of reading everything in a file.
 class GltfReading {
  public:
-  std::vector<Error> errors;    ///< in the order in which they came
+  std::vector<Error> errors;    ///< in the order in which they occurred
   std::size_t motions = 0;      ///< motions read: of the targets, of each animation
   bool has_mesh = false;        ///< read_gltf_mesh() had a result
-  std::vector<Error> no_moves;  ///< valid files without motion or faces
+  std::vector<Error> no_moves;  ///< errors of valid files without motion or faces
   std::string broken;           ///< the first invariant that does not hold; empty if all do
 
   void require(bool condition, const char* what) {
@@ -122,7 +121,7 @@ inline void add_error(const std::string& name, const Error& error, GltfReading& 
   reading.require(!error.message.empty(), "an error has a message");
   const std::string_view place = error.place;
   reading.require(place.starts_with(name), "an error names the file");
-  // A file without anything to read has no place to point at.
+  // An error of a file without anything to read names only the file.
   if (place == name) return reading.no_moves.push_back(error);
   const std::string_view rest = place.substr(std::min(place.size(), name.size()));
   reading.require(rest.starts_with(", /") || rest.starts_with(", byte "), "an error has a JSON pointer or a byte");
@@ -179,7 +178,7 @@ inline void add_error(const std::string& name, const Error& error, GltfReading& 
       reading.require(mesh.has_value(), "a track drives a mesh");
       if (mesh) detail::check_keys(track, document.meshes()[*mesh].target_count, keys.value(), reading);
     }
-    // Another animation may have this number for its name; then that one is read twice.
+    // Another animation may have this number as its name; then that animation is read twice.
     options.animation = std::to_string(a);
     read_motion();
   }

@@ -1,5 +1,5 @@
-// Fuzz target of the journals of interrupted runs: whatever the bytes are, the result is an error, or a journal that
-// holds only whole records.
+// Fuzz target of the journals of interrupted runs: for any bytes, the result is an error, or a journal that holds only
+// whole records.
 #include "io/bytes/journal.h"
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-/// Splits JSON text into tokens, to check that an edit of one place leaves the rest as it was. The tests use it too.
+/// Splits JSON text into tokens, to check that an edit changes only one place. The tests use this too.
 #ifndef CHRONORMAL_FUZZ_JSON_TOKENS_H_
 #define CHRONORMAL_FUZZ_JSON_TOKENS_H_
 
@@ -16,7 +16,7 @@ inline constexpr char kHidden = '\x01';
 
 /// A bracket, a comma, a colon, a name or a scalar, with the blanks before it and the JSON pointer of the value that it
 /// belongs to. Brackets belong to their own value; commas, names and colons belong to the value after them. If a later
-/// member of the same name hides a member, its name begins with kHidden in the pointer.
+/// member has the same name and hides this one, the name begins with kHidden in the pointer.
 struct JsonToken {
   std::string pointer;
   std::string_view text;
@@ -25,7 +25,7 @@ struct JsonToken {
 
 class JsonTokens {
  public:
-  /// Splits a document into tokens; ok() is false if it is not JSON.
+  /// Splits a document into tokens. ok() is false if the document is not JSON.
   explicit JsonTokens(std::string_view text) : text_(text) {
     if (text.starts_with("\xEF\xBB\xBF")) at_ = 3;
     ok_ = read_value("");
@@ -138,7 +138,7 @@ class JsonTokens {
 };
 
 /// Returns the first difference between two documents outside the values at the pointers, or "" if there is none. The
-/// name, colon and comma of a replaced value still count, but not those of an added one.
+/// name, colon and comma of a replaced value are compared as well, but those of an added value are not.
 [[nodiscard]] inline std::string difference_beside(const JsonTokens& before, const JsonTokens& after,
                                                    const std::vector<std::string>& pointers) {
   if (!before.ok() || !after.ok()) return before.ok() ? "the result is no JSON" : "the source is no JSON";

@@ -1,5 +1,5 @@
-// Fuzz target of the reader of Maya's descriptions: whatever the bytes are, the result is an error with a place, or a
-// description that makes sense.
+// Fuzz target of the reader of Maya's descriptions: for any bytes, the result is an error with a place, or a consistent
+// description.
 #include "io/cache/maya_cache.h"
 
 #include "cache_invariants.h"

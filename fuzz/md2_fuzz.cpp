@@ -1,4 +1,4 @@
-// Fuzz target of the reader of MD2: whatever the bytes are, the result is an error with a place, or a valid motion.
+// Fuzz target of the reader of MD2: for any bytes, the result is an error with a place, or a valid motion.
 #include "io/cache/md2.h"
 
 #include "cache_invariants.h"

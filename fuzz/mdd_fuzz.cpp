@@ -1,4 +1,4 @@
-// Fuzz target of the reader of MDD: whatever the bytes are, the result is an error with a place, or a cache.
+// Fuzz target of the reader of MDD: for any bytes, the result is an error with a place, or a cache.
 #include "io/cache/mdd.h"
 
 #include "cache_invariants.h"

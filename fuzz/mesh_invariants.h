@@ -1,4 +1,4 @@
-/// Checks what must hold for the result of every mesh reader, whatever the bytes are.
+/// Checks invariants of the result of every mesh reader, for any bytes.
 #ifndef CHRONORMAL_FUZZ_MESH_INVARIANTS_H_
 #define CHRONORMAL_FUZZ_MESH_INVARIANTS_H_
 

@@ -1,4 +1,4 @@
-// Fuzz target of the reader of NumPy arrays: whatever the bytes are, the result is an error with a place, or a cache.
+// Fuzz target of the reader of NumPy arrays: for any bytes, the result is an error with a place, or a cache.
 #include "io/cache/npz.h"
 
 #include "cache_invariants.h"

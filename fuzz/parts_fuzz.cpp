@@ -1,5 +1,5 @@
-// Fuzz target of the readers of parts, and of the records that journals keep: whatever the bytes are, the result is an
-// error with a message, or one that can be printed.
+// Fuzz target of the readers of parts, and of the records that journals keep: for any bytes, the result is an error
+// with a message, or a result that can be printed.
 #include "workflow/json/parts.h"
 
 #include <string>

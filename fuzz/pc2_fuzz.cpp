@@ -1,4 +1,4 @@
-// Fuzz target of the reader of PC2: whatever the bytes are, the result is an error with a place, or a cache.
+// Fuzz target of the reader of PC2: for any bytes, the result is an error with a place, or a cache.
 #include "io/cache/pc2.h"
 
 #include "cache_invariants.h"

@@ -1,5 +1,4 @@
-// Fuzz target of the reader of poses: whatever the bytes are, the result is an error with a place, or poses with finite
-// weights.
+// Fuzz target of the reader of poses: for any bytes, the result is an error with a place, or poses with finite weights.
 #include "chronormal/io/input.h"
 
 #include <cmath>

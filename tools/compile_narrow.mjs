@@ -1,5 +1,6 @@
-// Has the compiler check both libraries for a machine of 32 bits, where std::size_t is narrower than most counts that a
-// file can name. A part of `./test --full embedding`. Nothing is linked or run: Debian's libraries are of 64 bits.
+// Compiles both libraries for a 32-bit machine, where std::size_t is narrower than most counts that a file can contain,
+// and shows the compiler's warnings. A part of `./test --full embedding`. Nothing is linked or run, since Debian's
+// libraries are 64-bit.
 //
 //   node tools/compile_narrow.mjs BUILD      BUILD has compile_commands.json
 import { execFile } from 'node:child_process';
@@ -9,7 +10,8 @@ import { join } from 'node:path';
 import { promisify } from 'node:util';
 
 const run = promisify(execFile);
-// Their sources, one by one or several in a file that is made for it.
+// Collects the commands that compile the sources of both libraries; a command compiles one source, or a generated file
+// that includes several.
 const commands = JSON.parse(readFileSync(join(process.argv[2], 'compile_commands.json'), 'utf8')).filter(({ command }) =>
   / -o CMakeFiles\/chronormal(_io)?\.dir\//.test(command),
 );

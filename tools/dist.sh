@@ -1,9 +1,9 @@
-# Sourced by ./run: makes what a release has, in dist/.
+# Sourced by ./run: makes the files of a release, in dist/.
 
 # The steps in order. Each may be named alone: ./run dist program sums.
 dist_steps=(source program wheel deb npm page core site blender sbom sums)
 
-# dist STEP...: all steps where none is named.
+# dist STEP...: makes the steps, or all steps if none is named.
 dist() {
   local step begin
   for step; do
@@ -16,7 +16,8 @@ dist() {
     say "a release is made of a commit: this is no clone of the repository"
     return 1
   fi
-  export SOURCE_DATE_EPOCH  # the time that stands in all archives, so that they have the same bytes when made again
+  # The time of all files in archives, so that an archive that is made again has the same bytes.
+  export SOURCE_DATE_EPOCH
   [ -z "$(git -C "$root" status --porcelain)" ] || say "the archive has the files of the commit, and some here are others"
   mkdir -p "$dist"
   [ $# -gt 0 ] || { rm -f "$dist"/*; set -- "${dist_steps[@]}"; }
@@ -29,14 +30,14 @@ dist() {
   (cd "$dist" && stat -c '%12s  %n' -- *) >&2
 }
 
-# dist_packages SECTION...
+# dist_packages SECTION...: installs the packages of these sections.
 dist_packages() {
   local sections=("$@")
   has_node || sections+=(node)
   install_packages run dist "${sections[@]}"
 }
 
-# pack FOLDER FILE: the same bytes from the same files.
+# pack FOLDER FILE: makes an archive; equal files give equal bytes.
 pack() {
   local as=(--sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH")
   tar -C "$(dirname "$1")" "${as[@]}" -cf - "$(basename "$1")" | gzip -9n >"$2"
@@ -47,7 +48,7 @@ dist_source() {
   git -C "$root" archive --format=tar --prefix="$name/" HEAD | gzip -9n >"$dist/$name.tar.gz"
 }
 
-# build_dist TARGET: builds in build/dist, over libraries that are compiled from their sources.
+# build_dist TARGET: builds in build/dist, with libraries that are compiled from their sources.
 build_dist() {
   fetch_sources "$root/build/wasm-sources"
   build_report_page
@@ -55,7 +56,7 @@ build_dist() {
   cmake --build "$root/build/dist" --target "$1" >&2
 }
 
-# The program for any Linux on this kind of machine, which needs nothing that others may lack, not even a C library.
+# Builds the program for every Linux on this kind of machine. It needs no libraries, not even a C library.
 dist_program() {
   dist_packages python
   build_dist chronormal_cli
@@ -72,7 +73,8 @@ dist_program() {
   pack "$folder" "$dist/$name.tar.gz"
 }
 
-# The Python package, for Debian's Python and the C library of this machine or a newer one, which is what its tag says.
+# Builds the Python package for Debian's Python and for this machine's version of the C library or a newer one, as its
+# tag says.
 dist_wheel() {
   dist_packages python
   build_dist _chronormal
@@ -87,7 +89,7 @@ dist_wheel() {
   cp "$build/wheel"/*.whl "$dist"
 }
 
-# A package for Debian, built from the archive of sources and nothing else, in build/source.
+# Builds Debian's package from the archive of sources alone, in build/source.
 dist_deb() {
   dist_packages
   build_report_page
@@ -122,10 +124,10 @@ dist_page() {
   cp "$root/build/web/chronormal.html" "$dist/chronormal-$version.html"
 }
 
-# The library as two files.
+# Writes the library as two files.
 dist_core() { /usr/bin/python3 "$root/tools/two_files.py" "$dist"; }
 
-# The pages and the reference of the headers, to read from a disk or a server.
+# Makes the site: the pages and the reference of the headers, for a disk or a server.
 dist_site() {
   dist_packages site
   local name=chronormal-$version-site
@@ -134,11 +136,11 @@ dist_site() {
   pack "$root/build/dist/$name" "$dist/$name.tar.gz"
 }
 
-# blender_system ARCHITECTURE: what the Blender add-on calls this kind of machine.
+# blender_system ARCHITECTURE: prints the name of this kind of machine in the Blender add-on.
 blender_system() { case $1 in x86_64) echo linux-x64 ;; aarch64) echo linux-arm64 ;; *) echo "linux-$1" ;; esac; }
 
-# The add-on for Blender, with the program in it for each kind of machine whose archive is in dist/: this one, and those
-# that others have built.
+# Packs the add-on for Blender with the program for each kind of machine whose archive is in dist/, including archives
+# that were built on other machines.
 dist_blender() {
   local archive machine folder unpacked=$root/build/dist/blender
   local programs=()
@@ -153,7 +155,7 @@ dist_blender() {
   /usr/bin/python3 "$root/tools/dist/blender_addon.py" "$dist/chronormal-blender-$version.zip" "${programs[@]}"
 }
 
-# Whose work is in these files.
+# Lists the authors of the code in these files.
 dist_sbom() {
   dist_packages
   local list=$dist/chronormal-$version.spdx.json

@@ -1,9 +1,9 @@
-# Sourced by ./test: compiles the core of the library for a machine of another kind, 64-bit ARM, and runs in an emulator
-# of it the tests that say that the bits are the same everywhere.
+# Sourced by ./test: compiles the core of the library for another kind of machine, 64-bit ARM, and runs in an emulator
+# the tests that demand the same bits everywhere.
 
-# fetch_arm64 FOLDER: unpacks the packages that tools/packages.txt lists under [machines-arm64] there, as they are on
-# such a machine; silent where they are there. Nothing is installed, and the lists of packages are kept here: the
-# settings of this machine stay as they are.
+# fetch_arm64 FOLDER: unpacks the packages that tools/packages.txt lists under [machines-arm64] into FOLDER, unless they
+# are already there. Nothing is installed, and the lists of packages are kept in FOLDER, so the settings of this machine
+# do not change.
 fetch_arm64() {
   local folder=$1 listed package
   listed=$(listed_packages machines-arm64 | xargs)
@@ -27,11 +27,12 @@ LIST
   printf '%s\n' "$listed" >"$folder/.fetched"
 }
 
-# The floors that need nothing but Highway, and the tests of them that are theorems of bits.
+# The floors that need no library except Highway; their tests that compare bits are run.
 machine_floors=(core simd motion normals)
 machine_tests=(tests/normals/curves/golden_bits_test.cpp tests/normals/times_test.cpp tests/support/random_seed.cpp)
 
-# build_for_arm64: compiles these, as far as that is not done, with the flags of the presets; makes build/arm64/tests.
+# build_for_arm64: compiles these floors with the flags of the presets, as far as they are not up to date; makes
+# build/arm64/tests.
 build_for_arm64() {
   local build=$root/build/arm64 file
   fetch_arm64 "$root/build/arm64-packages" || return 1
@@ -41,11 +42,11 @@ build_for_arm64() {
     for file in "${machine_floors[@]}"; do find "src/$file" -name '*.cpp'; done
     printf '%s\n' "${machine_tests[@]}"
   } | sort >"$build/sources"
-  # One rule for each source: what a file includes is written down beside its object.
+  # Writes one rule for each source. The compiler records the included files beside the object.
   {
     printf 'cxx = %s\n' "${CHRONORMAL_ARM64_CXX:-aarch64-linux-gnu-g++}"
-    # The instruction sets are those of the library everywhere. Highway asks for NEON with its instructions for
-    # cryptography, by a pragma that GCC forgets in constructors that it writes itself.
+    # The instruction sets are the same as in the library's own build. Highway enables NEON with the instructions for
+    # cryptography by a pragma, which GCC ignores in constructors that the compiler generates.
     local disabled
     disabled=$(sed -n 's/.*"\(HWY_DISABLED_TARGETS=[^"]*\)".*/\1/p' cmake/product.cmake)
     printf "flags = -DCHRONORMAL_HIGHWAY '-D%s'" "$disabled"
@@ -67,8 +68,8 @@ build_for_arm64() {
   ninja -C "$build"
 }
 
-# compile_two_files NAME COMPILER FLAGS RUN: writes and compiles the two files of tools/two_files.py, and compares what they
-# compute with what the library of build/release computes.
+# compile_two_files NAME COMPILER FLAGS RUN: writes and compiles the two files of tools/two_files.py, and compares their
+# results with the results of the library of build/release.
 compile_two_files() {
   say "the two files by $1"
   cmake -DSOURCE="$root" -DFOLDER="$root/build/release/two_files" "-DCOMPILER=$2" "-DFLAGS=$3" "-DRUN=$4" \
@@ -82,7 +83,7 @@ part_machines() {
   compile_two_files "GCC without its vectors" g++ "-DCHRONORMAL_PLAIN_ARRAYS" ""
   compile_two_files Clang clang++-14 "" ""
   compile_two_files "GCC for 64-bit ARM" aarch64-linux-gnu-g++ "" "qemu-aarch64-static -L /usr/aarch64-linux-gnu"
-  # As in tools/wasm.sh: Debian's Emscripten looks for modules of Node.js where Debian has them.
+  # Debian's Emscripten looks for modules of Node.js in Debian's folder, as in tools/wasm.sh.
   NODE_PATH=/usr/share/nodejs EM_NODE_JS=$(command -v node) compile_two_files Emscripten em++ "" "node --no-experimental-fetch"
   build_for_arm64
   rm -rf build/arm64/results

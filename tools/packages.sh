@@ -1,9 +1,9 @@
-# Sourced by ./run and ./test: installs what tools/packages.txt and the package-lock.json of tests/viewers and web list
-# and the machine lacks.
+# Sourced by ./run and ./test: installs the packages that the machine lacks, of those that tools/packages.txt and the
+# package-lock.json of tests/viewers and web list.
 
 say() { printf 'chronormal: %s\n' "$*" >&2; }
 
-# listed_packages SECTION...: the packages of those sections.
+# listed_packages SECTION...: prints the packages of these sections.
 listed_packages() {
   local wanted=" $* "
   awk -v wanted="$wanted" '
@@ -12,7 +12,7 @@ listed_packages() {
   ' "$root/tools/packages.txt"
 }
 
-# update_lists APT-GET...: `apt-get update`, which unlike an installation does not wait for its lock by itself.
+# update_lists APT-GET...: runs `apt-get update`, and waits for its lock, which apt-get only does for installations.
 update_lists() {
   local deadline=$((SECONDS + 300)) said
   until said=$("$@" update 2>&1); do
@@ -23,7 +23,7 @@ update_lists() {
   done
 }
 
-# install_packages SECTION...: silent where nothing is missing.
+# install_packages SECTION...: prints nothing if all packages are installed.
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
     say "this is not Debian: the packages of tools/packages.txt must be there under the names of your system"
@@ -45,7 +45,8 @@ install_packages() {
     as_root=(sudo)
   fi
   say "installing ${missing[*]}"
-  # Another process may hold the locks of dpkg or of the lists for a while: apt-get says that it waits, five minutes at most.
+  # Another process may hold the locks of dpkg or of the lists for a while. apt-get waits at most five minutes, and says
+  # so.
   local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300)
   if ! { update_lists "${apt[@]}" && "${apt[@]}" install -y --no-install-recommends "${missing[@]}"; } </dev/null >&2; then
     say "the packages could not be installed (apt-get says why above); is there a network, is this Debian 12, and has no other"
@@ -54,13 +55,13 @@ install_packages() {
   fi
 }
 
-# has_node: whether there is a Node.js that is new enough, with npm.
+# has_node: succeeds if there is a Node.js that is new enough, with npm.
 has_node() {
   command -v npm >/dev/null && node -e 'process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)' 2>/dev/null
 }
 
-# install_npm FOLDER: the npm packages that its package-lock.json lists, those of tests/viewers (the tests in real glTF viewers)
-# or of web (the pages); silent where nothing is missing.
+# install_npm FOLDER: installs the npm packages that the package-lock.json of FOLDER lists, which is tests/viewers (the
+# tests in real glTF viewers) or web (the pages). Prints nothing if none is missing.
 install_npm() {
   local folder=$root/$1
   local installed=$folder/node_modules/.installed

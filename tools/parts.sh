@@ -1,8 +1,10 @@
-# Sourced by ./test and .ci/run: the parts of ./test --full, how a part builds and runs tests, and the table at the end.
+# Sourced by ./test and .ci/run: the parts of ./test --full, the functions that build and test for them, and the table
+# at the end.
 
-# Each part has a line: its name, the minutes that it takes from nothing on two idle cores, the sections of
-# tools/packages.txt that it needs besides [run] and [test] ("-": none), and a pattern of the files whose change makes
-# .ci/run run it at once, whatever its turn ("-": none). Minutes are printed beside those measured; no part fails for them.
+# Each part has a line: its name; the minutes that it takes from scratch on two idle cores; the sections of
+# tools/packages.txt that it needs besides [run] and [test] ("-" for none); and a pattern of files ("-" for none): a
+# change of such a file makes .ci/run run the part at once, whatever its turn. The minutes are printed beside the
+# measured ones; no part fails because of them.
 parts_table='
 data        3   -                 -
 slow        4   -                 ^tests/(faults/|support/cpu_time)|^src/io/bytes/output_file
@@ -32,7 +34,7 @@ part_field() { awk -v name="$1" -v field="$2" '$1 == name { print $field }' <<<"
 part_minutes() { part_field "$1" 2; }
 part_packages() { part_field "$1" 3 | tr ',' '\n' | grep -v '^-$' || true; }
 
-# parts_of_change FILE...: the parts whose pattern matches one of these files.
+# parts_of_change FILE...: prints the parts whose pattern matches one of these files.
 parts_of_change() {
   local name pattern
   for name in $(part_names); do
@@ -43,21 +45,22 @@ parts_of_change() {
 
 done_names=() done_seconds=() done_jobs=()
 
-# count_jobs: sets `jobs` to the seconds of processors that this script's children took up to now. (In a subshell, `times`
-# would tell of the children of that.)
+# count_jobs: sets `jobs` to the processor seconds of this script's children so far. Do not call it in a subshell, where
+# `times` counts only the children of the subshell.
 count_jobs() {
   times >build/times
   jobs=$(awk 'NR == 2 { for (i = 1; i <= 2; ++i) { split($i, t, /[ms]/); s += 60 * t[1] + t[2] } print int(s) }' build/times)
 }
 
-# part NAME COMMAND...: runs a part, and notes how long it took. The first part that fails ends everything, with the table.
+# part NAME COMMAND...: runs a part and records its time. The first part that fails ends the script, after the table is
+# printed.
 part() {
   local name=$1 begin=$SECONDS jobs before status=0
   shift
   count_jobs
   before=$jobs
   say "== $name"
-  # A subshell, so that the first error ends the part as it would end the script.
+  # Runs in a subshell, so that the first error ends the part.
   set +e
   (set -e; "$@")
   status=$?
@@ -72,14 +75,14 @@ part() {
   fi
 }
 
-# configure PRESET [OPTION...]
+# configure PRESET [OPTION...]: runs CMake.
 configure() {
   local preset=$1
   shift
   cmake --preset "$preset" -DCHRONORMAL_ALL_TESTS=ON "$@" >/dev/null
 }
 
-# configure_and_build PRESET [TARGET...]
+# configure_and_build PRESET [TARGET...]: runs CMake, and builds.
 configure_and_build() {
   local preset=$1
   shift
@@ -87,22 +90,23 @@ configure_and_build() {
   cmake --build --preset "$preset" ${1+--target "$@"}
 }
 
-# run_ctest PRESET NAME [CTEST-ARGUMENT...]: runs tests, keeps what ctest says in build/PRESET/NAME.log, and notes what
-# they counted.
+# run_ctest PRESET NAME [CTEST-ARGUMENT...]: runs tests, keeps ctest's output in build/PRESET/NAME.log, and records the
+# numbers of tests.
 run_ctest() {
   local preset=$1 name=$2 status=0
   shift 2
   rm -rf "build/$preset/results"
   ctest --test-dir "build/$preset" --output-on-failure --no-tests=error --parallel "$(nproc)" "$@" |
     tee "build/$preset/$name.log" || status=$?
-  # "99% tests passed, 2 tests failed out of 61", beside the tests that these ran, which report_results counts.
+  # Matches "99% tests passed, 2 tests failed out of 61". These are test programs; report_results counts the tests
+  # inside.
   sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests failed out of ([0-9]+)$/\1 \2/p' "build/$preset/$name.log" >>build/counts.txt
   report_results "build/$preset/results" || status=1
   return "$status"
 }
 
-# report_results FOLDER: counts the tests in the XML files of GoogleTest there, and says which were skipped and why. A
-# skip is red only where its reason does not hold on this machine.
+# report_results FOLDER: counts the tests in the XML files of GoogleTest in FOLDER, and prints the skipped tests with
+# their reasons. A skipped test is an error only if its reason does not hold on this machine.
 report_results() {
   local folder=$1 reasons wrong
   [ -d "$folder" ] || return 0
@@ -116,15 +120,15 @@ report_results() {
   [ -z "$wrong" ] || { say "these reasons do not hold here: $wrong"; return 1; }
 }
 
-# wrong_reasons: prints a pattern of the reasons for which no test may be skipped on this machine.
+# wrong_reasons: prints a pattern of reasons that do not hold on this machine, so that no test may be skipped for them.
 wrong_reasons() {
-  printf '^$'  # no line
+  printf '^$'  # matches no reason
   [ -z "${CHRONORMAL_DATA-}" ] || printf '|set CHRONORMAL_DATA'
   ! script -qec true /dev/null </dev/null &>/dev/null || printf '|makes no terminal'
   [ ! -c /dev/full ] || printf '|no /dev/full'
 }
 
-# show_counts NAME...: what Node's test runner counted in these.
+# show_counts NAME...: prints the numbers of tests that Node's test runner counted in these runs.
 show_counts() {
   local name
   for name; do

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Writes chronormal_core.h and chronormal_core.cpp into a folder: the library as far as normals of meshes in motion need it,
-for projects that want two files and a compiler.
+"""Writes chronormal_core.h and chronormal_core.cpp into a folder: the library as far as normals of meshes in motion
+need it, for projects that want two files and a compiler.
 
     tools/two_files.py FOLDER
 
-The text is that of include/ and src/, from the headers named in ROOTS on: what they include, the sources of those, and so
-on, each once, in the order in which they include each other. Left out are guards, includes of each other, and what is for
-Google Highway alone: kernels are plain C++ here (src/simd/plain_lanes.h). In one file there is one unnamed namespace, and
-one of kernels, so that the script ends with an error where two sources give a name of theirs to two things.
+The text comes from include/ and src/: the headers named in ROOTS, the headers that they include, the sources of all
+of these, and so on, each once, in the order in which they include each other. Include guards, includes of each
+other, and code for Google Highway are left out: kernels are plain C++ (src/simd/plain_lanes.h). The single file has
+only one unnamed namespace and one namespace of kernels, so the script ends with an error if two sources use the
+same private name for different things.
 """
 import pathlib
 import re
@@ -17,9 +18,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 ROOTS = [
     "chronormal/normals/control_normals.h", "chronormal/normals/mesh_normals.h"
 ]
-# Headers that no other includes, whose sources define what those declare.
+# Headers that no other header includes, but whose sources are needed.
 MORE = ["normals/groups/weld.h"]
-# The values by which conditions are decided here; others are left to the compiler.
+# The macros that this script evaluates; conditions on others are left to the compiler.
 DEFINED = {"CHRONORMAL_HIGHWAY": False, "CHRONORMAL_ALONE": True}
 TARGETS = {"HWY_SCALAR": 1, "HWY_EMU128": 2, "HWY_AVX2": 3, "HWY_AVX3": 4, "HWY_PLAIN": 5, "HWY_TARGET": 5, "HWY_ONCE": 1}
 
@@ -38,7 +39,7 @@ def floor_of(path):
 
 
 def sources_of_headers():
-    """For each header the sources that define what it declares: a source includes its own header first."""
+    """Returns for each header the sources that define its functions: a source includes its own header first."""
     sources = {}
     for path in sorted((ROOT / "src").rglob("*.cpp")):
         first = re.search(r'^#include "([^"]+)"', path.read_text(), re.M)
@@ -50,7 +51,7 @@ def sources_of_headers():
 
 
 def value_of(directive):
-    """Whether the condition of #if, #ifdef or #ifndef holds; None where that is not known here."""
+    """Returns whether the condition of #if, #ifdef or #ifndef holds, or None if this script cannot evaluate it."""
     words = directive.split()
     if words[0] in ("#ifdef", "#ifndef"):
         known = DEFINED.get(words[1])
@@ -65,8 +66,9 @@ def value_of(directive):
 
 
 def decided(lines):
-    """The lines without the branches that conditions known here leave out."""
-    result, stack = [], []  # of each open condition: whether it is known, whether a branch was taken, whether this one is
+    """Returns the lines without the branches whose conditions are known to be false."""
+    # For each open condition: whether it is known, whether a branch was taken, whether the current one is.
+    result, stack = [], []
     for line in lines:
         directive = line.strip()
         taken = all(branch for _, _, branch in stack)
@@ -97,7 +99,7 @@ def decided(lines):
 
 
 def without_guard(lines):
-    """The lines without the guard around them: that of a header, or of an -inl.h."""
+    """Returns the lines without the include guard of a header or an -inl.h."""
     text = "\n".join(lines)
     guard = re.search(r"^#ifndef (CHRONORMAL_\w+_H_)\n#define \1\n", text, re.M)
     if guard is None:
@@ -112,7 +114,7 @@ def without_guard(lines):
 
 
 class File:
-    """A file as it goes into the two: its text, what it includes of ours, and what of the system."""
+    """A file that goes into the two: its text, its includes of our headers, and its includes of system headers."""
 
     def __init__(self, path):
         self.path, self.includes, self.system = path, [], []
@@ -139,7 +141,7 @@ class Collection:
         self.files, self.order = {}, []
 
     def add(self, path):
-        """Adds a file after what it includes."""
+        """Adds a file, after the files that it includes."""
         if path in self.files:
             return
         file = self.files[path] = File(path)
@@ -148,7 +150,7 @@ class Collection:
         self.order.append(file)
 
     def add_sources(self):
-        """Adds the sources of all headers, and of those that these include."""
+        """Adds the sources of all headers, and of the headers that these sources include."""
         sources, count = sources_of_headers(), -1
         while count != len(self.order):
             count = len(self.order)
@@ -158,7 +160,8 @@ class Collection:
 
 
 def private_names(text):
-    """The names that a source declares for itself at the outermost level: in its unnamed namespace, or among kernels."""
+    """Returns the names that a source declares at the outermost level of its unnamed namespace, or of the namespace of
+    kernels."""
     found, depth, is_private = set(), 0, False
     text = re.sub(r"//.*", "", text)
     for line in text.split("\n"):
@@ -177,7 +180,7 @@ def private_names(text):
 
 LICENSE = "".join(f"// {line}".rstrip() + "\n" for line in (ROOT / "LICENSE").read_text().strip().split("\n"))
 VERSION = re.search(r"project\(chronormal VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
-# A product and a sum stay two roundings: the bits are the same on every machine.
+# A product followed by a sum must stay two roundings, so that the bits are the same on every machine.
 ROUNDINGS = """#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "chronormal promises bits, and -ffast-math takes them: compile it without"
 #endif

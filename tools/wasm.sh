@@ -1,15 +1,15 @@
-# Sourced by ./run and ./test: builds the program as a wasm module with Debian's Emscripten, and the npm package around it,
-# for which tools/web.sh has to be sourced, too.
+# Sourced by ./run and ./test: builds the program as a wasm module with Debian's Emscripten, and makes the npm package
+# from it. The package also needs tools/web.sh to be sourced.
 
-# fetch_sources FOLDER: unpacks the source packages that tools/packages.txt lists under [wasm-sources] there, from
-# Debian's archive; silent where they are there.
+# fetch_sources FOLDER: unpacks the source packages that tools/packages.txt lists under [wasm-sources] from Debian's
+# archive into FOLDER, unless they are already there.
 fetch_sources() {
   local folder=$1 listed
   listed=$(listed_packages wasm-sources)
   [ "$(cat "$folder/.fetched" 2>/dev/null)" = "$listed" ] && return 0
   say "getting the sources of" $listed
   rm -rf "$folder" && mkdir -p "$folder/.apt/lists/partial" "$folder/.apt/cache/archives/partial"
-  # Lists of sources are kept here: the settings of the machine stay as they are.
+  # Keeps the lists of sources in FOLDER, so that the settings of the machine do not change.
   cat >"$folder/.apt/sources.list" <<'LIST'
 deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian bookworm main
 LIST
@@ -25,16 +25,16 @@ LIST
   printf '%s\n' "$listed" >"$folder/.fetched"
 }
 
-# build_wasm PRESET [TARGET...]: configures and builds, in build/PRESET.
+# build_wasm PRESET [TARGET...]: configures and builds in build/PRESET.
 build_wasm() {
   local preset=$1
   shift
   local build=$root/build/$preset
   fetch_sources "$root/build/wasm-sources" || return 1
-  build_report_page || return 1  # which the package has for `chronormal report`
+  build_report_page || return 1  # the page that `chronormal report` needs
   mkdir -p "$build"
   (
-    # Debian has built the libraries of the system already, for exceptions too.
+    # Uses Debian's builds of the system libraries, which exist for exceptions too.
     export NODE_PATH=/usr/share/nodejs EM_NODE_JS
     EM_NODE_JS=$(command -v node)
     unset CMAKE_CXX_COMPILER_LAUNCHER
@@ -44,7 +44,7 @@ build_wasm() {
   )
 }
 
-# build_npm: makes build/npm/chronormal-VERSION.tgz, and says where it is.
+# build_npm: makes build/npm/chronormal-VERSION.tgz and prints its path.
 build_npm() {
   build_wasm wasm npm_package || return 1
   local package=$root/build/wasm/package out=$root/build/npm

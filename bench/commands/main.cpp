@@ -1,7 +1,7 @@
 // chronormal_bench_commands (./run bench --commands) measures how long commands of the program take on one large
-// sequence, beside the least that is possible: looking at the bytes of its files (cat), moving them in memory (memcpy),
-// reading them as a motion, and for a command that writes a large file, copying that until it is on the disk. It also
-// measures the reading of one frame of OBJ, beside a loop that finds its numbers with std::from_chars, and beside other
+// sequence, together with lower bounds: reading the bytes of its files (cat), copying them in memory (memcpy), reading
+// the files as a motion, and for a command that writes a large file, copying that file to the disk. It also measures
+// the reading of one frame of OBJ, beside a loop that finds its numbers with std::from_chars, and beside other
 // libraries where they are installed; all of them must find the same positions before they are timed. With --json FILE
 // it also writes what it prints, for docs/benchmarks.md.
 
@@ -52,7 +52,7 @@ struct Times {
   double wall = 0, cpu = 0;  // seconds
 };
 
-// A sheet of about this many vertices that bends while waves run through it.
+// Makes a sheet of about this many vertices that bends while waves run through it.
 Motion make_waves(std::size_t vertices, std::size_t keyframes) {
   const auto side = std::max<std::size_t>(2, static_cast<std::size_t>(std::sqrt(static_cast<double>(vertices))));
   std::vector<std::uint32_t> corners;
@@ -235,7 +235,7 @@ Json measure_obj(const std::string& file) {
                        Assimp::Importer importer;
                        const aiScene* const scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, "obj");
                        if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
-                       std::vector<float> positions;  // one for each corner, as the library stores them
+                       std::vector<float> positions;  // one for each corner, in the library's layout
                        for (unsigned m = 0; m < scene->mNumMeshes; ++m)
                          positions.resize(positions.size() + 3 * std::size_t{scene->mMeshes[m]->mNumVertices});
                        return positions;

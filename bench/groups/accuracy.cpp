@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::size_t kSamples = 20, kQuickSamples = 3;  // steps of t
 constexpr std::size_t kGridFaces = 20000;
-constexpr float kFar = 1000;  // distance from the origin, in radii of the ring
+constexpr float kFar = 1000;  // distance from the origin, in multiples of the radius of the ring
 
-// The bounds of normals/normal_curves.h.
+// The error bounds in radians that normals/normal_curves.h promises.
 constexpr double kOctahedralBound = 7e-5, kRgb10A2Bound = 1.7e-3;
 
 // A way to compute the unit normals of all elements, sample after sample.

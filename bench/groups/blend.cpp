@@ -20,9 +20,9 @@ namespace {
 
 constexpr std::size_t kTargets = 100, kDenseTargets = 5;
 constexpr double kMoved = 0.025;       // share of vertices per target, as in a face with 102 targets
-constexpr double kDisplacement = 0.1;  // relative to the radius of the ring
+constexpr double kDisplacement = 0.1;  // in multiples of the radius of the ring
 constexpr double kExactError = 1e-6, kFloatError = 1e-3;
-// The linear sum is wrong by its nature, so this limit reveals gross mistakes only.
+// The linear sum is inexact by design, so this limit in radians reveals gross mistakes only.
 constexpr double kLinearError = 3.2;
 
 // Makes targets that move a region around a random vertex and fall off smoothly, in the order of the mesh.
@@ -165,7 +165,7 @@ class LinearSum {
   std::vector<BlendTarget> deltas_;
 };
 
-// Computes face normals in float32 and gathers them by vertices, in the plainest way.
+// Computes face normals in float32 and adds them up per vertex, in the most straightforward way.
 void plain_loop(const BlendSet& set, const NormalGroups& groups, std::span<const float> positions,
                 std::span<float> face_normals, float* result) {
   const std::uint32_t* corner = set.topology.corners().data();
@@ -251,7 +251,7 @@ void run_set(Suite& suite, const Size& size, const std::string& group, BlendSet 
     add("chosen", kExactError, "", [weights](Subject& on) { (void)on.normals.unit_normals(weights, on.result); });
     add("terms", kExactError, "", [weights](Subject& on) { (void)on.terms.unit_normals(weights, on.result); });
     add("touched part", kExactError, "", [weights](Subject& on) { (void)on.touched.unit_normals(weights, on.result); });
-    // Positions that are blended in float32 have errors of a last bit, which count relative to the length of an edge.
+    // Positions blended in float32 are rounded in the last bit, which matters relative to the length of an edge.
     add("chosen in float32", kFloatError, "",
         [weights](Subject& on) { (void)on.chosen_in_float32.unit_normals(weights, on.result); });
     add("recompute", kFloatError, "the whole mesh, positions in float32", [weights](Subject& on) {

@@ -1,4 +1,4 @@
-// Times unit normals of faces: plain loops, libraries, and our own.
+// Times unit normals of faces by plain loops, by libraries, and by chronormal.
 
 #include <cmath>
 #include <memory>

@@ -29,16 +29,16 @@ void run_cones(Suite& suite, const Size& size);
 /// Measures blend shapes: many sparse targets with a few active at once, and few targets that move every vertex.
 void run_blend(Suite& suite, const Size& size);
 
-/// Measures questions about a whole segment: when faces collapse, and which way they face.
+/// Measures queries about a whole segment: when faces collapse, and which way they face.
 void run_uses(Suite& suite, const Size& size);
-/// Measures points that go through the surface.
+/// Measures crossings of points through the surface.
 void run_containment(Suite& suite, const Size& size);
 
-/// The quality of a scheme, to be weighed against its cost.
+/// The quality of a scheme, for a table of quality against cost.
 struct SchemeQuality {
   std::string scheme, mesh;
   double mean_degrees = 0, max_degrees = 0;
-  double bytes = 0;  ///< an element
+  double bytes = 0;  ///< per element
 };
 [[nodiscard]] std::vector<SchemeQuality> scheme_qualities();
 [[nodiscard]] std::vector<std::string> benchmark_schemes();
@@ -46,12 +46,12 @@ struct SchemeQuality {
 /// The error of a path over all elements and many t.
 struct Accuracy {
   std::string path, mesh, elements;
-  double bound = 0;  ///< promised, radians
+  double bound = 0;  ///< promised by the path, in radians
   double mean = 0, share_9999 = 0, max = 0;
-  std::size_t samples = 0;  ///< each an element at a t
-  double bytes = 0;         ///< an element; 0: none are kept
+  std::size_t samples = 0;  ///< pairs of an element and a t
+  double bytes = 0;         ///< per element; 0 if the path keeps no data
 };
-/// Throws std::runtime_error where a path breaks its promise.
+/// Throws std::runtime_error if a path exceeds the error that it promises.
 [[nodiscard]] std::vector<Accuracy> measure_accuracy(const Suite& suite);
 
 }  // namespace chronormal::bench

@@ -1,5 +1,5 @@
 // Times our unit normals and plain loops on meshes other than the torus: thin triangles, varied valence, a collapse,
-// and real meshes.
+// and meshes by other people.
 
 #include <fmt/core.h>
 
@@ -21,7 +21,7 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kFaces = 45000;
-// The limit for needles and for vertices whose faces nearly cancel. It reveals gross mistakes only.
+// The limit in radians for needles and for vertices whose faces nearly cancel. It reveals gross mistakes only.
 constexpr double kFloatLimit = 3.2;
 
 // The torus, stretched along one axis so that half of its triangles have an aspect ratio of 10 and more.
@@ -47,7 +47,7 @@ Mesh varied() {
   return {Topology::triangles(torus.topology().vertex_count(), std::move(corners)).value(), torus.from(), torus.to()};
 }
 
-// The middle segment of a motion, as triangles.
+// Returns the middle segment of a motion as a mesh of triangles.
 Mesh middle_of(const Motion& motion) {
   if (!motion.topology.all_triangles()) throw std::runtime_error("a mesh of the bench is not of triangles");
   const Motion::SegmentKeys keys = motion.segments[motion.segments.size() / 2];

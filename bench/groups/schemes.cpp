@@ -17,8 +17,8 @@
 namespace chronormal::bench {
 namespace {
 
-// Schemes that follow the exact curve must do so to rounding, and formulas over exact normals to the rounding of
-// float32. The other schemes are checked for gross mistakes only.
+// Schemes that follow the exact curve must agree with it up to rounding, and schemes that interpolate exact normals up
+// to the rounding of float32. The other schemes are checked for gross mistakes only. All limits are in radians.
 constexpr double kExactError = 1e-6, kFormulaError = 2e-6, kApproximationError = 0.8, kPlayedError = 5e-5;
 constexpr std::size_t kSteps = 1024;
 
@@ -60,7 +60,7 @@ std::vector<Vector> along_great_circle(const Oracle& oracle, double t) {
 }
 
 struct Expectation {
-  std::function<std::vector<Vector>(const Oracle&)> expected;  // empty: the exact normals
+  std::function<std::vector<Vector>(const Oracle&)> expected;  // if empty, the exact normals are expected
   double limit = kApproximationError;
   std::string note;
 };

@@ -1,5 +1,5 @@
-// Answers questions about a whole segment from control normals in memory: when faces collapse, and from which side they
-// are seen. Beside them stand the evaluation of the same control normals at one t, and what others do for such an
+// Answers queries about a whole segment from control normals in memory: when faces collapse, and from which side they
+// are seen. Also times the evaluation of the same control normals at one t, and what other programs do to get such an
 // answer.
 
 #include <fmt/core.h>
@@ -25,7 +25,7 @@ struct Question {
   Segment segment;
   std::vector<ControlNormals> normals;
   std::vector<ShutterSide> sides;
-  std::vector<Facing> facings;  // for a part of the faces at a time
+  std::vector<Facing> facings;  // for a block of faces at a time
 
   explicit Question(const Segment& of)
       : segment(of), normals(of.topology->face_count()), sides(of.topology->face_count()), facings(1024) {

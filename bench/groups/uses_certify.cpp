@@ -1,5 +1,5 @@
-// Measures certificates of the largest error over a segment, beside common practice: evaluate the scheme at 64 moments,
-// compare each with the exact normal, and hope that no error between them is larger.
+// Measures certificates of the largest error over a segment, beside common practice: evaluating the scheme at 64
+// moments, comparing each with the exact normal, and hoping that no error between the moments is larger.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ constexpr std::size_t kSamples = 64, kBlock = 1024;
 struct Certified {
   std::unique_ptr<Scheme> scheme;
   std::vector<ErrorBounds> bounds;
-  std::vector<float> shown;  // at kTime
+  std::vector<float> shown;  // normals of the scheme at kTime
 };
 
 // Returns the largest angle of each face over the samples, which a certificate bounds.

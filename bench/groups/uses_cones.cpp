@@ -18,7 +18,7 @@
 namespace chronormal::bench {
 namespace {
 
-constexpr double kFrom = 0.2, kTo = 0.7;  // an open shutter
+constexpr double kFrom = 0.2, kTo = 0.7;  // times at which the shutter opens and closes
 constexpr int kSamples = 64, kInstants = 8;
 constexpr std::size_t kClusterFaces = 64;
 

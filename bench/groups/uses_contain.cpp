@@ -1,5 +1,5 @@
-// Finds all crossings of moving points through a closed mesh that deforms, over a whole segment. Beside it stands
-// common practice, which asks a test for single instants at many of them. An element is a point.
+// Finds all crossings of moving points through a closed mesh that deforms, over a whole segment. Also times common
+// practice: a test for single instants, called at many instants. An element is a point.
 
 #include <fmt/core.h>
 
@@ -80,7 +80,7 @@ int winding_by_angles(const Scene& scene, std::size_t p, double t) {
   return static_cast<int>(std::lround(sum / (4 * 3.14159265358979323846)));
 }
 
-// Compares the sums of crossings with solid angles, for some points at several times.
+// Compares the sums of crossings with winding numbers by solid angles, for some points at several times.
 void verify(const Scene& scene) {
   const Windings start = scene.windings(0);
   const std::size_t step = 1 + scene.segment.topology->face_count() / 200;
@@ -96,7 +96,7 @@ void verify(const Scene& scene) {
   }
 }
 
-// Counts the crossings that a test for single instants notices when it is asked at kSamples of them.
+// Counts the crossings that a test for single instants notices when it is called at kSamples instants.
 std::size_t noticed(const Scene& scene) {
   std::size_t count = 0;
   Windings before = scene.windings(0);

@@ -118,7 +118,7 @@ void restart_with_huge_pages(char** argv) {
   const std::string value =
       tunables == nullptr || *tunables == '\0' ? std::string(kHugePages) : fmt::format("{}:{}", tunables, kHugePages);
   if (setenv(kTunables, value.c_str(), 1) != 0) return;
-  execv("/proc/self/exe", argv);  // on with small pages where that fails
+  execv("/proc/self/exe", argv);  // if this fails, the run continues with small pages
 }
 
 }  // namespace chronormal::bench

@@ -20,8 +20,8 @@ enum class Elements { kFaces, kVertices };
 
 class Mesh {
  public:
-  /// Makes a mesh with about element_count of the elements. If shuffled, vertices and faces are in a random order,
-  /// which is the same in every run.
+  /// Makes a mesh with about element_count of the elements. If shuffled, vertices and faces are in a random order that
+  /// is the same in every run.
   Mesh(Elements elements, std::size_t element_count, bool shuffled);
   /// Takes any triangles, with packed positions at both ends.
   Mesh(Topology topology, std::span<const float> from, std::span<const float> to);

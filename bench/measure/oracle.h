@@ -1,8 +1,8 @@
 /// The oracle that every benchmark is compared with before it is timed: eq. 1 on interpolated vertices, in double.
 ///
-/// The oracle never calls the library: neither its vectors, nor its control normals. Edges of float32 positions are
-/// exact in double but for a last bit, so that directions are right to 1e-15 times the length of the edges over the
-/// height of the triangle.
+/// The oracle never calls the library: neither its vectors, nor its control normals. An edge of float32 positions has
+/// an error of at most the last bit in double, so the direction of a normal has an error of 1e-15 rad, times the length
+/// of the edges divided by the height of the triangle.
 #ifndef BENCH_MEASURE_ORACLE_H_
 #define BENCH_MEASURE_ORACLE_H_
 
@@ -39,17 +39,18 @@ struct Errors {
 class Oracle {
  public:
   /// Takes a segment of triangles or polygons, which must outlive this object. Chooses all elements if there are at
-  /// most 100,000 of them, otherwise 4,096 at random, the same in every run.
+  /// most 100,000 of them, otherwise 4,096 random ones, which are the same in every run.
   Oracle(const Segment& segment, Elements elements);
 
   /// Returns the chosen elements.
   [[nodiscard]] std::span<const std::uint32_t> elements() const { return elements_; }
-  /// Returns n(t) of each chosen element, of any length.
+  /// Returns n(t) of each chosen element, not normalised.
   [[nodiscard]] std::vector<Vector> normals(double t, Rule rule = Rule::kArea) const;
-  /// Returns the angles between n(t) and normal_of(element). Leaves out elements without a direction: where one
-  /// collapses, n(t) is below 1e-7 of the areas that it is made of.
+  /// Returns the angles between n(t) and normal_of(element). Leaves out elements without a direction: an element
+  /// collapses if n(t) is below 1e-7 of the sum of its areas.
   [[nodiscard]] Errors errors(double t, Rule rule, const std::function<Vector(std::size_t)>& normal_of) const;
-  /// Does the same for given exact normals. Leaves out elements without a direction if `exact` are sums by area.
+  /// Returns the angles between given exact normals and normal_of(element). Leaves out elements without a direction if
+  /// `exact` are sums by area.
   [[nodiscard]] Errors errors(std::span<const Vector> exact, const std::function<Vector(std::size_t)>& normal_of) const;
 
  private:
@@ -59,7 +60,7 @@ class Oracle {
   Elements kind_;
   std::vector<std::uint32_t> elements_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> terms_;  // terms of sums: index into elements_, and face
-  std::vector<double> areas_;                                   // sum of the areas of each, at both ends
+  std::vector<double> areas_;                                   // sum of the areas of each element, at both ends
 };
 
 }  // namespace chronormal::bench

@@ -1,5 +1,5 @@
-/// Runs groups of cases. Each case is compared with the oracle; then all of them are timed against each other and
-/// against the memory, and become rows.
+/// Runs groups of cases. Compares each case with the oracle, then times all cases in random order, beside the speed of
+/// memory, and makes a row of each.
 #ifndef BENCH_MEASURE_SUITE_H_
 #define BENCH_MEASURE_SUITE_H_
 
@@ -25,17 +25,17 @@ struct Size {
   [[nodiscard]] std::string order() const { return shuffled ? "shuffled" : "grid"; }
 };
 
-/// A result at one t, which is verified after a run.
+/// A result at one t, which is verified after the run.
 struct Check {
   double t = 0;
   std::function<Vector(std::size_t element)> normal_of;
-  /// Returns the right result for the elements of the oracle; if empty, the exact normal is right.
+  /// Returns the expected result for the elements of the oracle; if empty, the exact normals are expected.
   std::function<std::vector<Vector>(const Oracle&)> expected = {};
 };
 
 struct Case {
   std::string name;
-  std::string library = {};  ///< with its version; empty: ours
+  std::string library = {};  ///< with its version; empty for chronormal
   std::string note = {};     ///< explains what is timed, or compared, if needed
   std::size_t threads = 1;
   std::size_t evaluations = 1;  ///< evaluations of each element in a run
@@ -43,8 +43,8 @@ struct Case {
   std::vector<Check> checks = {};
   double limit = 0;  ///< radians
   Rule rule = Rule::kArea;
-  std::size_t bytes_read = 0;     ///< in a run, at least; 0: not known
-  std::size_t bytes_written = 0;  ///< likewise
+  std::size_t bytes_read = 0;     ///< per run, at least; 0 if unknown
+  std::size_t bytes_written = 0;  ///< per run, at least; 0 if unknown
 };
 
 struct Row {
@@ -53,7 +53,7 @@ struct Row {
   double median_ns = 0, least_ns = 0, spread = 0;  ///< per element and evaluation; spread: quartiles / median
   std::size_t repetitions = 0;
   double bytes_read = 0, bytes_written = 0;  ///< per element and evaluation
-  double share_of_bandwidth = 0;             ///< time of the memory / least_ns; 0: unknown
+  double share_of_bandwidth = 0;             ///< time that the memory needs / least_ns; 0 if unknown
   double verified_error = 0, limit = 0;      ///< radians
   std::size_t verified_elements = 0;
 };
@@ -74,11 +74,11 @@ class Suite {
   [[nodiscard]] const SuiteOptions& options() const { return options_; }
   [[nodiscard]] bool wants(const std::string& group, const Size& size, const std::string& name) const;
 
-  /// Throws std::runtime_error where the error of a result exceeds its limit.
+  /// Verifies and times cases. Throws std::runtime_error if the error of a result exceeds its limit.
   void run(const std::string& group, const Size& size, std::size_t element_count, const Oracle& oracle,
            std::vector<Case> cases);
 
-  /// Prints what is being done to standard error, after the seconds since the start.
+  /// Prints the current step to standard error, with the seconds since the start.
   void say(const std::string& text) const;
 
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
@@ -94,7 +94,7 @@ class Suite {
   BandwidthMeter meter_;
 };
 
-/// The requested cases of one group and size; the others are not even prepared.
+/// The requested cases of one group and size. Cases that were not requested are not even prepared.
 class CaseList {
  public:
   CaseList(const Suite& suite, std::string group, Size size)
@@ -118,7 +118,7 @@ class CaseList {
   std::vector<Case> cases_;
 };
 
-/// The time of every verification. Its binary fraction is long, so that weights have to be rounded.
+/// The time t of every verification. It is not a short binary fraction, so weights are rounded as in general.
 inline constexpr float kTime = 0.3f;
 
 }  // namespace chronormal::bench

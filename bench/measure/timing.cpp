@@ -10,9 +10,10 @@
 namespace chronormal::bench {
 namespace {
 
-// Calls up to kShort seconds are warmed up by kWarmCalls calls, calls up to kSlow by one, and longer ones by none.
-// Beyond kVerySlow the first rough timing counts as well, and there is one more call. Data that barely exceeds a cache
-// takes several passes until the cache holds what it would hold after many.
+// A function that takes up to kShort seconds is called kWarmCalls times before it is timed, up to kSlow seconds once,
+// and a longer one never. Several calls are needed because data that barely exceeds a cache takes several passes to
+// reach a steady state in the cache. Beyond kVerySlow the first rough timing counts as a result, and only one more call
+// follows.
 constexpr int kWarmCalls = 4;
 constexpr double kShort = 0.012, kSlow = 0.15, kVerySlow = 3;
 
@@ -76,7 +77,7 @@ void time_all(std::vector<Timed>& functions, const Effort& effort) {
     const int warm = seconds < kShort ? kWarmCalls : seconds < kSlow ? 1 : 0;
     benchmark::RegisterBenchmark(std::to_string(i).c_str(),
                                  [&run, warm](benchmark::State& state) {
-                                   // The other functions have evicted this one's data from the caches.
+                                   // The functions that ran before have evicted the data of this one from the caches.
                                    for (int call = 0; call < warm; ++call) run();
                                    for ([[maybe_unused]] auto _ : state) run();
                                  })

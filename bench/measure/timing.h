@@ -12,9 +12,9 @@
 namespace chronormal::bench {
 
 struct Effort {
-  double repetition = 0.006;  ///< seconds that a repetition takes at least
-  double total = 0.5;         ///< seconds for one function; slow ones take more
-  int most = 25;              ///< repetitions
+  double repetition = 0.006;  ///< seconds per function; slow functions take more
+  double total = 0.5;         ///< most repetitions per function
+  int most = 25;              ///< estimated seconds per call; 0 if unknown
   int least = 3;
 };
 inline constexpr Effort kFullEffort{};
@@ -26,7 +26,7 @@ struct Timed {
   std::vector<double> nanoseconds = {};  ///< per call, one value for each repetition
 };
 
-/// Estimates the seconds of a call from a few calls.
+/// Estimates the seconds per call by a few calls.
 [[nodiscard]] double roughly_timed(const std::function<void()>& run);
 
 /// Sets `nanoseconds` of each function.

@@ -1,12 +1,13 @@
 /// Measures how fast this machine reads memory and streams through it, at the working set of a benchmark.
 ///
-/// Both figures are the best of several ways, on one thread, with the widest vectors that the machine has:
+/// Both figures are the best of several methods, on one thread, with the widest vectors that the machine has:
 ///
 ///     read     all bytes are added up; with software prefetch and without
 ///     stream   copy, one half to the other, and triad a = b + s c, in thirds; with ordinary stores, with stores past
 ///              the caches, and with prefetch; all bytes read and written count
 ///
-/// A working set is rounded to a step of 1.2. Larger ones count as 256 MiB, since they are in DRAM then.
+/// A working set is rounded to a step of 1.2. Working sets above 256 MiB are measured at 256 MiB, since all of them are
+/// in DRAM.
 #ifndef BENCH_MEMORY_BANDWIDTH_H_
 #define BENCH_MEMORY_BANDWIDTH_H_
 
@@ -23,7 +24,7 @@ struct Bandwidth {
   std::size_t bytes = 0;  ///< working set
   double read = 0;        ///< GB/s
   double stream = 0;      ///< GB/s
-  double copy = 0;        ///< GB/s, the best copy, which stream may be above
+  double copy = 0;        ///< GB/s of the best copy; `stream` may be larger
 };
 
 class BandwidthMeter {
@@ -32,7 +33,7 @@ class BandwidthMeter {
   void want(std::size_t working_set);
   /// Appends the functions to be timed.
   void append(std::vector<Timed>& functions);
-  /// Takes the times of the functions that were appended last, which begin at `first`.
+  /// Takes the times of the functions that append() added last, beginning at index `first`.
   void take(const std::vector<Timed>& functions, std::size_t first);
 
   /// Returns the bandwidth at a working set that was measured.
@@ -41,7 +42,7 @@ class BandwidthMeter {
 
  private:
   AlignedBytes arena_;
-  std::map<std::size_t, Bandwidth> measured_;  // keyed by rounded working set; no value: requested
+  std::map<std::size_t, Bandwidth> measured_;  // keyed by rounded working set; no value yet if only requested
 };
 
 }  // namespace chronormal::bench

@@ -11,10 +11,10 @@ namespace chronormal::bench::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Reads `kRead` lines of 64 bytes, adds them up to three lines, writes these, and repeats.
+// Reads `kRead` lines of 64 bytes, sums them into three lines, writes these three lines, and repeats.
 template <std::size_t kRead, bool kStream, std::size_t kAhead>
 void Lines(const float* from, float* to, std::size_t blocks) {
-  constexpr std::size_t kLine = 16, kWritten = 3;  // floats, lines
+  constexpr std::size_t kLine = 16, kWritten = 3;  // floats in a line; lines written
   const hn::CappedTag<float, kLine> tag;
   const std::size_t lanes = hn::Lanes(tag);
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -82,7 +82,7 @@ HWY_EXPORT(Lines9);
 constexpr int kWays = 7;
 constexpr std::size_t kBlock = 16;                    // elements
 constexpr std::size_t kPiece = 512;                   // blocks that a thread takes at a time
-constexpr std::size_t kFloatsBeyond = 2 * 16384 / 4;  // prefetch beyond the end stays in our memory
+constexpr std::size_t kFloatsBeyond = 2 * 16384 / 4;  // so that prefetches beyond the end stay in our memory
 
 }  // namespace
 

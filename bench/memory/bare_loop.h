@@ -1,5 +1,5 @@
-/// A loop that reads and writes as many bytes as an evaluation does, in the same order, and computes next to nothing:
-/// the time that would be left if all arithmetic were free.
+/// A loop that reads and writes as many bytes as an evaluation, in the same order, but computes almost nothing. Its
+/// time is the time that would remain if all arithmetic were free.
 #ifndef BENCH_MEMORY_BARE_LOOP_H_
 #define BENCH_MEMORY_BARE_LOOP_H_
 
@@ -12,18 +12,18 @@ namespace chronormal::bench {
 
 class BareLoop {
  public:
-  /// The bytes that are read for each element.
+  /// The number of bytes that are read for each element.
   enum class Reads { kNothing = 0, kCompact = 20, kExact = 36 };
 
-  /// Runs over `count` elements, rounded up to 16, and writes 12 bytes for each. Tries stores that stay in the caches
-  /// and stores that go past them, and several distances of prefetch, and keeps the fastest way.
+  /// Runs over `count` elements, rounded up to 16, and writes 12 bytes for each. Tries stores that go through the
+  /// caches or bypass them, with several distances of prefetch, and keeps the fastest combination.
   BareLoop(Reads reads, std::size_t count, Threads threads);
 
   void run() const;
 
  private:
   Reads reads_;
-  std::size_t blocks_;  // each of 16 elements
+  std::size_t blocks_;  // of 16 elements each
   Threads threads_;
   int way_ = 0;
   AlignedArray<float> from_;

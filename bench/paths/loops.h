@@ -1,6 +1,6 @@
-/// Unit normals in the plainest way: a loop over plain arrays, and the same loop with Eigen.
+/// Unit normals in the most straightforward way: a loop over plain arrays, and the same loop with Eigen.
 ///
-/// Both interpolate all positions first, and both add face normals up to vertices by area.
+/// Both loops first interpolate all positions, then add up face normals by area.
 #ifndef BENCH_PATHS_LOOPS_H_
 #define BENCH_PATHS_LOOPS_H_
 
@@ -17,7 +17,7 @@ struct LoopMesh {
   std::span<float> positions;
 };
 
-/// Sets positions = (1 - t) from + t to, which every baseline has to do before it begins.
+/// Sets positions = (1 - t) from + t to, which every baseline must do first.
 void interpolate(const LoopMesh& mesh, float t);
 
 void plain_faces(const LoopMesh& mesh, float t, std::span<float> normals);     ///< (F, 3)

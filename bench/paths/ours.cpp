@@ -1,4 +1,4 @@
-// Makes the cases of our own functions: the timed call, and the check of its result before that.
+// Makes the cases of chronormal's own functions: the call to be timed, and the check of its result.
 #include "paths/ours.h"
 
 #include <memory>
@@ -12,8 +12,9 @@
 namespace chronormal::bench {
 namespace {
 
-constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;  // of normals/normal_curves.h
-constexpr std::size_t kManyTimesBytes = std::size_t{3} << 30;      // of results; more are not asked for
+constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;  // radians, as promised in normals/normal_curves.h
+// Bytes of results that a case of many t may have at most.
+constexpr std::size_t kManyTimesBytes = std::size_t{3} << 30;
 
 Vector to_vector(const Vec3f& v) { return {double{v.x}, double{v.y}, double{v.z}}; }
 
@@ -69,8 +70,8 @@ Case recompute_case(const SharedPointer& shared, std::size_t bytes, Threads thre
   return one;
 }
 
-// Positions in float32 lose bits relative to the size of the mesh, and edges get shorter as elements become more. An
-// element without a normal in float32 gets (0, 0, 0), which the oracle leaves out.
+// Positions in float32 are rounded relative to the size of the mesh, while edges get shorter as elements become more,
+// so the limit grows. An element without a normal in float32 gets (0, 0, 0), which the oracle leaves out.
 Case float_case(const SharedPointer& shared, std::size_t bytes, double limit, Threads threads) {
   const Topology& topology = *shared->segment.topology;
   auto rival = shared->groups == nullptr ? std::make_shared<FloatRecompute>(topology)
@@ -89,7 +90,8 @@ Case prepare_case(const SharedPointer& shared, double tolerance, Threads threads
   auto made = std::make_shared<NormalCurves>();
   Case one;
   one.run = [shared, made, tolerance, threads] {
-    *made = shared->prepared(tolerance, threads, made.get());  // reuses memory, as over many segments
+    // Reuses memory, like a program that prepares one segment after another.
+    *made = shared->prepared(tolerance, threads, made.get());
   };
   auto evaluated = std::make_shared<std::vector<float>>();
   const auto normal_of = [shared, made, evaluated](std::size_t element) {
@@ -138,7 +140,7 @@ Case encoded_case(const SharedPointer& shared, double tolerance, double encoding
   return one;
 }
 
-// Evaluates many t in one call, each into an array of its own.
+// Evaluates many t in one call, each into its own array.
 Case many_times_case(const SharedPointer& shared, double tolerance, std::size_t evaluations, Threads threads) {
   struct Many {
     std::vector<AlignedArray<float>> arrays;

@@ -39,7 +39,7 @@ Case loop_case(const std::shared_ptr<LoopMemory>& memory, Loop loop, double limi
 
 #ifdef CHRONORMAL_HAVE_PEERS
 
-// CGAL defines its vertex normal otherwise than as a sum.
+// The limit for CGAL in radians, since CGAL does not define its vertex normal as a sum.
 constexpr double kOtherRule = 0.3;
 
 constexpr std::size_t kManyElements = 5000000;
@@ -80,8 +80,8 @@ std::vector<peers::Library> libraries() {
 
 }  // namespace
 
-// Positions in float32 are rounded relative to the size of the whole mesh, and edges get shorter as elements become
-// more.
+// Returns the limit in radians. Positions in float32 are rounded relative to the size of the whole mesh, while edges
+// get shorter as elements become more.
 double float_limit(std::size_t elements) { return 2e-6 * std::sqrt(static_cast<double>(elements)) + 1e-5; }
 
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit) {

@@ -1,4 +1,5 @@
-/// Baselines by others: a loop in plain C++, one with Eigen, and libraries where they are built (bench/peers).
+/// Baselines: a loop in plain C++, a loop with Eigen, and the libraries that were found when this was built
+/// (bench/peers).
 #ifndef BENCH_PATHS_RIVALS_H_
 #define BENCH_PATHS_RIVALS_H_
 
@@ -12,7 +13,7 @@ namespace chronormal::bench {
 
 /// Adds loops that interpolate the positions and compute normals. The mesh must outlive the cases.
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit);
-/// Returns the largest allowed error on the torus of normals from float32 positions, in radians.
+/// Returns the largest allowed error, on the torus, of normals from float32 positions, in radians.
 [[nodiscard]] double float_limit(std::size_t elements);
 /// Adds libraries, which already have the interpolated positions in their own structure and only compute normals.
 void add_libraries(CaseList& list, const Mesh& mesh, Elements elements);

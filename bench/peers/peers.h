@@ -1,9 +1,9 @@
-/// Normals of triangle meshes by libraries that people use today: one file for each library, all behind one call.
+/// Normals of triangle meshes by libraries that people use today, each in its own file, behind one interface.
 ///
-/// Positions go in as the float32 that files hold. A library computes in its own way and precision, and returns one
+/// Positions are passed as float32, as in files. A library computes in its own way and precision, and returns one
 /// normal for each element, in the order of the elements, scaled to length 1.
 ///
-/// A LibraryMesh is built once and computes again and again, in place: ./run bench looks at how long that takes.
+/// A LibraryMesh is built once, and normals are computed repeatedly in place. ./run bench times these computations.
 #ifndef PEERS_PEERS_H_
 #define PEERS_PEERS_H_
 
@@ -28,7 +28,8 @@ struct TriangleMesh {
   [[nodiscard]] std::size_t face_count() const { return corners.size() / 3; }
 };
 
-/// A mesh in the structure of a library, as its own users would build it, with normals that it keeps or returns.
+/// A mesh in the data structure of a library, built as users of the library would build it, with the normals of its
+/// last computation.
 class LibraryMesh {
  public:
   LibraryMesh() = default;
@@ -40,15 +41,16 @@ class LibraryMesh {
 /// The rule by which a library adds up the faces of a vertex.
 enum class Rule { kArea, kUniform, kOther };
 
-/// One function of a library. compute and normal take meshes of their own library only.
+/// One function of a library. `compute` and `normal` accept only meshes of their own library.
 struct Call {
   std::string name;
-  bool of_vertices = false;  ///< false: it computes normals of faces
+  bool of_vertices = false;  ///< false if it computes normals of faces
   Rule rule = Rule::kArea;
   std::string note = {};              ///< the input, if it is not only positions
-  bool slow_in_random_order = false;  ///< minutes for 10 M elements
+  bool slow_in_random_order = false;  ///< true if 10 M elements take minutes
   void (*compute)(LibraryMesh&) = nullptr;
-  Vec3d (*normal)(const LibraryMesh&, std::size_t element) = nullptr;  ///< returns a unit normal of the last compute()
+  /// Returns a unit normal of the last call of compute()
+  Vec3d (*normal)(const LibraryMesh&, std::size_t element) = nullptr;
 };
 
 struct Library {

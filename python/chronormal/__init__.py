@@ -5,14 +5,14 @@
     curves = cn.curves(p0, p1, faces)        # once for two arrays of positions
     normals = curves.unit_normals(0.5)       # (V, 3) float32, exact at every t
 
-Arrays   Positions are (V, 3) float32, C-contiguous: such arrays are read where they are, also read-only ones, and not kept.
-         Everything else that holds numbers is converted once, to the nearest float32 (float64 too).
+Arrays   Positions are (V, 3) float32, C-contiguous: such arrays, also read-only ones, are read in place and not kept.
+         Other arrays and lists of numbers are converted once, to the nearest float32 (float64 too).
 Faces    (F, k) of int32, int64, uint32 or any other integers; a list of lists for polygons of different sizes; or a tuple
          (offsets, corners) of two rows: face f has corners[offsets[f]:offsets[f + 1]]. A tuple of two faces is two faces.
-Errors   ValueError says where: "face 3, corner 1: ...". OSError is for files.
+Errors   ValueError names the place: "face 3, corner 1: ...". OSError is for files.
 Threads  Everything that takes long releases the GIL. One object works for one thread at a time; others wait.
-Signals  Their handlers run during a call that takes long. What one raises, as Ctrl-C does, ends the call.
-Forks    A child of fork() may use all objects of its parent; where that had several threads at work, the child has one.
+Signals  Handlers of signals run during a long call. If a handler raises an exception, as for Ctrl-C, it ends the call.
+Forks    A child of fork() may use all objects of its parent; if the parent used several threads, the child uses one.
 """
 
 from __future__ import annotations
@@ -41,18 +41,19 @@ _Weighting = Literal["area", "angle", "uniform", "area-angle", "max"]
 
 
 def _vectors(array, place):
-    """The array itself where it is C-contiguous float32, or else one copy that is."""
+    """Return the array itself if it is C-contiguous float32, or else one copy that is."""
     array = _np.asarray(array)
     if array.dtype == _np.float32 and array.flags.c_contiguous and array.flags.aligned:
         return array
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{place}: the type is {array.dtype}, and must be float32 or other real numbers")
-    with _np.errstate(over="ignore"):  # too large numbers become infinite, which the library refuses with the place
+    # Numbers that are too large become infinite. The library then refuses them and names the place.
+    with _np.errstate(over="ignore"):
         return _np.ascontiguousarray(array, dtype=_np.float32)
 
 
 def _indices(array, place):
-    """A flat array of uint32."""
+    """Return a flat array of uint32."""
     array = _np.asarray(array)
     if array.size == 0 and array.dtype.kind == "f":  # numpy makes floats of an empty list
         array = array.astype(_np.uint32)
@@ -66,9 +67,10 @@ def _indices(array, place):
 
 
 def _are_offsets(faces):
-    """Whether a tuple is (offsets, corners) and not two faces: arrays, or rows of which the first can be offsets only.
+    """Tell whether a tuple is (offsets, corners) and not two faces.
 
-    Offsets begin with 0, end with the number of corners, and rise by 3 or more; two faces of one size never do.
+    Offsets begin with 0, end with the number of corners, and rise by at least 3 each time; two faces of equal size
+    never do.
     """
     if not isinstance(faces, tuple) or len(faces) != 2 or not all(_np.ndim(part) == 1 for part in faces):
         return False
@@ -82,7 +84,7 @@ def _are_offsets(faces):
 
 
 def _polygons(faces):
-    """(offsets, corners) in uint32; offsets are empty for triangles."""
+    """Return (offsets, corners) in uint32; offsets are empty for triangles."""
     if _are_offsets(faces):
         offsets = _indices(faces[0], "offsets")
         if offsets.size == 0:
@@ -107,7 +109,7 @@ def _polygons(faces):
 
 
 def _text(value, place):
-    """A string that the library can have."""
+    """Return a string that can be passed to the library."""
     if not isinstance(value, str):
         raise TypeError(f"{place}: it must be a string, not {type(value).__name__}")
     try:
@@ -118,7 +120,7 @@ def _text(value, place):
 
 
 def _file(name, place):
-    """The name of a file as the system has it: bytes, which need not be UTF-8."""
+    """Return the name of a file as the system stores it: bytes, which need not be UTF-8."""
     try:
         name = _os.fsencode(name)
     except UnicodeEncodeError:
@@ -140,7 +142,7 @@ def _float(value, place):
 
 
 def _floats(array, place):
-    """A C-contiguous array of float64."""
+    """Return a C-contiguous array of float64."""
     array = _np.asarray(array)
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{place}: the type is {array.dtype}, and must be float64 or other real numbers")
@@ -149,7 +151,7 @@ def _floats(array, place):
 
 def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False, path="linear", velocities=False,
             loop=False, strict=False):
-    """What to open, as the extension wants it."""
+    """Return the arguments that describe an input, in the form that the extension expects."""
     if (source is None) == (sample is None):
         raise ValueError("source: give files, bytes or a Motion, or the name of a built-in sample")
     data, files, motion = None, [], None
@@ -187,10 +189,10 @@ def curves(p0: ArrayLike, p1: ArrayLike, faces: _Faces, elements: _Elements = "v
 
     p0, p1     (V, 3) positions at t = 0 and t = 1; vertices move on straight lines between them
     faces      (F, 3) vertices of each face, counted from 0; polygons as the package says
-    elements   what has a normal: "vertices", "faces" or "corners", in the order of faces
+    elements   the elements that have a normal: "vertices", "faces" or "corners", in the order of faces
     crease     degrees, for corners: edges that are sharper at t = 0 are hard; None: no edge is
     weighting  how the faces around a vertex count: "area" (exact), "angle", "uniform", "area-angle", "max" (fitted)
-    tolerance  radians: how far a normal may be off; 1e-3 takes a third of the memory
+    tolerance  radians: the largest error of a normal; 1e-3 takes a third of the memory
     weld       whether vertices at one point at both ends share a normal, so that seams do not show
     threads    0: all cores; k: at most k
     """
@@ -206,11 +208,13 @@ def cut(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, pat
     positions   (T, V, 3), the keyframes
     faces       as for curves()
     times       (T,) seconds, ascending; None: 0, 1, 2 ...
-    path        "catmull-rom": velocities follow from the keyframes; "hermite": they are given; "linear": nothing is cut
+    path        "catmull-rom": velocities follow from the keyframes; "hermite": they are the argument `velocities`;
+                "linear": nothing is cut
     velocities  (T, V, 3) per second
 
-    Normals of the pieces are within 0.01 degrees of those of the curve, or "catmull-rom:0.1" of 0.1, and what rounding of
-    positions to float32 adds. A face that all but vanishes between two keyframes may be off by more.
+    Normals of the pieces are within 0.01 degrees of the curve's normals, plus the effect of rounding positions to
+    float32; "catmull-rom:0.1" allows 0.1 degrees. The error may be larger for a face that nearly vanishes between
+    two keyframes.
     """
     if velocities is not None:
         velocities = _vectors(velocities, "velocities")
@@ -222,7 +226,8 @@ def blend(base: ArrayLike, deltas: ArrayLike | Sequence[ArrayLike | tuple[ArrayL
     """Prepare the unit normals of blend shapes, base + sum of weights times deltas; return Blend.
 
     base    (V, 3) positions
-    deltas  (K, V, 3), or a list with one for each target: (V, 3), or (vertices, deltas) of those that move, ascending
+    deltas  (K, V, 3), or a list with one for each target: (V, 3), or (vertices, deltas) of the vertices that move,
+            ascending
     faces, elements, crease, weld  as for curves()
     """
     targets = []
@@ -241,8 +246,9 @@ def certify(p0: ArrayLike, p1: ArrayLike, faces: _Faces, scheme: str = "linear",
 
     p0, p1, faces, threads  as for curves()
     scheme   a name that compare() knows
-    lower    degrees; the error is as large as that at the local time `at`
-    upper    degrees; it is never larger, at no time from 0 to 1, rounding included; 180 where a normal vanishes on the way
+    lower    degrees; the error reaches this value at the local time `at`
+    upper    degrees; the error is never larger at any time from 0 to 1, rounding included; 180 if a normal
+             vanishes on the way
     from, to  local times: the piece of the segment on which the upper bound is reached, if anywhere
     """
     offsets, corners = _polygons(faces)
@@ -255,20 +261,20 @@ def read(source: _Source = None, *, sample: str | None = None, base: _Path | Non
 
     source     a file, a pattern, a folder, a list of these, or the bytes of one file, of every format of the program
     sample     a built-in morph instead: "twist", "bend", "cloth", "eversion", "soup", "bumps"
-    base       the mesh of which source are morph targets
+    base       the base mesh, if the source is morph targets
     fps        keyframes per second where a format has no times
     animation  of a glTF file, by name or index; None: its morph targets
-    world      vertices of a glTF file are where its nodes put them
+    world      True: the nodes of a glTF file move its vertices to their places in the scene
     path       how vertices of a sequence move: "linear", "catmull-rom" or "hermite", as `--path` of the program. Curves are
                cut into straight pieces: the keyframes of the motion are the ends of these, as cut() makes them
-    loop       the first keyframe of a sequence follows the last one again
-    strict     what could only be read in part is a ValueError
+    loop       True: the first keyframe of a sequence follows its last one
+    strict     True: an input that can only be read in part raises ValueError
     """
     return Motion(_source(source, sample, base, fps, animation, world, path, velocities=True, loop=loop, strict=strict))
 
 
 def motion(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None) -> Motion:
-    """Make a Motion of arrays, which audit(), compare(), errors() and bake() take in place of files.
+    """Make a Motion from arrays, which audit(), compare(), errors() and bake() accept in place of files.
 
     positions  (T, V, 3), two keyframes or more; between two of them vertices move on straight lines
     faces      as for curves()
@@ -283,7 +289,7 @@ def _motion_of_state(state):
     return made
 
 
-# The protocols 0 and 1 of pickle would make an object of the base class, for which the extension ends the process.
+# With its protocols 0 and 1, pickle would make an object of the base class, and the extension would end the process.
 Motion.__reduce_ex__ = lambda self, protocol: (_motion_of_state, (self.__getstate__(),))
 Motion.__reduce__ = lambda self: self.__reduce_ex__(0)
 
@@ -295,7 +301,8 @@ def schemes() -> dict[str, str]:
 
 def interpolate(scheme: str, p0: ArrayLike, p1: ArrayLike, faces: _Faces, t: float | ArrayLike,
                 elements: _Elements = "faces", crease: float = 180.0, weld: bool = True) -> NDArray[_np.float32]:
-    """Return the unit normals that a scheme makes between the exact ones at t = 0 and t = 1: (n, 3), or (T, n, 3) for T t.
+    """Return the unit normals of a scheme that interpolates between the exact normals at t = 0 and t = 1: (n, 3), or
+    (T, n, 3) for T t.
 
     scheme  a name of schemes()
     p0, p1, faces, elements, crease, weld  as for curves(); some schemes need faces
@@ -309,7 +316,7 @@ def interpolate(scheme: str, p0: ArrayLike, p1: ArrayLike, faces: _Faces, t: flo
 
 def inspect(source: _Source = None, *, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
             animation: str | int | None = None, world: bool = False, loop: bool = False, strict: bool = False) -> dict[str, Any]:
-    """Return what a file holds and what may cause wrong normals: the dict of `chronormal inspect --json`."""
+    """Return the content of a file and possible causes of wrong normals: the dict of `chronormal inspect --json`."""
     return _json.loads(_chronormal.inspect(_source(source, sample, base, fps, animation, world, loop=loop, strict=strict)))
 
 
@@ -317,10 +324,10 @@ def audit(source: _Source = None, *, rule: str | None = None, weighting: _Weight
           viewers: str | Iterable[str] | None = None, samples: int | None = None, tolerance: float | None = None,
           weld: bool = True, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
           animation: str | int | None = None, path: str = "linear", loop: bool = False, strict: bool = False) -> dict[str, Any]:
-    """Return how wrong the normals are that a file makes viewers show: the dict of `chronormal audit --json`.
+    """Return the errors of the normals that viewers render from a file: the dict of `chronormal audit --json`.
 
     rule, weighting, viewers, samples, tolerance  as the options of the program; viewers may be a list
-    source  as for read(); or a Motion, of which viewers compute normals at keyframes: it has no stored ones
+    source  as for read(); or a Motion, which has no stored normals: viewers compute them at keyframes
     sample, base, fps, animation, path, loop, strict  as for read()
     """
     opened = _source(source, sample, base, fps, animation, path=path, loop=loop, strict=strict)
@@ -331,16 +338,17 @@ def audit(source: _Source = None, *, rule: str | None = None, weighting: _Weight
 def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int = 21,
             access: Literal["random", "sequential"] = "random", elements: _Elements = "faces", crease: float = 180.0,
             weld: bool = True, times: bool = False, certify: bool = False, tolerance: float | None = None,
-            face: int | tuple[int, int] | None = None, sample: str | None = None, base: _Path | None = None, fps: float = 1.0, animation: str | int | None = None,
+            face: int | tuple[int, int] | None = None, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
+            animation: str | int | None = None,
             world: bool = False, path: str = "linear", loop: bool = False, strict: bool = False) -> dict[str, Any]:
-    """Return ways to interpolate normals held against the exact ones: the dict of `chronormal compare --json`.
+    """Compare ways to interpolate normals with the exact normals; return the dict of `chronormal compare --json`.
 
     schemes    names; empty: the usual ones
-    times      whether measured times are in it, which differ from run to run
-    certify    whether to bound the largest error of each scheme at any time
-    tolerance  degrees: certify, and find the cheapest scheme that is never off by more
-    face       one face, in segment 0, or (face, segment): the dict of `--face`, with what each scheme makes of its normal; of the
-               options above it takes schemes and samples
+    times      True: include measured times, which differ from run to run
+    certify    True: bound the largest error of each scheme at any time
+    tolerance  degrees: certify, and find the cheapest scheme whose error never exceeds the tolerance
+    face       one face, in segment 0, or (face, segment): return the dict of `--face`, with the normals that each scheme makes
+               for this face; of the options above, only schemes and samples go with it
     source     as for read(), or a Motion; sample, base, fps, animation, world, path, loop, strict: as for read()
     """
     if access not in ("random", "sequential"):
@@ -362,12 +370,12 @@ def bake(source: _Source = None, *, encode: Literal["smallest", "harmless", "exa
          viewers: str | Iterable[str] | None = None, weighting: _Weighting | None = None, tolerance: float | None = None,
          smooth: bool = False, recompute_base: bool = False, sample: str | None = None,
          fps: float = 1.0, path: str = "linear", loop: bool = False, strict: bool = False) -> tuple[bytes, dict[str, Any]]:
-    """Write right normals into a glTF file, or make one of a sequence; return (glb, report).
+    """Write true normals into a glTF file, or make a glTF file from a sequence; return (glb, report).
 
-    viewers   the viewers that it is made for; None: those that add up deltas, and none worse in the others
+    viewers   the viewers to bake for; None: all that add up deltas, and no other viewer becomes worse
     source  as for read(), or a Motion that is a sequence; sample, fps, path, loop, strict: as for read()
     glb     bytes of a GLB
-    report  the dict of `chronormal bake --json`, but for its audit: audit(glb) has that
+    report  the dict of `chronormal bake --json` without its audit, which audit(glb) returns
     """
     opened = _source(source, sample, None, fps, path=path, loop=loop, strict=strict)
     glb, text = _chronormal.bake(opened, encode or "", _names(viewers or ""), weighting or "", tolerance, smooth, recompute_base)
@@ -376,7 +384,7 @@ def bake(source: _Source = None, *, encode: Literal["smallest", "harmless", "exa
 
 @_dataclasses.dataclass(frozen=True, repr=False)
 class ErrorTable:
-    """Every error of one mesh: a row for each sample, a column for each vertex (or face, or corner)."""
+    """The errors of one mesh: a row for each sample, a column for each vertex (or face, or corner)."""
 
     name: str  #: "mesh0" of a glTF file, else ""
     errors: _np.ndarray  #: (rows, columns) float32, degrees; NaN where nothing was judged
@@ -400,8 +408,8 @@ def errors(source: _Source = None, *, scheme: str | None = None, samples: int | 
            animation: str | int | None = None, path: str = "linear", loop: bool = False, strict: bool = False) -> list[ErrorTable]:
     """Return every error, for each vertex at each sample: a list of ErrorTable, one for each mesh.
 
-    scheme  None: the errors of an audit, of the stored normals; or a name, such as "linear": those of a way to
-            interpolate, for any elements
+    scheme  None: the errors of the stored normals, as in an audit; or a name, such as "linear": the errors of a way
+            to interpolate, for any elements
     source  as for audit() and compare(); sample, base, fps, animation, path, loop, strict: as for read()
     """
     opened = _source(source, sample, base, fps, animation, path=path, loop=loop, strict=strict)
@@ -416,7 +424,7 @@ def errors(source: _Source = None, *, scheme: str | None = None, samples: int | 
 
 
 def _keyframes(positions, faces, times):
-    """What the extension asks a question about: positions (T, V, 3), offsets and corners, times."""
+    """Return the arrays about which the extension answers a query: positions (T, V, 3), offsets and corners, times."""
     positions = _vectors(positions, "positions")
     if positions.ndim != 3 or positions.shape[2] != 3:
         raise ValueError(f"positions: the shape is {positions.shape} and must be (T, V, 3)")
@@ -431,10 +439,10 @@ def collapse(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None
     positions   (T, V, 3) keyframes; between two of them vertices move on straight lines
     faces       as for curves()
     times       (T,) of the keyframes; None: 0, 1, 2 ...
-    start, end  the span to look at, in these times; None: all
+    start, end  the interval of time to search; None: the whole motion
 
-    segment, face   where; lower, upper: t of the segment lies between them, in [0, 1]; time: that of the motion
-    turns_over      whether the direction after is opposed to that before
+    segment, face   the place; lower, upper: bounds of t in the segment, in [0, 1]; time: the time in the motion
+    turns_over      True if the normal after the collapse is opposite to the normal before
     before, after   (rows, 3) the limits of the unit normal on both sides
     always_segment, always_face   faces that have no area in a whole segment
     """
@@ -450,12 +458,12 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
     positions, faces, times, start, end   as for collapse()
     direction    (3,) the viewer is infinitely far away in this direction; or
     eye, eye_to  (3,) the viewer is at eye, and moves straight to eye_to over all times; None: stands still
-    silhouettes  whether to list edges between a front and a back, too
-    elements, crease, weld   as for curves(): "vertices" and "corners" are judged by their own normals, from where they are
+    silhouettes  True: also list edges between a front and a back
+    elements, crease, weld   as for curves(): "vertices" and "corners" are judged by their own normals, seen from their places
 
-    segment, face             where; vertex or corner in place of face for these elements
+    segment, face             the place; vertex or corner in place of face for these elements
     from, from_upper          the interval begins between these t of the segment
-    to_lower, to              and ends between these
+    to_lower, to              and ends between these t
     silhouette_vertices, silhouette_faces   (rows, 2), with silhouette_segment, silhouette_from, ... as above
     """
     if (direction is None) == (eye is None):
@@ -475,12 +483,13 @@ def contain(positions: ArrayLike, faces: _Faces, points: ArrayLike, times: Array
     """Return which points are inside a closed mesh that deforms, and when each crosses its surface: a dict of arrays.
 
     positions, faces, times, start, end   as for collapse(); a mesh that is not closed is a ValueError
-    points   (P, 3) points that rest, or (P, 2, 3): each moves straight from the first of all times to the last
+    points   (P, 3) points that rest, or (P, 2, 3): each point moves straight from its first
+             position to its second, over all times
 
     inside           (P,) at the first instant
     crossing_point   the index of the point; crossings are ordered by point and time
-    crossing_time, crossing_segment, crossing_face, crossing_normal (rows, 3)   when, and through which face
-    crossing_inward  whether the winding number rises; otherwise it falls
+    crossing_time, crossing_segment, crossing_face, crossing_normal (rows, 3)   the time and place of the crossing
+    crossing_inward  True if the winding number rises, False if it falls
     """
     return _chronormal.query_contain(*_keyframes(positions, faces, times), start, end, _floats(points, "points"))
 
@@ -492,14 +501,14 @@ def cones(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *
     positions, faces, times, start, end   as for collapse()
     meshlets   None, or build meshlets of up to so many triangles (a multiple of 4)
 
-    segment, face     where
+    segment, face     the place
     axis, sine        (rows, 3) and (rows,) float32; the sine of the half-angle. Along a direction d away from the eye, of
                       length 1, nothing of the face is seen from its front where d @ axis >= sine. The whole sphere is the
                       axis 0 with the sine 1, and a face that never has an area the axis 0 with the sine 0
     half_angle        degrees
     meshlet_segment, meshlet_index, meshlet_center, meshlet_radius, meshlet_cone_apex, meshlet_cone_axis, ...
-                      bounds as meshoptimizer has them, right at every instant of the part of the segment
-    member_meshlet, member_face   which face is in which meshlet
+                      bounds as in meshoptimizer, valid at every instant of the interval within the segment
+    member_meshlet, member_face   the faces of each meshlet
     """
     return _chronormal.query_cones(*_keyframes(positions, faces, times), start, end, meshlets)
 
@@ -511,12 +520,12 @@ def shutter(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None,
     positions, faces, times, start, end   as for collapse()
     elements, crease, weld   as for curves()
 
-    segment, face   where; vertex or corner in place of face for these elements
+    segment, face   the place; vertex or corner in place of face for these elements
     mean            (rows, 3) mean of n(t), whose length is twice the area of a triangle
-    mean_unit       (rows, 3) mean of the unit normal, and error: how far the exact one may be from it
-    length          of mean_unit: 1 where normals stay the same, 0 where they cancel
-    half_angle      degrees, of a cone that contains all normals
-    ends, ends_off  (rows, 3) the direction that interpolation between the ends has as its mean, and how many degrees it is off
-    span_face, span_mean ...   the same over all segments together, where there are several
+    mean_unit       (rows, 3) mean of the unit normal; error: the largest distance to the exact mean
+    length          the length of mean_unit: 1 where normals stay the same, 0 where they cancel
+    half_angle      degrees, the half-angle of a cone that contains all normals
+    ends, ends_off  (rows, 3) the mean direction of interpolation between the end normals, and its error in degrees
+    span_face, span_mean ...   the same means over all segments together, if there are several
     """
     return _chronormal.query_shutter(*_keyframes(positions, faces, times), start, end, elements, crease, weld)

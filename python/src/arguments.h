@@ -1,4 +1,5 @@
-// Reads the arguments that calls for every frame have in common: times, and the elements whose normals they ask for.
+// Reads the arguments that all calls of every frame have in common: times, and the elements whose normals are
+// requested.
 #ifndef CHRONORMAL_PYTHON_ARGUMENTS_H_
 #define CHRONORMAL_PYTHON_ARGUMENTS_H_
 
@@ -13,8 +14,8 @@ inline std::string counted(std::size_t count, ElementKind kind) {
   return std::to_string(count) + ' ' + std::string(count == 1 ? one_element(kind) : element_kind_name(kind));
 }
 
-// Makes the options of elements from the arguments that curves and blends have in common. Raises ValueError for wrong
-// ones.
+// Makes the options of elements from the arguments that curves and blends have in common. Raises ValueError for invalid
+// arguments.
 inline ElementOptions element_options(const std::string& elements, std::optional<double> crease, bool weld) {
   ElementOptions options;
   options.kind = value_or_raise(make_element_kind(elements));
@@ -26,7 +27,7 @@ inline ElementOptions element_options(const std::string& elements, std::optional
   return options;
 }
 
-// Holds the numbers of a Python float or of an array of them; is_one tells which it was.
+// Holds the numbers of a Python float or of an array; is_one tells which of the two it was.
 struct Numbers {
   explicit Numbers(const py::object& given, const char* place) {
     if (PyFloat_Check(given.ptr()) || PyLong_Check(given.ptr())) {
@@ -49,12 +50,12 @@ struct Numbers {
     if (many->ndim() != 1) refuse(place, "the shape is " + shape_text(*many) + " and must be (T,)");
   }
 
-  // Copies the numbers if an array `out` will be written over them.
+  // Copies the numbers if they share memory with an array `out` that will be written.
   void keep_from(const py::object& out) {
     if (many) *many = kept_from(std::move(*many), out);
   }
 
-  // Refuses what is no fraction of a segment.
+  // Raises ValueError unless every number is in [0, 1].
   void check_fractions(const char* place) const {
     for (std::size_t i = 0; i < count(); ++i) {
       if (const double t = data()[i]; t >= 0 && t <= 1) continue;
@@ -71,7 +72,7 @@ struct Numbers {
 
   bool is_one = false;
   double one = 0;
-  std::optional<Array<double>> many;  // optional, since an empty array would cost time to make
+  std::optional<Array<double>> many;  // optional, since making an empty array would cost time
 };
 
 }  // namespace chronormal::python

@@ -1,5 +1,5 @@
-// Gives the library views of NumPy arrays. python/chronormal has checked the type of an array that C++ reads; its shape
-// is checked here, where it is read.
+// Gives the library views of NumPy arrays. python/chronormal has already checked the type of an array; this file checks
+// its shape.
 #ifndef CHRONORMAL_PYTHON_ARRAYS_H_
 #define CHRONORMAL_PYTHON_ARRAYS_H_
 
@@ -22,22 +22,23 @@ namespace chronormal::python {
 
 namespace py = pybind11;
 
-// A C-contiguous array. pybind11 would copy an array of another layout or a narrower type; python/chronormal has done
-// so before.
+// A C-contiguous array. Pass only arrays that python/chronormal has converted: pybind11 would silently copy an array of
+// another layout or of a narrower type.
 template <class T>
 using Array = py::array_t<T, py::array::c_style>;
 // A C-contiguous array of T, into which pybind11 converts numbers of any type.
 template <class T>
 using AnyArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-// Makes a Python string of a text from outside, which may have any bytes, as os.fsdecode() does for the name of a file.
+// Converts a text from outside, which may have any bytes, into a Python string, like os.fsdecode() for the name of a
+// file.
 inline py::str string_of(std::string_view text) {
   PyObject* const made = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape");
   if (made == nullptr) throw py::error_already_set();
   return py::reinterpret_steal<py::str>(made);
 }
 
-// Raises the exception for an error, with the GIL or without: OSError for files, ValueError for what the caller gave.
+// Raises the exception for an error, with or without the GIL: OSError for files, ValueError for wrong arguments.
 [[noreturn]] inline void raise(const Error& error) {
   const py::gil_scoped_acquire held;
   PyObject* const kind = error.code == ErrorCode::kFailed ? PyExc_OSError : PyExc_ValueError;
@@ -55,7 +56,7 @@ T value_or_raise(Result<T> result) {
   raise(Error{ErrorCode::kUsage, place, message});
 }
 
-// Raises an error if a condition does not hold. Builds no string otherwise, since a call may take less than a
+// Raises an error if a condition does not hold. Makes no string otherwise, since the whole call may take less than a
 // microsecond.
 inline void require(bool condition, const char* place, const char* message) {
   if (!condition) refuse(place, message);
@@ -80,7 +81,7 @@ std::vector<T> vector_of(const Array<T>& array) {
   return {array.data(), array.data() + array.size()};
 }
 
-// Makes an array that keeps the memory of a vector.
+// Makes an array that takes over the memory of a vector.
 template <class T>
 py::array_t<T> array_of(std::vector<T> values, std::vector<py::ssize_t> shape) {
   auto kept = std::make_unique<std::vector<T>>(std::move(values));
@@ -92,7 +93,7 @@ py::array_t<T> array_of(std::vector<T> values, std::vector<py::ssize_t> shape) {
 // Makes the topology of a mesh from two arrays of uint32.
 Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners);
 
-// Makes the sequence of keyframes (T, V, 3) at some times.
+// Makes a motion from keyframes (T, V, 3) at some times.
 Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offsets,
                  const Array<std::uint32_t>& corners, const Array<double>& times);
 
@@ -110,7 +111,7 @@ inline Array<double> kept_from(Array<double> numbers, const py::object& out) {
   return Array<double>(numbers.size(), numbers.data());
 }
 
-// Makes pickle and copy refuse objects of a class, whose memory they cannot take. By themselves, the protocols 0 and 1
+// Makes pickle and copy refuse objects of a class, since they cannot copy its memory. Otherwise the protocols 0 and 1
 // of pickle would make an object of the base class, and pybind11 would end the process.
 template <class Class>
 void refuse_to_be_pickled(Class& made) {
@@ -121,7 +122,7 @@ void refuse_to_be_pickled(Class& made) {
   made.def("__reduce__", refuse).def("__reduce_ex__", refuse);
 }
 
-// Applies a number of threads: 1 stands for the calling one, 0 for all cores, and a larger number for so many.
+// Sets the number of threads: 1 is the calling thread, 0 is all cores, and a larger number is that many.
 class ChosenThreads {
  public:
   explicit ChosenThreads(int count) : threads_(count == 1 ? Threads::kOne : Threads::kAll) {
@@ -136,8 +137,8 @@ class ChosenThreads {
 };
 
 // Gives objects of Python memory of zeros. `Curves.__new__(Curves)` makes an object without calling its constructor,
-// and pybind11 then hands this memory to a method, which sees from members that are zero that the object was never
-// made.
+// and pybind11 then passes this memory to a method. The method recognises from its zero members that the constructor
+// did not run.
 struct ZeroedObject {
   static void* operator new(std::size_t size) {
     void* const memory = ::operator new(size);

@@ -1,4 +1,4 @@
-// Gives certificates to Python as arrays.
+// Returns certificates to Python as arrays.
 #include "computation.h"
 
 namespace chronormal::python {

@@ -6,7 +6,7 @@
 namespace chronormal::python {
 namespace {
 
-// Counts the turns of all objects, and the forks that wait for them.
+// Counts the turns of all objects, and the forks that wait for the turns to end.
 class ForkGate {
  public:
   void begin_turn() {
@@ -21,7 +21,7 @@ class ForkGate {
     --own_turns;
     change_.notify_all();
   }
-  // Waits until only this thread, which forks, has turns: these go on in the child.
+  // Waits until only this thread, which forks, has turns. Its turns continue in the child.
   void begin_fork() {
     std::unique_lock lock(mutex_);
     ++forks_;
@@ -32,7 +32,7 @@ class ForkGate {
     --forks_;
     change_.notify_all();
   }
-  // Starts again in the child, where the mutex may be held by a thread that does not exist there.
+  // Starts again in the child, where the mutex may be locked by a thread that does not exist there.
   void begin_anew() {
     new (this) ForkGate;
     turns_ = own_turns;
@@ -66,7 +66,7 @@ void Turns::unlock() {
 
 void hear_of_forks() {
   const py::module_ system = py::module_::import("os");
-  if (!py::hasattr(system, "register_at_fork")) return;  // nor fork()
+  if (!py::hasattr(system, "register_at_fork")) return;  // a system without fork()
   system.attr("register_at_fork")(
       py::arg("before") = py::cpp_function([] { gate.begin_fork(); }, py::call_guard<py::gil_scoped_release>()),
       py::arg("after_in_parent") = py::cpp_function([] { gate.end_fork(); }),

@@ -1,4 +1,4 @@
-// Runs computations while other threads of Python run; Ctrl-C ends them, and a fork() waits for them.
+// Runs computations while other threads of Python run. Ctrl-C ends a computation, and a fork() waits for it.
 #ifndef CHRONORMAL_PYTHON_COMPUTATION_H_
 #define CHRONORMAL_PYTHON_COMPUTATION_H_
 
@@ -11,13 +11,13 @@
 
 namespace chronormal::python {
 
-// Hands out the turn to compute with an object, which has scratch for one computation. A fork waits until nobody has a
-// turn, and no turn begins meanwhile: a thread that is in the middle of one does not exist in the child, where its turn
-// would never end.
+// Hands out turns: an object has scratch memory for one computation, so only one thread may compute with it. A fork
+// waits until nobody has a turn, and no turn begins meanwhile: a turn of another thread would never end in the child,
+// since that thread does not exist there.
 class Turns {
  public:
-  // Refuses a signal handler that runs in the middle of a computation, since it cannot wait for the end of its own
-  // thread's turn.
+  // Raises an exception in a signal handler that runs during a computation of the same thread, since waiting for the
+  // thread's own turn would never end.
   Turns& required_of_others() {
     require(owner_ != std::this_thread::get_id(), "self", "a handler of signals cannot use what it interrupts");
     return *this;
@@ -30,8 +30,8 @@ class Turns {
   std::atomic<std::thread::id> owner_;
 };
 
-// A computation without the GIL, with an object or without. If the handler of a signal raises, as the one of Ctrl-C
-// does, the computation throws Interrupted, and the exception of Python is set.
+// A computation without the GIL, with or without an object. If the handler of a signal raises, as for Ctrl-C, the
+// computation throws Interrupted, and the exception of Python is set.
 class Computation {
  public:
   Computation() = default;
@@ -59,7 +59,7 @@ auto without_gil(const Work& work) {
   return value_or_raise(std::move(result));
 }
 
-// Registers the functions that Python calls around a fork.
+// Registers the functions that Python calls before and after a fork.
 void hear_of_forks();
 
 }  // namespace chronormal::python

@@ -1,4 +1,4 @@
-// Implements curves and blends, whose calls are made for every frame.
+// Implements curves and blends, whose functions are called for every frame.
 #include <array>
 #include <cstdio>
 #include <mutex>
@@ -9,7 +9,7 @@
 namespace chronormal::python {
 namespace {
 
-// Writes the angles in degrees between two rows of vectors; NaN if one of the two has no direction.
+// Writes the angles in degrees between two lists of vectors; NaN if a vector has no direction.
 void write_errors(VectorView<const float> exact, VectorView<const float> shown, float* degrees) {
   for (std::size_t i = 0; i < exact.count; ++i) {
     const Vec3d right = to_double(exact[i]), is = to_double(shown[i]);
@@ -47,7 +47,7 @@ class Curves : public ZeroedObject {
     Turns& turns = turns_.required_of_others();
     Status status = Success{};
     {
-      const py::gil_scoped_release released;  // there is no Interruption, which would leave half of a segment
+      const py::gil_scoped_release released;  // no Interruption is in effect, since it would leave half of a segment
       const std::lock_guard turn(turns);
       status = curves_->set_segment(first, last);
     }

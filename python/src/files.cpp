@@ -1,4 +1,4 @@
-// Reads files, and gives Python what the commands of the program find in them: reports as JSON, errors and motions as
+// Reads files, and returns the results of the program's commands to Python: reports as JSON, errors and motions as
 // arrays.
 #include <algorithm>
 #include <map>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kBytes = "<bytes>";  // the name of a file that was given as bytes
 
-// The source is what python/chronormal makes of its arguments: a dict with the names of InputOptions.
+// Reads the dict that python/chronormal makes from its arguments. Its keys are the names of InputOptions.
 InputOptions options_of(const py::dict& source) {
   InputOptions options;
   options.files = source["files"].cast<std::vector<std::string>>();
@@ -37,7 +37,7 @@ InputOptions options_of(const py::dict& source) {
   return options;
 }
 
-// Opens files, and refuses those that have no such path.
+// Opens files. Raises an error if the requested path of vertices is not possible for them.
 Input open_files(const py::dict& source, bool allow_mesh, KeepShading shading) {
   InputOptions options = options_of(source);
   options.allow_mesh = allow_mesh;
@@ -50,14 +50,14 @@ Input open_files(const py::dict& source, bool allow_mesh, KeepShading shading) {
 
 constexpr int kStateVersion = 1;
 
-// The bytes of a text that string_of() has made.
+// Returns the bytes of a text that string_of() has made.
 std::string bytes_of_text(const py::handle& text) {
   PyObject* const made = PyUnicode_AsEncodedString(text.ptr(), "utf-8", "surrogateescape");
   if (made == nullptr) throw py::error_already_set();
   return py::reinterpret_steal<py::bytes>(made);
 }
 
-// A motion that was read or made of arrays, its arrays, and its normals at chosen moments.
+// A motion that was read or made from arrays, with its arrays, and its normals at chosen moments.
 class ReadMotion : public ZeroedObject {
  public:
   explicit ReadMotion(const py::dict& source) : bytes_(source["bytes"]) {
@@ -70,7 +70,7 @@ class ReadMotion : public ZeroedObject {
       : own_(std::make_unique<Motion>(motion_of(positions, offsets, corners, times))),
         motion_(own_.get()),
         name_("arrays") {}
-  // Reads what state() has put into a pickle.
+  // Restores a motion from the state of a pickle.
   explicit ReadMotion(const py::tuple& state);
   [[nodiscard]] py::tuple state() const;
 
@@ -105,7 +105,7 @@ class ReadMotion : public ZeroedObject {
 
   [[nodiscard]] std::array<double, 3> origin() const { return motion().origin; }
 
-  // Returns (F, k) if all faces have as many corners, or else (offsets, corners).
+  // Returns (F, k) if all faces have equally many corners, or else (offsets, corners).
   [[nodiscard]] py::object faces() const {
     const Topology& topology = motion().topology;
     std::vector<std::uint32_t> corners(topology.corners().begin(), topology.corners().end()), offsets = {0};
@@ -200,15 +200,15 @@ class ReadMotion : public ZeroedObject {
   }
 
  private:
-  py::object bytes_;  // of the input
+  py::object bytes_;  // the bytes that the input refers to
   std::optional<Input> input_;
   std::unique_ptr<Motion> own_;
-  const Motion* motion_ = nullptr;  // of one of the two
+  const Motion* motion_ = nullptr;  // the motion of the input or of the arrays
   std::string name_;
   std::optional<py::array> positions_;
 };
 
-// Everything but where it was read from.
+// Returns the state for a pickle: everything except the source of the motion.
 py::tuple ReadMotion::state() const {
   const Motion& m = motion();
   py::list keyframes;
@@ -266,7 +266,7 @@ ReadMotion::ReadMotion(const py::tuple& state) {
   motion_ = own_.get();
 }
 
-// The subject of a call: files that were opened, or a Motion of Python, and the object in which its bytes lie.
+// The subject of a call: files that were opened, or a Motion of Python, and the object that owns the bytes.
 struct Opened {
   std::optional<Input> input;
   const ReadMotion* made = nullptr;
@@ -276,7 +276,7 @@ struct Opened {
   [[nodiscard]] std::string name() const { return input ? input->name() : made->name(); }
   [[nodiscard]] Result<const Motion*> motion() { return input ? input->motion() : &made->motion(); }
   [[nodiscard]] Result<const StoredNormals*> normals() {
-    static const StoredNormals none;  // a Motion has none
+    static const StoredNormals none;  // a Motion has no stored normals
     return input ? input->normals() : &none;
   }
   [[nodiscard]] std::optional<CutPath> cut() const {

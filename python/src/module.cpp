@@ -9,7 +9,7 @@ PYBIND11_MODULE(_chronormal, module) {
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
-    } catch (const chronormal::Interrupted&) {  // the handler of a signal has set the exception
+    } catch (const chronormal::Interrupted&) {  // a signal handler has already set the exception
     }
   });
   chronormal::python::hear_of_forks();

@@ -1,4 +1,4 @@
-// Answers questions about whole intervals of time: takes keyframes, returns arrays.
+// Answers queries about whole intervals of time: takes keyframes, returns arrays.
 #include <cmath>
 #include <type_traits>
 #include <variant>
@@ -26,7 +26,7 @@ py::array array_of_column(QueryColumn column) {
       column.values);
 }
 
-// Returns the arrays of an answer by the names that they have in a file. Asks without the GIL.
+// Returns the arrays of an answer, with the names that they have in a file. Computes without the GIL.
 template <class Ask>
 py::dict answer_of(const Ask& ask) {
   QueryAnswer found = without_gil(ask);

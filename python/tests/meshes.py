@@ -6,7 +6,7 @@ QUADS = np.array([[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [4, 5, 9, 8], [5, 6,
 
 
 def sheet(seed=1, triangles=True):
-    """A bent sheet of 12 vertices that moves: (p0, p1, faces)."""
+    """Return a bent sheet of 12 vertices that moves: (p0, p1, faces)."""
     random = np.random.default_rng(seed)
     grid = np.array([[x, y, 0] for y in range(3) for x in range(4)], dtype=np.float64)
     p0 = grid + 0.2 * random.standard_normal((12, 3))
@@ -16,7 +16,7 @@ def sheet(seed=1, triangles=True):
 
 
 def face_normals(positions, faces):
-    """Twice the vector area of each face, polygons too."""
+    """Return twice the vector area of each face, also for polygons."""
     result = []
     for face in faces:
         corners = positions[np.asarray(face)]
@@ -38,7 +38,7 @@ def vertex_normals(positions, faces):
 
 
 def angle(a, b):
-    """Radians between rows, by atan2."""
+    """Return the angles between rows in radians, by atan2."""
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     return np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), (a * b).sum(-1))
 

@@ -1,4 +1,5 @@
-"""Arrays in place of files: motions that are made, pickled, judged and baked; schemes; control normals; and what is refused."""
+"""Arrays in place of files: motions that are made, pickled, judged and baked; schemes; control normals; and invalid
+arguments."""
 
 import base64
 import copy
@@ -16,7 +17,7 @@ SEED = 20261127
 
 
 def walk(random, keyframes=5, size=6):
-    """A sheet of triangles that is bent at random in every keyframe."""
+    """Return a sheet of triangles that is bent at random in every keyframe."""
     x, y = np.meshgrid(np.arange(size, dtype=np.float32), np.arange(size, dtype=np.float32))
     flat = np.stack([x, y, 0 * x], -1).reshape(-1, 3)
     positions = np.stack([flat + random.normal(0, 0.2, flat.shape) for _ in range(keyframes)]).astype(np.float32)
@@ -26,7 +27,7 @@ def walk(random, keyframes=5, size=6):
 
 
 def face_normals(positions, faces):
-    """Cross products in float64."""
+    """Return the normals of faces by cross products in float64."""
     a, b, c = (positions[faces[:, k]].astype(np.float64) for k in range(3))
     return np.cross(b - a, c - a)
 
@@ -125,7 +126,7 @@ class MotionTest(unittest.TestCase):
                 broken = cn.Motion.__new__(cn.Motion)
                 with self.assertRaises((ValueError, TypeError, RuntimeError)):
                     broken.__setstate__((*state[:i], wrong, *state[i + 1:]))
-                    # Some members may be of any value of their type.
+                    # Some members accept every value of their type.
                     raise ValueError
 
 

@@ -1,4 +1,4 @@
-"""Certificates: no sample is above an upper bound, and where the lower one is named the error is as large."""
+"""Certificates: no sampled error is above an upper bound, and at the named time the error reaches the lower bound."""
 
 import unittest
 

@@ -9,7 +9,7 @@ from meshes import blended, face_normals, sheet, unit
 
 
 def wide_sheet(cells=16):
-    """A grid that is bent over: positions (2, V, 3), faces (F, 3)."""
+    """Return a grid that is bent over: positions (2, V, 3), faces (F, 3)."""
     x, y = np.meshgrid(np.linspace(0, 1, cells + 1), np.linspace(0, 1, cells + 1))
     flat = np.stack([x, y, 0.1 * np.sin(7 * x) * np.cos(5 * y)], axis=-1).reshape(-1, 3)
     bent = np.stack([np.sin(x), y + 0.1 * x, 1 - np.cos(x) + 0.1 * np.cos(6 * y)], axis=-1).reshape(-1, 3)

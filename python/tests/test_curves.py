@@ -1,4 +1,4 @@
-"""Curves and blends: right normals, whose memory is read and written, what is said of arguments that do not fit."""
+"""Curves and blends: true normals, the memory that is read and written, and messages about invalid arguments."""
 
 import gc
 import threading
@@ -69,7 +69,7 @@ class CurvesTest(unittest.TestCase):
         self.assertEqual(result.__array_interface__["data"][0], address)
         np.testing.assert_array_equal(out, curves.unit_normals(0.5))
         rows = np.zeros((4, 12, 3), dtype=np.float32)
-        curves.unit_normals(0.5, out=rows[2])  # this is a part of a larger array
+        curves.unit_normals(0.5, out=rows[2])  # rows[2] is a part of a larger array
         np.testing.assert_array_equal(rows[2], out)
         self.assertEqual(rows[[0, 1, 3]].any(), False)
 
@@ -82,7 +82,7 @@ class CurvesTest(unittest.TestCase):
         self.assertEqual(cn._vectors(p0, "p0").__array_interface__["data"], p0.__array_interface__["data"])
         out = np.empty_like(p0)
         gc.collect()
-        tracemalloc.start()  # NumPy reports its arrays to it
+        tracemalloc.start()  # NumPy reports the memory of its arrays to tracemalloc
         curves = cn.curves(p0, p0, faces)
         curves.unit_normals(0.5, out=out)
         _, peak = tracemalloc.get_traced_memory()
@@ -134,7 +134,7 @@ class CurvesTest(unittest.TestCase):
         curves = cn.curves(np.tile(p0, (5000, 1)), np.tile(p1, (5000, 1)),
                            (faces + 12 * np.arange(5000)[:, None, None]).reshape(-1, 3), weld=False)
         out = np.empty((100, 60000, 3), dtype=np.float32)
-        curves.unit_normals(np.linspace(0, 1, 100), out=out)  # makes sure that the memory is there
+        curves.unit_normals(np.linspace(0, 1, 100), out=out)  # allocates the memory in advance
         working = threading.Thread(target=curves.unit_normals, args=(np.linspace(0, 1, 100), out))
         rounds = 0
         working.start()
@@ -240,7 +240,7 @@ class ErrorsTest(unittest.TestCase):
 
     def test_arguments_of_any_kind_are_refused_or_taken_and_never_crash(self):
         p0, p1, faces = sheet()
-        random = np.random.default_rng(20260101)  # the seed of all that follows
+        random = np.random.default_rng(20260101)  # seeds everything that follows
         odd = [None, 3, -1.5, "x", b"abc", [], [[]], [[1, 2], [3]], {}, np.array(3), np.array([], np.float32),
                np.zeros((0, 3), np.float32), np.zeros((12, 3), np.float16), np.full((12, 3), np.nan, np.float32),
                np.full((12, 3), np.inf), np.zeros((12, 3), bool), np.zeros((12, 3), object), np.zeros((12, 4), np.float32),
@@ -275,7 +275,7 @@ class ErrorsTest(unittest.TestCase):
                     pass
             with self.assertRaisesRegex(ValueError, "self: it was never made"):
                 unmade.unit_normals([0.5])
-        for t in (np.nan, np.inf, -np.inf, 1e300, -5.0):  # fractions and weights that are none are said
+        for t in (np.nan, np.inf, -np.inf, 1e300, -5.0):  # invalid fractions and weights are reported
             with self.assertRaisesRegex(ValueError, "^t: "):
                 curves.unit_normals(t)
             if np.isfinite(t):

@@ -1,4 +1,4 @@
-"""The page docs/python.md and the README: what stands there runs, and prints what stands there."""
+"""The page docs/python.md and the README: their code runs, and prints the output that they show."""
 
 import doctest
 import inspect
@@ -50,7 +50,7 @@ class DocumentTest(unittest.TestCase):
             if isinstance(thing, type):
                 continue
             signature = inspect.signature(thing)
-            hints = typing.get_type_hints(thing)  # of names that there are
+            hints = typing.get_type_hints(thing)  # fails if a hint has an unknown name
             self.assertEqual(set(hints), set(signature.parameters) | {"return"}, name)
 
     def test_the_stubs_name_what_the_extension_has(self):

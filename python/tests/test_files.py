@@ -1,6 +1,6 @@
-"""Files: motions as arrays, reports as dicts, bakes as bytes; held against what the program prints and writes.
+"""Files: motions as arrays, reports as dicts, bakes as bytes, compared with the output of the program.
 
-CHRONORMAL_PROGRAM names the program; tests that need it are skipped without.
+CHRONORMAL_PROGRAM names the program; without it, tests that need it are skipped.
 """
 
 import json
@@ -77,7 +77,7 @@ class ReadTest(unittest.TestCase):
 
     def test_bytes_of_any_kind_are_refused_and_never_crash(self):
         glb, _ = cn.bake(sample="twist", encode="endpoint")
-        random = np.random.default_rng(20260102)  # the seed of all that follows
+        random = np.random.default_rng(20260102)  # seeds everything that follows
         head = bytearray(glb[:4000])
         for _ in range(60):
             broken = bytearray(head)
@@ -105,7 +105,7 @@ class ReportTest(unittest.TestCase):
         curves = cn.curves(motion.positions[0], motion.positions[1], motion.faces)
         (table,) = cn.errors(sample="twist", scheme="slerp", samples=3)
         ends = curves.unit_normals([0, 1]).astype(np.float64)
-        middle = ends[0] + ends[1]  # this is slerp at 1/2, up to its length
+        middle = ends[0] + ends[1]  # equals slerp at 1/2, up to its length
         np.testing.assert_allclose(table.errors[1], curves.errors(0.5, middle), atol=1e-3)
         self.assertLess(table.errors[[0, 2]].max(), 1e-3)
 
@@ -114,7 +114,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(glb[:4], b"glTF")
         self.assertEqual(report["bytes"], len(glb))
         self.assertLess(cn.audit(glb, tolerance=1)["worst_degrees"], 0.01)
-        again, _ = cn.bake(glb)  # a file that was baked stays as it is
+        again, _ = cn.bake(glb)  # a baked file does not change when baked again
         self.assertEqual(cn.inspect(again)["gltf"]["meshes"], cn.inspect(glb)["gltf"]["meshes"])
 
 

@@ -1,6 +1,7 @@
-"""The package as users install it: a wheel that is made by CMake, in a virtual environment.
+"""The package as users install it: a wheel, made by CMake, in a virtual environment.
 
-CHRONORMAL_BUILD names a build folder with the libraries; without it this test is skipped, as it would compile all of them.
+CHRONORMAL_BUILD names a build folder with the libraries; without it this test is skipped, since it would compile
+all of them.
 """
 
 import os

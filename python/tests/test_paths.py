@@ -1,6 +1,7 @@
-"""Curved paths: normals of their pieces, held against cross products on the curves, and reports against the program's.
+"""Curved paths: normals of their pieces, compared with cross products on the curves, and reports, compared with the
+program's.
 
-CHRONORMAL_PROGRAM names the program; tests that need it are skipped without.
+CHRONORMAL_PROGRAM names the program; without it, tests that need it are skipped.
 """
 
 import json
@@ -21,7 +22,7 @@ TIMES = np.array([0, 0.5, 1.25, 2])
 
 
 def turning_sheet():
-    """Keyframes (4, 12, 3) of a bent sheet that turns and swells."""
+    """Return keyframes (4, 12, 3) of a bent sheet that turns and swells."""
     random = np.random.default_rng(20261123)
     places = np.array([[x, y, 0] for y in range(3) for x in range(4)]) + 0.2 * random.standard_normal((12, 3))
     turned = [np.stack([np.cos(t) * places[:, 0] + np.sin(t) * places[:, 2], (1 + 0.2 * t) * places[:, 1],
@@ -30,7 +31,8 @@ def turning_sheet():
 
 
 def slopes(keys):
-    """The velocity at each keyframe of the polynomial through it and its neighbours, through the nearest four at the ends."""
+    """Return the velocity at each keyframe: the slope of the polynomial through it and its neighbours, or at both ends
+    through the nearest four keyframes."""
     result = []
     for k in range(len(keys)):
         nearest = slice(0, 4) if k in (0, len(keys) - 1) else slice(k - 1, k + 2)
@@ -41,7 +43,7 @@ def slopes(keys):
 
 
 def on_cubic(keys, velocities, time):
-    """The positions at a time on the cubic with these velocities."""
+    """Return the positions at a time on the cubic with these velocities."""
     k = min(np.searchsorted(TIMES, time, side="right") - 1, len(TIMES) - 2)
     h = TIMES[k + 1] - TIMES[k]
     t = (time - TIMES[k]) / h

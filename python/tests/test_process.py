@@ -1,6 +1,7 @@
-"""What may end a process or let it hang: signals, forks, pickles, names, numbers too large, and memory that is both read and written.
+"""Events that may crash a process or make it hang: signals, forks, pickles, names, numbers too large, and memory that
+is both read and written.
 
-All that is drawn at random follows from SEED.
+All random numbers follow from SEED.
 """
 
 import copy
@@ -21,11 +22,11 @@ import chronormal as cn
 from meshes import sheet
 
 SEED = 49
-PATIENCE = 60  # seconds, on a machine with much else to do
+PATIENCE = 60  # seconds, enough for a busy machine
 
 
 def objects():
-    """One of each class, by its name."""
+    """Return one object of each class, by its name."""
     p0, p1, faces = sheet()
     deltas = np.stack([p1 - p0, p0])
     return {"Curves": cn.curves(p0, p1, faces), "Blend": cn.blend(p0, deltas, faces), "Motion": cn.read(sample="twist")}
@@ -40,7 +41,7 @@ def raise_enough(*_):
 
 
 def wavy(frames, size, seed=SEED):
-    """A sheet of size x size vertices that moves: positions (frames, V, 3), faces."""
+    """Return a sheet of size x size vertices that moves: positions (frames, V, 3), faces."""
     random = np.random.default_rng(seed)
     x, y = np.meshgrid(np.arange(size), np.arange(size))
     grid = np.stack([x, y, 0 * x], axis=-1).reshape(1, -1, 3).astype(np.float32)
@@ -58,7 +59,7 @@ class SignalTest(unittest.TestCase):
         signal.signal(signal.SIGALRM, self.before)
 
     def is_ended(self, call, after):
-        """Whether a signal comes before the end of the call, and ends it."""
+        """Tell whether a signal arrives before the end of the call and ends it."""
         try:
             signal.setitimer(signal.ITIMER_REAL, after)
             call()
@@ -73,7 +74,7 @@ class SignalTest(unittest.TestCase):
         deltas = positions[1:] - positions[:1]
         glb, _ = cn.bake(sample="twist", encode="endpoint")
         many = np.linspace(0, 1, 2 * 10**5)
-        out = np.empty((len(many), len(curves), 3), np.float32)  # its memory is touched row by row
+        out = np.empty((len(many), len(curves), 3), np.float32)  # touches the memory row by row
         for name, call in {
                 "audit": lambda: cn.audit(glb, samples=10**6, viewers="all"),
                 "compare": lambda: cn.compare(sample="eversion", samples=10**6),
@@ -136,7 +137,8 @@ class SignalTest(unittest.TestCase):
             said.clear()
             signal.setitimer(signal.ITIMER_REAL, 0.001)
             rows = curves.unit_normals(times, threads=1)
-            # A fast machine ends before it looks for signals, and gets this one between two calls.
+            # A fast machine finishes before it checks for signals, and gets this signal between two calls, so the work
+            # is doubled.
             times = np.full(min(2 * len(times), 10_000), 0.5)
         np.testing.assert_array_equal(said[0], rows[0])
         self.assertIn("a handler of signals cannot use what it interrupts", said[1])
@@ -192,7 +194,8 @@ class ForkTest(unittest.TestCase):
                 thread.join()
 
     def test_a_child_may_end_as_programs_do(self):
-        self.assertEqual(cn.audit(sample="twist")["command"], "audit")  # it uses threads, where there are several cores
+        # Audit() uses threads, if there are several cores.
+        self.assertEqual(cn.audit(sample="twist")["command"], "audit")
         child = multiprocessing.get_context("fork").Process(target=cn.audit, kwargs={"sample": "twist"})
         child.start()
         child.join(PATIENCE)
@@ -203,7 +206,7 @@ class PickleTest(unittest.TestCase):
     def test_what_keeps_no_positions_is_neither_pickled_nor_copied_and_says_so(self):
         for name, made in objects().items():
             if name == "Motion":
-                continue  # tests/test_arrays.py
+                continue  # tests/test_arrays.py tests these
             ways = [lambda made=made, p=p: pickle.dumps(made, p) for p in range(pickle.HIGHEST_PROTOCOL + 1)]
             ways += [lambda: copy.copy(made), lambda: copy.deepcopy(made), lambda: made.__reduce__(), lambda: made.__reduce_ex__(0)]
             for way in ways:

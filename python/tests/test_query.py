@@ -1,4 +1,4 @@
-"""Questions about whole intervals: answers on arrays are those of the program, and right by hand."""
+"""Queries about whole intervals: answers on arrays equal the program's, and are checked by hand."""
 
 import unittest
 

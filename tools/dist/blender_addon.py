@@ -1,9 +1,10 @@
-"""Packs the Blender add-on into a zip that Blender installs, with the programs that are given.
+"""Packs the Blender add-on into a zip that Blender can install, together with the given programs.
 
     blender_addon.py OUT.zip [SYSTEM=FOLDER]...
 
-SYSTEM is a name of blender/program.py, such as linux-x64, and FOLDER has the program chronormal for it, and its licences
-in LICENSE and THIRD_PARTY where it has any. The same files make the same bytes; SOURCE_DATE_EPOCH is the time of all.
+SYSTEM is a name of blender/program.py, such as linux-x64, and FOLDER has the program chronormal for that system,
+and its licences in LICENSE and THIRD_PARTY if there are any. Equal files give equal bytes; SOURCE_DATE_EPOCH is the
+time of all files.
 """
 
 import os
@@ -17,7 +18,7 @@ NAME = "chronormal_blender"  # the name of the Python package, and the id of the
 
 
 def files(programs: dict[str, Path]) -> dict[str, Path]:
-    """Returns the files of the zip by their names in it."""
+    """Returns the files of the zip, keyed by their names in the zip."""
     found = {path.name: path for path in (ROOT / "blender").iterdir() if path.suffix in (".py", ".toml")}
     found["LICENSE"] = ROOT / "LICENSE"
     for system, folder in programs.items():
@@ -31,7 +32,7 @@ def files(programs: dict[str, Path]) -> dict[str, Path]:
 
 
 def pack(out: Path, programs: dict[str, Path]) -> None:
-    when = time.gmtime(int(os.environ.get("SOURCE_DATE_EPOCH", 315532800)))[:6]  # a zip knows no time before 1980
+    when = time.gmtime(int(os.environ.get("SOURCE_DATE_EPOCH", 315532800)))[:6]  # a zip cannot store a time before 1980
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name, path in sorted(files(programs).items()):
             entry = zipfile.ZipInfo(f"{NAME}/{name}", when)

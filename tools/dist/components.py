@@ -1,10 +1,11 @@
-"""Finds out whose work is compiled into what ./run dist makes, from the builds themselves.
+"""Finds the components that are compiled into the artefacts of ./run dist, from the builds themselves.
 
-    components.py licences ARTEFACT FOLDER    copies what Debian says of the licence of each component of an artefact
+    components.py licences ARTEFACT FOLDER    copies Debian's texts of the licence of each component of an artefact
     components.py sbom VERSION FOLDER         prints a list of all files in FOLDER and their components, as SPDX 2.3
 
-A component is a Debian source package or an npm package. Its code is in an artefact where the compiler read one of its
-headers for it (Ninja keeps the names of these), and it is a shared library where the linker says that one is needed.
+A component is a Debian source package or an npm package. Its code is in an artefact if the compiler read one of its
+headers for the artefact (Ninja records the names of headers). A shared library is a component if the linker says
+that it is needed.
 """
 
 import hashlib
@@ -25,7 +26,7 @@ BUILD = ROOT / "build"
 SOURCES = BUILD / "wasm-sources"
 
 LIBRARIES = ["chronormal", "chronormal_io"]
-# Artefacts: the pattern of the file in dist/, its build, the targets in it, what it is.
+# The artefacts: the pattern of the file in dist/, its build, its targets, and its description.
 ARTEFACTS = {
     "program": ("chronormal-*-linux-*.tar.gz", "dist", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
     "wheel": ("chronormal-*.whl", "dist", [*LIBRARIES, "_chronormal"], "LIBRARY"),
@@ -38,9 +39,9 @@ ARTEFACTS = {
     "site": ("chronormal-*-site.tar.gz", None, [], "ARCHIVE"),
     "source": ("chronormal-*.tar.gz", None, [], "SOURCE"),
 }
-WITH_PAGE = ("program", "deb", "npm", "page", "blender")  # with what the pages of web/ are made of
+WITH_PAGE = ("program", "deb", "npm", "page", "blender")  # artefacts that contain the components of the pages of web/
 
-# Debian's names of licences, as SPDX has them; and the packages whose `copyright` names none for all of their files.
+# The SPDX names of Debian's names of licences; and the packages whose `copyright` has no licence for all files.
 SPDX_NAMES = {
     "Apache-2": "Apache-2.0",
     "Apache-2.0": "Apache-2.0",
@@ -54,11 +55,11 @@ SPDX_NAMES = {
 SPDX_LICENCES = {
     "gcc-12": "GPL-3.0-or-later WITH GCC-exception-3.1",
     "glibc": "LGPL-2.1-or-later",
-    "emscripten": "(MIT OR NCSA) AND (Apache-2.0 WITH LLVM-exception)",  # with musl and libc++
+    "emscripten": "(MIT OR NCSA) AND (Apache-2.0 WITH LLVM-exception)",  # including musl and libc++
     "llvm-toolchain-14": "Apache-2.0 WITH LLVM-exception",
     "python3.11": "PSF-2.0",
 }
-NO_CODE = {"linux-libc-dev"}  # the numbers of the system's calls
+NO_CODE = {"linux-libc-dev"}  # it has only the numbers of system calls
 
 
 def run(*command, **options):
@@ -66,7 +67,7 @@ def run(*command, **options):
 
 
 def owners(paths):
-    """Returns the binary packages that these files, or files of these patterns, are from."""
+    """Returns the binary packages that own these files, or files of these patterns."""
     if not paths:
         return set()
     found = subprocess.run(["dpkg", "-S", *sorted(paths)], capture_output=True, text=True)
@@ -78,7 +79,7 @@ def owners(paths):
 
 
 class Component:
-    """A Debian source package, or a package of npm: name, version, licence, the file that says whose it is, URL."""
+    """A Debian source package or an npm package: name, version, licence, the file that names its authors, URL."""
 
     def __init__(self, name, version, copyright):
         self.name, self.version, self.copyright = name, version, copyright
@@ -140,11 +141,11 @@ def shared_libraries(artefact):
         needed -= {path.name for path in Path(folder).rglob("*.so*")}
     known = dict(re.findall(r"^\s*(\S+) \(libc6,x86-64.*=> (\S+)$", run("/sbin/ldconfig", "-p"), re.M))
     paths = [Path(os.path.realpath(known[name])) for name in needed]
-    return {f"*/{path.parent.name}/{path.name}" for path in paths}  # below /lib or /usr/lib, which are one
+    return {f"*/{path.parent.name}/{path.name}" for path in paths}  # below /lib or /usr/lib, which are the same folder
 
 
 def components_of(kind, artefact=None):
-    """Returns the components that are compiled in, and those of the shared libraries that are needed."""
+    """Returns the components that are compiled in, and the components of the shared libraries that are needed."""
     build, targets = ARTEFACTS[kind][1:3]
     if build is None:
         return [], []
@@ -164,7 +165,7 @@ def components_of(kind, artefact=None):
             shared.setdefault(component.name, component)
     if kind in WITH_PAGE:
         for name in json.loads((ROOT / "web/package.json").read_text())["dependencies"]:
-            if name != "esbuild":  # it writes the pages, and is in none
+            if name != "esbuild":  # esbuild writes the pages, but is not part of them
                 components[name] = Component.of_npm(name)
     return ([component for name, component in sorted(components.items()) if name not in shared],
             [component for name, component in sorted(shared.items())])

@@ -1,6 +1,6 @@
-"""Makes the tables and pictures of docs/benchmarks.md of bench/results/*.json, which `./run bench --json` measured.
+"""Makes the tables and pictures of docs/benchmarks.md from bench/results/*.json, which `./run bench --json` measured.
 
-A row that a run does not have ends this with a KeyError, so that no baseline can go missing.
+If a run lacks a row, the script ends with a KeyError, so that no baseline can go missing.
 """
 
 import json
@@ -43,7 +43,8 @@ def normals(page, run):
         cells = []
         for group, name in zip(("faces", "vertices"), names):
             for size, order in SIZES:
-                missing = name.startswith("CGAL") and group == "vertices" and order == "shuffled"  # it takes minutes
+                # This row would take minutes, so it is not measured.
+                missing = name.startswith("CGAL") and group == "vertices" and order == "shuffled"
                 cells.append("-" if missing else text(run.ns(group, name, size, order)))
         rows.append([title, *cells])
     sizes = ["45 k", "1 M", "10 M shuffled"]
@@ -66,7 +67,8 @@ def machines(page):
 
 
 def frames(page, run):
-    """The number of frames of a segment from which on preparing curves takes less time than computing normals anew in each."""
+    """The number of frames per segment from which on preparing curves takes less time than computing normals anew in
+    each frame."""
     def cell(group, size, curves, anew):
         saved = run.ns(group, anew, size) - run.ns(group, f"{curves} to float3", size)
         return "never" if saved <= 0 else str(math.ceil(run.ns(group, f"prepare {curves}", size) / saved))

@@ -1,10 +1,10 @@
-"""Draws the pictures of docs/artists.md, in a window of Blender with the add-on. Run by tools/make_page blender:
+"""Draws the pictures of docs/artists.md, in a window of Blender with the add-on. tools/make_page blender runs it:
 
     blender --factory-startup --enable-event-simulate --python blender.py -- PROGRAM MODELS FOLDER
 
-FOLDER gets blender_export.jpg and blender_check.jpg, which are pictures of the window, and blender_before_after.jpg, which is
-rendered: the same mesh at one moment with the normals of the plain file, of the corrected one, and of Blender. MODELS is an empty
-folder, which the file browser shows.
+FOLDER gets blender_export.jpg and blender_check.jpg, which are pictures of the window, and
+blender_before_after.jpg, which renders a mesh at one moment with the normals of the plain file, of the corrected
+file, and of Blender. MODELS is an empty folder, which the file browser shows.
 """
 import math
 import os
@@ -22,7 +22,7 @@ from mathutils import Matrix, Vector  # noqa: E402
 ADDON = "chronormal_blender"
 PROGRAM, MODELS, FOLDER = sys.argv[sys.argv.index("--") + 1:]
 FRAMES = 48
-PAUSE = 1.5  # seconds that the window has to draw itself between two steps
+PAUSE = 1.5  # seconds that the window gets to draw itself between two steps
 
 
 def bend(co):
@@ -34,7 +34,7 @@ def puff(co):
 
 
 def make_head():
-    """A head with two keys and an animation, in an otherwise empty scene."""
+    """Makes a head with two keys and an animation, in an otherwise empty scene."""
     for o in list(bpy.data.objects):
         bpy.data.objects.remove(o)
     scene = bpy.context.scene
@@ -87,7 +87,7 @@ def save_window(name):
 
 
 def wait():
-    """Lets the window draw itself: regions slide in."""
+    """Gives the window time to draw itself, since regions slide in."""
     for area in window().screen.areas:
         area.tag_redraw()
 
@@ -101,7 +101,7 @@ def check():
 
 
 def open_tab():
-    """Clicks the tab of the panel, below those of Item, Tool and View."""
+    """Clicks the tab of the panel, below the tabs Item, Tool and View."""
     region = next(region for region in view().regions if region.type == "UI")
     at = {"x": region.x + region.width - 12, "y": region.y + region.height - 166}
     window().event_simulate("MOUSEMOVE", "NOTHING", **at)
@@ -117,7 +117,8 @@ def open_export():
 
 
 def shown_heads(o):
-    """Returns three meshes at the current frame: with the normals of the plain file, of the corrected one, and of Blender."""
+    """Returns three meshes at the current frame: with the normals of the plain file, of the corrected file, and of
+    Blender."""
     look, truth = sys.modules[f"{ADDON}.look"], sys.modules[f"{ADDON}.truth"]
     scene = bpy.context.scene
     frames, now = look.frames_of(scene), truth.values_now(o)
@@ -137,7 +138,7 @@ def shown_heads(o):
 
 
 def render(o):
-    """Renders the three side by side, below lights that are alike for all."""
+    """Renders the three meshes side by side, with the same lights for each."""
     meshes = shown_heads(o)
     bpy.ops.chronormal.clear()
     scene = bpy.context.scene

@@ -10,8 +10,9 @@ import { openPages } from '../../tests/viewers/web_page.mjs';
 
 const data = (name) => join(process.env.CHRONORMAL_DATA, name);
 
-// The subjects, and from where each is seen: `from` is a direction, `near` a share of the distance at which all is seen, `at` where the camera
-// looks, in shares of the box of the mesh. The moment is that of the largest mean error.
+// The subjects and their cameras: `from` is the direction of the camera, `near` its distance as a share of the distance
+// at which the whole mesh is seen, `at` the point that it looks at, in shares of the box of the mesh. The moment is the
+// one with the largest mean error.
 const SUBJECTS = [
   { name: 'face', input: [data('rigs/ict_capture.glb')], from: [0.4, 0.02, 1], near: 0.46, at: [0.5, 0.53, 0.65], scale: 20 },
   { name: 'suzanne', input: [data('rigs/blender_suzanne_two_keys.glb')], from: [0.45, 0.2, 1], near: 0.72, at: [0.5, 0.5, 0.5], scale: 45 },
@@ -19,7 +20,7 @@ const SUBJECTS = [
   { name: 'twist', input: ['--sample', 'twist'], from: [0.6, 0.45, 1], near: 0.8, at: [0.5, 0.5, 0.5], scale: 45 },
 ];
 
-// In the page: three panes, as shown, as it should be, and the error, with the text above them.
+// Runs in the page: draws three panes, with rendered normals, true normals and the error, and the text above them.
 function drawPicture({ from, near, at, scale }) {
   const { player, view, setMode } = globalThis.chronormal, { motion } = player, WIDTH = 400, HEIGHT = 430, HEAD = 26;
   const best = motion.mean.reduce((found, value, i) => (value > motion.mean[found] && motion.segment?.[i] !== 0xffffffff ? i : found), 0);

@@ -2,8 +2,8 @@
 
     CHRONORMAL_DATA=FOLDER npm.py PROGRAM PACKAGE TARBALL README
 
-Each is a process of its own, and its time is that of all processors together, start included: the package has one
-thread, the program one for each processor.
+Each measurement is a process of its own. Its time is the sum over all processors, including the start: the package
+has one thread, the program has one for each processor.
 """
 
 import gzip
@@ -18,7 +18,7 @@ SUZANNE, FACE = DATA / "rigs/blender_suzanne_two_keys.glb", DATA / "rigs/ict_cap
 STRESS, DANCE = DATA / "gltf/MorphStressTest/glTF/MorphStressTest.gltf", DATA / "sequences/rumba_13"
 OUT = ["-o", "out.glb"]
 
-# The calls that are measured: their words, the arguments, and how often; the least time counts.
+# The calls that are measured: their words, the arguments, and the number of runs, of which the fastest counts.
 CASES = [
     ("`--version`: the start alone", ["--version"], 5),
     ("`audit` of MorphStressTest", ["audit", STRESS], 3),
@@ -31,7 +31,7 @@ CASES = [
 ]
 
 
-# A process of its own starts the command, since a process counts the memory of the one that it was forked from as its own.
+# Starts the command from a small process, since a process counts the memory of its parent at the fork as its own.
 MEASURE = """
 import os, sys
 nothing = os.open(os.devnull, os.O_WRONLY)

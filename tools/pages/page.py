@@ -1,8 +1,8 @@
-"""Keeps a page of docs/ and its pictures what a program measures, for the other files of this folder.
+"""Keeps the figures and pictures of a page of docs/ up to date, for the other files of this folder.
 
-A page is written by hand, but for its tables, which stand between <!-- NAME --> and <!-- end -->. Figures in its prose are held
-by Page.says(). `tools/make_page NAME` writes tables and pictures anew; with --check it changes nothing. Both end with 1 where
-the page does not say what was measured.
+A page is written by hand, except for its tables, which are between <!-- NAME --> and <!-- end -->. Page.says()
+checks the figures in its prose. `tools/make_page NAME` writes tables and pictures anew; with --check it changes
+nothing. Both exit with 1 if the page differs from the measurements.
 """
 
 import os
@@ -31,7 +31,7 @@ def grouped(value, decimals=0):
 
 
 def scientific(value, decimals=0):
-    """As 3.1e-6; a number from 1 to 10 has no exponent."""
+    """Formats a number like 3.1e-6; a number from 1 to 10 has no exponent."""
     digits, exponent = f"{value:.{decimals}e}".split("e")
     return digits if int(exponent) == 0 else f"{digits}e{int(exponent)}"
 
@@ -45,7 +45,7 @@ def percent(share, decimals=0):
 
 
 def table(heads, rows):
-    """A table in Markdown, whose columns are to the right where a cell of the first row is a number."""
+    """Returns a table in Markdown. Columns whose first cell is a number are aligned to the right."""
     rows = [[str(cell) for cell in row] for row in rows]
     widths = [max(len(cell) for cell in column) for column in zip(heads, *rows)]
     right = [re.match(r"\*{0,2}[-+<]?[\d.]", cell) is not None for cell in rows[0]]
@@ -55,7 +55,7 @@ def table(heads, rows):
 
 
 def save(figure, path):
-    """Writes an SVG, or a PNG of 96 colours, which has a third of the size of one with all."""
+    """Writes an SVG, or a PNG of 96 colours, which takes a third of the size of a PNG with all colours."""
     if path.suffix == ".svg":
         return figure.savefig(path, metadata={"Date": None, "Creator": None})
     from PIL import Image
@@ -65,10 +65,11 @@ def save(figure, path):
 
 
 def looks_alike(path, other):
-    """Whether two pictures differ by no more than rounding may make of them."""
+    """Tells whether two pictures are equal up to rounding."""
     if path.suffix == ".svg":
         number = re.compile(r"-?\d+\.\d+")
-        one, two = (re.sub(r"#?\b[mpCD][0-9a-f]+(?:_\d+)?\b", "", file.read_text()) for file in (path, other))  # names made of hashes
+        # Removes names that are made from hashes.
+        one, two = (re.sub(r"#?\b[mpCD][0-9a-f]+(?:_\d+)?\b", "", file.read_text()) for file in (path, other))
         if number.sub("", one) != number.sub("", two):
             return False
         numbers = [np.array(number.findall(text), float) for text in (one, two)]
@@ -89,7 +90,7 @@ class Page:
         self.faults += 1
 
     def table(self, name, heads, rows):
-        """Puts a table into its place."""
+        """Inserts a table into the page."""
         place = re.search(f"(?<=<!-- {name} -->\n).*?(?=<!-- end -->)", self.text, re.S)
         if place is None:
             return self.fault(f"it has no place <!-- {name} -->")
@@ -99,25 +100,25 @@ class Page:
         self.text = self.text[:place.start()] + now + self.text[place.end():]
 
     def says(self, *sentences):
-        """Demands that the page has these words, wherever its lines break."""
+        """Fails unless the page has these sentences; line breaks do not matter."""
         for sentence in sentences:
             if " ".join(sentence.split()) not in " ".join(self.text.split()):
                 self.fault(f"it must say: {sentence}")
 
     def requires(self, holds, claim):
-        """Demands what the prose of the page states in words."""
+        """Fails unless a claim holds that the prose of the page states in words."""
         if not holds:
             self.fault(f"it no longer holds that {claim}")
 
     def picture(self, figure, file):
-        """Puts a figure into docs/pictures."""
+        """Saves a figure in docs/pictures."""
         with tempfile.TemporaryDirectory() as folder:
             save(figure, Path(folder) / file)
             plt.close(figure)
             self.take(Path(folder) / file)
 
     def take(self, drawn):
-        """Puts a picture into docs/pictures that was drawn elsewhere."""
+        """Copies a picture that was drawn elsewhere into docs/pictures."""
         there = DOCS / "pictures" / drawn.name
         if f"](pictures/{drawn.name})" not in self.text:
             self.fault(f"it does not show pictures/{drawn.name}")

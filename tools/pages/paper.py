@@ -1,7 +1,8 @@
-"""Measures what the paper states on the built-in morphs, by the Python package and the program, for docs/paper.md.
+"""Repeats the measurements of the paper on the built-in morphs with the Python package and the program, for
+docs/paper.md.
 
-What the schemes show comes from the library; the exact normals beside them are computed here from positions, in double, and so
-are the polynomials, circles and matrices of the paper that it is held against.
+The normals of the schemes come from the library. This file computes everything that they are compared with: exact
+normals from positions, in double, and the polynomials, circles and matrices of the paper.
 """
 
 import io
@@ -13,9 +14,9 @@ import chronormal as cn
 import numpy as np
 from page import BLACK, BLUE, GREEN, GREY, ORANGE, PROGRAM, PURPLE, RED, SKY, Page, grouped, percent, plt, ratio, scientific
 
-MORPHS = ["cloth", "bend", "twist", "eversion"]  # from mild to dramatic, as the columns of every table
+MORPHS = ["cloth", "bend", "twist", "eversion"]  # from mild to dramatic, in the order of the columns of every table
 COLOURS = dict(zip([*MORPHS, "soup"], [BLUE, GREEN, ORANGE, RED, PURPLE]))
-# Table 1 of the paper: its sums for morphs of 15,300, 44,700, 35,180 and 21,040 faces.
+# Table 1 of the paper: sums of angles for morphs of 15,300, 44,700, 35,180 and 21,040 faces.
 PAPER = {"linear": ("Linear", [18916, 55756, 44078, 20061]), "quadratic": ("Quadratic", [4820, 15792, 9681, 5425]),
          "cubic": ("Cubic", [1906, 6444, 3640, 1572]), "polynomial": ("t-variant cross product", [0, 0, 0, 0]),
          "slerp": ("Vector SLERP", [19427, 57999, 44972, 20861]),
@@ -38,7 +39,7 @@ def degrees_between(a, b):
 
 
 class Part:
-    """Some faces of a motion, alone: what the program reads, and their exact normals."""
+    """Some faces of a motion: the file for the program, and their exact normals."""
 
     def __init__(self, positions, faces):
         positions, faces = np.asarray(positions, np.float32), np.asarray(faces)
@@ -48,7 +49,7 @@ class Part:
         self.corners = positions.astype(float)[:, faces]  # (keyframes, faces, 3, 3)
 
     def normals(self, t, segment=0):
-        """n(t) of every face: the cross product of two edges."""
+        """Returns n(t) of every face: the cross product of two edges."""
         a, b, c = np.moveaxis((1 - t) * self.corners[segment] + t * self.corners[segment + 1], 1, 0)
         return np.cross(b - a, c - a)
 
@@ -56,12 +57,14 @@ class Part:
         return unit(self.normals(t, segment))
 
     def sums(self, scheme, samples=21, combine=np.sum):
-        """The angles between a scheme and exact normals, in degrees, over the samples of each segment and face."""
+        """Returns the angles between a scheme and exact normals, in degrees, combined over the samples of each segment
+        and face."""
         errors = cn.errors(self.bytes, scheme=scheme, samples=samples, elements="faces")[0].errors
         return combine(np.nan_to_num(errors.reshape(self.segments, samples, -1).astype(float)), axis=1).ravel()
 
     def shown(self, scheme, times):
-        """What a scheme has at these times of a motion whose keyframes are a second apart: (times, faces, 3)."""
+        """Returns the normals of a scheme at these times of a motion whose keyframes are a second apart: (times,
+        faces, 3)."""
         command = [PROGRAM, "sample", "-", "--scheme", scheme, "--elements", "faces", "-o", "-", "--quiet", "--times",
                    ",".join(map(repr, map(float, times)))]
         return np.load(io.BytesIO(subprocess.run(command, input=self.bytes, check=True, capture_output=True).stdout)).astype(float)
@@ -71,7 +74,7 @@ class Part:
 
 
 def random_order(faces, count):
-    """The first `count` of all faces in an order drawn by the 64-bit Mersenne twister with the seed 7, ascending."""
+    """Returns `count` random faces, chosen by the 64-bit Mersenne twister with the seed 7, in ascending order."""
     mask, state, order = (1 << 64) - 1, [7], list(range(faces))
     for i in range(1, 312):
         state.append((6364136223846793005 * (state[-1] ^ state[-1] >> 62) + i) & mask)
@@ -90,7 +93,8 @@ def random_order(faces, count):
 
 
 def some(name, pairs):
-    """Faces of a morph, so that there are so many pairs of a face and a segment; all where there are no more."""
+    """Returns random faces of a morph, for the wanted number of pairs of a face and a segment; all faces if there are
+    not more."""
     motion = cn.read(sample=name)
     positions, faces = np.asarray(motion.positions), np.asarray(motion.faces)
     count = pairs // (len(positions) - 1)
@@ -103,7 +107,7 @@ def in_parallel(work, items):
 
 
 def lagrange(part, degree, t, segment=0):
-    """The polynomial through exact unit normals at degree + 1 nodes, before it is normalised."""
+    """Returns the polynomial through exact unit normals at degree + 1 nodes, before it is normalised."""
     nodes, value = np.arange(degree + 1), 0
     for k in nodes:
         others = nodes[nodes != k]
@@ -111,7 +115,7 @@ def lagrange(part, degree, t, segment=0):
     return value
 
 
-# Section 1.
+# Section 1 of docs/paper.md.
 
 def measure_table1(page):
     measured = {}
@@ -167,7 +171,7 @@ def draw_ratios(page, theirs, ours):
 
 
 def measure_parts(page, ours):
-    """Where the error of slerp comes from: a wrong path, or a wrong speed along it."""
+    """Measures where the error of slerp comes from: a wrong path, or a wrong speed along the path."""
     rows = []
     for name in MORPHS:
         part, path, speed = some(name, 4000), [], []
@@ -190,7 +194,7 @@ def measure_parts(page, ours):
               f"is worse than linear there ({ratio(ours[MATRIX][0])})", f"frames gain only {percent(1 - ours[OPTIMAL][0], 1)}")
 
 
-# Section 2.
+# Section 2 of docs/paper.md.
 
 def measure_table2(page):
     schemes = ["recompute", "linear", "quadratic", "cubic", "polynomial", "rational", "slerp", "decasteljau:4", MATRIX, TIMED]
@@ -206,13 +210,14 @@ def measure_table2(page):
     page.requires(found["decasteljau:4"]["operations"]["trigonometric"] == 6 + 6, "de Casteljau takes 6 sines and 6 arc tangents")
 
 
-# Section 3.
+# Section 3 of docs/paper.md.
 
 PLAYED = ["polynomial", "linear", "quadratic", "cubic", "slerp", OPTIMAL, "circle"]
 
 
 def drift(part, scheme, steps, anchor):
-    """The largest angle to random access, in radians, and the largest difference of a length from 1, where a scheme is played."""
+    """Returns the largest angle to random access, in radians, and the largest difference of a length from 1, of a
+    scheme that is played step by step."""
     times = np.linspace(0, 1, steps + 1)
     command = [PROGRAM, "sample", "-", "--scheme", scheme, "--elements", "faces", "-o", "-", "--step", f"{steps}:{anchor}"]
     run = subprocess.run(command, input=part.bytes, check=True, capture_output=True)
@@ -236,10 +241,11 @@ def measure_drift(page):
               f"by up to {scientific(max(arcs[0]))} after 10,000 steps, and by {scientific(max(arcs[1]))} where")
 
 
-# Section 4.
+# Section 4 of docs/paper.md.
 
 def zeros_of_squared_length(part):
-    """The complex t at which n(t).n(t) = 0, four for each face, and which of these decides (Runge 1901)."""
+    """Returns the complex t at which n(t).n(t) = 0, four for each face, and which of the four limits the convergence
+    (Runge 1901)."""
     c0, m, n1 = part.normals(0), 2 * part.normals(0.5) - (part.normals(0) + part.normals(1)) / 2, part.normals(1)
     c1, c2 = 2 * (m - c0), c0 - 2 * m + n1
     quartic = np.stack([dot(c2, c2), 2 * dot(c1, c2), dot(c1, c1) + 2 * dot(c0, c2), 2 * dot(c0, c1), dot(c0, c0)], axis=1)
@@ -253,13 +259,14 @@ def zeros_of_squared_length(part):
 
 
 def margin(z):
-    """Interpolation at K + 1 equidistant nodes of [0, 1] converges as exp(-K g), g the least of this over all singular points."""
+    """Interpolation at K + 1 equidistant nodes of [0, 1] converges like exp(-K g). Returns the contribution of a
+    singular point z; g is the least of all."""
     z_log_z = lambda w: np.where(w == 0, 0, w * np.log(np.where(w == 0, 1, w)))  # noqa: E731
     return (z_log_z(z) - z_log_z(z - 1)).real
 
 
 def worst_of_twist():
-    """The face of twist with which linear interpolation has most trouble."""
+    """Returns the face of the morph twist with the largest error of linear interpolation."""
     face = cn.compare(sample="twist", schemes=["linear"])["schemes"][0]["max_at"]["element"]
     motion = cn.read(sample="twist")
     return face, Part(motion.positions, np.asarray(motion.faces)[[face]])
@@ -308,7 +315,8 @@ def segments_of(part):
 
 
 def largest_distance(part, degree):
-    """Of the polynomial from the unit normal, before it is normalised, which is what Runge's theory is about."""
+    """Returns the largest distance of the polynomial from the unit normal, before the polynomial is normalised:
+    Runge's theory is about this distance."""
     times = np.arange(1, 197) / 197
     return np.max([np.linalg.norm(lagrange(part, degree, t) - part.exact(t), axis=1) for t in times], axis=0)
 
@@ -331,7 +339,8 @@ def draw_lens(page, at, grows):
 
 
 def draw_oscillation(page, soup, at, found):
-    """A face with its zero nearest to a tenth above the middle, and the mean error of all morphs against the degree."""
+    """Draws a face with its zero nearest to a tenth above the middle, and the mean error of all morphs against the
+    degree."""
     shown = np.abs(at.real + 1j * np.abs(at.imag) - (0.5 + 0.1j)).argmin()
     face, t = soup.face(shown), np.linspace(0, 1, 401)
     exact = np.array([face.exact(x)[0] for x in t])
@@ -352,7 +361,7 @@ def draw_oscillation(page, soup, at, found):
               f"has it at {at[shown].real:.2f} + {abs(at[shown].imag):.2f} i")
 
 
-# Section 5.
+# Section 5 of docs/paper.md.
 
 CHOICES = {"slerp": (BLACK, "x"), "quaternion:edge": (SKY, "s"), "quaternion:polar": (PURPLE, "v"), MATRIX: (BLUE, "s"), OPTIMAL: (RED, "D"),
            "circle": (GREEN, "o"), TIMED: (ORANGE, "^")}
@@ -402,7 +411,7 @@ def measure_frames(page):
 
 
 def draw_angle(page):
-    """The mean error of one face of median linear error against the angle phi (eq. 6 and 7 of docs/theory.md)."""
+    """Draws the mean error of one face of median linear error against the angle phi (eq. 6 and 7 of docs/theory.md)."""
     (figure, axes), t, disagreement = plt.subplots(1, 3, figsize=(9, 3.6), layout="constrained"), np.linspace(0, 1, 201), 0
     for name, ax in zip(("cloth", "twist", "eversion"), axes):
         part = some(name, 2000)
@@ -439,10 +448,11 @@ def draw_angle(page):
     page.says(f"agree to {scientific(disagreement)} degrees")
 
 
-# Section 6.
+# Section 6 of docs/paper.md.
 
 def quaternions_of(tangent, binormal, normal):
-    """By the largest of the four squares; for a matrix that is no rotation it gives what such code gives."""
+    """Returns the quaternions of matrices by the largest of the four squares. A matrix that is not a rotation gives
+    the same values as in common code."""
     a, b, c = tangent.T, binormal.T, normal.T
     squares = np.stack([1 + a[0] + b[1] + c[2], 1 + a[0] - b[1] - c[2], 1 - a[0] + b[1] - c[2], 1 - a[0] - b[1] + c[2]])
     x, y, z, xy, xz, yz = b[2] - c[1], c[0] - a[2], a[1] - b[0], b[0] + a[1], c[0] + a[2], c[1] + b[2]
@@ -451,8 +461,9 @@ def quaternions_of(tangent, binormal, normal):
 
 
 def frames_as_printed(part, tangent=1, turned=1, w=0):
-    """Section 2.5 of the paper a second time, a 4 x 4 matrix by Eq. 7. The library's quaternion:matrix has neither a matrix nor a
-    quaternion. tangent -1: t1 = n1 x b1, as the paper prints it; turned -1: b1 is turned round; w: the fourth component of normals."""
+    """Computes section 2.5 of the paper independently, by the 4 x 4 matrix of its Eq. 7; the library's
+    quaternion:matrix uses neither matrices nor quaternions. If tangent is -1, t1 = n1 x b1, as the paper prints it;
+    if turned is -1, b1 is reversed; w is the fourth component of normals."""
     n0, n1 = part.exact(0), part.exact(1)
     column = lambda v, w: np.concatenate([v, np.full((len(v), 1), float(w))], axis=1)  # noqa: E731
     matrices = [np.stack([column(part.corners[k][:, i], 1) for i in range(3)] + [column(n, w)], axis=2) for k, n in ((0, n0), (1, n1))]
@@ -464,7 +475,7 @@ def frames_as_printed(part, tangent=1, turned=1, w=0):
 
 
 def played_as_printed(frames, times):
-    """Slerp of the two quaternions, and the last column of their matrix."""
+    """Interpolates the two quaternions by slerp, and returns the last column of their matrix."""
     q0, q1 = (quaternions_of(*frame) for frame in frames)
     q1 = np.where(dot(q0, q1)[:, None] < 0, -q1, q1)
     angle = np.arccos(np.minimum(dot(q0, q1), 1))[:, None]
@@ -519,17 +530,17 @@ def measure_slips(page):
               f"on soup it is at {soup[TIMED]} behind `quadratic` at {soup['quadratic']}", f"({soup['circle']} against {soup[OPTIMAL]})")
 
 
-# Section 7.
+# Section 7 of docs/paper.md.
 
 def view_against(towards, along):
-    """Two directions on paper, for who looks against `towards`, with `along` to the right."""
+    """Returns two directions on paper for an observer who looks against `towards`, with `along` to the right."""
     right = unit(along - dot(along, towards) * towards)
     return np.stack([right, np.cross(towards, right)], axis=1)
 
 
 def draw_triangle(page, face):
     u0, u1 = face.exact(0)[0], face.exact(1)[0]
-    # From above both normals and aside, so that neither they nor the triangles are seen along.
+    # Look at both normals from above and from the side, so that neither the normals nor the triangles are seen edge on.
     view = view_against(unit(unit(np.cross(u1, u0)) + 0.8 * unit(u0 + u1)), u1 - u0)
     corners = face.corners[:, 0] - face.corners[:, 0].mean(axis=1, keepdims=True)
     corners = corners / np.linalg.norm(corners, axis=2).max() @ view
@@ -554,7 +565,7 @@ def draw_triangle(page, face):
 
 
 def draw_sphere(page, face):
-    """De Casteljau by its levels, and the circles of frames, on the sphere."""
+    """Draws the levels of de Casteljau's algorithm, and the circles of frames, on the sphere."""
     t = np.linspace(0, 1, 101)
     exact = np.array([face.exact(x)[0] for x in t])
     u0, u1, half = exact[0], exact[-1], face.exact(0.5)[0]

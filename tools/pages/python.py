@@ -12,7 +12,7 @@ def main():
     page, names = Page("python"), {}
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        plt.rcdefaults()  # as a reader has them
+        plt.rcdefaults()  # the style that a reader's own matplotlib has
         for block in re.findall(r"^```python\n(.*?)^```$", page.text, re.M | re.S):
             exec(compile(block, "docs/python.md", "exec"), names)
         drawn = sorted(Path(folder).glob("*.png"))

@@ -1,4 +1,5 @@
-"""How long normals take, against NumPy that recomputes them from positions; both are verified before they are timed.
+"""Times normals by the package, and by NumPy that recomputes them from positions. Both are verified before they are
+timed.
 
     PYTHONPATH=build/release/python python3 tools/pages/python_bench.py [--faces 1000000]
 """
@@ -12,7 +13,7 @@ import chronormal as cn
 
 
 def sheet(faces):
-    """A square sheet of so many triangles, nearly, that a wave runs through: (p0, p1, faces)."""
+    """Returns a square sheet of about so many triangles with a wave that runs through it: (p0, p1, faces)."""
     side = int(np.sqrt(faces / 2))
     y, x = np.divmod(np.arange((side + 1) ** 2), side + 1)
     x, y = x / side, y / side
@@ -24,7 +25,7 @@ def sheet(faces):
 
 
 def recompute(p0, p1, faces, t, add):
-    """Vertex normals at t as one writes them in NumPy."""
+    """Computes vertex normals at t in the usual NumPy way."""
     p = (1 - t) * p0 + t * p1
     a, b, c = (p[faces[:, i]] for i in range(3))
     normals = add(faces, np.cross(b - a, c - a), len(p))
@@ -45,7 +46,7 @@ def add_by_bincount(faces, normals, count):
 
 
 def seconds(work, repeats):
-    """The fastest and the median of some runs, after one that warms up."""
+    """Returns the fastest and the median time of some runs, after one run that warms up."""
     work()
     times = [time.perf_counter()]
     for _ in range(repeats):

@@ -1,7 +1,7 @@
-"""Measures for docs/truth.md what normals between keyframes are worth where the motion between is known, by `compare --truth`.
+"""Measures for docs/truth.md the errors of normals between keyframes against a known motion, by `compare --truth`.
 
-Sequences by other people are measured where CHRONORMAL_DATA names their folder; else their tables stay as they are. The right normals
-of the table about the screen are computed here, in double, from positions alone.
+Sequences by other people are measured if CHRONORMAL_DATA names their folder; otherwise their tables do not change.
+The true normals for the table of pixels are computed here, in double, from positions alone.
 """
 
 import io
@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 from page import PROGRAM, Page, scientific
 
-TURN = 2 * np.pi / 3  # of the ball and of the top of the column, in all
-IN_EACH = 8  # steps of each segment are known, and compared but for its ends
+TURN = 2 * np.pi / 3  # total angle of the ball and of the top of the column, in radians
+IN_EACH = 8  # steps per segment with known positions, all of which except the ends are compared
 ROWS = {"linear": "`linear` (nlerp)", "slerp": "`slerp`", "quadratic": "`quadratic`", "decasteljau:4": "`decasteljau:4`",
         "quaternion:optimal": "`quaternion:optimal`", "polynomial": "`polynomial`: exact on straight paths",
         "catmull-rom": "exact on curves through the keyframes (`catmull-rom`)", "hermite": "exact on curves with known velocities (`hermite`)"}
@@ -23,7 +23,7 @@ SCHEMES = [name for name in ROWS if name not in ("catmull-rom", "hermite")]
 
 
 def grid(around, up, place):
-    """A tube, closed around, by place(part around, part up): positions (n, 3) and faces (m, 3)."""
+    """Returns a closed tube with vertices at place(part around, part up): positions (n, 3) and faces (m, 3)."""
     positions = np.array([place(j / around, i / up) for i in range(up + 1) for j in range(around)])
     i, j = np.divmod(np.arange(up * around), around)
     a, b = i * around + j, i * around + (j + 1) % around
@@ -42,7 +42,7 @@ def column(around, up):
     return x, 2 * up - 1, z
 
 
-# The mesh, and how fast each vertex turns around y.
+# The mesh of each motion, and the speed at which each vertex turns around y.
 MOTIONS = {"turn": (grid(48, 24, ball), lambda p: TURN + 0 * p[:, 1]), "twist": (grid(48, 48, column), lambda p: TURN * (p[:, 1] + 1) / 2)}
 
 
@@ -60,7 +60,7 @@ def run(*words):
 
 
 def compared(path, every):
-    """The average error of each row in degrees, and the bend of the path."""
+    """Returns the average error of each row in degrees, and the bend of the path."""
     result = json.loads(run("compare", path, "--truth", every, "--elements", "vertices", "--json", "--schemes", ",".join(SCHEMES)))
     found = {row["scheme"] if row["path"] == "linear" else row["path"]: row["mean_degrees"] for row in result["rows"]}
     of_faces = json.loads(run("compare", path, "--truth", every, "--elements", "faces", "--json", "--schemes", "quaternion:matrix"))
@@ -90,7 +90,7 @@ def known(page, name):
 
 
 def as_sequence(folder, path, *moments):
-    """A motion at some moments as a sequence: its file, positions, times and faces."""
+    """Writes a motion at some moments as a sequence. Returns its file, positions, times and faces."""
     file = Path(folder) / f"{path.stem}.npz"
     run("sample", path, *moments, "--force", "-o", file)
     arrays = np.load(file)
@@ -100,7 +100,7 @@ def as_sequence(folder, path, *moments):
 
 
 def shown(path, name, times):
-    """What a scheme has at these times: (times, vertices, 3)."""
+    """Returns the normals of a scheme at these times: (times, vertices, 3)."""
     out = run("sample", path, "--scheme", name, "--no-weld", "-o", "-", "--times", ",".join(map(repr, map(float, times))))
     return np.load(io.BytesIO(out)).astype(float)
 
@@ -119,7 +119,7 @@ def exact(positions, faces):
 
 
 def pixels_of(positions, faces, view, size=512):
-    """The pixels that show a face, seen along z: the face, and its weights (p, 3)."""
+    """Returns the pixels that show a face, seen along z: the face, and its weights (p, 3)."""
     left, bottom, width = view
     screen = np.column_stack([(positions[:, :2] - (left, bottom)) / width * size, positions[:, 2]])
     depth, face_at, weights = np.full((size, size), -np.inf), np.full((size, size), -1), np.zeros((size, size, 3))
@@ -127,7 +127,7 @@ def pixels_of(positions, faces, view, size=512):
         area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
         low = np.maximum(np.ceil(np.min([a, b, c], 0)[:2] - 0.5).astype(int), 0)
         high = np.minimum(np.floor(np.max([a, b, c], 0)[:2] - 0.5).astype(int), size - 1)
-        if area <= 0 or (low > high).any():  # it shows its back, or nothing
+        if area <= 0 or (low > high).any():  # the face shows its back, or covers no pixel
             continue
         x, y = np.meshgrid(np.arange(low[0], high[0] + 1) + 0.5, np.arange(low[1], high[1] + 1) + 0.5)
         v = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
@@ -140,14 +140,14 @@ def pixels_of(positions, faces, view, size=512):
 
 
 def levels(normals, faces, pixels):
-    """Grey of 0 to 255 as a screen shows it (sRGB), of a matte surface under one light."""
+    """Returns grey levels from 0 to 255 (sRGB) of a matte surface with one light."""
     light = unit(np.einsum("pc,pcd->pd", pixels[1], normals[faces[pixels[0]]])) @ unit(np.array([0.4, 0.5, 0.77]))
     light = 0.1 + 0.9 * np.maximum(light, 0)
     return 255 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 def screens(page, data):
-    """The differences at t = 1/4 of each segment, in degrees of vertices and in levels of pixels that turn."""
+    """Measures the differences at t = 1/4 of each segment: in degrees at vertices, and in grey levels of pixels."""
     rows = []
     for title, path, moments in [("dance", data / "sequences/rumba_13", ["--times", "keys"]),
                                  ("face", data / "rigs/ict_capture.glb", ["--animation", "0", "--times", "0:0.5:4"])]:

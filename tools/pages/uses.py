@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/uses.md from what the package answers."""
+"""Draws the pictures of docs/uses.md from answers of the package."""
 
 import chronormal as cn
 import numpy as np
@@ -13,7 +13,8 @@ def unit(vectors):
 
 
 def soup(motion, count):
-    """Random triangles whose corners move by up to `motion` times their size, and their unit normals at all times."""
+    """Returns random triangles whose corners move by up to `motion` times their size, and their unit normals at all
+    times."""
     random = np.random.default_rng(3)
     start = random.uniform(-0.5, 0.5, (3 * count, 3))
     end = start + random.uniform(-motion, motion, (3 * count, 3))
@@ -25,7 +26,7 @@ def soup(motion, count):
 
 
 def flat(axis):
-    """A part of the sphere around an axis, flattened so that distances from the axis are angles in degrees."""
+    """Returns a flat map of the sphere around an axis, in which distances from the axis are angles in degrees."""
     axis = unit(np.asarray(axis, float))
     right = unit(np.cross(np.eye(3)[np.abs(axis).argmin()], axis))
     up = np.cross(axis, right)
@@ -43,7 +44,8 @@ def flat(axis):
 
 
 def draw_cones(page):
-    """A normal that leaves the cone of its two ends, in the cone of the interval; and how many random triangles do that."""
+    """Draws a normal that leaves the cone of its two ends, with the cone of the interval; and counts the random
+    triangles whose normals leave it."""
     figure, (sphere, bars) = plt.subplots(1, 2, figsize=(9, 4.2), width_ratios=(1.1, 1), layout="constrained")
 
     def measured(motion, count):
@@ -53,7 +55,7 @@ def draw_cones(page):
         return curves, ends, angle(ends)[0], angle(ends).max(0), cn.cones(keyframes, faces), angle
 
     curves, ends, of_ends, farthest, found, _ = measured(0.6, 400)
-    # A face that leaves the cone of its ends clearly, and whose own cone is not too wide to look at.
+    # Choose a face that clearly leaves the cone of its ends, and whose own cone is not too wide for a picture.
     face = np.argmax(np.where((found["half_angle"] < 40) & (np.degrees(of_ends) > 8), farthest - of_ends, -1))
     seen, rim = flat(found["axis"][face])
     sphere.plot(*seen(rim(np.arcsin(found["sine"][face]))).T, color=EXACT, label="cone of the interval")
@@ -76,7 +78,8 @@ def draw_cones(page):
 
 
 def draw_facing(page):
-    """A sphere that turns inside out, seen from far away: which faces show their front when, and the silhouette at an instant."""
+    """Draws a sphere that turns inside out, seen from far away: the intervals in which faces show their front, and the
+    silhouette at an instant."""
     viewer = np.array([4.0, -5.0, 2.0])
     motion = cn.read(sample="eversion")
     positions, faces = np.asarray(motion.positions), np.asarray(motion.faces)
@@ -100,7 +103,7 @@ def draw_facing(page):
 
 
 def ball(rows, columns):
-    """A closed sphere with a vertex at each pole."""
+    """Returns a closed sphere with a vertex at each pole."""
     polar, around = np.meshgrid(np.pi * np.arange(1, rows) / rows, 2 * np.pi * np.arange(columns) / columns, indexing="ij")
     rings = np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar)], axis=-1)
     vertices = np.concatenate([[[0, 0, 1]], rings.reshape(-1, 3), [[0, 0, -1]]])
@@ -114,7 +117,8 @@ def ball(rows, columns):
 
 
 def draw_contain(page):
-    """A drop that falls and is squeezed, and dust that rises through it: what is inside when, and where it crosses the surface."""
+    """Draws a drop that falls and is squeezed, and dust that rises through it: the dust inside over time, and the
+    crossings of the surface."""
     vertices, faces = ball(24, 48)
     x, y, z = vertices.T
     falls = np.stack([x * (0.7 + 0.3 * z), y * (0.7 + 0.3 * z), z + 1], axis=1)

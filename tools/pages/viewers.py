@@ -9,7 +9,7 @@ from page import Page
 FILES = ["gltf/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf", "gltf/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf",
          "gltf/MorphStressTest/glTF/MorphStressTest.gltf", "gltf/RobotExpressive/RobotExpressive.glb", "rigs/blender_suzanne_two_keys.glb",
          "rigs/ict_capture.glb"]
-# Babylon.js and Bevy render what three.js does, but for rounding.
+# Babylon.js and Bevy render the same as three.js, up to rounding.
 VIEWERS = {"three": "three.js, Babylon.js, Bevy", "playcanvas": "PlayCanvas", "godot": "Godot 4", "filament": "Filament", "gltfpack": "after gltfpack"}
 STATES = {None: "by default", "exact": "`exact`"}
 SAMPLES = 3

@@ -21,8 +21,8 @@ include_patterns = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md
                     "docs/**.md"]
 myst_heading_anchors = 4
 highlight_language = "none"
-# The theme of Debian's package furo: dark and light, on phones, with a search that needs no server. Its style sheet has
-# the dark colours for the button alone, since sassc dropped those for systems that are set to dark.
+# The theme of Debian's package furo: dark and light, on phones, with a search that needs no server. Debian's style
+# sheet shows dark colours only by the button: sassc dropped the rules for systems that are set to dark.
 html_theme = "furo"
 STYLES = (Path(furo.__file__).parent / "theme/furo/static/styles/furo.css").read_text()
 DARK = STYLES[STYLES.index('body[data-theme="dark"] {'):STYLES.index(".only-light {\n      display")]
@@ -35,7 +35,7 @@ pygments_style = "default"
 html_copy_source = html_show_sourcelink = False
 html_show_sphinx = False
 
-# The groups of the navigation. Pages of docs/ that stand in none are results.
+# The groups of the navigation. Pages of docs/ in no group are listed as results.
 GROUPS = {
     "Getting started": ["docs/artists", "docs/web", "docs/simulation", "docs/cpp", "docs/python"],
     "Reference": ["docs/cli", "docs/formats", "docs/stability", "The npm package <js/README>"],
@@ -46,7 +46,7 @@ GROUPS = {
 
 
 def navigation():
-    """Returns the tables of contents that stand, hidden, at the end of the first page."""
+    """Returns the tables of contents, which are hidden at the end of the first page."""
     placed = {page for pages in GROUPS.values() for page in pages}
     pages = [f"docs/{path.stem}" for path in sorted((ROOT / "docs").glob("*.md"))]
     groups = GROUPS | {"Results": [page for page in pages if page not in placed]}
@@ -59,7 +59,7 @@ def navigation():
 def add_navigation(app, page, source):
     if page == root_doc:
         source[0] += "\n\n" + navigation() + "\n"
-    elif page == "js/README":  # whose picture is put beside it where the npm package is made
+    elif page == "js/README":  # the npm package gets this picture when it is made
         source[0] = source[0].replace("](head.png)", "](../docs/pictures/head.png)")
     elif page == "docs/decisions/README":
         entries = sorted(path.stem for path in (ROOT / "docs/decisions").glob("0*.md"))

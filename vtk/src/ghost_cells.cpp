@@ -56,7 +56,7 @@ void keep_ghost_levels(vtkPolyData* piece, int levels) {
   if (ghosts == nullptr) return;
   const vtkSmartPointer<vtkUnsignedCharArray> beyond = cells_beyond(piece, ghosts, levels);
 
-  // RemoveGhostCells() drops the flags of the cells that stay, so the flags get another name meanwhile.
+  // RemoveGhostCells() drops the flags of the cells that stay, so the flags get another name for the moment.
   const std::array<vtkDataSetAttributes*, 2> all = {piece->GetPointData(), piece->GetCellData()};
   for (vtkDataSetAttributes* const attributes : all) {
     vtkDataArray* const flags = attributes->GetArray(kFlags);

@@ -18,8 +18,8 @@ namespace chronormal::vtk {
 /// The four control positions of the cubic of every point: controls[k][point].
 using PointCurves = std::array<std::vector<Vec3d>, 4>;
 
-/// The steps that determine the curve between two neighbours: these two and one on either side; at the ends of the
-/// sequence, the nearest four.
+/// The steps that determine the curve between two neighbours: the two neighbours and one more step on either side, or
+/// the nearest four steps at the ends of the sequence.
 struct NearSteps {
   std::size_t first = 0, count = 0;
 };
@@ -33,7 +33,7 @@ struct NearSteps {
 [[nodiscard]] PointCurves curves_through(std::span<vtkPointSet* const> steps, std::span<const double> times,
                                          std::size_t segment);
 
-/// Returns the places of all points at t in [0, 1], in a type of VTK (VTK_FLOAT, VTK_DOUBLE).
+/// Returns the positions of all points at t in [0, 1], in a type of VTK (VTK_FLOAT, VTK_DOUBLE).
 [[nodiscard]] vtkSmartPointer<vtkPoints> points_at(const PointCurves& curves, double t, int type);
 
 }  // namespace chronormal::vtk

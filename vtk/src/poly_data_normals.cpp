@@ -1,5 +1,5 @@
-// Computes the control normals of faces between two steps, their sums over the faces of points and cells, and the
-// directions of the sums at t.
+// Computes the control normals of faces between two steps, their sums for points and cells, and the directions of the
+// sums at t.
 #include "poly_data_normals.h"
 
 #include <vtkCellArray.h>
@@ -106,7 +106,7 @@ Faces find_faces(vtkPolyData* mesh) {
   for (vtkIdType c = 0; c < mesh->GetNumberOfStrips(); ++c, ++cell) {
     mesh->GetStrips()->GetCellAtId(c, points);
     for (vtkIdType k = 0; k + 2 < points->GetNumberOfIds(); ++k) {
-      const vtkIdType turned = k % 2;  // 1 for every second triangle of a strip, which is wound the other way
+      const vtkIdType turned = k % 2;  // 1 for every second triangle of a strip, which has the opposite winding
       for (const vtkIdType i : {k + turned, k + 1 - turned, k + 2}) corners.push_back(number(points->GetId(i)));
       end_face(cell);
     }
@@ -196,8 +196,8 @@ struct Groups {
   // times.
   template <class ForPairs>
   Groups(std::size_t elements, const ForPairs& for_pairs) : ends(elements + 1, 0) {
-    // This is a counting sort: ends[e + 1] first counts the faces of e; then ends[e] is where e begins, and finally
-    // where it ends.
+    // This is a counting sort: ends[e + 1] first counts the faces of e; then ends[e] is the first index of e, and
+    // finally its end.
     for_pairs([this](std::size_t element, std::size_t) { ++ends[element + 1]; });
     for (std::size_t e = 0; e < elements; ++e) ends[e + 1] += ends[e];
     faces.resize(ends.back());

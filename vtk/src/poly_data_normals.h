@@ -27,7 +27,7 @@ namespace chronormal::vtk {
 
 /// Unit normals as arrays of three components, in double where the points are in double, otherwise in float.
 struct MeshNormals {
-  vtkSmartPointer<vtkDataArray> of_points;  ///< nullptr where they were not asked for
+  vtkSmartPointer<vtkDataArray> of_points;  ///< nullptr if not requested
   vtkSmartPointer<vtkDataArray> of_cells;
 };
 /// Computes the normals at t, which goes from 0 at the earlier step to 1 at the later one. This runs on all cores,

@@ -57,8 +57,8 @@ bool is_name(vtkDataSetAttributes* of, vtkAbstractArray* array) {
          array == of->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) || !array->IsA("vtkDataArray");
 }
 
-// Copies the data with the arrays that vtkTemporalInterpolator may mix: all except normals and except texts, which it
-// cannot mix.
+// Copies the data, with only the arrays that vtkTemporalInterpolator may interpolate: not normals, and not texts, which
+// it cannot interpolate.
 vtkSmartPointer<vtkDataSet> amounts(vtkDataSet* data) {
   const auto copy = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
   copy->ShallowCopy(data);
@@ -70,7 +70,7 @@ vtkSmartPointer<vtkDataSet> amounts(vtkDataSet* data) {
   return copy;
 }
 
-// Takes arrays of names from the earlier step.
+// Copies arrays of names from the earlier step.
 void keep_names(vtkDataSet* before, vtkDataSet* output) {
   const Attributes from = attributes(before), to = attributes(output);
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -124,7 +124,7 @@ vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, v
   const int pieces = out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   const int ghosts = out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
 
-  // vtkMultiTimeStepAlgorithm keeps steps of one piece. It forgets them when it is asked for information.
+  // vtkMultiTimeStepAlgorithm keeps steps of one piece. A request for information makes it forget the steps.
   const std::array piece = {out->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, ghosts};
   if (piece != this->KeptPiece) {
     vtkNew<vtkInformation> forget;
@@ -133,7 +133,7 @@ vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, v
     this->KeptPiece = piece;
   }
 
-  // Each step needs the faces on the other side of a seam.
+  // Requests one more ghost level of each step, since normals along a seam need the faces on its other side.
   const vtkTypeBool result = this->Superclass::ProcessRequest(request, inputs, outputs);
   if (pieces > 1) in->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), ghosts + 1);
   return result;
@@ -149,8 +149,7 @@ int vtkChronormalInterpolator::RequestUpdateExtent(vtkInformation* request, vtkI
   const int count = in->Length(Pipeline::TIME_STEPS());
   this->NumberOfCacheEntries = this->Path == LINEAR ? 2 : 4;
   if (count >= 2 && this->Path == CATMULL_ROM && in->Length(UPDATE_TIME_STEPS()) > 0) {
-    // The later one of the requested steps is the end of the segment; a time at or before the first step is in the
-    // first segment.
+    // The later requested step is the end of the segment. A time at or before the first step is in the first segment.
     double* const times = in->Get(Pipeline::TIME_STEPS());
     const double last = in->Get(UPDATE_TIME_STEPS())[in->Length(UPDATE_TIME_STEPS()) - 1];
     const auto end = static_cast<std::size_t>(std::lower_bound(times + 1, times + count - 1, last) - times);

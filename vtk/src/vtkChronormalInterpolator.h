@@ -1,13 +1,13 @@
-/// A vtkTemporalInterpolator whose normals are right.
+/// A vtkTemporalInterpolator with true normals.
 ///
-/// It takes the place of vtkTemporalInterpolator in a pipeline: positions and all other arrays are interpolated as
-/// there, and the normals of every vtkPolyData, alone or in blocks of composite data, are those of the mesh as it is at
-/// the requested time, and not mixtures of stored ones. See docs/simulation.md.
+/// It replaces vtkTemporalInterpolator in a pipeline. Positions and all other arrays are interpolated in the same way,
+/// but the normals of every vtkPolyData, alone or in blocks of composite data, are the true normals of the mesh at the
+/// requested time, and not mixtures of stored normals. See docs/simulation.md.
 ///
 /// Normals    Point normals are sums over the faces around a point, weighted by area; cell normals are the normals of
 ///            the cells. Both are of length 1, or (0, 0, 0) where there is no face. Normals of the input are replaced;
-///            ComputePointNormals and ComputeCellNormals say whether normals are made where it has none. They are in
-///            double if the points are.
+///            ComputePointNormals and ComputeCellNormals say whether normals are also computed for an input
+///            without them. Normals are in double if the points are.
 /// Path       Points move on straight lines between two steps, as in vtkTemporalInterpolator, or on curves through four
 ///            steps: SetPathToCatmullRom(). Then positions and normals are those of the curve; all other arrays are
 ///            interpolated as before.
@@ -76,7 +76,8 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
   bool ComputePointNormals = true;
   bool ComputeCellNormals = false;
   int Path = LINEAR;
-  std::array<int, 3> KeptPiece = {0, 1, 0};  // the number of the last piece, of how many, and its ghost levels
+  std::array<int, 3> KeptPiece = {0, 1, 0};  // for the steps that are kept: the number of the piece, the number of
+                                             // pieces, and the ghost levels
 };
 
 #endif

@@ -14,7 +14,7 @@ TIMES = (0.0, 1.0, 2.5)
 
 
 def positions(time, side=SIDE):
-    """Positions (n, 3) in float32: waves run along a sheet that turns about its middle line, more at one end."""
+    """Returns positions (n, 3) in float32: waves run along a sheet that twists about its middle line."""
     u, v = (x.reshape(-1) for x in np.meshgrid(*2 * [np.linspace(0, 1, side)], indexing="ij"))
     height = 0.3 * np.sin(3 * u + 2 * v + 2 * time) + time * u * v
     angle = 2 * time * v
@@ -34,7 +34,7 @@ def triangles(side=SIDE):
 
 
 def between(time, side=SIDE):
-    """Positions at any time, on straight lines between the steps, in double."""
+    """Returns positions at any time, on straight lines between the steps, in double."""
     time = min(max(time, TIMES[0]), TIMES[-1])
     k = min(int(np.searchsorted(TIMES, time, side="right")), len(TIMES) - 1)
     t = (time - TIMES[k - 1]) / (TIMES[k] - TIMES[k - 1])
@@ -42,8 +42,9 @@ def between(time, side=SIDE):
 
 
 def on_curve(time, times, side=SIDE, shape=positions):
-    """Positions at a time on the cubics through the steps, whose slope at a step is that of the polynomial through it and its
-    neighbours, and at both ends of the one through the nearest four steps, in double."""
+    """Returns positions at a time on the cubics through the steps, in double. The slope at a step is that of the
+    polynomial through it and its neighbours; at both ends it is that of the polynomial through the nearest four
+    steps."""
     def slope(k):
         nearest = slice(0, 4) if k == 0 else slice(max(k - 3, 0), k + 1) if k == len(times) - 1 else slice(k - 1, k + 2)
         steps = np.array([shape(t, side).reshape(-1).astype(float) for t in times[nearest]])
@@ -58,19 +59,19 @@ def on_curve(time, times, side=SIDE, shape=positions):
 
 
 def areas(points, faces):
-    """Vector areas of polygons, by Newell's method."""
+    """Returns the vector areas of polygons, by Newell's method."""
     corners = points[faces] - points[faces[:, :1]]
     return np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1)
 
 
 def unit(vectors):
-    """Vectors scaled to length 1; zero vectors stay zero."""
+    """Returns vectors scaled to length 1; zero vectors stay zero."""
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return vectors / np.where(lengths == 0, 1, lengths)
 
 
 def point_normals(points, faces):
-    """Sums of the vector areas of the faces around each point."""
+    """Returns the sums of the vector areas of the faces around each point."""
     sums = np.zeros((len(points), 3))
     for corner in faces.T:
         np.add.at(sums, corner, areas(points, faces))
@@ -98,7 +99,7 @@ def named(values, name):
 
 
 def mesh(points, faces):
-    """A vtkPolyData with stored normals of points, an amount, and ids."""
+    """Makes a vtkPolyData with stored normals of points, an amount, and ids."""
     data = vtkPolyData()
     held = vtkPoints()
     held.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=1))
@@ -106,7 +107,8 @@ def mesh(points, faces):
     data.SetPolys(cells(faces))
     data.GetPointData().SetNormals(named(point_normals(points.astype(float), faces).astype(np.float32), "Normals"))
     data.GetPointData().AddArray(named(points[:, 0] * 2, "amount"))
-    data.GetPointData().AddArray(named(np.arange(len(points), dtype=float), "number"))  # survives every filter of VTK
+    # An array that survives every filter of VTK.
+    data.GetPointData().AddArray(named(np.arange(len(points), dtype=float), "number"))
     for attributes, count in ((data.GetPointData(), len(points)), (data.GetCellData(), len(faces))):
         ids = vtkIdTypeArray()
         ids.DeepCopy(named(np.arange(count), "ids"))
@@ -116,8 +118,8 @@ def mesh(points, faces):
 
 
 class Steps(VTKPythonAlgorithmBase):
-    """A source with time steps; `make(time)` gives the data of each. It notes the times, and the piece with its ghost
-    levels, that it was asked for; where it cannot cut pieces, VTK has it make the first piece alone."""
+    """A source with time steps; `make(time)` returns the data of each. It records the times, pieces and ghost levels
+    that it was asked for. If it cannot cut pieces, VTK asks it for the first piece alone."""
 
     def __init__(self, make=lambda time: mesh(positions(time), triangles()), kind="vtkPolyData", cuts=False, times=TIMES):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType=kind)
@@ -143,7 +145,7 @@ class Steps(VTKPythonAlgorithmBase):
 
 
 def numbers(data):
-    """The numbers that these points have in the whole mesh."""
+    """Returns the numbers that these points have in the whole mesh."""
     return np.rint(vtk_to_numpy(data.GetPointData().GetArray("number"))).astype(int)
 
 

@@ -80,7 +80,7 @@ class RightTest(unittest.TestCase):
         data = at(connected(vtkChronormalInterpolator, source), 0.5)
         self.assertEqual(data.GetPointData().GetNormals().GetDataType(), VTK_DOUBLE)
         p0, p1 = ((positions(time) + far) for time in TIMES[:2])
-        truth = 0.5 * (p0 - far) + 0.5 * (p1 - far)  # exact but for the last bit of what the steps hold
+        truth = 0.5 * (p0 - far) + 0.5 * (p1 - far)  # exact up to the last bit of the positions in the steps
         self.assertLess(degrees(normals(data), point_normals(truth, triangles())).max(), 1e-5)
 
     def test_strips_lines_and_vertices_are_cells_too(self):
@@ -112,7 +112,7 @@ class RightTest(unittest.TestCase):
 
     def test_bits_do_not_depend_on_the_order_of_points_and_cells(self):
         random = np.random.default_rng(7)
-        in_double = lambda time: positions(time).astype(float)  # float would hide most of the rounding of sums
+        in_double = lambda time: positions(time).astype(float)  # float would hide most of the rounding errors of sums
         order, of_cells = random.permutation(400), random.permutation(len(triangles()))
         rank = np.argsort(order)
         shuffled = Steps(lambda time: mesh(in_double(time)[order], rank[triangles()[of_cells]]))
@@ -338,7 +338,7 @@ class PiecesTest(unittest.TestCase):
 
     def test_sources_that_cut_pieces_in_any_order_keep_ids_and_bits_in_double(self):
         def make(time):
-            """The whole mesh in an order of its own, of which all but every third cell or so are marked as ghosts."""
+            """Returns the whole mesh in a different order, with about two in three of its cells marked as ghosts."""
             piece, _ = source.piece
             random = np.random.default_rng(piece)
             order, of_cells = random.permutation(400), random.permutation(len(triangles()))
