@@ -1,5 +1,6 @@
-// Tests that no comment opens like a fragment: the words of refused_openers.txt begin parts of sentences that a reader
-// has to complete by himself. A function's comment begins with a verb, a type's with a noun, a note in code is a sentence.
+// Tests that no comment begins like a fragment. The words in refused_openers.txt begin parts of sentences that a reader
+// would have to complete. A function's comment begins with a verb, a type's with a noun, and a note in code is a
+// sentence.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ std::vector<std::string> refused_openers() {
   return openers;
 }
 
-// Returns the text of a line that is nothing but a comment.
+// Returns the text of a line that has only a comment.
 std::optional<std::string_view> comment_in(std::string_view line, std::string_view mark) {
   const std::size_t begin = line.find_first_not_of(' ');
   if (begin == std::string_view::npos || !line.substr(begin).starts_with(mark)) return std::nullopt;

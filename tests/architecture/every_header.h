@@ -6,7 +6,7 @@
 
 namespace chronormal {
 
-/// The number of headers that it includes.
+/// The number of headers that every_header.cpp includes.
 extern const std::size_t kEveryHeaderCount;
 
 }  // namespace chronormal

@@ -1,5 +1,5 @@
-// Tests the one-definition rule: no two headers of the product give one name to two things. The check is that
-// every_header.cpp compiles, which CMake makes from every_header.cpp.in; this test checks that it leaves no header out.
+// Tests that no two headers of the product use the same name for different things. Compiling every_header.cpp, which
+// CMake makes from every_header.cpp.in, is the check; this test makes sure that no header is left out.
 
 #include "tests/architecture/every_header.h"
 

@@ -1,6 +1,6 @@
-// Tests the layers: each folder is a layer, and a folder in it is a room. A file may include only what stands above it:
-// its own room, the rooms before that on its floor, and the floors before its own. The path alone decides, so this test
-// needs no list of files. docs/architecture.md draws the same plan.
+// Tests the layers: each folder is a layer, and a folder in it is a room. A file may include only its own room, the
+// rooms before its own on its floor, and the floors before its own. The path alone decides, so this test needs no list
+// of files. docs/architecture.md draws the same plan.
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ std::vector<std::string> parts_of(const std::string& path) {
 }
 
 // The place of a file: its floor, and the room there. Room 0 is the floor itself, above all of its rooms. The program
-// begins in main.cpp, which therefore stands below the rooms of its floor.
+// begins in main.cpp, which therefore comes after the rooms of its floor.
 struct Place {
   std::size_t floor = 0;
   std::size_t room = 0;
@@ -71,8 +71,8 @@ struct Place {
   auto operator<=>(const Place&) const = default;
 };
 
-// Returns the room of a public header, which is the room of its source, src/FLOOR/ROOM/STEM.cpp, or the floor if it has
-// none.
+// Returns the room of a public header, which is the room of its source src/FLOOR/ROOM/STEM.cpp, or the floor itself if
+// there is no such source.
 std::string room_of_public_header(const std::string& floor, const fs::path& header) {
   for (const auto& [name, rooms] : kFloors) {
     if (name != floor) continue;
@@ -83,8 +83,8 @@ std::string room_of_public_header(const std::string& floor, const fs::path& head
   return "";
 }
 
-// Returns the place of include/chronormal/FLOOR/STEM.h, src/FLOOR/ROOM/..., cli/..., or of the same paths as they are
-// included; nothing for a path that is in no layer, or in a folder that is not a room.
+// Returns the place of a file, given by its path or as it is included: include/chronormal/FLOOR/STEM.h,
+// src/FLOOR/ROOM/..., or cli/... Returns nothing for a path outside of the layers or in a folder that is not a room.
 std::optional<Place> place_of(const std::string& path) {
   std::vector<std::string> parts = parts_of(path);
   if (!parts.empty() && (parts[0] == "include" || parts[0] == "src")) parts.erase(parts.begin());
@@ -118,7 +118,7 @@ std::string included_by(const std::string& line) {
   return last == std::string::npos ? "" : line.substr(first + 1, last - first - 1);
 }
 
-// Describes the faults of the includes of one file; empty if there are none.
+// Describes the includes of a file that break the rule; empty if there are none.
 std::vector<std::string> violations(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   const auto own = place_of(path);
@@ -151,7 +151,7 @@ std::vector<fs::path> product_files() {
   return files;
 }
 
-// Returns the lines of a file that use an instruction set directly and not through Highway.
+// Returns the lines of a file that use an instruction set directly instead of through Highway.
 std::vector<std::string> raw_intrinsics(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(text)) {
@@ -196,10 +196,10 @@ TEST(Layers, every_file_includes_only_its_own_room_and_those_above) {
   }
 }
 
-// The rooms of bake, from the one that uses none of the others to the last.
+// The rooms of bake in order: each may use only the rooms before it.
 const std::vector<std::string> kRoomsOfBake = {"poses", "deltas", "judge", "fits", "candidates", "write", "sequence"};
 
-// Returns the lines that include a room of bake after the file's own.
+// Returns the lines that include a room of bake that comes after the file's own.
 std::vector<std::string> later_rooms(const std::string& room, const std::string& text) {
   const auto place_of = [](const std::string& name) {
     return std::find(kRoomsOfBake.begin(), kRoomsOfBake.end(), name) - kRoomsOfBake.begin();
@@ -273,7 +273,7 @@ TEST(Layers, the_oracle_shares_no_code_with_the_product) {
   EXPECT_EQ(text.find("#include \"chronormal"), std::string::npos);
 }
 
-// Lists what an umbrella header includes of the folders.
+// Lists the headers that an umbrella header includes.
 std::vector<std::string> listed_by(const std::string& umbrella) {
   std::vector<std::string> listed;
   for (const std::string& line : lines_of(read(kRoot / "include/chronormal" / umbrella))) {
@@ -283,7 +283,7 @@ std::vector<std::string> listed_by(const std::string& umbrella) {
   return listed;
 }
 
-// The door of the core is for whoever links the core alone, which has no symbol of io and workflow.
+// chronormal.h must be usable with the library chronormal alone, which has no symbols of io and workflow.
 TEST(Layers, the_umbrella_headers_list_every_public_header_in_the_order_of_the_layers) {
   const std::vector<std::string> core = listed_by("chronormal.h"), io = listed_by("chronormal_io.h");
   const auto is_io = [](const std::string& header) {
@@ -299,7 +299,7 @@ TEST(Layers, the_umbrella_headers_list_every_public_header_in_the_order_of_the_l
   std::vector<std::string> there;
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "include")) {
     const std::string path = fs::relative(entry.path(), kRoot / "include").string();
-    if (path == "chronormal_c.h") continue;  // for C
+    if (path == "chronormal_c.h") continue;  // the header for C is separate
     if (entry.is_regular_file() && !is_umbrella("include/" + path)) there.push_back(path);
   }
   EXPECT_LE(there.size(), 32U) << "fewer doors: merge headers that are one idea";
@@ -320,8 +320,8 @@ TEST(Layers, raw_intrinsics_stand_in_two_files) {
   }
 }
 
-// Returns the lines by which a private header declares names in the public namespace. An inline namespace keeps private
-// names apart for the linker and the compiler, and need not be written where the names are used.
+// Returns the lines by which a private header declares names in the public namespace. Private names belong in an inline
+// namespace: it separates them for the linker and the compiler, but code can use them without naming it.
 std::vector<std::string> public_names(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(text)) {
@@ -342,7 +342,7 @@ TEST(Layers, private_headers_declare_internal_names) {
   }
 }
 
-// A file holds one whole idea.
+// A file should hold one idea, and be neither too short nor too long.
 TEST(Layers, files_hold_one_idea) {
   for (const fs::path& file : product_files()) {
     const std::size_t limit = file.string().starts_with("include/") ? 400 : 1200;
@@ -350,7 +350,7 @@ TEST(Layers, files_hold_one_idea) {
   }
 }
 
-// Several test files are compiled as one (CHRONORMAL_UNITY), so that their names must not collide.
+// Several test files are compiled as one (CHRONORMAL_UNITY), so their names must not collide.
 TEST(Layers, every_test_file_has_a_namespace_of_its_own) {
   std::size_t count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {

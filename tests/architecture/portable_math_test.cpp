@@ -1,5 +1,5 @@
-// Checks that results are the same on every machine: no function of the standard library is used whose rounding depends
-// on the system.
+// Checks that no code calls a function of the standard library whose rounding depends on the system, so that results
+// are the same on every machine.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-/* The C interface as an engine in C99 uses it: normals against cross products that are computed here, in double, and what
- * it says of arguments that are wrong. Ends with 1 at the first thing that is not as it should be. */
+/* Uses the C interface as an engine in C99 would: compares normals with cross products in double, and checks the
+ * messages about wrong arguments. Exits with 1 at the first failure. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,13 +14,13 @@
     }                                                                                         \
   } while (0)
 
-/* A vertex as an engine has it: its position is not alone. */
+/* An engine's vertex, in which the position is one of several fields. */
 typedef struct vertex {
   float position[3];
   float colour[4];
 } vertex;
 
-/* A tent of four faces over a square, whose tip moves sideways while the square is bent. */
+/* A tent of four faces over a square. Its tip moves sideways while the square is bent. */
 static const uint32_t kCorners[12] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
 static const vertex kFrom[5] = {
     {{0, 0, 0}, {0}}, {{2, 0, 0}, {0}}, {{2, 2, 0}, {0}}, {{0, 2, 0}, {0}}, {{1, 1, 1}, {0}}};
@@ -29,7 +29,7 @@ static const vertex kTo[5] = {
 
 static double at(int v, int c, double t) { return (1 - t) * kFrom[v].position[c] + t * kTo[v].position[c]; }
 
-/* Twice the vector area of a face at t. */
+/* Adds twice the vector area of a face at t. */
 static void add_face(int face, double t, double n[3]) {
   double e[3], f[3];
   for (int c = 0; c < 3; ++c) {
@@ -39,7 +39,7 @@ static void add_face(int face, double t, double n[3]) {
   for (int c = 0; c < 3; ++c) n[c] += e[(c + 1) % 3] * f[(c + 2) % 3] - e[(c + 2) % 3] * f[(c + 1) % 3];
 }
 
-/* The normal that element i of a kind should have. */
+/* Computes the expected normal of element i of a kind. */
 static void truth(int elements, int i, double t, double n[3]) {
   n[0] = n[1] = n[2] = 0;
   for (int face = 0; face < 4; ++face) {
@@ -79,7 +79,7 @@ static int check_curves(int elements, size_t size) {
       EXPECT(degrees[i] < 1e-3F);
     }
   }
-  /* The next segment leads back: its beginning is the end of the first. */
+  /* The next segment leads back, so it begins with the end of the first one. */
   float packed[36], first[36];
   EXPECT(chronormal_curves_unit_normals(curves, 1, (chronormal_result){first, 0}, NULL) == CHRONORMAL_DONE);
   EXPECT(chronormal_curves_next(curves, to, from) == CHRONORMAL_DONE);
@@ -93,7 +93,7 @@ static int check_curves(int elements, size_t size) {
   return 0;
 }
 
-/* What an octahedral normal stands for, decoded here. */
+/* Decodes an octahedral normal independently. */
 static void decode(const int16_t word[2], double n[3]) {
   const double x = word[0] / 32767.0, y = word[1] / 32767.0, z = 1 - fabs(x) - fabs(y);
   n[0] = z < 0 ? (1 - fabs(y)) * (x < 0 ? -1 : 1) : x;
@@ -103,7 +103,7 @@ static void decode(const int16_t word[2], double n[3]) {
   for (int c = 0; c < 3; ++c) n[c] /= length;
 }
 
-/* Ranges and many t have the bits of one call; packed normals are near them. */
+/* Checks that ranges and many t give the same bits as one call, and that packed normals are close. */
 static int check_outputs(void) {
   const chronormal_mesh mesh = {5, 4, kCorners, NULL};
   const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)}, to = {kTo[0].position, sizeof(vertex)};
@@ -141,7 +141,7 @@ static int check_outputs(void) {
       EXPECT(fabs((word < 512 ? word : word - 1024) / 511.0 - whole[1][3 * v + c]) < 2e-3);
     }
   }
-  /* What is wrong is said, and nothing is written. */
+  /* Wrong arguments must be reported, and nothing must be written. */
   const double beyond[2] = {0.5, 1.5}, none[1] = {NAN};
   memset(ranges, 0, sizeof ranges);
   for (int k = 0; k < 2; ++k) chronormal_output_init(&outputs[k], ranges[k]);
@@ -163,7 +163,7 @@ static int check_outputs(void) {
   return 0;
 }
 
-/* Options of a newer header: what this library does not know must be 0. */
+/* Tests options of a newer header: fields that this library does not know must be 0. */
 static int check_newer_options(void) {
   const chronormal_mesh mesh = {5, 4, kCorners, NULL};
   const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)};
@@ -219,7 +219,7 @@ static int check_blend(void) {
   return 0;
 }
 
-/* A vertex goes up along a parabola, as the cubic through three keyframes does: z is t (2 - t). */
+/* A vertex rises along a parabola, z = t (2 - t), which is the cubic through three keyframes. */
 static int check_paths(const char* folder) {
   char names[3][512];
   const char* files[3] = {names[0], names[1], names[2]};

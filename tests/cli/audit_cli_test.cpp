@@ -1,4 +1,4 @@
-// Tests `audit` for scripts and people: the verdict, the tables, the JSON, exit codes.
+// Tests `audit` for scripts and people: the verdict, the tables, the JSON, and exit codes.
 
 #include <gtest/gtest.h>
 
@@ -88,7 +88,7 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
             "chronormal audit: the worst error is 90 degrees, beyond the tolerance of 89.9: "
             "vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n");
   expect_words(text_of("hinge.glb --tolerance 90.1"), {": within 90.1 degrees\n"});
-  // Four edges are torn at one moment, in viewers too.
+  // Four edges are torn at one moment, in every viewer.
   EXPECT_EQ(run("hinge.glb --tears 4").exit_code, 0);
   const ProcessResult torn = run("hinge.glb --tears 3 --tolerance 91");
   EXPECT_EQ(torn.exit_code, 4);
@@ -144,7 +144,7 @@ TEST_F(AuditCli, viewers_are_in_the_json_with_their_errors_and_sources) {
 }
 
 TEST_F(AuditCli, tolerance_is_a_gate_for_every_viewer_that_is_named) {
-  // Each normal is right at weight 1; on the way, the long one turns too soon in viewers that add deltas unchanged.
+  // Each normal is right at weight 1; in between, the long normal turns too soon in viewers that add deltas unchanged.
   test::ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals = {0, 0, 0, -1, 0, 0, -1, 0, 0, -3, 0, -1};
   folder_.write("long.glb", mesh.file().glb());
@@ -341,7 +341,8 @@ TEST_F(AuditCli, gate_does_not_pass_normals_of_drawn_faces_that_cancel) {
   EXPECT_EQ(baked.out.find("exact at every instant"), std::string::npos) << baked.out;
 }
 
-// A triangle that shrinks to a hundredth is lit from behind: it is drawn, and its direction is exact.
+// A triangle that shrinks to a hundredth and turns over is still drawn, and its direction is exact, so it must be
+// judged.
 TEST_F(AuditCli, gate_judges_small_normals_whose_direction_is_certain) {
   const std::string big = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
   const auto small = [](const std::string& size, const std::string& at) {
@@ -349,7 +350,8 @@ TEST_F(AuditCli, gate_judges_small_normals_whose_direction_is_certain) {
   };
   folder_.write("big.obj", big);
   folder_.write("small.obj", small(".009", "0"));
-  folder_.write("far.obj", small(".009", "100000"));  // float32 keeps only a point or a line
+  // So far from the origin, float32 keeps only a point or a line of the triangle.
+  folder_.write("far.obj", small(".009", "100000"));
   for (const std::string rule : {"--rule step", "--rule slerp --samples 2", "--rule nlerp --samples 2"}) {
     const std::string arguments = "big.obj small.obj " + rule;
     const Json json = json_of(arguments);
@@ -378,7 +380,7 @@ TEST_F(AuditCli, long_tables_are_cut_and_json_is_not) {
 }
 
 TEST_F(AuditCli, long_tables_show_the_worst) {
-  // Every third of 20 targets folds the hinge by its whole angle, and the others by a tenth of that.
+  // Every third of 20 targets folds the hinge completely, and the others fold it by a tenth.
   test::ShadedMesh mesh = test::hinge();
   const auto slight = [&] {
     test::ShadedMesh::Target target = mesh.targets[0];
@@ -392,7 +394,7 @@ TEST_F(AuditCli, long_tables_show_the_worst) {
   const std::string text = text_of("many.glb --samples 2");
   const std::string table = text.substr(0, text.find("... and 4 more"));
   for (int i = 0; i < 20; ++i) {
-    // The table shows the first of equals: all 7 with an error of 90 degrees, and 9 of the rest.
+    // The table shows 16 rows, the first ones among equals: all 7 with an error of 90 degrees, and 9 of the rest.
     const bool is_shown = i % 3 == 0 || i < 14;
     EXPECT_EQ(table.find("\ntarget " + std::to_string(i) + " ") != std::string::npos, is_shown) << i << "\n" << table;
   }
@@ -405,7 +407,7 @@ std::string last_line(const std::string& text) {
 }
 
 TEST_F(AuditCli, faults_are_said_once_for_each_mesh_and_cause_the_worst_first) {
-  // Twenty targets lack normals, most of them after a few degrees, and a mesh before them is better.
+  // Twenty targets lack normals, most with errors of a few degrees, and an earlier mesh has smaller errors.
   const auto slight = [](float share) {
     test::ShadedMesh::Target target = test::hinge().targets[0];
     for (float& c : target.positions) c *= share;
@@ -432,7 +434,7 @@ TEST_F(AuditCli, faults_are_said_once_for_each_mesh_and_cause_the_worst_first) {
 }
 
 TEST_F(AuditCli, targets_together_are_a_fault_of_their_own_where_they_are_worse_than_alone) {
-  // Two targets fold by 14 degrees each, and by 27 together.
+  // Two targets fold by 14 degrees each, and together by 27.
   test::ShadedMesh mesh = test::hinge();
   for (float& c : mesh.targets[0].positions) c *= 0.125F;
   mesh.targets[0].positions[9] = 0;
@@ -467,7 +469,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
     const ProcessResult result = run_shell(std::string(kProgram) + " bake " + arguments, folder_.path(), "");
     ASSERT_EQ(result.exit_code, 0) << result.err;
   };
-  // A still file has nothing that drives its target, so one delta is all it can have, before and after.
+  // In a still file nothing drives the target, so it can have only one delta, before and after a bake.
   test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
   sheet.targets[0].normals.clear();
   test::GltfBuilder builder = sheet.file();
@@ -482,16 +484,16 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   std::string advice = last_line(text_of("still_baked.glb"));
   expect_words(advice, {"was baked before", "where no animation moves them"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // The file was baked with one delta where correction targets could be driven.
+  // The file was baked with one delta although correction targets could be driven.
   bake("sheet.glb -o endpoint.glb --encode endpoint -q");
   advice = last_line(text_of("endpoint.glb"));
   expect_words(advice, {"was baked before", "bake the original with --encode exact"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // The file was baked for all viewers alike, while fewer viewers would allow smaller errors.
+  // The file was baked for all viewers, while fewer viewers would allow smaller errors.
   bake("sheet.glb -o alike.glb -q");
   advice = last_line(run("alike.glb --tolerance 1e-6").out);
   expect_words(advice, {"was baked before", "bake the original with a smaller --tolerance, with --for"});
-  // The positions of this bake were moved afterwards.
+  // The positions of the baked file were changed after the bake.
   bake("hinge.glb -o baked.glb --encode exact -q");
   std::string bytes = test::read_whole(folder_ / "baked.glb");
   const float folded = -2;
@@ -502,9 +504,9 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   folder_.write("moved.glb", bytes);
   advice = last_line(text_of("moved.glb"));
   expect_words(advice, {"was baked before", "start again from the file before its bake"});
-  // An error by another rule is not what bake corrects.
+  // The error is measured by a rule that bake does not correct for.
   expect_words(last_line(text_of("hinge.glb --rule lerp")), {"without --rule, audit says what bake can do"});
-  // A tolerance below a degree defines what counts as a fault.
+  // A tolerance below one degree also lowers the limit for "nothing to do".
   expect_words(last_line(text_of("baked.glb --tolerance 0.1")),
                {"nothing to do: no normal is off by more than 0.1 degrees"});
 }
@@ -536,7 +538,7 @@ TEST_F(AuditCli, several_gltf_files_are_a_row_each) {
   EXPECT_EQ(json["files"][1]["input"]["name"], "models/m10.glb");
   EXPECT_EQ(json["files"][1]["worst_degrees"], 90.0);
   EXPECT_EQ(json["files"][0]["judged"], 0);
-  // A folder is a list, even if it holds one file.
+  // A folder counts as a list, even if it contains only one file.
   EXPECT_EQ(Json::parse(run("models/deep --json").out)["files"].size(), 1U);
 }
 
@@ -576,13 +578,13 @@ TEST_F(AuditCli, gltf_files_and_keyframes_are_not_mixed) {
 }
 
 TEST_F(AuditCli, weighting_of_the_author_is_said_and_can_be_overridden) {
-  // A wide face and a leaning narrow one meet in vertex 0: by angle its normal is (0, -s, 1 + c) in some length.
+  // A wide face and a narrow, leaning face meet at vertex 0: by angle its normal is parallel to (0, -s, 1 + c).
   test::ShadedMesh mesh;
   mesh.corners = {0, 1, 2, 0, 2, 3};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -8, 8, 8};
   const float r = std::sqrt(0.5F);
   mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1, r, 0, r};
-  // Both corners at vertex 0 and at vertex 2 count alike.
+  // The two corners at vertex 0 have equal angles, and so do those at vertex 2.
   for (const std::size_t v : {0U, 2U}) {
     const float x = r, z = 1 + r, length = std::sqrt(x * x + z * z);
     mesh.normals[3 * v] = x / length;

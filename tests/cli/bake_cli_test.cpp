@@ -77,13 +77,13 @@ TEST_F(BakeCli, what_was_baked_before_takes_its_images_along) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(bytes_of("folder/twice.glb").find("image.png"), std::string::npos);
   EXPECT_NE(bytes_of("folder/twice.glb").find(" and so on"), std::string::npos);
-  // In its folder it stays byte for byte.
+  // In the same folder, the file stays byte for byte the same.
   EXPECT_EQ(run("once.glb -o again.glb").exit_code, 0);
   EXPECT_TRUE(bytes_of("again.glb") == bytes_of("once.glb"));
 }
 
 TEST_F(BakeCli, hard_edges_of_a_sequence_are_those_that_its_files_show) {
-  // The ridge of a roof, vertices 1 and 2, has a normal for each side.
+  // Vertices 1 and 2 are the ridge of a roof and have a normal for each side.
   const std::string faces = "vn -1 0 1\nvn 1 0 1\nf 1//1 2//1 3//1\nf 3//2 2//2 4//2\n";
   folder_.write("roof_0.obj", "v -1 0 0\nv 0 0 1\nv 0 1 1\nv 1 0 0\n" + faces);
   folder_.write("roof_1.obj", "v -1 0 0\nv 0 0 2\nv 0 1 2\nv 1 0 0\n" + faces);
@@ -165,13 +165,13 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
   expect_words(audit("exact.glb"), {"nothing to do"});
 }
 
-// Files of more than 64 MiB are read one after the other, without their stored normals.
+// Files above 64 MiB are read one keyframe after the other, without stored normals.
 TEST_F(BakeCli, of_large_files_it_audits_the_normals_that_they_store_all_the_same) {
   constexpr std::size_t kLine = 1 << 20, kLines = 24;
   const std::string comment = "#" + std::string(kLine - 2, ' ') + "\n";
   std::string room;
   for (std::size_t i = 0; i < kLines; ++i) room += comment;
-  // The stored normals of keyframe 1 are wrong, which the report finds by the normals of that file.
+  // The stored normals of keyframe 1 are wrong. The report can only find this in the file itself.
   for (const int k : {0, 1, 2}) {
     std::string mesh = bytes_of("f_" + std::to_string(k) + ".obj");
     mesh = mesh.substr(0, mesh.find('f')) + (k == 1 ? "vn 1 0 0\n" : "vn 0 0 1\n") +
@@ -207,12 +207,12 @@ TEST_F(BakeCli, errors_in_its_table_are_those_that_audit_finds) {
     std::snprintf(worst, sizeof worst, "  %.4f  ", before["worst_degrees"].get<double>());
     expect_words(text.out, {"before     after\n", "degrees  at worst\n", worst});
   }
-  // Without an audit, the table shows the errors that the bake itself knows under another name.
+  // Without an audit, the table shows the errors that the bake itself measures, under the name "fit".
   expect_words(run("moving.glb -o out.glb --force --no-audit --encode endpoint").out, {"    fit\n"});
 }
 
 TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
-  // Deltas times the squares of weights exceed float32. They are written only on request.
+  // The deltas times the squares of the weights exceed float32, so these bakes are written only with --force.
   std::size_t worse = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     test::GltfBuilder builder = test::hills_document(1, seed);
@@ -264,7 +264,7 @@ TEST_F(BakeCli, a_result_that_is_better_in_one_respect_and_worse_in_another_is_t
                   ", but worse where a normal is farthest off (by " + figure("worst_degrees_after") +
                       " degrees, before by " + figure("worst_degrees_before") +
                       "); this counts targets alone as well, which --animations-only gives up\n"});
-    // The tables of viewers say which poses they are about.
+    // The tables of viewers name the poses that they cover.
     const std::string both = "in what the file plays, and for each target alone:",
                       tracks = "in what the file plays (targets alone, which --animations-only gives up, are";
     const std::string text = run("talk.glb -o out.glb --force --animations-only --for three").out;
@@ -293,7 +293,7 @@ TEST_F(BakeCli, what_drives_extra_targets_is_in_the_file_and_beside_it_where_tha
   expect_words(both.out, {"what drives the extra targets is in drivers.json too\n"});
   EXPECT_EQ(Json::parse(bytes_of("drivers.json"))["meshes"][0]["chronormal"], mark);
   EXPECT_TRUE(bytes_of("other.glb") == bytes_of("face.glb"));
-  // The file is not overwritten either; and a baked file still says what drives it.
+  // The file is not overwritten, and the drivers of a baked file are still reported.
   expect_error("still.glb -o third.glb --encode exact --drivers drivers.json", 1, "drivers.json");
   ASSERT_EQ(run("face.glb -o copy.glb --drivers again.json").exit_code, 0);
   EXPECT_EQ(bytes_of("again.json"), bytes_of("drivers.json"));
@@ -314,7 +314,7 @@ TEST_F(BakeCli, the_last_of_several_files_is_where_to_write) {
   EXPECT_EQ(run("f_0.obj f_1.obj f_2.obj frames.glb").exit_code, 0);
   expect_error("moving.glb", 2, "say where to write");
   expect_error("f_0.obj f_1.obj f_2.obj", 2, "say where to write");
-  expect_error("moving.glb still.glb", 1, "still.glb");  // it is there
+  expect_error("moving.glb still.glb", 1, "still.glb");  // the output already exists
 }
 
 TEST_F(BakeCli, avatars_are_read_and_written_as_glb_under_their_own_extension) {

@@ -1,4 +1,4 @@
-// Checks that a file is the old one or the new one, never a part, where the writing of a new one fails or is killed.
+// Checks that after a failed or killed write, a file is either the old or the new one, never a part.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -28,7 +28,7 @@ class InterruptedBake : public testing::Test {
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& before = "") const {
     return run_shell(before + kProgram + " " + arguments, folder_.path());
   }
-  // Bakes over a file in a folder, which must fail with exit code 1 and leave it.
+  // Bakes over a file in a folder. The bake must fail with exit code 1 and keep the file.
   void expect_refused(const std::string& folder) const {
     const ProcessResult result = run("bake 'cloth_*.obj' --force --no-audit -o " + folder + "/old.glb");
     EXPECT_EQ(result.exit_code, 1) << result.err;
@@ -36,8 +36,7 @@ class InterruptedBake : public testing::Test {
     EXPECT_TRUE(test::read_whole(folder_ / (folder + "/old.glb")) == kOld);
     EXPECT_EQ(entries(folder), 1) << "a temporary file is left";
   }
-  // Does the same on a disk with this little room. Only root may mount one, so that the test is skipped for other
-  // users.
+  // Bakes in the same way on a disk with little room. Only root can mount such a disk, so other users skip the test.
   void mount_disk_of(std::size_t kilobytes) const {
     fs::create_directory(folder_ / "small");
     const std::string mount = "mount -t tmpfs -o size=" + std::to_string(kilobytes) + "k none small";
@@ -76,7 +75,7 @@ TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
     fs::permissions(folder_ / "closed", fs::perms::owner_all);
     return;
   }
-  // Permissions do not stop root, but a mount does.
+  // Permissions do not stop root, but a read-only mount does.
   const std::string mount = "mount --bind closed closed && mount -o remount,bind,ro closed";
   if (run_shell(mount, folder_.path()).exit_code != 0) GTEST_SKIP() << "root may not mount here";
   expect_refused("closed");
@@ -85,8 +84,8 @@ TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
 
 TEST_F(InterruptedBake, full_disk_keeps_its_file) { expect_refused_on_a_disk_of(64); }
 
-// The arrays wait in a file of their own until the JSON in front of them is known, and each is deleted from the disk
-// after it is copied. The largest has 214 KB; the disk has room for all of them, but not for one more.
+// The arrays wait in a separate file until the JSON in front of them is known, and each array is deleted from the disk
+// after it is copied. The largest array has 214 KB; the disk has room for all arrays, but not for one more.
 TEST_F(InterruptedBake, disk_that_is_full_at_the_end_keeps_its_file) {
   expect_refused_on_a_disk_of(whole_.size() / 1024 + 100);
 }

@@ -1,4 +1,5 @@
-// Tests what scripts depend on in compare --blend: its three forms, the normals that it compares, and refused requests.
+// Tests the parts of compare --blend that scripts depend on: text, JSON and CSV, the compared normals, and refused
+// requests.
 
 #include <gtest/gtest.h>
 

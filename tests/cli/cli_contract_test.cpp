@@ -1,5 +1,5 @@
-// Tests what scripts depend on: exit codes, the texts on stdout and stderr, the JSON, and that files are never half
-// written. Runs the program itself.
+// Tests the behaviour that scripts depend on: exit codes, the texts on stdout and stderr, the JSON, and that files are
+// never half written. Runs the program itself.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -42,7 +42,7 @@ class Cli : public testing::Test {
   }
   ~Cli() override { fs::remove_all(folder_); }
 
-  // Runs `chronormal ARGUMENTS` in a folder of its own.
+  // Runs `chronormal ARGUMENTS` in a separate folder.
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
     return run_shell(std::string(kProgram) + " " + arguments, folder_.string(), input);
   }
@@ -140,11 +140,11 @@ TEST_F(Cli, help_and_version_have_short_ways) {
 
 TEST_F(Cli, a_mistyped_option_is_answered_with_the_nearest) {
   expect_error(run("compare a.obj b.obj --shcemes linear"), 2, {"'--shcemes'; did you mean --schemes?"});
-  // The answer is the same if something required is missing, or if the mistake is in a value's own name.
+  // The suggestion is the same if a required option is missing, or if the mistake is in the option's name.
   expect_error(run("bake --tolerence=3"), 2, {"'--tolerence'; did you mean --tolerance?"});
   expect_error(run("bake -z a.obj"), 2, {"there is no option '-z'"});
   expect_error(run("compare a.obj b.obj --colour-of-the-sky"), 2, {"'--colour-of-the-sky'\n"});
-  // The text after an option that takes a value is that value.
+  // The word after an option that takes a value is the value, even if it looks like an option.
   expect_error(run("compare a.obj b.obj --samples --sample"), 2, {"--samples"});
 }
 
@@ -189,7 +189,7 @@ TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
   }
 }
 
-// An input that takes an option, for each option that a command lists. Further needs of every command are added.
+// For each option, an input with which the option is valid. needs_of() adds the other arguments that a command needs.
 const std::map<std::string, std::string> kUses = {
     {"--access", "a.obj b.obj --access sequential"},
     {"--active", "--base a.obj b.obj --blend 2 --active 1"},
@@ -334,7 +334,7 @@ TEST_F(Cli, every_option_that_help_lists_is_taken) {
       const auto special = kUses.find(command + " " + name), usual = kUses.find(name);
       const auto use = special != kUses.end() ? special : usual;
       ASSERT_NE(use, kUses.end()) << "give kUses an input that takes this option";
-      // An option of one question names it: {"query --points", "contain ..."}.
+      // An option of a single query names the query here: {"query --points", "contain ..."}.
       const std::string question = command == "query" && special == kUses.end() && name != "--help" ? "collapse " : "";
       const ProcessResult result = run(command + " " + question + use->second + needs_of(command, use->second));
       EXPECT_TRUE(result.exit_code == 0 || (name == "--tolerance" && result.exit_code == 4)) << result.err;
@@ -367,7 +367,7 @@ TEST_F(Cli, colours_are_for_terminals) {
   EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " --json").out, with("", audit + " --json").out);
   EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " -o table.txt").out, "");
   EXPECT_EQ(read("table.txt"), piped.out);
-  // Emphasis takes no room in a table, and names cannot add any.
+  // Terminal codes for emphasis take no columns in a table, and names from files cannot contain such codes.
   std::string plain;
   bool is_mark = false;
   for (const char c : forced.out) {
@@ -450,7 +450,7 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   expect_error(run("compare a.obj b.obj --schemes linear,nlerp"), 2, {"nlerp", "quaternion:optimal"});
   expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"--schemes", "empty name"});
   expect_error(run("compare a.obj b.obj --schemes linear,"), 2, {"--schemes", "empty name"});
-  // An empty text, or one that is not a number, is an error, and does not count as a missing option.
+  // An empty value, or one that is not a number, is an error; it does not count as a missing option.
   for (const char* const option :
        {"audit a.obj --tolerance", "audit a.obj --samples", "audit a.obj --fps", "compare a.obj b.obj --samples",
         "compare a.obj b.obj --blend", "compare a.obj b.obj --crease", "sample a.obj --crease",
@@ -544,7 +544,7 @@ TEST_F(Cli, json_is_one_object_as_the_contract_has_it) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"linear", "quadratic", "cubic", "polynomial", "slerp", "decasteljau:4",
                                              "quaternion:matrix", "quaternion:optimal", "circle:timed"}));
-  // The error of linear by hand: the angle between (1, 0, 1) and (1, -1, 1), at t = 1/4 and 3/4 alike.
+  // The error of linear interpolation by hand: the angle between (1, 0, 1) and (1, -1, 1), at t = 1/4 and at 3/4.
   EXPECT_NEAR(json["schemes"][0]["max_degrees"].get<double>(), 35.264389683, 1e-5);
   for (const Json& row : json["schemes"]) EXPECT_EQ(row["missing"], 0);
 }
@@ -694,7 +694,7 @@ TEST_F(Cli, a_face_that_shrinks_is_right_in_sequence_too) {
   for (const Json& row : json["schemes"]) {
     EXPECT_LT(row["max_degrees"].get<double>(), 1e-4);
     EXPECT_EQ(row["missing"], 0);
-    EXPECT_TRUE(row["relative_to_linear"].is_null());  // linear errs by rounding only
+    EXPECT_TRUE(row["relative_to_linear"].is_null());  // the error of linear is only rounding
   }
 }
 
@@ -708,7 +708,7 @@ TEST_F(Cli, each_keeps_the_notes_and_names_the_motion_that_failed) {
   expect_error(run("compare --each walk/ --sample twist"), 3, {"walk/", "frame 1", "2.obj", "line 4"});
 }
 
-// A command that takes longer than the delay of the progress bar.
+// A command that runs longer than the delay of the progress bar.
 constexpr const char* kSecondOfWork = "compare --sample eversion --schemes linear:scaled --samples 31";
 
 TEST_F(Cli, progress_stays_off_when_stderr_is_no_terminal) { EXPECT_EQ(run(kSecondOfWork).err, ""); }
@@ -734,7 +734,7 @@ TEST_F(Cli, long_work_shows_on_a_terminal_its_pace_and_the_time_that_is_left) {
   const std::string line = shown.substr(begin + 1, end - begin - 1);
   EXPECT_TRUE(line.starts_with("sampling [") && line.ends_with(" left")) << line;
   EXPECT_LE(line.size(), 80U) << line;
-  // The remaining samples at that rate take about the stated time. Both numbers are rounded.
+  // At the printed rate, the remaining samples take about the printed time. Both numbers are rounded.
   const double rate = std::stod(line.substr(line.find("%, ") + 3));
   double seconds = 0;
   for (std::size_t at = line.find("/s, ") + 4; line.compare(at, 4, "left") != 0;) {

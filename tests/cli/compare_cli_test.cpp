@@ -1,5 +1,5 @@
-// Checks that each figure of `compare` stands where its name says, in the table, in the JSON and in the CSV, against
-// figures by hand.
+// Checks that each figure of `compare` is under its own name in the table, the JSON and the CSV, by comparison with
+// figures computed by hand.
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 // Three triangles move in the first of two segments: one without area, one whose normal turns over at t = 1/4, and one
-// from z to -y in which linear interpolation has an error of 45 - atan(1/2) degrees at t = 1/2. Of 3 x 2 x 3 samples 6
-// have no exact normal, and linear is wrong in two: there, and by 180 degrees where opposite normals cancel.
+// whose normal turns from z to -y, where linear interpolation has an error of 45 - atan(1/2) degrees at t = 1/2. Of 3 x
+// 2 x 3 samples, 6 have no exact normal, and linear has two errors: the one above, and 180 degrees where opposite
+// normals cancel.
 class CompareFigures : public testing::Test {
  protected:
   CompareFigures() {
@@ -110,7 +111,7 @@ TEST_F(CompareFigures, latex_has_the_figures_of_both_tables) {
     EXPECT_EQ(exit_code_of(wrong), 2) << wrong;
 }
 
-// The cells of a row of LaTeX or of the text table, which begins with a name.
+// Returns the cells of a row of LaTeX or of the text table. The row begins with a name.
 std::vector<std::string> cells_after(const std::string& text, const std::string& name, char separator) {
   const std::size_t begin = text.find('\n' + name + ' ');
   if (begin == std::string::npos) {
@@ -155,7 +156,7 @@ TEST_F(CompareFigures, latex_and_operations_have_the_numbers_of_json_each_in_its
                                                                   {"circle", "\\texttt{circle}"}};
   std::string schemes;
   for (const auto& [scheme, name] : names) schemes += (schemes.empty() ? "" : ",") + scheme;
-  // Motions whose figures differ, the first of a name that means something to LaTeX.
+  // Makes motions with different figures. The name of the first has characters that are special in LaTeX.
   fs::create_directory(folder_.path() + "/a_b 10%");
   fs::copy(folder_.path() + "/1.obj", folder_.path() + "/a_b 10%/1.obj");
   fs::copy(folder_.path() + "/2.obj", folder_.path() + "/a_b 10%/2.obj");
@@ -251,7 +252,7 @@ TEST_F(CompareFigures, certificates_stand_beside_what_was_sampled) {
   EXPECT_FALSE(Json::parse(output("--json"))["schemes"][0].contains("certified"));
   for (const Json& row : rows) {
     const Json& certified = row["certified"];
-    // A face that turns over has no bound, and there are two segments of three faces.
+    // A face that turns over has no bound below 180 degrees, and there are two segments of three faces.
     EXPECT_EQ(certified["upper_degrees"], 180) << row;
     EXPECT_GE(certified["upper_degrees"], row["max_degrees"]);
     EXPECT_EQ(certified["upper_at"]["segment"], 0);

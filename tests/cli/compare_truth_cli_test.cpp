@@ -1,4 +1,4 @@
-// Tests `compare --truth`: its forms agree, its remarks match the figures, and it refuses options that do not fit.
+// Tests `compare --truth`: its output formats agree, its remarks fit the figures, and it refuses unsuitable options.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 class CompareTruth : public testing::Test {
  protected:
-  // Writes two triangles that turn by an angle from frame to frame, about an axis through neither.
+  // Writes two triangles that turn by an angle from frame to frame, about an axis outside of both.
   void write_turn(double angle, int frames, bool with_velocities = false) {
     for (int frame = 0; frame < frames; ++frame) {
       std::ostringstream text;
@@ -66,7 +66,7 @@ TEST_F(CompareTruth, table_json_and_csv_say_the_same) {
     std::getline(lines, line);
     const std::string names = row["path"].get<std::string>() + "," + row["scheme"].get<std::string>() + ",";
     EXPECT_NE(line.find(names), std::string::npos) << line;
-    if (row["mean_degrees"] < 0.01) continue;  // in fewer digits, with a power of ten
+    if (row["mean_degrees"] < 0.01) continue;  // the table prints fewer digits, with a power of ten
     char mean[32];
     std::snprintf(mean, sizeof mean, "%.4f", row["mean_degrees"].get<double>());
     EXPECT_NE(table.out.find(mean), std::string::npos) << names << mean << '\n' << table.out;

@@ -1,5 +1,5 @@
-// Tests the program with hostile files and systems: names that are not plain words, inputs without an end, limits, and
-// messages that must say what is wrong.
+// Tests the program with hostile files and systems: strange names, endless inputs, limits, and messages that must say
+// what is wrong.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -42,7 +42,7 @@ class HostileCli : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// Describes the first character that a terminal would obey, or returns "".
+// Describes the first character that would control a terminal, or returns "".
 std::string find_unsafe(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -114,7 +114,7 @@ TEST_F(HostileCli, names_of_files_are_printed_without_what_a_terminal_obeys) {
       EXPECT_EQ(find_unsafe(result.out), "") << arguments << "\n" << result.out;
       EXPECT_EQ(find_unsafe(result.err), "") << arguments << "\n" << result.err;
     }
-    // Names that are UTF-8 come back whole from JSON.
+    // JSON restores names that are UTF-8 exactly.
     if (name != kNames.back()) {
       EXPECT_EQ(Json::parse(run("inspect " + two + " --json").out)["input"]["name"], name + "_0.obj");
     }
@@ -188,7 +188,7 @@ TEST_F(HostileCli, a_closed_stream_is_not_taken_for_the_output) {
     EXPECT_EQ(run("convert --sample twist --force -o out.npz" + std::string(closed)).exit_code, 0) << closed;
     EXPECT_EQ(test::read_whole(folder_ / "out.npz"), test::read_whole(folder_ / "right.npz")) << closed;
   }
-  // The note about zeros has nowhere to go, and must not go into the file.
+  // The note about zeros cannot be printed, and must not be written into the output file.
   folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   EXPECT_EQ(run("sample flat.obj -o flat.npy 2>&-").exit_code, 0);
   EXPECT_EQ(test::read_whole(folder_ / "flat.npy").find("chronormal"), std::string::npos);
@@ -262,7 +262,7 @@ TEST_F(HostileCli, a_sentence_that_holds_for_several_meshes_is_said_once) {
   EXPECT_EQ(result.err.find("by --encode exact", first + 1), std::string::npos) << result.err;
 }
 
-// An output never replaces another output or an input, whatever its name looks like.
+// An output never replaces another output or an input, even under a different name for the same file.
 TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name) {
   folder_.write("a.obj", kFirst);
   folder_.write("b.obj", kSecond);
@@ -295,13 +295,14 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
     for (std::size_t i = 0; i < inputs.size(); ++i)
       EXPECT_EQ(test::read_whole(folder_ / inputs[i]), before[i]) << arguments;
   }
-  EXPECT_EQ(run("bake moving.glb -o ./moving.glb --force -q").exit_code, 0);         // it has all that was there
-  EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);  // refused for its extension
+  // The new file keeps all content of the old one.
+  EXPECT_EQ(run("bake moving.glb -o ./moving.glb --force -q").exit_code, 0);
+  EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);  // refused because of its extension
   EXPECT_EQ(run("audit a.obj b.obj --errors sub/new.npz -o new.npz").exit_code, 0);
 }
 
-// Messages to a pipe without a reader are lost, which changes no exit code. If the pipe was to take data, the program
-// ends as others do in front of `head`.
+// Messages to a pipe without a reader are lost, and do not change the exit code. If data was to go to the pipe, the
+// program ends like other programs in front of `head`.
 TEST_F(HostileCli, a_reader_that_is_gone_ends_only_what_was_to_be_read) {
   folder_.write("a.obj", kFirst);
   folder_.write("b.obj", kSecond);
@@ -324,7 +325,7 @@ TEST_F(HostileCli, a_reader_that_is_gone_ends_only_what_was_to_be_read) {
   EXPECT_EQ(test::read_whole(folder_ / "err.txt"), "");
 }
 
-// A library that is loaded before the program may set another rounding mode, which must change nothing.
+// A library that is loaded before the program may set another rounding mode. The output must not change.
 TEST_F(HostileCli, the_rounding_mode_of_a_viewer_changes_no_byte) {
   if (std::string(kProgram).ends_with("_sanitized"))
     GTEST_SKIP() << "the layer would replace the malloc of a sanitizer";
@@ -371,7 +372,7 @@ std::string grid_of_targets(int mesh_count, int target_count) {
   return builder.glb();
 }
 
-// 127 kB may not become 455 MB: an answer has a row for every face of every target.
+// 127 kB must not expand to 455 MB: an answer has a row for every face of every target.
 TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion) {
   folder_.write("many.glb", grid_of_targets(1, 150));
   for (const std::string arguments :
@@ -382,21 +383,21 @@ TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion)
   EXPECT_EQ(run("query cones many.glb --max-expansion 10000").exit_code, 0);
 }
 
-// The table of each mesh is small enough, but all together are too large.
+// The table of each mesh is small enough, but all tables together are too large.
 TEST_F(HostileCli, errors_of_many_meshes_need_max_expansion) {
   folder_.write("many.glb", grid_of_targets(60, 5));
   expect(run("audit many.glb --samples 9 --errors e.npz"), 3, {"the errors of every sample", "--max-expansion"});
-  // The file has no normals, so nothing is judged, but that is another question.
+  // The file has no normals, so nothing is judged, which gives a different error.
   expect(run("audit many.glb --samples 9 --errors e.npz --max-expansion 10000"), 3, {"nothing was judged"});
 }
 
 TEST_F(HostileCli, a_file_of_the_kernel_is_read_unless_it_has_no_end) {
   expect(run("inspect /proc/self/mounts", "timeout 20 "), 3, {"mounts"});
-  // Only root may open the log of the kernel.
+  // Only root can open the log of the kernel.
   if (::access("/proc/kmsg", R_OK) == 0) expect(run("inspect /proc/kmsg", "timeout 20 "), 1, {"kmsg", "no end"});
 }
 
-// Results that are larger than a stack of 256 kB stay on the heap.
+// Results larger than a stack of 256 kB are on the heap.
 TEST_F(HostileCli, a_small_stack_is_enough) {
   if (std::string(kProgram).ends_with("_sanitized")) GTEST_SKIP() << "a sanitizer needs more";
   folder_.write("a.obj", kFirst);
@@ -410,8 +411,8 @@ TEST_F(HostileCli, a_small_stack_is_enough) {
   }
 }
 
-// The files claim a terabyte, of which nearly all was never written. (p.ply and q.ply are as long as their headers
-// say.)
+// The files claim a terabyte, of which almost nothing was written. (p.ply and q.ply have the length that their headers
+// state.)
 TEST_F(HostileCli, sparse_files_are_refused_at_once_and_whole) {
   folder_.write("mesh.obj", kFirst);
   const std::string header =

@@ -1,5 +1,5 @@
-// Tests `--shard` and `merge`: many machines together write what one would have written. The choice of keyframes is
-// tested here, too.
+// Tests `--shard` and `merge`: the merged results of many machines equal the result of one machine. Also tests the
+// choice of keyframes.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -48,7 +48,8 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   EXPECT_EQ(merged.exit_code, 4);
   EXPECT_NE(merged.err.find("the tolerance that the parts were made with is exceeded"), std::string::npos);
   ASSERT_EQ(run(sample + "-o one.npy").exit_code, 0);
-  std::filesystem::rename(folder_ / "sample2.npy", folder_ / "sample2.part");  // the bytes tell the format
+  // The format is recognised by content, not by name.
+  std::filesystem::rename(folder_ / "sample2.npy", folder_ / "sample2.part");
   ASSERT_EQ(run("merge sample3.npy sample1.npy sample2.part -o merged.npy").exit_code, 0);
   EXPECT_TRUE(file("merged.npy") == file("one.npy"));
   ASSERT_EQ(run(sample + "-o one_%02d.ply").exit_code, 0);
@@ -66,7 +67,7 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.npy"));
 }
 
-// The frames of another sequence have the same names, sizes and times; or one frame changes between the shards.
+// Two inputs have the same names, sizes and times, but another content; or one frame changes between the shards.
 TEST_F(Merge, parts_of_two_inputs_are_refused_with_the_names_of_both) {
   const std::string changed = "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nv 1 1 0.25\nf 1 2 3\nf 2 4 3\n";
   const std::string before = file("w_3.obj");

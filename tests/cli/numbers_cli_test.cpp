@@ -1,5 +1,5 @@
-// Checks that the program prints numbers that are not finite as something that does not look like a number. With these
-// inputs, infinities and NaN occur on the way, and every command prints them in all of its forms.
+// Checks that numbers that are not finite are not printed as numbers. These inputs cause infinities and NaN during the
+// computation, and every command prints the results in all output formats.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ bool has_no_number(const std::string& text) {
   return std::regex_search(text, kWord);
 }
 
-// Makes a hinge with deltas of normals, whose two weights go through some values.
+// Makes a hinge with normal deltas and an animation of its two weights.
 test::GltfBuilder moved_hinge(float normal, const std::vector<float>& times, const std::vector<float>& weights) {
   test::ShadedMesh mesh = test::hinge();
   for (float& c : mesh.normals) c *= normal;
@@ -108,7 +108,7 @@ TEST(Numbers, the_measure_finds_words_that_are_no_numbers) {
     EXPECT_FALSE(has_no_number(text)) << text;
 }
 
-// fmt::format would print "nan", so only cli/terminal/format.h may call it in the program.
+// fmt::format would print "nan", so in the program only cli/terminal/format.h may call it.
 TEST(Numbers, are_formatted_in_one_place) {
   std::size_t files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(kSourceFolder) / "cli")) {

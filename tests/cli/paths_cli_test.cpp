@@ -1,4 +1,4 @@
-// Tests --path: the reports of commands about curves, their warnings, and refused requests.
+// Tests --path: the reports of commands on curved motions, their warnings, and refused requests.
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ class Paths : public testing::Test {
       folder_.write("f" + std::to_string(frame) + ".obj", text.str());
     }
   }
-  // Writes one triangle that turns in the same way, with a multiple of its velocities at one frame a second.
+  // Writes a triangle that turns in the same way, with velocities multiplied by a factor, for one frame per second.
   void write_turn_with_velocities(double angle, double factor) {
     for (int frame = 0; frame < 5; ++frame) {
       std::ostringstream text;
@@ -83,7 +83,7 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
   EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:0.5").err.find("are within 0.5 degrees"), std::string::npos);
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom -q").err, "");
   EXPECT_EQ(run("inspect 'f*.obj'").err, "");
-  // Every command uses the pieces in its way.
+  // Every command works on the straight pieces of the curves.
   const auto pieces = json("inspect 'f*.obj' --path catmull-rom:0.5 --json")["input"]["keyframes"].get<int>() - 1;
   EXPECT_GT(pieces, 4);
   EXPECT_EQ(json("compare 'f*.obj' --path catmull-rom:0.5 --json --no-times")["input"]["segments"], pieces);
@@ -98,11 +98,11 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
 }
 
 TEST_F(Paths, that_bend_a_little_too_much_are_not_said_to_bend_by_the_limit) {
-  write_turn(2 * std::asin(0.502), 0);  // a turn bends by the sine of half its angle
+  write_turn(2 * std::asin(0.502), 0);  // the limit of a warning: a turn bends a path by the sine of half its angle
   EXPECT_NE(
       run("inspect 'f*.obj' --path catmull-rom:1").err.find("its paths bend by 0.51 of their length, and above 0.50"),
       std::string::npos);
-  write_turn(std::asin(1) / 1.5, 0);  // 60 degrees, but for rounding
+  write_turn(std::asin(1) / 1.5, 0);  // 60 degrees, up to rounding
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom:1").err.find("too far apart"), std::string::npos);
 }
 
@@ -117,9 +117,9 @@ TEST_F(Paths, are_straight_between_two_keyframes_and_all_commands_say_so) {
   }
 }
 
-// Holds what a viewer shows at times between keyframes against the curves through these: the tolerance is for both, the
-// pieces of curves and the keys. Faces that do not agree may cancel, and no bound on theirs holds for their sum:
-// vertices with such faces do not count.
+// Compares rendered normals between keyframes with the curves through the keyframes. The tolerance covers both the
+// straight pieces and the keys. Vertices with nearly cancelling faces are left out, since a bound for faces is no bound
+// for their sum.
 TEST_F(Paths, keys_of_curves_are_within_the_tolerance_of_the_curves_themselves) {
   constexpr std::uint64_t kSeed = 20261127;
   constexpr std::size_t kSide = 8;
@@ -213,7 +213,7 @@ TEST_F(Paths, all_warn_of_velocities_that_are_not_those_of_the_motion) {
           << command << factor << result.err;
     }
   }
-  // The velocities belong to a motion at 24 frames a second, while frames count as seconds.
+  // The velocities fit 24 frames per second, but the frames are read as one second apart.
   write_turn_with_velocities(0.3, 24);
   EXPECT_NE(run("compare 'v*.ply' --path hermite").err.find("vertices would go 24.1 times"), std::string::npos);
   EXPECT_EQ(run("compare 'v*.ply' --fps 24 --path hermite").err.find("vertices would go"), std::string::npos);

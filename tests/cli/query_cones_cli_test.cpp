@@ -50,7 +50,7 @@ TEST_F(QueryCones, have_a_row_for_each_segment_and_face) {
   EXPECT_EQ(arrays.at("axis")[1], Json({0.0, 0.0, 1.0}));
   EXPECT_EQ(json.at("summary").at("whole_sphere"), 0);
   EXPECT_EQ(arrays.size(), 5u);
-  // The first half of the way turns by less than the whole.
+  // The first half of the motion turns the face by less than half of the angle.
   EXPECT_LT(json_of("cones a.obj b.obj --to 0.5").at("arrays").at("half_angle")[0].get<double>(), 30);
 }
 
@@ -103,7 +103,7 @@ TEST_F(QueryCones, shutter_has_the_mean_of_every_face_and_of_the_whole_span) {
   const Json json = json_of("shutter a.obj b.obj a.obj");
   const Json& arrays = json.at("arrays");
   EXPECT_EQ(arrays.at("segment"), Json({0, 0, 1, 1}));
-  // n(t) = (0, -t, 1 - t): by symmetry the mean unit normal points half way, and the mean of n is (0, -1, 1) / 2.
+  // n(t) = (0, -t, 1 - t): by symmetry the mean unit normal is at 45 degrees, and the mean of n is (0, -1, 1) / 2.
   EXPECT_EQ(arrays.at("mean")[0], Json({0.0, -0.5, 0.5}));
   const double y = arrays.at("mean_unit")[0][1].get<double>(), z = arrays.at("mean_unit")[0][2].get<double>();
   EXPECT_NEAR(y, -z, 1e-9);
@@ -111,7 +111,8 @@ TEST_F(QueryCones, shutter_has_the_mean_of_every_face_and_of_the_whole_span) {
   EXPECT_NEAR(arrays.at("length")[0].get<double>(), std::hypot(y, z), 1e-12);
   EXPECT_LT(arrays.at("ends_off")[0].get<double>(), 1e-5);
   EXPECT_NEAR(arrays.at("length")[1].get<double>(), 1, 1e-7);
-  // The motion goes there and back: the ends of the span are the same, and lerp between them sees no motion.
+  // The motion returns to its start, so both end normals of the span are equal, and interpolation between them misses
+  // the motion.
   EXPECT_EQ(arrays.at("span_face"), Json({0, 1}));
   EXPECT_NEAR(arrays.at("span_ends_off")[0].get<double>(), 45, 1e-5);
   EXPECT_NEAR(arrays.at("span_mean_unit")[0][2].get<double>(), z, 1e-9);

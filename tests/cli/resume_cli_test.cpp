@@ -1,5 +1,5 @@
 // Tests `--resume`: a run that failed continues where it stopped, with the same bytes; a journal of another run is
-// refused. Here a limit of the size of files ends the runs; tests/faults/killed_test.cpp kills them.
+// refused. In this file, a limit on the size of files ends the runs; tests/faults/killed_test.cpp kills them.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -32,14 +32,14 @@ class Resume : public testing::Test {
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& before = "") const {
     return run_shell(before + std::string(kProgram) + " " + arguments, folder_.path());
   }
-  // Runs with a limit of the size of files in blocks of 512 bytes, or of 1,024 in other shells.
+  // Runs with a limit on the size of files, in blocks of 512 bytes or, in some shells, 1,024 bytes.
   [[nodiscard]] ProcessResult cut(const std::string& arguments, const std::string& blocks = "4") const {
     return run(arguments, "ulimit -f " + blocks + "; ");
   }
   [[nodiscard]] std::string file(const std::string& name) const { return test::read_whole(folder_ / name); }
   [[nodiscard]] bool exists(const std::string& name) const { return fs::exists(folder_ / name); }
 
-  // Ends a run too early, and continues it.
+  // Ends a run too early with the limit, and resumes it.
   void check(const std::string& command, const std::string& undisturbed, const std::string& blocks = "4") const {
     const std::string out = " --resume -o out";
     ASSERT_EQ(run(command + undisturbed + " -o whole").exit_code, 0);
@@ -106,7 +106,7 @@ TEST_F(Resume, a_journal_of_another_run_is_refused_with_what_differs) {
   EXPECT_EQ(file("out.journal"), journal);
   EXPECT_EQ(file("out.partial"), partial);
   fs::remove(folder_ / "out.journal");
-  EXPECT_EQ(run(command).exit_code, 0);  // begins anew over the rest of that run
+  EXPECT_EQ(run(command).exit_code, 0);  // starts anew, replacing the rest of the unfinished run
 }
 
 TEST_F(Resume, files_of_other_people_are_not_touched) {

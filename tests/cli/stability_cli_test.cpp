@@ -1,6 +1,6 @@
-// Tests what docs/stability.md calls stable in the command line: every option and every key of JSON that ever existed.
-// The lists stand beside this test. New ones have to be added to them, which tools/update_docs does; one that vanishes
-// has to be removed by hand, by somebody who knows that programs may depend on it.
+// Tests that the command line stays stable (docs/stability.md): every option and JSON key that ever existed must still
+// exist. The lists are beside this test. tools/update_docs adds new options and keys; removing one needs a manual
+// change of the list, because programs may depend on it.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ class Stability : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// Compares the names with a list, or adds new ones to the list.
+// Compares the names with a list, or adds new names to the list if the documents are updated.
 void expect_listed(const Names& found, const std::string& file) {
   const std::filesystem::path path = std::filesystem::path(kSourceFolder) / "tests/cli" / file;
   Names listed;
@@ -69,7 +69,8 @@ TEST_F(Stability, no_command_and_no_option_vanishes) {
   expect_listed(found, "stable_options.txt");
 }
 
-// Adds the paths of all keys of a value: "audit viewers[].worst_at.vertex". Each of several files has the keys of one.
+// Adds the paths of all keys of a value, such as "audit viewers[].worst_at.vertex". An entry of `files` has the keys of
+// a report on one file.
 void add_keys(const Json& json, const std::string& path, Names& found) {
   if (json.is_array())
     for (const Json& one : json) add_keys(one, path + "[]", found);

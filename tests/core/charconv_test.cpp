@@ -1,5 +1,5 @@
-// Tests numbers as text: <charconv> or its stand-in writes the same text as the C library, which reads back as the same
-// number. This also runs under Node.js (wasm_bits), where the stand-in is used.
+// Tests conversions of numbers: <charconv> or its replacement must write the same text as the C library, and read the
+// same number back. This also runs under Node.js (wasm_bits), where the replacement is used.
 #include "core/charconv.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace chronormal::charconv_test {
 namespace {
 
-// Returns numbers of all sizes, and the extremes.
+// Returns numbers of all magnitudes, and the extremes.
 std::vector<double> numbers() {
   std::vector<double> result = {0.0,
                                 -0.0,

@@ -29,7 +29,7 @@ TEST(AlignedBytes, are_aligned_to_cache_lines_and_from_4_MiB_on_to_huge_pages) {
     EXPECT_EQ(bytes.capacity(), size);
     const std::size_t alignment = size >= 8 * kMebibyte ? 2 * kMebibyte : 64;
     EXPECT_EQ(address(bytes.data()) % alignment, 0u) << size;
-    std::memset(bytes.data(), 0x5A, size);  // all of it can be written
+    std::memset(bytes.data(), 0x5A, size);  // the whole block is writable
     EXPECT_EQ(bytes.data()[size - 1], std::byte{0x5A});
   }
 }
@@ -66,7 +66,7 @@ TEST(AlignedBytes, what_is_released_lies_above_all_bytes_that_are_kept) {
     std::size_t lost = 0;
     for (std::size_t i = 0; i < size; ++i) lost += bytes.data()[i] == std::byte{0x5A} ? 0U : 1U;
     EXPECT_EQ(lost, 0U) << size << " bytes are kept";
-#ifdef __linux__  // there a page that was given back is read as zero
+#ifdef __linux__  // on Linux, a released page reads as zero
     EXPECT_EQ(bytes.data()[kCapacity - 1], size == kCapacity ? std::byte{0x5A} : std::byte{0}) << size;
 #endif
   }

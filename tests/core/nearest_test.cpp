@@ -1,4 +1,4 @@
-// Compares the suggestion for a mistyped name with a search over all edits.
+// Compares the suggestion for a mistyped name with a search over all edits of the name.
 #include "core/nearest.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace chronormal::nearest_test {
 namespace {
 
-// Returns all words that one edit makes from a word over two letters.
+// Returns all words that are one edit away from a word, with an alphabet of two letters.
 std::set<std::string> edited(const std::string& word) {
   std::set<std::string> words;
   for (std::size_t i = 0; i <= word.size(); ++i) {

@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Counts how many threads are in it at the same time, and keeps the largest number.
+// Counts the threads that are inside at the same time, and keeps the largest count.
 class Crowd {
  public:
   void pass(std::chrono::microseconds time) {
@@ -94,7 +94,7 @@ TEST(ParallelFor, in_its_body_shares_the_threads_of_the_outer_loop) {
 TEST(ParallelFor, helps_with_the_loops_inside_while_it_waits) {
   const ThreadLimit two(2);
   Crowd crowd;
-  // The other thread cannot finish its piece before this one waits, and has work for two then.
+  // The other thread cannot finish its piece before this one waits, and then the waiting thread has work for two.
   const auto caller = std::this_thread::get_id();
   std::atomic<bool> is_helped = false;
   std::atomic<std::size_t> begun = 0;
@@ -198,7 +198,7 @@ TEST(ParallelFor, that_helps_with_a_loop_of_another_rounding_goes_on_with_its_ow
 int exit_code_of_child(const std::function<int()>& body) {
   const pid_t child = ::fork();
   if (child == 0) {
-    ::alarm(30);  // ends it where it hangs
+    ::alarm(30);  // a SIGALRM ends the child if it hangs
     ::_exit(body());
   }
   int status = -1;
@@ -210,7 +210,7 @@ TEST(ParallelFor, in_a_child_of_fork_has_one_thread_and_does_all_pieces) {
   const ThreadLimit limit(4);
   std::atomic<bool> is_over = false;
   parallel_for(4, [](std::size_t) {});
-  std::thread busy([&] {  // its loops go on while the others fork
+  std::thread busy([&] {  // this thread's loops go on while other threads fork
     const ThreadLimit others(3);
     while (!is_over) parallel_for(8, [](std::size_t) {});
   });
@@ -228,7 +228,7 @@ TEST(ParallelFor, in_a_child_of_fork_has_one_thread_and_does_all_pieces) {
   EXPECT_EQ(thread_count(), 4u);
 }
 
-// The child does not finish the pieces that other threads had begun, and gets an error.
+// The child does not run the pieces that other threads had begun; the loop ends with an error.
 TEST(ParallelFor, that_is_forked_in_the_middle_ends_as_interrupted_in_the_child) {
   const ThreadLimit two(2);
   const auto caller = std::this_thread::get_id();

@@ -80,14 +80,14 @@ Bernstein<double, 3> cubic_with_roots(double a, double b, double c) {
 }
 
 RC_GTEST_PROP(Polynomial, roots_are_found_where_they_were_put, ()) {
-  // The roots are at least 1e-2 apart, some of them outside [0, 1].
+  // The roots are at least 1e-2 apart, and some are outside of [0, 1].
   const int a = *rc::gen::inRange(-100, 30), b = *rc::gen::inRange(31, 60), c = *rc::gen::inRange(61, 200);
   std::vector<double> expected;
   for (const int r : {a, b, c}) {
     if (0 <= r && r <= 100) expected.push_back(r / 100.0);
   }
   const auto roots = roots_in_unit_interval(cubic_with_roots(a / 100.0, b / 100.0, c / 100.0));
-  // Rounding decides whether a root at an end is inside.
+  // A root at an end is skipped, since rounding decides whether it is inside.
   RC_PRE(a != 0 && c != 100);
   RC_ASSERT(roots.count == expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) RC_ASSERT(std::fabs(roots.t[i] - expected[i]) < 1e-12);

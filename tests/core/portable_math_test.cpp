@@ -17,7 +17,7 @@ constexpr unsigned kSeed = 20;
 constexpr int kCases = 200000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Returns the error of a value in units in the last place, against a value with more digits.
+// Returns the error of a value in units in the last place, compared with a more precise value.
 double units_off(double value, long double right) {
   const auto nearest = static_cast<double>(right);
   const long double unit = std::nextafter(std::fabs(nearest), kInfinity) - std::fabs(nearest);
@@ -83,7 +83,8 @@ TEST(PortableMath, special_arguments_give_what_the_standard_library_gives) {
   EXPECT_EQ(portable::atan(-kInfinity), -std::numbers::pi / 2);
 }
 
-// Checks for the same bits on every machine and from every compiler; wasm_bits runs this in the wasm module, too.
+// Checks a hash of results that must be the same on every machine and with every compiler; wasm_bits runs this in the
+// wasm module, too.
 TEST(PortableMath, the_bits_are_these) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> among(-20, 20);

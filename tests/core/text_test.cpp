@@ -1,4 +1,4 @@
-// Tests words with numbers in them, which reports and JSON share.
+// Tests the words with numbers that reports and JSON share.
 
 #include "core/text.h"
 
@@ -43,8 +43,8 @@ TEST(Text, numbers_in_messages_have_no_long_fractions_but_differ_where_they_are_
   std::mt19937 random(50);
   SCOPED_TRACE("seed 50");
   for (int round = 0; round < 10000; ++round) {
-    // The numbers are whole ones of up to five digits over a power of ten, as people write them, with the errors that
-    // computing adds.
+    // The numbers are integers of up to five digits divided by a power of ten, as people write them, plus the rounding
+    // errors of computations.
     const std::string written = std::to_string(random() % 100000) + "e-" + std::to_string(random() % 5);
     const double meant = std::stod(written);
     double found = meant;

@@ -1,4 +1,4 @@
-// Compares integers of many digits with GMP.
+// Compares wide integers with GMP.
 
 #include "core/wide_integer.h"
 

@@ -1,10 +1,11 @@
-"""Runs a recipe of Conan 2 with classes that do what Conan's do, as far as recipes in packaging/conan/ call them.
+"""Runs a recipe of Conan 2 with replacements for Conan's classes, as far as the recipes in packaging/conan/ use
+them.
 
     conan_stand_in.py RECIPE ARCHIVE VERSION FOLDER OPTION=VALUE...
 
-Debian's libraries stand in for Conan's packages. FOLDER has the sources and the build as tests/dist/vcpkg.cmake leaves
-them, so that what both compile alike is compiled once. What is packaged comes to FOLDER/package; then the recipe's
-test_package is built against what package_info() says, and run.
+Debian's libraries stand in for Conan's packages. FOLDER has the sources and the build that tests/dist/vcpkg.cmake
+leaves, so that files are not compiled twice. The package is written to FOLDER/package. Then the recipe's
+test_package is built as package_info() describes, and run.
 """
 
 import importlib.util
@@ -25,7 +26,7 @@ ASKED = (ROOT / "cmake/product.cmake").read_text()
 
 
 class Settings(types.SimpleNamespace):
-    """os, arch, compiler, build_type, as on this machine."""
+    """The settings os, arch, compiler and build_type of this machine."""
 
 
 class Component:
@@ -72,7 +73,7 @@ class CMakeToolchain:
 
 
 class CMakeDeps:
-    """Files for find_package(): the recipe must give those names by which the project asks."""
+    """Makes the files for find_package(), under the names that the project looks for."""
 
     def __init__(self, conanfile):
         self.conanfile, self.properties = conanfile, defaultdict(dict)
@@ -165,7 +166,7 @@ def recipe_in(path, folder):
 
 
 def config_of(recipe):
-    """Returns the file that CMakeDeps makes of package_info() for those who use the package."""
+    """Returns the file that CMakeDeps generates from package_info() for users of the package."""
     lines, targets = [], {}
     for name, component in recipe.cpp_info.components.items():
         targets[name] = component.properties["cmake_target_name"]

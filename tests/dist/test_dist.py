@@ -1,6 +1,6 @@
-"""What ./run dist made: that it runs where nothing else is, and that it is what the lists beside it say.
+"""Tests the results of ./run dist: they run on a bare system, and match the lists beside them.
 
-CHRONORMAL_DIST names the folder. Each test prints why it is skipped where it is; a file that is missing is no reason.
+CHRONORMAL_DIST names the folder. Each skipped test prints its reason; a missing file is not a reason.
 """
 
 import hashlib
@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[2]
 DIST = Path(os.environ.get("CHRONORMAL_DIST", ROOT / "dist"))
 VERSION = re.search(r"project\(chronormal VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
 SEED = int(os.environ.get("CHRONORMAL_SEED", "20261126"))
-# What wheels of the kind manylinux may need (PEP 513 and its successors), as far as it is asked for here.
+# The libraries that a manylinux wheel may need (PEP 513 and its successors), as far as these wheels use them.
 MANYLINUX = {"libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1", "libpthread.so.0", "ld-linux-x86-64.so.2"}
 
 
@@ -46,7 +46,8 @@ def artefact(pattern):
 
 
 def random_glb(draw):
-    """The bytes of a GLB: a bumpy sheet with one or two targets, normals of all, and an animation of weights."""
+    """Returns the bytes of a GLB: a bumpy sheet with one or two targets, all with normals, and an animation of
+    weights."""
     side, targets, keys = draw.randint(3, 12), draw.randint(1, 2), draw.randint(2, 4)
     arrays, views, accessors = b"", [], []
 
@@ -101,7 +102,7 @@ def random_glb(draw):
 
 
 class Unpacked(unittest.TestCase):
-    """Tests that look at an artefact in a folder of their own."""
+    """Tests that unpack an artefact into a separate folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -120,7 +121,8 @@ class Program(Unpacked):
         shutil.copy(self.unpacked / "chronormal", self.root)
 
     def alone(self, *arguments, codes=(0,)):
-        """Runs the program in a folder that has nothing but it and its files: no libraries, /proc, /dev or /tmp."""
+        """Runs the program in a folder that contains only the program and its files: no libraries, /proc, /dev or
+        /tmp."""
         enter = [*([] if os.geteuid() == 0 else ["unshare", "--map-root-user"]), "chroot"]
         if subprocess.run([*enter, "/", "true"], capture_output=True).returncode != 0:
             self.skipTest("chroot is refused: it takes root, or the right to be root in a namespace")
@@ -129,7 +131,8 @@ class Program(Unpacked):
     def test_needs_no_library_and_no_loader(self):
         self.assertNotIn("NEEDED", run("objdump", "-p", self.root / "chronormal"))
         self.assertNotIn("INTERP", run("readelf", "-lW", self.root / "chronormal"))
-        self.assertIn("DYN", run("readelf", "-hW", self.root / "chronormal"))  # it may be loaded anywhere
+        # Position-independent, so it may be loaded at any address.
+        self.assertIn("DYN", run("readelf", "-hW", self.root / "chronormal"))
 
     def test_runs_in_an_empty_root(self):
         self.assertEqual(self.alone("--version").split()[1], VERSION)
@@ -152,7 +155,7 @@ class Program(Unpacked):
                 (self.root / "in.glb").write_bytes(random_glb(draw))
                 options = draw.choice([[], ["--for", "three"], ["--encode", "exact"], ["--tolerance", "0.1"]])
                 bake = ["bake", "in.glb", "--force", *options, "-o"]
-                said = self.alone(*bake, "static.glb", codes=(0, 4))  # 4: the tolerance cannot be kept
+                said = self.alone(*bake, "static.glb", codes=(0, 4))  # exit code 4: the tolerance cannot be kept
                 other = run(self.folder / "deb/usr/bin/chronormal", *bake, "other.glb", codes=(0, 4), cwd=self.root)
                 self.assertEqual(said.replace("static.glb", "other.glb"), other)
                 written = [(self.root / name).read_bytes() for name in ("static.glb", "other.glb")]
@@ -175,7 +178,7 @@ class Source(Unpacked):
             files = sorted(member.name for member in opened if not member.isdir())
         tracked = run("git", "ls-tree", "-r", "--name-only", "-z", "HEAD", cwd=ROOT).split("\0")[:-1]
         self.assertEqual(files, sorted(f"chronormal-{VERSION}/{name}" for name in tracked))
-        # The step itself, with its files elsewhere.
+        # Runs the step itself, in a copy of the repository.
         copy = self.folder / "clone"
         run("git", "clone", "-q", ROOT, copy)
         run(copy / "run", "dist", "source")
@@ -211,7 +214,7 @@ class Deb(Unpacked):
 
 
 class Blender(Unpacked):
-    """The zip of the add-on, which tests/viewers/blender_addon.test.mjs uses in Blender."""
+    """Tests the zip of the add-on, which tests/viewers/blender_addon.test.mjs uses in Blender."""
 
     def setUp(self):
         super().setUp()
@@ -246,7 +249,7 @@ class Blender(Unpacked):
 
 
 class Links(HTMLParser):
-    """Collects what a page links to and loads, and the names of its places."""
+    """Collects the links of a page, the files that it loads, and its anchors."""
 
     def __init__(self, path):
         super().__init__()
@@ -262,7 +265,7 @@ class Links(HTMLParser):
 
 
 class Site(Unpacked):
-    """The pages and the reference of the headers, as they are read from a disk."""
+    """Tests the pages and the reference of the headers, read from a disk."""
 
     def setUp(self):
         super().setUp()
@@ -334,7 +337,8 @@ class Wheel(Unpacked):
         self.assertIn("zlib", {path.name for path in (self.folder / "chronormal/THIRD_PARTY").iterdir()})
 
     def test_computes_in_a_fresh_environment(self):
-        run(sys.executable, "-m", "venv", "--system-site-packages", self.folder / "venv")  # for NumPy
+        # The system's packages include NumPy.
+        run(sys.executable, "-m", "venv", "--system-site-packages", self.folder / "venv")
         python = self.folder / "venv/bin/python"
         run(python, "-m", "pip", "install", "-q", "--no-index", "--no-deps", artefact("*.whl"))
         home = run(python, "-c", "import chronormal; print(chronormal.__file__)", cwd=self.folder).strip()
@@ -351,7 +355,7 @@ class Lists(Unpacked):
         self.list = json.loads(artefact("*.spdx.json").read_text())
 
     def linked_with(self, pattern, relation):
-        """Names and versions of the components of an artefact."""
+        """Returns names and versions of the components of an artefact."""
         packages = {package["SPDXID"]: package for package in self.list["packages"]}
         (this,) = [key for key, package in packages.items() if package.get("packageFileName") == artefact(pattern).name]
         linked = [packages[link["relatedSpdxElement"]] for link in self.list["relationships"]
@@ -419,20 +423,21 @@ class Lists(Unpacked):
 
 
 class Packaging(Unpacked):
-    """The port and the recipe, run by what stands in for vcpkg and Conan."""
+    """Tests the port and the recipe, run by replacements for vcpkg and Conan."""
 
     def setUp(self):
         super().setUp()
         self.archive = artefact(f"chronormal-{VERSION}.tar.gz")
-        # Both compile in one folder. It is of this archive alone, whose files are as old as the commit: no build would
-        # see that those of another one differ.
+        # Both compile in one folder. The folder is only for this archive: files of another archive could have the same
+        # times, and the build would not notice that they differ.
         self.build = ROOT / "build/packaging"
         known = self.build / "archive"
         if not known.exists() or known.read_bytes() != self.archive.read_bytes():
             shutil.rmtree(self.build, ignore_errors=True)
             self.build.mkdir(parents=True)
             shutil.copyfile(self.archive, known)
-        self.with_io = os.environ.get("CHRONORMAL_PACKAGING_IO") == "1"  # as users have it by default; minutes more
+        # With io, as users get it by default, the build takes minutes longer.
+        self.with_io = os.environ.get("CHRONORMAL_PACKAGING_IO") == "1"
 
     def test_versions_are_that_of_the_project(self):
         self.assertEqual(json.loads((ROOT / "packaging/vcpkg/chronormal/vcpkg.json").read_text())["version"], VERSION)

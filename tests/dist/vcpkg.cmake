@@ -1,6 +1,6 @@
 # cmake -DARCHIVE=... -DPORT_FOLDER=... -DVERSION=... -DFEATURES=... -DFOLDER=... -P: runs a portfile of vcpkg with
-# functions that do what vcpkg's do, as far as it calls them, over Debian's libraries and for Release alone. What is
-# installed comes to FOLDER/packages.
+# replacements for the vcpkg functions that it calls, with Debian's libraries, and only for Release. The result is
+# installed to FOLDER/packages.
 cmake_minimum_required(VERSION 3.22)
 set(PORT chronormal)
 set(CURRENT_PACKAGES_DIR ${FOLDER}/packages)
@@ -49,7 +49,7 @@ function(vcpkg_check_features)
   foreach(list FEATURES INVERTED_FEATURES)
     while(arg_${list})
       list(POP_FRONT arg_${list} feature variable)
-      string(JSON description GET "${known}" ${feature} description)  # fails where the manifest has no such feature
+      string(JSON description GET "${known}" ${feature} description)  # fails if the manifest has no such feature
       set(values OFF ON)
       if(list STREQUAL "INVERTED_FEATURES")
         set(values ON OFF)
@@ -72,7 +72,7 @@ function(vcpkg_cmake_configure)
   endif()
   run(${CMAKE_COMMAND} -G Ninja -S ${arg_SOURCE_PATH} -B ${FOLDER}/build -DCMAKE_BUILD_TYPE=Release
       -DBUILD_SHARED_LIBS=OFF -DCMAKE_INSTALL_LIBDIR=lib ${arg_OPTIONS})
-  # Each option must be one that the project has.
+  # Fails if the project does not have one of the options.
   file(STRINGS ${FOLDER}/build/CMakeCache.txt cache)
   foreach(option ${arg_OPTIONS})
     string(REGEX REPLACE "^-D([^=]*)=.*" "\\1" variable ${option})
@@ -87,7 +87,8 @@ function(vcpkg_cmake_install)
   run(${CMAKE_COMMAND} --install ${FOLDER}/build --prefix ${CURRENT_PACKAGES_DIR})
 endfunction()
 
-# Moves the files for find_package(), which then find the folder of the package by two steps up instead of three.
+# Moves the files for find_package(), and adapts their path to the package's folder, which is two levels up instead of
+# three.
 function(vcpkg_cmake_config_fixup)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "CONFIG_PATH" "")
   file(GLOB files ${CURRENT_PACKAGES_DIR}/${arg_CONFIG_PATH}/*)
@@ -115,7 +116,7 @@ endfunction()
 
 include(${PORT_FOLDER}/portfile.cmake)
 
-# vcpkg looks at these when a port is done.
+# vcpkg checks for these files at the end of a port.
 foreach(file share/${PORT}/copyright share/${PORT}/usage share/${PORT}/chronormalConfig.cmake
              include/chronormal/chronormal.h)
   if(NOT EXISTS ${CURRENT_PACKAGES_DIR}/${file})

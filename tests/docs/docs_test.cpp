@@ -1,8 +1,8 @@
-// Executes the documents: every command in them runs, and its output must stand there as it is printed.
+// Executes the documents: runs every command in them, and compares the output with the document.
 //
 // A block ```console holds commands ("$ ./run ...") with their output; "..." alone on a line stands for any lines. A
-// command that prints measured times uses --no-times, or shows no output. Output "?" is to be filled in. A block ```cpp
-// or ```js under a line <!-- examples/NAME.cpp --> is that file, which the tests run.
+// command that prints measured times uses --no-times, or shows no output. The output "?" is a placeholder that an
+// update fills in. A block ```cpp or ```js under a line <!-- examples/NAME.cpp --> is that file, which the tests run.
 //
 // With CHRONORMAL_UPDATE_DOCS=1 the blocks are rewritten instead (tools/update_docs).
 
@@ -82,11 +82,11 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-// Runs a command with the program and the examples that were built with this test, in a folder of the document's own.
-// Tables may have lines as long as a page shows.
+// Runs a command with the program and the examples that were built with this test, in a separate folder for each
+// document. Tables may be as wide as a page.
 ProcessResult run_documented(std::string command, const fs::path& folder) {
   command = replaced(command, "build/release", kBuildFolder);
-  // If the page of a report is missing, ./run makes it with npm: here any page will do.
+  // Without npm, the page of a report may be missing. The content of the page does not matter for this test.
   if (command.starts_with("./run report ") && command.find(".html") != std::string::npos) {
     std::ofstream(folder / "page.html") << "<!--chronormal-data-->";
     command += " --template page.html";
@@ -95,7 +95,7 @@ ProcessResult run_documented(std::string command, const fs::path& folder) {
   return run_shell("export COLUMNS=128; { " + command + "\n} 2>&1", folder.string());
 }
 
-// Returns the text between two texts on a line, or "".
+// Returns the part of a line between two texts, or "".
 std::string between(const std::string& line, const std::string& before, const std::string& after) {
   const std::size_t first = line.find(before);
   if (first == std::string::npos) return "";
@@ -139,7 +139,7 @@ Lines check_console(const Lines& block, const fs::path& folder, const std::strin
 
     const ProcessResult result = run_documented(command, folder);
     const Lines actual = lines_of(result.out);
-    // A document may show a command that fails, if it shows the message too.
+    // A document may show a failing command, if it shows its message too.
     if (shown.empty()) {
       EXPECT_EQ(result.exit_code, 0) << where << ": " << command << "\n" << result.out;
     }
@@ -157,7 +157,7 @@ Lines check_console(const Lines& block, const fs::path& folder, const std::strin
   return renewed;
 }
 
-// There is one test for each document, named by its path in the repository, so that they run side by side.
+// Makes one test for each document, named by its path in the repository, so that documents are tested in parallel.
 class Commands : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> documents_with_commands() {
@@ -191,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(Documents, Commands, testing::ValuesIn(documents_with_c
   return name;
 });
 
-// Writes small files with the names in the indented commands of README.md and the pages.
+// Writes small files with the names that the indented commands of README.md and the pages use.
 void write_files_of_commands(const test::TemporaryFolder& folder) {
   const std::string faces = "f 1 2 3\nf 1 3 4\n";
   const std::string still = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + faces;
@@ -208,7 +208,7 @@ void write_files_of_commands(const test::TemporaryFolder& folder) {
   for (const char* const name : {"face.glb", "intro.glb", "models/head.glb"}) folder.write(name, face.glb());
 }
 
-// Runs the indented commands, whose output depends on the files of the reader and is not shown.
+// Runs the indented commands. Their output depends on the reader's files, so documents do not show it.
 void run_indented_commands(const std::string& page, std::size_t at_least) {
   const test::TemporaryFolder folder;
   write_files_of_commands(folder);
@@ -231,7 +231,7 @@ TEST(Documents, every_indented_command_for_artists_runs) { run_indented_commands
 
 TEST(Documents, every_indented_command_for_simulation_runs) { run_indented_commands("docs/simulation.md", 5); }
 
-// The rows of docs/cpp.md on real faces, as `compare --blend` finds them now.
+// Compares rows of docs/cpp.md about real faces with the output of `compare --blend`.
 class RealFaces : public testing::TestWithParam<std::tuple<const char*, const char*, std::size_t>> {};
 
 TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
@@ -257,7 +257,7 @@ TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
                          cell["end point"] + "|" + cell["least squares"] + "|" + cell["exact"] + "|");
     }
   }
-  // The rows of the page lose the blanks at the ends of cells; a name stands only in the first of its rows.
+  // In the page, the cells have no trailing blanks, and only the first row of a group has its name.
   Lines shown;
   std::string last;
   for (const std::string& line : lines_of(read(kRoot / "docs/cpp.md"))) {
@@ -282,13 +282,14 @@ INSTANTIATE_TEST_SUITE_P(Documents, RealFaces,
 TEST(Documents, with_commands_are_found) { EXPECT_GE(documents_with_commands().size(), 5u); }
 
 TEST(Documents, quoted_code_is_the_example_that_is_built_and_run) {
-  std::map<std::string, int> quotes;  // by language
+  std::map<std::string, int> quotes;  // number of quotes by language
   for (const fs::path& path : documents()) {
     const Lines lines = lines_of(read(path));
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const std::string example = i == 0 ? "" : between(lines[i - 1], "<!-- ", " -->");
       const std::string language = lines[i].starts_with("```") ? lines[i].substr(3) : "";
-      const bool may_be_a_part = language == "c" || language == "python";  // of a page, which others run
+      // A block on a page may be a part of a file that other tests run.
+      const bool may_be_a_part = language == "c" || language == "python";
       if (language != "cpp" && language != "js" && !(may_be_a_part && example.starts_with("examples/"))) continue;
       EXPECT_TRUE(example.starts_with("examples/"))
           << path << ":" << i + 1 << ": code without <!-- examples/NAME --> above it";
@@ -339,7 +340,7 @@ TEST(Documents, links_lead_to_files_and_headings) {
   EXPECT_GT(anchors, 5);
 }
 
-// Comments, messages and help name pages, and some of them a heading or a section of the theory.
+// Comments, messages and help mention pages, some with a heading or a section of the theory, which must exist.
 TEST(Documents, that_sources_name_are_there) {
   static const std::regex kPage("docs/[a-z][a-z-]*[.]md(#[a-z0-9-]+)?(, section ([0-9]+))?");
   const std::string theory = read(kRoot / "docs/theory.md");

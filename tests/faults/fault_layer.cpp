@@ -1,13 +1,14 @@
 // A layer between the program and the system, in which the n-th call fails. LD_PRELOAD inserts it, so that the program
-// under test is the one that users get.
+// under test is the one that users have.
 //
 //     CHRONORMAL_FAULT=write:3:28          the third write() fails with errno 28 (ENOSPC)
-//     CHRONORMAL_FAULT=write:3:28+         so do all after it
-//     CHRONORMAL_FAULT=write:3:short       it writes half of its bytes
+//     CHRONORMAL_FAULT=write:3:28+         the third and all later write() fail
+//     CHRONORMAL_FAULT=write:3:short       the third write() writes half of its bytes
 //     CHRONORMAL_FAULT=mmap:1:short        the file that is mapped first is empty from then on
 //     CHRONORMAL_FAULT=any:7:signal15      before the seventh call of any kind but malloc, the process gets SIGTERM
-//     CHRONORMAL_FAULT=A,B                 two of these
-//     CHRONORMAL_ROUNDING=down             floating-point numbers are rounded down from the start, or "up", or to "zero"
+//     CHRONORMAL_FAULT=A,B                 two faults A and B
+//     CHRONORMAL_ROUNDING=down             floating-point numbers are rounded down from the start, or "up", or to
+//                                          "zero"
 //     CHRONORMAL_FAULT_COUNTS=FILE         at the end, FILE gets how many calls there were of each kind, and as
 //                                          "start" how many times memory was requested before the first other call
 //
@@ -75,7 +76,7 @@ struct Fault {
 constexpr int kMostFaults = 2;
 Fault faults[kMostFaults];
 std::atomic<long> counts[kKinds];
-std::atomic<long> mallocs_at_start{-1};  // -1: there was no other call yet
+std::atomic<long> mallocs_at_start{-1};  // -1 before the first other call
 std::atomic<bool> is_armed{false};
 
 long number_at(const char*& text) {
@@ -225,7 +226,7 @@ int ftruncate(int file, off_t size) noexcept {
 off_t lseek(int file, off_t at, int from) noexcept {
   return fails(kSeek) ? -1 : static_cast<off_t>(::syscall(SYS_lseek, file, at, from));
 }
-// Deletes a file, or leaves it: nobody can ask the program to do better than to try.
+// Fails to delete a file, or pretends to: the program cannot do better than try.
 int unlink(const char* path) noexcept {
   const bool is_refused = fails(kUnlink);
   const long result = ::syscall(SYS_unlinkat, AT_FDCWD, path, 0);

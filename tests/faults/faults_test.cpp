@@ -1,6 +1,6 @@
-// Makes every call of the program to the system fail once, and lets memory run out at every place: whatever the
-// command, its output must be the old one or the new one, with no other traces, and the exit code must be a documented
-// one. The faults come from a layer beneath the program (fault_layer.cpp), which itself is the one that users get.
+// Makes every call of the program to the system fail once, and makes every allocation fail. After each fault, every
+// output must be either the old or the new one, without other traces, and the exit code must be documented. A layer
+// beneath the program (fault_layer.cpp) causes the faults; the program itself is unchanged.
 //
 // ./test --full slow runs a sample of the faults. `./test --full faults` (CHRONORMAL_FULL=1) runs all of them, except
 // for some faults of memory: until it has read its arguments, every command requests the same memory about 8,000 times,
@@ -37,21 +37,21 @@ namespace chronormal::faults_test {
 namespace {
 
 namespace fs = std::filesystem;
-using Files = std::map<std::string, std::string>;  // bytes by name
+using Files = std::map<std::string, std::string>;  // contents by name
 
 constexpr const char* kOld = "what was there before\n";
-constexpr std::size_t kStepInTable = 20, kMostPlaces = 3000;  // see above
+constexpr std::size_t kStepInTable = 20, kMostPlaces = 3000;  // explained above
 
 struct Command {
-  std::string name;                    // names the test
-  std::string arguments;               // without blanks in any
-  std::vector<std::string> old = {};   // outputs that exist before, and are replaced
+  std::string name;                    // becomes the name of the test
+  std::string arguments;               // no argument may contain blanks
+  std::vector<std::string> old = {};   // outputs that exist before the run, and are replaced
   std::vector<std::string> kept = {};  // files that a failed run may leave for the next one
 
   friend void PrintTo(const Command& command, std::ostream* out) { *out << command.arguments; }
 };
 
-// The commands: inputs are in the folder in/, outputs go to out/.
+// The commands. Inputs are in the folder in/, outputs go to out/.
 const std::vector<Command> kCommands = {
     {"help", "bake --help"},
     {"usage", "compare --no-such-option"},
@@ -91,20 +91,20 @@ const std::vector<Command> kCommands = {
 };
 
 struct Streams {
-  std::string out = "out.txt", err = "err.txt";  // "": closed
+  std::string out = "out.txt", err = "err.txt";  // "" closes the stream
 };
 
 struct Outcome {
-  int exit_code = -1;  // 128 + signal where it was ended by one
+  int exit_code = -1;  // 128 + signal if a signal ended the process
   std::string out, err;
-  Files files;  // all in the folder out
+  Files files;  // all files in the folder out
 };
 
-// Returns the step between faults: every one in the full test, otherwise one in `many`.
+// Returns the step between tested faults: 1 in the full test, otherwise `many`.
 std::size_t one_of(std::size_t many) { return std::getenv("CHRONORMAL_FULL") != nullptr ? 1 : many; }
 
-// Tells whether the program is sanitized, so that a run by hand says why these tests cannot run: the fault layer and
-// the address sanitizer would both replace malloc. The sanitized shards leave these tests out.
+// Tells whether the program is sanitized. The fault layer and the address sanitizer both replace malloc, so these tests
+// cannot run then; a manual run says so. The sanitized shards leave these tests out.
 bool is_sanitized_program() { return std::string(kProgram).ends_with("_sanitized"); }
 
 class Faults : public testing::TestWithParam<Command> {
@@ -146,7 +146,7 @@ class Faults : public testing::TestWithParam<Command> {
                 0);
   }
 
-  // Runs the command over its old outputs.
+  // Runs the command, which replaces its old outputs.
   [[nodiscard]] Outcome run(const std::string& fault, const Streams& streams) const {
     fs::remove_all(folder_ / "out");
     fs::create_directory(folder_ / "out");
@@ -165,8 +165,9 @@ class Faults : public testing::TestWithParam<Command> {
   }
 
   [[noreturn]] void become_program(const std::string& fault, const Streams& streams) const {
-    ::alarm(60);  // instead of waiting for ever
-    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) (void)std::signal(signal, SIG_DFL);  // whoever runs the tests
+    ::alarm(60);  // ends the process if it hangs
+    // Resets signals that the test's caller may have ignored.
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) (void)std::signal(signal, SIG_DFL);
     if (::chdir(folder_.path().c_str()) != 0) ::_exit(99);
     const auto redirect = [](int stream, const std::string& name) {
       ::close(stream);
@@ -192,13 +193,14 @@ class Faults : public testing::TestWithParam<Command> {
     ::_exit(98);
   }
 
-  // Tells whether a file is kept for the next run. Such files are useful only with the journal, which is named last.
+  // Tells whether a file is kept for the next run. Such files are useful only together with the journal, which is last
+  // in the list.
   [[nodiscard]] static bool is_kept(const std::string& name) {
     const std::vector<std::string>& kept = GetParam().kept;
     return std::find(kept.begin(), kept.end(), name) != kept.end();
   }
 
-  // Checks that outputs are old or new, with no other files; after a success all must be new.
+  // Checks that outputs are old or new, and that there are no other files. After a success all outputs must be new.
   void check_files(const Outcome& run, const std::string& what) const {
     for (const auto& [name, bytes] : run.files) {
       const auto wanted = expected_.files.find(name);
@@ -215,7 +217,7 @@ class Faults : public testing::TestWithParam<Command> {
     }
   }
 
-  // Checks a run with a fault: it fails with exit code 1 and a message, or does everything that was requested.
+  // Checks a run with a fault: it must fail with exit code 1 and a message, or complete the whole request.
   void check(const Outcome& run, const std::string& what) const {
     check_files(run, what);
     if (run.exit_code == expected_.exit_code) {
@@ -228,7 +230,7 @@ class Faults : public testing::TestWithParam<Command> {
     }
   }
 
-  // Returns how often a command other than `help` and `usage` requests memory before it reads its arguments.
+  // Returns the number of allocations before a command other than `help` and `usage` reads its arguments.
   [[nodiscard]] std::size_t mallocs_of_table() {
     constexpr std::size_t kMostOfArguments = 500;
     const std::size_t start = counts_["start"];
@@ -274,12 +276,12 @@ TEST_P(Faults, calls_that_fail_end_in_exit_1_and_no_trace) {
     for (const char* const kind : {"open", "stat"}) check_each(kind, code(error), 3);
   check_each("read", code(EIO), 2);
   check_each("mmap", code(ENOMEM), 2);
-  check_each("lock", code(ENOLCK), 1, true);  // some file systems have no locks
+  check_each("lock", code(ENOLCK), 1, true);  // some file systems do not support locks
   check_each("lock", code(EWOULDBLOCK), 1);
 }
 
 // An output must be the old one or the new one after a power cut, too: the file is flushed before it gets its name, and
-// its folder after that. Some file systems cannot flush a folder, so that only the file has to succeed.
+// its folder after that. Some file systems cannot flush a folder, so only flushing the file must succeed.
 TEST_P(Faults, every_output_and_its_folder_are_flushed) {
   const std::size_t of_journal = GetParam().kept.empty() ? 0 : 2;
   EXPECT_EQ(counts_["fsync"], 2 * expected_.files.size() + of_journal);
@@ -289,7 +291,7 @@ TEST_P(Faults, every_output_and_its_folder_are_flushed) {
   EXPECT_EQ(file.exit_code, 1) << file.err;
   check(folder, "the folder");
   EXPECT_EQ(folder.exit_code, expected_.exit_code) << folder.err;
-  for (const int error : {EINVAL, EROFS}) {  // pipes, and file systems without this call
+  for (const int error : {EINVAL, EROFS}) {  // errors of fsync() on pipes, and on file systems without it
     const Outcome none = run("fsync:1:" + code(error), {});
     EXPECT_EQ(none.exit_code, expected_.exit_code) << none.err;
   }
@@ -328,7 +330,8 @@ TEST_P(Faults, inputs_that_become_shorter_while_they_are_read_end_in_exit_1) {
   for (std::size_t n = 1; n <= counts_["mmap"]; ++n) {
     const std::string fault = "mmap:" + std::to_string(n) + ":short";
     const Outcome shrunk = run(fault, {});
-    // The shortened file may also be a result that is read again to be judged, or memory, which does not get shorter.
+    // The shortened file may also be a result that is read again for judging, or a memory file, which does not become
+    // shorter.
     EXPECT_TRUE(shrunk.exit_code == 1 || shrunk.exit_code == expected_.exit_code) << fault << ": " << shrunk.err;
     for (const auto& [name, bytes] : shrunk.files)
       EXPECT_TRUE(expected_.files.count(name) == 1 || is_kept(name)) << fault << ": " << name;
@@ -351,7 +354,7 @@ TEST_P(Faults, streams_that_are_full_or_closed_change_exit_codes_only_where_data
   }
 }
 
-// Calls fail while stderr takes nothing, and pairs of calls fail.
+// Calls fail while stderr accepts nothing, and calls fail in pairs.
 TEST_P(Faults, pairs_of_failures_leave_no_trace) {
   std::vector<std::string> single;
   for (const char* const kind : {"write", "fsync", "close", "rename", "open", "change", "truncate", "seek", "unlink"})

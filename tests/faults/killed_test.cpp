@@ -1,5 +1,5 @@
-// Kills a run with --resume at any call to the system, and starts it again, which must give the bytes of an undisturbed
-// run. ./test --full slow kills at random calls, `./test --full faults` (CHRONORMAL_FULL=1) at each.
+// Kills a run with --resume at system calls, and starts it again; the result must equal that of an undisturbed run.
+// ./test --full slow kills at random calls, `./test --full faults` (CHRONORMAL_FULL=1) at each call.
 
 #include <gtest/gtest.h>
 
@@ -49,11 +49,10 @@ class Killed : public testing::TestWithParam<Command> {
     ASSERT_GT(calls_, 20U);
   }
 
-  // Runs the command. layer is the text before the path of the layer of faults, or empty for none.
+  // Runs the command. `layer` is the text before the path of the fault layer, or empty for none.
   [[nodiscard]] ProcessResult run(const std::string& more, const std::string& layer = "") const {
     const std::string before = layer.empty() ? "" : layer + kFaultLayer + " ";
-    // A further command keeps the shell alive as another process than the program, so that it reports how the program
-    // ended.
+    // With a further command, the shell runs the program in a child process, and can report how the program ended.
     return run_shell(before + kProgram + " " + GetParam().arguments + more + "; exit $?", folder_.path());
   }
   [[nodiscard]] ProcessResult run_to(std::size_t call, int signal) const {
@@ -63,7 +62,7 @@ class Killed : public testing::TestWithParam<Command> {
   // Resumes until the run is done, and checks the files.
   void finish(const std::string& what) const {
     const ProcessResult done = run(" --resume -q -o out");
-    // A run that was killed after its journal was removed is done: only its output exists.
+    // If a run is killed after its journal was removed, it is complete: only its output exists.
     if (done.exit_code != 0) {
       EXPECT_NE(done.err.find("the file exists already"), std::string::npos) << what << ": " << done.err;
     }
@@ -80,7 +79,7 @@ class Killed : public testing::TestWithParam<Command> {
 
 TEST_P(Killed, runs_that_are_killed_twice_give_the_bytes_of_an_undisturbed_run) {
   constexpr unsigned kSeed = 26;
-  constexpr std::size_t kMoments = 17;  // for each of the three commands
+  constexpr std::size_t kMoments = 17;  // number of moments for each of the three commands
   std::mt19937 random(kSeed);
   const bool is_full = std::getenv("CHRONORMAL_FULL") != nullptr;
   for (std::size_t i = 0; i < (is_full ? calls_ : kMoments) && !HasFailure(); ++i) {
@@ -88,7 +87,7 @@ TEST_P(Killed, runs_that_are_killed_twice_give_the_bytes_of_an_undisturbed_run) 
     const std::string what =
         "seed " + std::to_string(kSeed) + ", calls " + std::to_string(first) + " and " + std::to_string(second);
     EXPECT_EQ(run_to(first, SIGKILL).exit_code, 128 + SIGKILL) << what;
-    (void)run_to(second, SIGKILL);  // it may have less to do, and be done before
+    (void)run_to(second, SIGKILL);  // the second run has less to do, and may finish before
     finish(what);
   }
 }

@@ -1,4 +1,4 @@
-/* The least that a program in C can do with the shared library: ask it for its version. */
+/* Asks the shared library for its version, which is the smallest possible program in C. */
 #include <chronormal_c.h>
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
-# cmake -DFROM=package|folder|fetch_content -DBUILD=... -DSOURCE=... -DVERSION=... -P: configures, builds and runs a foreign project
-# (CMakeLists.txt beside this) that uses chronormal in one of these ways. For a package the build is installed first, into
-# a folder of its own.
-cmake_minimum_required(VERSION 3.22)  # without its policies, "folder" below is the variable of that name
+# cmake -DFROM=package|folder|fetch_content -DBUILD=... -DSOURCE=... -DVERSION=... -P: configures, builds and runs a
+# foreign project (CMakeLists.txt beside this file) that uses chronormal in one of these ways. For a package, the build
+# is first installed into a separate folder.
+cmake_minimum_required(VERSION 3.22)  # without policies, "folder" below would mean the variable of that name
 set(folder ${BUILD}/consume_${FROM})
 file(REMOVE_RECURSE ${folder})
 function(run)
@@ -19,12 +19,12 @@ set(programs core)
 set(project ${SOURCE}/tests/install)
 if(FROM STREQUAL "package")
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/prefix)
-  # Moved, to see that nothing names the place where it was.
+  # Moves the installation, to check that no file contains its first path.
   file(RENAME ${folder}/prefix ${folder}/moved)
   list(APPEND options -DCMAKE_PREFIX_PATH=${folder}/moved)
   list(APPEND programs engine core_by_pkg_config engine_by_pkg_config c_by_pkg_config c_by_component)
 elseif(FROM STREQUAL "folder")
-  # The project that docs/cpp.md shows, with this repository as its folder.
+  # The project in docs/cpp.md, with this repository as its folder.
   set(project ${folder}/project)
   set(programs first_steps)
   file(READ ${SOURCE}/docs/cpp.md page)
@@ -32,7 +32,7 @@ elseif(FROM STREQUAL "folder")
   file(WRITE ${project}/CMakeLists.txt "${CMAKE_MATCH_1}")
   file(COPY ${SOURCE}/examples/first_steps.cpp DESTINATION ${project})
   file(CREATE_LINK ${SOURCE} ${project}/chronormal SYMBOLIC)
-  foreach(package ZLIB pugixml nlohmann_json meshoptimizer draco CLI11 fmt hwy)  # as if they were not installed
+  foreach(package ZLIB pugixml nlohmann_json meshoptimizer draco CLI11 fmt hwy)  # these packages count as not installed
     list(APPEND options -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
   endforeach()
 else()

@@ -1,4 +1,5 @@
-// A program that knows only the one function of plugin.cpp: it writes a file of three vertices and has them counted.
+// A program that knows only the function of plugin.cpp. It writes a file of three vertices and lets the plugin count
+// them.
 #include <cstdio>
 
 extern "C" long vertices_of(const char* path);

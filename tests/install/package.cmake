@@ -1,4 +1,4 @@
-# cmake -DBUILD=... -DFOLDER=... -P: makes the Debian package, unpacks it beside, and runs what is in it.
+# cmake -DBUILD=... -DFOLDER=... -P: makes the Debian package, unpacks it into FOLDER, and runs the programs in it.
 file(REMOVE_RECURSE ${FOLDER})
 file(MAKE_DIRECTORY ${FOLDER})
 function(run output_name)
@@ -28,7 +28,7 @@ foreach(file lib/libchronormal.a lib/libchronormal_c.so.0 lib/pkgconfig/chronorm
     message(FATAL_ERROR "the package has no ${file}")
   endif()
 endforeach()
-# The page of reports is made by npm, so that it may be missing; where it was made, it is packed, and found.
+# npm makes the page of reports, so the page may be missing; if it was made, it must be in the package.
 if(EXISTS ${BUILD}/../share/chronormal/report.html)
   run(said ${FOLDER}/root/usr/bin/chronormal report --sample twist -o twist.html)
 endif()

@@ -1,4 +1,4 @@
-// A shared object that reads a file by chronormal, as an engine's plugin does. It exports one function of C.
+// A shared object that reads a file by chronormal, like an engine's plugin. It exports one function of C.
 #include "chronormal/chronormal_io.h"
 
 extern "C" __attribute__((visibility("default"))) long vertices_of(const char* path) {

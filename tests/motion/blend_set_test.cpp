@@ -14,7 +14,7 @@
 namespace chronormal::blend_set_test {
 namespace {
 
-// Makes a triangle, and a vertex beside it.
+// Makes a triangle and a separate vertex.
 BlendSet small_set() {
   BlendSet set;
   set.topology = fixtures::make_triangles(4, {0, 1, 2});

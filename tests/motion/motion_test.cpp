@@ -1,4 +1,4 @@
-// Tests topologies, motions, the check of outside data, and the segment of a time.
+// Tests topologies, motions, the validation of data from outside, and the segment of a time.
 
 #include <gtest/gtest.h>
 
@@ -177,7 +177,7 @@ TEST(Motion, kinds_make_segments_of_keyframes) {
   ASSERT_EQ(motion.segments.size(), 2U);
   EXPECT_EQ(motion.segments[1].from, 0U);
   EXPECT_EQ(motion.segments[1].to, 2U);
-  // Two keyframes at one time are a jump.
+  // Two keyframes at the same time make a jump.
   motion.keyframes.push_back(motion.keyframes.back());
   motion.keyframes[1].time = motion.keyframes[2].time = 3;
   motion.connect(MotionKind::kAnimation);

@@ -1,4 +1,4 @@
-// Compares curves through keyframes with the formulas of textbooks, and their pieces with the curves.
+// Compares curves through keyframes with textbook formulas, and their straight pieces with the curves.
 #include "chronormal/motion/paths.h"
 
 #include <gtest/gtest.h>
@@ -76,8 +76,8 @@ TEST(Path, hermite_needs_a_velocity_and_curves_a_sequence) {
 // ---- pieces --------------------------------------------------------------------------------------------------------
 
 // Compares the normals of all faces, or of all vertices, of the pieces with those of the curve at times between, and
-// returns the largest angle in degrees. Subtracts twice the effect that rounding of positions to float32 may have on
-// the face: once in the pieces, and once where a piece that is as close as that is good enough.
+// returns the largest angle in degrees. Subtracts twice the possible effect of rounding positions to float32: once for
+// the pieces, and once because the cutting accepts a piece that is within rounding.
 double largest_error(const Motion& motion, const Motion& pieces, bool of_vertices, bool given) {
   double largest = 0;
   for (std::size_t p = 0; p < pieces.segments.size(); ++p) {
@@ -107,7 +107,8 @@ double largest_error(const Motion& motion, const Motion& pieces, bool of_vertice
           }
           const double size = static_cast<double>(
               std::sqrt(exact[e][0] * exact[e][0] + exact[e][1] * exact[e][1] + exact[e][2] * exact[e][2]));
-          // A triangle has two edges or a quad four, each up to 1.8 times its largest component, and a little more.
+          // A triangle has two edges and a quad has four, each at most 1.8 times as long as its largest component, plus
+          // a margin.
           rounding = 2 * 57.3 * 0x1p-24 * 16 * static_cast<double>(face.size() - 2) * widest * 1.2 * furthest / size;
         }
         largest = std::max(largest, test::angle_of(exact[e], found[e]) * 57.29577951308232 - rounding);
@@ -130,7 +131,7 @@ TEST(Pieces, have_the_normals_of_the_curve_within_the_tolerance) {
       EXPECT_EQ(cut.cut.beyond, 0U);
       EXPECT_GT(cut.cut.pieces, before) << "a smaller tolerance takes more";
       before = cut.cut.pieces;
-      const double rounding = 2e-4;  // effect of rounding positions, with edges of 0.1
+      const double rounding = 2e-4;  // effect of rounding positions on edges of length 0.1
       const double of_faces = largest_error(motion, cut.motion, false, given);
       EXPECT_LE(of_faces, tolerance + rounding);
       EXPECT_GT(of_faces, tolerance / 40) << "not many more pieces than it takes";
@@ -141,7 +142,7 @@ TEST(Pieces, have_the_normals_of_the_curve_within_the_tolerance) {
   }
 }
 
-// The motions are random tetrahedra and quads that tumble, swell and wander, thin ones among them.
+// The motions are random tetrahedra and quads that tumble, swell and wander; some are thin.
 TEST(Pieces, of_random_motions_are_within_the_tolerance) {
   const std::uint64_t seed = 20261127;
   RecordProperty("seed", std::to_string(seed));
@@ -212,7 +213,7 @@ TEST(Pieces, are_no_more_than_was_allowed) {
   EXPECT_EQ(cut_into_segments(motion, curve(), 0).value().cut.pieces, 2U);
 }
 
-// Vertex 2 passes beside the line of the other two between keyframes 1 and 2.
+// Vertex 2 passes beside the line through the other two vertices between keyframes 1 and 2.
 TEST(Pieces, a_face_that_turns_over_decides_nothing) {
   Motion motion;
   motion.topology = Topology::triangles(6, {0, 1, 2, 3, 4, 5}).value();
@@ -225,7 +226,7 @@ TEST(Pieces, a_face_that_turns_over_decides_nothing) {
     EXPECT_LE(cut.cut.beyond, 1U);
     EXPECT_TRUE(validate(cut.motion).ok());
   }
-  // Now it goes through the line itself.
+  // Now it passes through the line itself.
   for (Motion::Keyframe& key : motion.keyframes)
     key.positions[8] = 0, key.positions[7] += static_cast<float>(0.01 * key.time * key.time);
   const CutMotion through = cut_into_segments(motion, curve()).value();
@@ -272,7 +273,7 @@ TEST(Pieces, have_the_same_bits_on_any_number_of_threads_and_in_a_stream) {
   }
 }
 
-// Vertex 0 goes beyond the largest number of float32 and comes back.
+// Vertex 0 exceeds the largest float32 number and returns.
 TEST(Pieces, that_leave_float32_are_an_error) {
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();

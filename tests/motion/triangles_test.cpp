@@ -16,7 +16,7 @@ namespace {
 using Place = std::array<std::int64_t, 2>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-// Returns twice the area, in whole numbers.
+// Returns twice the area as an integer.
 std::int64_t area(const Place& a, const Place& b, const Place& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -51,7 +51,7 @@ bool is_simple(const std::vector<Place>& polygon) {
   return true;
 }
 
-// Puts the polygon on a plane in space: x and y on two of the axes, and a slope on the third.
+// Puts the polygon on a plane in space: x and y are on two of the axes, and the third coordinate has a slope.
 std::vector<float> in_space(const std::vector<Place>& polygon, std::size_t axis) {
   std::vector<float> positions;
   for (const Place& p : polygon) {
@@ -70,8 +70,8 @@ std::vector<Triangle> cut(const std::vector<Place>& polygon, std::size_t axis = 
   return triangles_of_face(face, in_space(polygon, axis));
 }
 
-// Checks that the triangles all turn left and that their areas add up to the polygon's. Then they cover it once, since
-// the signed sum of what they cover is what the polygon winds around.
+// Checks that the triangles all turn left and that their areas add up to the polygon's. Then they cover the polygon
+// exactly once, since the sum of their signed areas is the polygon's area.
 void expect_covers_once(const std::vector<Place>& polygon, std::size_t axis) {
   const std::vector<Triangle> triangles = cut(polygon, axis);
   ASSERT_EQ(triangles.size(), polygon.size() - 2);
@@ -90,7 +90,7 @@ void expect_covers_once(const std::vector<Place>& polygon, std::size_t axis) {
 TEST(Triangles, convex_polygons_stay_fans) {
   EXPECT_EQ(cut({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_EQ(cut({{0, 0}, {2, 0}, {3, 1}, {2, 2}, {0, 2}}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
-  // Polygons that a fan covers although one corner is concave, here the first, stay fans too.
+  // A polygon that a fan covers despite a concave corner, here the first, is still cut into a fan.
   EXPECT_EQ(cut({{1, 1}, {4, 0}, {1, 4}, {0, 4}, {0, 0}}).front(), (Triangle{0, 1, 2}));
 }
 
@@ -113,7 +113,8 @@ TEST(Triangles, polygons_that_are_drawn_are_covered_once) {
   std::mt19937 random(kSeed);
   std::size_t tried = 0, concave = 0;
   while (tried < 400) {
-    // Points on a small grid are untangled by reversing parts until no two edges cross; many are on one line.
+    // Random points on a small grid become a polygon by reversing parts until no two edges cross. Many points are on
+    // one line.
     const std::size_t n = 4 + random() % 16;
     const std::int64_t grid = 3 + static_cast<std::int64_t>(random() % 40);
     std::vector<Place> polygon;

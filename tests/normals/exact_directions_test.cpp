@@ -1,5 +1,5 @@
-// Compares every direction that is made from positions with whole numbers of any size: 100,000 cases from a fixed seed,
-// or as many as the variable CHRONORMAL_FULL_CASES asks for (./test --full exact). A case is one element at one t.
+// Compares every direction that is computed from positions with integers of any size: 100,000 cases from a fixed seed,
+// or as many as the variable CHRONORMAL_FULL_CASES says (./test --full exact). A case is one element at one t.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ long double size_at(const Segment& segment, std::size_t f, double t) {
   return std::hypot(e[1] * g[2] - e[2] * g[1], e[2] * g[0] - e[0] * g[2], e[0] * g[1] - e[1] * g[0]);
 }
 
-// Returns the t with the smallest |n(t)|, almost to the last place.
+// Returns the t with the smallest |n(t)|, up to the last place.
 double hardest_time(const Segment& segment, std::size_t f) {
   double best = 0;
   for (int i = 1; i <= 16; ++i) {
@@ -70,7 +70,7 @@ double hardest_time(const Segment& segment, std::size_t f) {
   return size_at(segment, f, low) < size_at(segment, f, best) ? low : best;
 }
 
-// Draws times that are hard for one of the faces, and times that are hard for most.
+// Draws times that are hard for one of the faces, and times that are hard for most faces.
 std::vector<double> some_times(const Segment& segment, fixtures::Random& random) {
   constexpr std::array<double, 16> kSimple{0,           1,           0.5,  0.25,    0.75,     0.125,
                                            1.0 / 3,     0.8,         1e-9, 0x1p-40, 0x1p-150, 0x1p-250,
@@ -186,7 +186,7 @@ Tally judged(const Motion& motion, const std::vector<double>& times) {
   return tally;
 }
 
-// Normals of these small meshes once had errors of up to half a turn.
+// Normals of these small meshes once had errors of up to 180 degrees.
 TEST(ExactDirections, are_right_where_an_attack_found_them_wrong) {
   struct Found {
     const char* name;
@@ -245,8 +245,8 @@ TEST(ExactDirections, are_right_in_files_that_broke_them) {
   EXPECT_GE(files, 8u);
 }
 
-// Control normals in double are all that is known here: near a zero of n(t) the direction is uncertain, which is
-// counted.
+// Only control normals in double are known here: near a zero of n(t) the direction is uncertain, and the result counts
+// such elements.
 TEST(UncertainDirections, are_counted_where_there_are_no_positions) {
   const Vec3d z{0, 0, 1};
   const ControlNormals turning{z, {}, -z}, steady{z, z, z};

@@ -1,4 +1,5 @@
-// Tests the modes that a caller may set in the floating point unit, and the promise in each: see control_normals.h.
+// Tests the modes that a caller may set in the floating-point unit, and the guarantee for each mode
+// (control_normals.h).
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@
 namespace chronormal::floating_point_modes_test {
 namespace {
 
-// Returns everything at one t: faces and vertices, by curves and recomputed.
+// Returns the normals of faces and vertices at one t, both from curves and recomputed.
 std::vector<float> everything(const Segment& segment, double t) {
   const Topology& topology = *segment.topology;
   const NormalGroups groups = NormalGroups::of_vertices(topology, separate_points(topology.vertex_count()));
@@ -58,7 +59,7 @@ class ScopedControl {
   unsigned before_;
 };
 
-// The meshes have any size at which squares of coordinates underflow but the coordinates themselves are normal.
+// The meshes are so small that squares of coordinates may underflow, while coordinates themselves are normal numbers.
 TEST(FlushToZero, changes_no_bit_where_coordinates_are_normal) {
   fixtures::Random random(61);
   std::vector<Motion> motions = {fixtures::smooth_morph(8), fixtures::tiny_soup(50),

@@ -1,7 +1,7 @@
 // Tests theorems about control normals, each on random meshes of a family.
 //
 // Most coordinates are multiples of 2^-8 within +-128: edges, products and sums of a few of them are exact in double,
-// so theorems hold to the last bit. Elsewhere the tolerance is stated.
+// so theorems hold to the last bit. Other tests state their tolerance.
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -27,8 +27,8 @@ using fixtures::Point;
 
 // ---- generators ----------------------------------------------------------------------------------------------------
 
-// Draws an integer in [-bound, bound]. rapidcheck begins with the low end of a range and widens it from case to case;
-// here the low end is zero, so that the first cases are degenerate in every way and the later ones general.
+// Draws an integer in [-bound, bound]. rapidcheck begins with the low end of a range and widens the range from case to
+// case. The low end here is zero, so the first cases are degenerate and later cases are general.
 rc::Gen<int> around_zero(int bound) {
   return rc::gen::map(rc::gen::inRange(0, 2 * bound + 1), [](int k) { return k % 2 == 0 ? k / 2 : -(k / 2) - 1; });
 }
@@ -50,7 +50,7 @@ Motion grid_soup(std::size_t face_count = 3, int bound = 128) {
                                points(3 * face_count, bound));
 }
 
-// Makes a motion of triangles anywhere, of any size from 1e-6 to 1e6, where nothing is exact.
+// Makes a motion of triangles at any place and of any size from 1e-6 to 1e6, where nothing is exact.
 Motion any_soup(std::size_t face_count = 3) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   const double size = std::pow(10, *around_zero(6));
@@ -134,7 +134,7 @@ RC_GTEST_PROP(Theorems, normals_are_perpendicular_to_both_edges_at_every_time, (
   const auto at = [&](std::size_t i) { return lerp(to_double(segment.from[i]), to_double(segment.to[i]), t); };
   const double edge = largest_edge(motion, 0);
   const double position = std::max({max_abs(at(0)), max_abs(at(1)), max_abs(at(2))});
-  // The vertices at t are rounded to double here, by 2^-53 of their coordinates.
+  // The vertices at t are rounded to double here, by a relative 2^-53.
   const double tolerance = 64 * 0x1p-53 * edge * edge * (edge + position);
   RC_ASSERT(std::fabs(dot(n, at(1) - at(0))) <= tolerance);
   RC_ASSERT(std::fabs(dot(n, at(2) - at(0))) <= tolerance);
@@ -178,7 +178,7 @@ RC_GTEST_PROP(Theorems, scaled_mesh_has_normals_times_the_square, ()) {
   const auto after = control_normals(larger);
   const Segment segment = larger.segment(0);
   for (std::size_t f = 0; f < before.size(); ++f) {
-    // Scaled positions are rounded to float again, by 2^-24 of themselves.
+    // Scaled positions are rounded to float again, by a relative 2^-24.
     double position = 0;
     for (const auto& positions : {segment.from, segment.to}) {
       for (const auto vertex : larger.topology.face(f)) {
@@ -214,7 +214,7 @@ RC_GTEST_PROP(Theorems, mesh_scaled_by_a_power_of_two_has_the_same_bits_but_for_
 
 RC_GTEST_PROP(Theorems, translated_mesh_has_the_same_normals_bit_for_bit, ()) {
   const Motion motion = grid_soup();
-  // Each end moves by an amount of its own, within what the grid represents.
+  // Each end is translated by its own vector, within the range of the grid.
   const auto step0 = *grid_point(1000), step1 = *grid_point(1000);
   Motion moved = motion;
   for (std::size_t i = 0; i < moved.keyframes[0].positions.size(); ++i) {
@@ -244,7 +244,7 @@ RC_GTEST_PROP(Theorems, rigidly_moved_mesh_has_rotated_normals, ()) {
                                     [](const auto& c) { return c != std::array<int, 4>{}; });
   const int divisor = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   const IntegerMatrix r = integer_rotation(q[0], q[1], q[2], q[3]);
-  // Coordinates are multiples of the divisor, so that the rotated positions are integers: floats without rounding.
+  // Coordinates are multiples of the divisor, so that rotated positions are integers, which floats represent exactly.
   const Motion motion = changed(grid_soup(3, 4), [divisor](Point p) {
     for (double& c : p) c *= 256 * divisor;
     return p;
@@ -315,8 +315,7 @@ RC_GTEST_PROP(Theorems, swapped_corners_negate_bit_for_bit, ()) {
     for (std::size_t f = 0; f < left.size(); ++f) RC_ASSERT(right[f] == negated(left[f]));
   };
   expect_negated(motion, reordered(motion, {0, 2, 1}));
-  // If another corner becomes the first, other edges are multiplied: the bits are the same only where nothing is
-  // rounded.
+  // If another corner comes first, other edges are multiplied, so the bits are the same only if nothing is rounded.
   expect_negated(on_grid_motion, reordered(on_grid_motion, {1, 0, 2}));
   expect_negated(on_grid_motion, reordered(on_grid_motion, {2, 1, 0}));
 }
@@ -360,7 +359,7 @@ RC_GTEST_PROP(Theorems, polygon_normals_are_the_sum_of_any_fan_of_their_triangle
 
 RC_GTEST_PROP(Theorems, polygon_of_three_corners_is_a_triangle_bit_for_bit, ()) {
   const Motion motion = any_soup(1);
-  Motion mixed = motion;  // a quad beside it keeps the topology from being all triangles
+  Motion mixed = motion;  // a quad in the mesh prevents the fast path for triangles
   mixed.topology = fixtures::make_polygons(3, {0, 3, 7}, {0, 1, 2, 0, 1, 2, 1});
   RC_ASSERT(control_normals(mixed)[0] == control_normals(motion)[0]);
 }
@@ -422,9 +421,9 @@ RC_GTEST_PROP(Theorems, general_face_has_degree_2_where_its_edges_do_not_change_
   const auto edge_change = [&](std::size_t i) {
     return Vec3d{steps[i][0] - steps[0][0], steps[i][1] - steps[0][1], steps[i][2] - steps[0][2]};
   };
-  const Vec3d d = cross(edge_change(1), edge_change(2));  // exact on the grid
+  const Vec3d d = cross(edge_change(1), edge_change(2));  // exact for coordinates on the grid
   const ControlNormals normals = moved_triangle(start, steps);
-  // degree() takes a coefficient below 2^-28 of the largest control normal as zero.
+  // degree() treats a coefficient below 2^-28 of the largest control normal as zero.
   RC_PRE(max_abs(d) > 0x1p-27 * largest(normals));
   RC_ASSERT(degree(normals) == 2);
   RC_ASSERT(normals.n0 + normals.n1 - 2 * normals.m == d);

@@ -1,6 +1,6 @@
-// Tests a theorem of time: the normals at t are the same bytes whatever other times are requested before, after or
-// together with t, on every instruction set and number of threads, and by every way to compute them, including the C
-// interface. The meshes are hard and random, and whole numbers of any size give the truth.
+// Tests that the normals at t are always the same bytes: whichever times are requested before, after or together with
+// t, on every instruction set and number of threads, and by every way to compute them, including the C interface. The
+// meshes are hard and random, and integers of any size give the true normals.
 
 #include <gtest/gtest.h>
 
@@ -44,12 +44,12 @@ using test::IntegerVector;
 
 using Normals = std::vector<float>;
 
-// A prepared way to compute the normals of some elements at each of some times, in this order.
+// A prepared way to compute the normals of some elements: returns the normals at each given time, in order.
 using Way = std::function<std::vector<Normals>(const std::vector<double>& times)>;
 
 struct NamedWay {
   std::string name;
-  std::function<Way()> make;  // prepares it anew
+  std::function<Way()> make;  // prepares the way from scratch
 };
 
 // The faces, vertices or corners of a mesh.
@@ -59,9 +59,9 @@ struct Elements {
   double crease_angle;         // for corners
 };
 
-// Ways that must agree with each other to the last bit, and with the truth to this angle.
+// Ways that must agree with each other to the last bit, and with the true normals within this angle.
 struct Kin {
-  double tolerance;  // radians; infinite where whole numbers are no judge
+  double tolerance;  // radians; infinite if integers cannot judge these normals
   std::vector<NamedWay> ways;
 };
 
@@ -109,7 +109,7 @@ void expect_done(chronormal_status status) {
   if (status != CHRONORMAL_DONE) throw std::runtime_error(chronormal_last_message());
 }
 
-// A mesh and the two ends of its segment as C passes them, and the options of some elements.
+// A mesh and the two ends of its segment in the types of the C interface, and the options of some elements.
 struct MeshInC {
   std::vector<std::uint32_t> offsets{0};
   chronormal_mesh mesh;
@@ -132,7 +132,7 @@ struct MeshInC {
   }
 };
 
-// Makes a way from an object of `size` elements: write(t, where) writes the normals of one time.
+// Makes a way from an object of `size` elements: write(t, where) writes the normals at one time.
 template <class Write>
 Way written_in_c(std::size_t size, Write write) {
   return [=](const std::vector<double>& times) {
@@ -143,7 +143,7 @@ Way written_in_c(std::size_t size, Write write) {
   };
 }
 
-// Creates curves for the segment, or for its way back, and then brings them to the segment.
+// Creates curves for the segment; or if is_next, for the reversed segment, and then moves them on to the segment.
 Way curves_in_c(const MeshInC& in, bool is_next) {
   chronormal_curves* made = nullptr;
   expect_done(chronormal_curves_create(&in.mesh, in.from, is_next ? in.from : in.to, &in.options, &made));
@@ -193,7 +193,7 @@ MeshNormals mesh_normals(const Motion& motion, const Elements& elements, double 
   return normals;
 }
 
-// Adds the ways of the C interface, to the curves of C++ if both have the same elements, one for one.
+// Adds the ways of the C interface. They join the curves of C++ if both have the same elements.
 void add_ways_of_outputs(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
                          std::vector<Kin>& all) {
   Kin own{std::numeric_limits<double>::infinity(), {}};  // the C interface has a normal for each corner
@@ -212,7 +212,7 @@ void add_ways_of_outputs(const Motion& motion, const Elements& elements, double 
   if (!own.ways.empty()) all.push_back(std::move(own));
 }
 
-// Adds the ways that blend, or read files.
+// Adds the ways of the C interface that blend or read files.
 void add_files_and_blends_of_c(const Motion& motion, const Elements& elements, std::vector<Kin>& all) {
   constexpr double kNotJudged = std::numeric_limits<double>::infinity();
   std::vector<float> deltas = motion.keyframes[1].positions;
@@ -290,8 +290,8 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const El
   return all;
 }
 
-// Describes the fault of a way, or returns "". `expected` has the normals of the times, one for one; it is set if
-// empty.
+// Describes the fault of a way, or returns "". `expected` has the normals at each of the times; the function fills it
+// if it is empty.
 std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times, Random& random,
                            std::vector<Normals>& expected) {
   const auto same = [](const Normals& a, const Normals& b) {

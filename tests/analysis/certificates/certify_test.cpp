@@ -1,6 +1,6 @@
-// Compares certificates of every scheme with whole numbers of any size: at 64 exact times each, no error exceeds the
-// upper bound, and at the named time the error is not below the lower one. There are 600 elements from fixed seeds, or
-// as many as CHRONORMAL_FULL_CASES asks for, 200,000 at most (./test --full exact).
+// Compares certificates of every scheme with integers of any size: at 64 exact times per element, no error exceeds the
+// upper bound, and at the named time the error is not below the lower bound. There are 600 elements from fixed seeds,
+// or as many as CHRONORMAL_FULL_CASES asks for, 200,000 at most (./test --full exact).
 
 #include "chronormal/analysis/certify.h"
 #include "chronormal/core/polynomial.h"
@@ -50,7 +50,7 @@ std::size_t wanted_elements() {
   return std::clamp<std::size_t>(cases, 600, 200000);
 }
 
-// A scheme on the faces of a segment.
+// A scheme that is prepared for the faces of a segment.
 struct Prepared {
   std::unique_ptr<Scheme> scheme;
   std::vector<ControlNormals> normals;
@@ -80,8 +80,8 @@ double error_of(const Vec3f& shown, const IntegerVector& exact) {
 // The findings about one scheme.
 struct Tally {
   std::size_t elements = 0, over = 0, under = 0, crossed = 0, unknown = 0;
-  double largest_share = 0;  // largest share of an upper bound that a sample reached
-  double gap = 0;            // summed, of those that are known
+  double largest_share = 0;  // largest ratio of a sampled error to the upper bound
+  double gap = 0;            // sum of upper bound minus lower bound, over the elements with a bound
   std::string first;
 };
 
@@ -162,7 +162,7 @@ TEST(ExactCertificates, are_never_violated_by_soups) {
        {fixtures::moderate_soup(each), fixtures::large_soup(each), fixtures::needle_soup(each),
         fixtures::far_soup(each), fixtures::soup({.face_count = each, .seed = 9, .motion = 1e-6})}) {
     for (std::size_t first = 0; first < each; first += 400) {
-      // The motion is certified in parts, so that the times differ.
+      // The motion is certified in parts, so that the times of the largest errors differ.
       Motion part = motion;
       part.topology = fixtures::make_soup(std::min<std::size_t>(400, each - first));
       for (Motion::Keyframe& keyframe : part.keyframes) {
@@ -212,8 +212,8 @@ constexpr std::array<fixtures::Point, 3> kFlat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}
 constexpr std::array<fixtures::Point, 3> kUpright{{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
 
 TEST(Certificates, meet_an_error_that_is_known_by_hand) {
-  // n(t) = (0, -3t, 1-t), and linear shows (0, -t, 1-t): the tangent of the difference is 2 t (1-t) / ((1-t)^2 + 3
-  // t^2). It is largest at t = 1 / (1 + sqrt 3), where it is 1 / sqrt 3: 30 degrees.
+  // n(t) = (0, -3t, 1-t), and linear interpolation gives (0, -t, 1-t). The tangent of the angle between them is 2 t
+  // (1-t) / ((1-t)^2 + 3 t^2). It is largest at t = 1 / (1 + sqrt 3), where it is 1 / sqrt 3: 30 degrees.
   std::array<fixtures::Point, 3> long_upright = kUpright;
   long_upright[2][2] = 3;
   const ErrorBounds linear = bounds_of("linear", moving(kFlat, long_upright));
@@ -224,7 +224,7 @@ TEST(Certificates, meet_an_error_that_is_known_by_hand) {
   EXPECT_NEAR(linear.at, 1 / (1 + std::sqrt(3)), 0.05);
   EXPECT_LE(linear.from, 1 / (1 + std::sqrt(3)) + 0.05);
   EXPECT_GE(linear.to, 1 / (1 + std::sqrt(3)) - 0.05);
-  // With the best length of one end only rounding is left.
+  // With the optimal length of one end normal, only rounding remains.
   EXPECT_LT(bounds_of("linear:scaled", moving(kFlat, long_upright)).upper, 1e-5);
 }
 
@@ -235,19 +235,19 @@ TEST(Certificates, are_half_a_turn_where_the_normal_vanishes_and_say_when) {
     if (scheme == "recompute") continue;
     EXPECT_EQ(bounds_of(scheme, moving(kFlat, turned)).upper, std::numbers::pi) << scheme;
   }
-  // Sums of opposite ends pass zero at t = 1/2, which is another such place.
+  // Sums of opposite end normals are zero at t = 1/2, where the direction changes abruptly as well.
   for (const char* const scheme : {"polynomial", "rational", "slerp", "quaternion:optimal", "circle"}) {
     const ErrorBounds bounds = bounds_of(scheme, moving(kFlat, turned));
     EXPECT_NEAR(bounds.from, 0.25, 1e-6) << scheme;
     EXPECT_NEAR(bounds.to, 0.25, 1e-6) << scheme;
   }
-  // If it is recomputed from positions, the direction is known up to that instant.
+  // If the normal is recomputed from positions, its direction is known up to the instant of the collapse.
   EXPECT_EQ(bounds_of("recompute", moving(kFlat, turned)).upper, 1e-6);
 }
 
 TEST(Certificates, are_half_a_turn_where_opposite_ends_cancel) {
-  // c goes around the edge from a to b: the normal turns from +z to -z by way of -y and has an area throughout, but the
-  // straight line between the ends passes zero at t = 1/2.
+  // Vertex c moves around the edge from a to b. The normal turns from +z through -y to -z and never vanishes, but the
+  // straight line between the end normals passes through zero at t = 1/2.
   const std::vector<Vec3d> at{{0, 0, 1}, {0, -1, 0}, {0, 0, -1}};
   const ControlNormals turning{at[0], at[1], at[2]};
   const Motion still = moving(kFlat, kFlat);
@@ -263,14 +263,14 @@ TEST(Certificates, are_half_a_turn_where_opposite_ends_cancel) {
       EXPECT_NEAR(bounds[0].from, 0.5, 1e-6);
       EXPECT_NEAR(bounds[0].to, 0.5, 1e-6);
     } else {
-      // Slerp turns about a fixed perpendicular of the start instead.
+      // Slerp avoids the zero by turning about a fixed perpendicular of the start.
       EXPECT_LT(bounds[0].upper, std::numbers::pi);
     }
   }
 }
 
 TEST(Certificates, follow_the_limit_where_a_face_has_no_area_at_an_end) {
-  std::array<fixtures::Point, 3> point{};  // the face grows out of a point, and turns no more
+  std::array<fixtures::Point, 3> point{};  // the face grows out of a point, then keeps its direction
   for (const char* const scheme : {"linear", "slerp", "polynomial", "rational", "circle:timed"}) {
     EXPECT_LT(bounds_of(scheme, moving(point, kFlat)).upper, 1e-5) << scheme;
     EXPECT_LT(bounds_of(scheme, moving(kFlat, point)).upper, 1e-5) << scheme;
@@ -335,8 +335,8 @@ TEST(Certificates, give_the_same_bits_on_any_number_of_threads) {
 
 // ---- sums that cancel ----------------------------------------------------------------------------------------------
 
-// In double, a sum of faces that cancel is rounding. The certificate must account for that, or the normals must be
-// computed in another way.
+// In double, the sum of faces that cancel is only rounding error. The certificate must account for the error, or the
+// normals must be computed more precisely.
 TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
   std::size_t judged = 0, known = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -444,7 +444,7 @@ class LongSum {
   }
 };
 
-// A scheme of an arc in eased time, which no formula knows.
+// A scheme of an arc in eased time, for which certify() knows no formula.
 class EasedArc {
  public:
   [[nodiscard]] std::size_t plane_count() const { return 7; }
@@ -458,7 +458,7 @@ class EasedArc {
   void shared(double t, float* values) const { values[0] = static_cast<float>(eased(t)); }
 };
 
-// A scheme outside the framework, which tells nothing about itself.
+// A scheme that does not use the framework of curve_scheme.h and describes nothing about itself.
 class Silent final : public Scheme {
  public:
   void prepare(const ElementBlock& block) override { count_ = block.elements.count; }
@@ -474,8 +474,8 @@ class Silent final : public Scheme {
   std::size_t count_ = 0;
 };
 
-// Returns the largest error at 400 times, over all elements with a bound below half a turn; fails if a bound is
-// exceeded.
+// Samples 400 times and fails if a bound is exceeded. Returns the largest error over all elements with a bound below
+// half a turn.
 double held_against_samples(Scheme& scheme, std::size_t& known) {
   double largest = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -529,7 +529,7 @@ TEST(Certificates, hold_for_a_scheme_that_brings_its_own_weights) {
   }
 }
 
-// In every scheme that is a sum, each weight equals its polynomial.
+// In every scheme that is a weighted sum, each weight equals its polynomial.
 TEST(Certificates, know_the_weights_of_all_sums) {
   const auto weight_at = [](const WeightBasis& basis, std::size_t k, double t) {
     double value = 0;

@@ -1,6 +1,6 @@
-// Tests bounds of meshlets, built by meshoptimizer, while the mesh deforms: its tests must never reject a meshlet with
-// a face that is front-facing at an instant of the interval, which integers decide. Bounds of a single instant do. Uses
-// a sheet of 512 faces, and built-in morphs under ./test --full exact.
+// Tests bounds of meshlets while the mesh deforms. Meshoptimizer's culling tests with these bounds must never reject a
+// meshlet with a face that is front-facing at an instant of the interval, as decided in integers. Bounds of a single
+// instant fail this test. Uses a sheet of 512 faces, and built-in morphs under ./test --full exact.
 
 #include "chronormal/analysis/cones.h"
 
@@ -48,8 +48,8 @@ meshopt_Bounds as_meshopt(const ClusterBounds& bounds) {
   return result;
 }
 
-// The tests repeat meshoptimizer.h, in float32. Only squares are summed in double: squares of lengths below 1e-19
-// underflow float32, which spoils any test that divides by a length, or adds one, whatever the bounds are.
+// The tests repeat meshoptimizer.h, in float32. Only squares are summed in double: in float32, squares of lengths below
+// 1e-19 underflow, and every test that divides by a length or adds one would fail for that reason alone.
 Vec3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 float length_of(const Vec3f& v) { return static_cast<float>(std::sqrt(dot(to_double(v), to_double(v)))); }
 Vec3f normalized_of(const Vec3f& v) { return (1 / length_of(v)) * v; }
@@ -115,10 +115,10 @@ Meshlets meshlets_of(Motion motion, std::size_t segment) {
   return result;
 }
 
-// Faces and their first corners at one instant, in integers of one scale each.
+// Faces and their first corners at one instant, in integers with a common scale.
 struct Instant {
   std::vector<IntegerVector> normals, corners;
-  mpz_class unit;  // the unit of corners, times that of a float
+  mpz_class unit;  // the unit of corners, as a multiple of the unit of floats
 
   Instant(const Segment& segment, double t) {
     const IntegerTime time = IntegerTime::of(t);
@@ -244,10 +244,10 @@ TEST(ExactClusterBounds, never_reject_a_meshlet_that_is_seen_at_any_instant) {
     EXPECT_GT(c.rejected, 100u);
   }
   EXPECT_LE(apex_s8.rejected, apex.rejected);
-  EXPECT_GT(rival.wrong, 20u);  // the judge sees what is wrong
+  EXPECT_GT(rival.wrong, 20u);  // the check detects wrong bounds
 }
 
-// Tests one or a few faces of any family, from cameras all around.
+// Tests one or a few faces of each family of hard faces, from cameras all around.
 TEST(ExactClusterBounds, never_reject_hard_faces_that_are_seen) {
   fixtures::Random random(912);
   std::size_t rejected = 0;
@@ -308,7 +308,7 @@ TEST(ClusterBounds, have_every_vertex_in_their_sphere_at_any_instant) {
   }
 }
 
-// Polynomials in rational numbers, by the powers of their argument.
+// Polynomials with rational coefficients, in powers of their argument.
 using Rational = mpq_class;
 using Powers = std::array<Rational, 4>;
 
@@ -332,12 +332,13 @@ Powers dot_of(const std::array<Powers, 3>& a, const std::array<Powers, 3>& b) {
   return result;
 }
 
-// Returns the Bernstein coefficients of the same cubic: sums of its powers by the quotients of binomials.
+// Returns the Bernstein coefficients of the same cubic: weighted sums of its power coefficients, with ratios of
+// binomials as weights.
 std::array<Rational, 4> bernstein_of(const Powers& p) {
   return {p[0], p[0] + p[1] / 3, p[0] + p[1] * 2 / 3 + p[2] / 3, p[0] + p[1] + p[2] + p[3]};
 }
 
-// The normal of a triangle and its first corner over [t0, t1], as cubics of the share of the interval.
+// The normal of a triangle and its first corner over [t0, t1], as cubics in the share of the interval.
 struct MovingPlane {
   std::array<Powers, 3> normal, corner;
 

@@ -1,4 +1,4 @@
-// Compares normal cones with whole numbers of any size: no exact normal of the interval may lie outside. There is one
+// Compares normal cones with integers of any size: no exact normal of the interval may lie outside. There is one
 // element for every 50 cases, at 64 instants each: 2,000 elements, or 200,000 under ./test --full exact.
 
 #include "chronormal/analysis/cones.h"
@@ -62,7 +62,7 @@ std::vector<NormalCone> cones_of_faces(const Segment& segment, const Interval& p
   return cones;
 }
 
-// Returns cones of the ends and of a straight line between them.
+// Returns the cones of the normals at both ends, which assume a straight line between them.
 std::vector<NormalCone> cones_of_ends(const Segment& segment, const Interval& part) {
   std::vector<ControlNormals> ends = all_face_control_normals(segment);
   for (ControlNormals& c : ends) {
@@ -160,7 +160,7 @@ TEST(ExactCones, of_control_normals_contain_every_exact_normal_of_the_interval) 
   EXPECT_EQ(outside_of(cones_of, false), 0u);
 }
 
-// The judge also finds the errors of a shortcut.
+// The check detects the errors of a shortcut: cones of the end normals alone.
 TEST(ExactCones, of_the_two_ends_alone_do_not) { EXPECT_GT(outside_of(cones_of_ends, false), 1000u); }
 
 TEST(Cones, have_the_same_bits_on_every_instruction_set_and_in_any_number) {
@@ -197,7 +197,8 @@ TEST(Cones, leave_out_control_normals_that_are_zero) {
     EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, 45, 3e-4);
     EXPECT_GE(half_angle(cones[i]) * kDegreesPerRadian, 45);
   }
-  // Over the first half {zero, zero, x} still begins with zeros, and over the second it has none.
+  // Over the first half, the control normals {zero, zero, x} still begin with zeros; over the second half there are
+  // none.
   normal_cones(normals, 0, 0.5, cones);
   EXPECT_EQ(cones[1].axis, (Vec3f{1, 0, 0}));
   normal_cones(normals, 0.5, 1, cones);
@@ -221,7 +222,8 @@ TEST(Cones, are_the_whole_sphere_where_a_normal_turns_over) {
   }
 }
 
-// At t = 1/2 these control normals nearly cancel, so that 2^-26 of one of them turns n(t) by far more than that.
+// At t = 1/2 these control normals nearly cancel, so an error of 2^-26 in one control normal turns n(t) by much more
+// than 2^-26.
 TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   for (const double left : {0x1p-4, 0x1p-8, 0x1p-13, 0x1p-20}) {
     const ControlNormals given{{1, 0, left}, {-1, 0, left}, {1, 0, left}};
@@ -238,7 +240,7 @@ TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   }
 }
 
-// The directions are two edges and a corner of a cube, with the smallest cones around them.
+// The directions are two edges and a corner of a cube. Their smallest cones are known.
 TEST(Cones, are_the_smallest_around_three_directions) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   const std::vector<ControlNormals> normals{{x, 3 * y, z}, {x, x + y, y}, {1e-140 * x, 1e140 * y, z}};
@@ -265,7 +267,8 @@ TEST(Cones, of_faces_are_sharp_up_to_the_very_instant_of_a_collapse) {
   EXPECT_EQ(cones_of_faces(segment, {0.5 + 0x1p-52, 1})[0].axis, (Vec3f{0, 0, 1}));
 }
 
-// Compares with half of the widest angle between any two of 21 normals, which no cone can be narrower than.
+// Compares with half of the widest angle between any two of 21 normals, which is a lower bound of the cone's
+// half-angle.
 TEST(Cones, are_tight) {
   for (const BuiltinMorph& morph : builtin_morphs()) {
     const Motion motion = make_builtin_morph(morph.name).value();
@@ -307,7 +310,7 @@ TEST(EnclosingCone, of_a_hierarchy_contains_the_normals_of_all_faces_below) {
     const Motion motion = fixtures::soup({.face_count = 256, .seed = 5, .motion = motion_size});
     Segment segment = motion.segment(0);
     std::vector<NormalCone> level = cones_of_faces(segment, {0.1, 0.8});
-    // Faces are sorted by their axes, so that clusters are not the whole sphere at once.
+    // Sorts faces by their axes, so that the clusters are not all as wide as the whole sphere.
     std::vector<std::size_t> order(level.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -1,5 +1,5 @@
-// Compares means over an open shutter with oracles that share no code with them: closed forms where n(t) is a line,
-// however near to zero it passes, and otherwise dense Gaussian quadrature in long double, from positions.
+// Compares means over an open shutter with oracles that share no code with them: closed forms if n(t) is a straight
+// line, even one that passes close to zero, and otherwise dense Gaussian quadrature in long double, from positions.
 
 #include "chronormal/analysis/cones.h"
 
@@ -85,7 +85,7 @@ TEST(ExactShutter, of_lines_that_pass_near_zero_is_within_its_bound_of_the_close
   for (std::size_t i = 0; i < wanted; ++i) {
     const fixtures::Point d = random.in_cube(1), g = random.in_cube(1);
     const double when = random.uniform(-0.2, 1.2), gap = std::ldexp(1, -static_cast<int>(random.below(40)));
-    // The control normals are floats, so that their ends are known and the middle is exact.
+    // The control normals are floats, so their exact values are known.
     const auto end = [&](double t) {
       return to_double(
           to_float({(t - when) * d[0] + gap * g[0], (t - when) * d[1] + gap * g[1], (t - when) * d[2] + gap * g[2]}));

@@ -1,5 +1,5 @@
-// Compares containment and crossings with winding numbers in whole numbers and roots in rationals: 100,000 cases from a
-// fixed seed, or as many as the variable CHRONORMAL_FULL_CASES asks for. A case is one point that moves through one
+// Compares containment and crossings with winding numbers in integers and roots in rational numbers: 100,000 cases from
+// a fixed seed, or as many as the variable CHRONORMAL_FULL_CASES asks for. A case is one point that moves through one
 // mesh.
 
 #include "chronormal/analysis/containment.h"
@@ -30,7 +30,7 @@ using fixtures::Random;
 
 constexpr std::uint64_t kSeed = 20230;
 
-// The outward faces of a tetrahedron, a double pyramid and a cube, for any places of their vertices.
+// The outward faces of a tetrahedron, a double pyramid and a cube, for arbitrary vertices.
 const std::array<std::vector<Corners>, 3> kMeshes{{
     {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
     {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}},
@@ -91,7 +91,7 @@ struct Scene {
   }
 };
 
-// Returns the winding number after all crossings before t; the crossings belong to one point.
+// Returns the winding number of a point after all of its crossings before t.
 int winding_before(int start, std::span<const Crossing> crossings, double t) {
   for (const Crossing& crossing : crossings) start += crossing.t < t ? (crossing.inward ? 1 : -1) : 0;
   return start;
@@ -111,7 +111,7 @@ Vec3f lattice_point(Random& random, std::size_t half) {
   return {x, y, coordinate()};
 }
 
-// Moves vertices on a lattice. Many stay where they were, or move alike.
+// Moves vertices on a lattice. Many vertices stay, or move by the same vector.
 std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& random) {
   const std::size_t kind = random.below(4);
   const Vec3f shift = lattice_point(random, 4);
@@ -124,7 +124,8 @@ std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& ra
   return result;
 }
 
-// Returns twice a place at t = 1/2, in halves, that is often on a vertex, an edge or a face.
+// Returns twice a position at t = 1/2, which is often on a vertex, an edge or a face. Twice, so that coordinates stay
+// integers.
 Vec3f twice_a_place(const Scene& scene, Random& random) {
   const auto twice = [&](std::uint32_t v) { return scene.segment().from[v] + scene.segment().to[v]; };
   const Corners& face = scene.faces[random.below(scene.faces.size())];
@@ -149,11 +150,11 @@ void add_lattice_points(Scene& scene, std::size_t count, Random& random) {
       case 0:  // at rest
         from = to = 0.5F * twice;
         break;
-      case 1:  // from a vertex to a vertex: along edges, too
+      case 1:  // from a vertex to a vertex, sometimes along edges
         from = scene.segment().from[random.below(scene.segment().from.count)];
         to = scene.segment().to[random.below(scene.segment().to.count)];
         break;
-      case 2:  // begins in the place
+      case 2:  // begins in that place
         from = 0.5F * twice;
         break;
       default:;
@@ -163,14 +164,14 @@ void add_lattice_points(Scene& scene, std::size_t count, Random& random) {
   }
 }
 
-// Tells whether a point has this winding number right before t and right after, but another one at t, when it touches
-// an edge.
+// Tells whether a point touches an edge at t without crossing it: the winding number is the given one right before and
+// right after t, but another one at t.
 bool is_touch(const Scene& scene, std::size_t p, double t, int winding) {
   constexpr double kBeside = 0x1p-44;
   return scene.expected_winding(p, t - kBeside) == winding && scene.expected_winding(p, t + kBeside) == winding;
 }
 
-// Compares the winding numbers at both ends and at a time between, and the sums of crossings, with the oracle.
+// Compares the winding numbers at both ends and at a time in between, and the sums of crossings, with the oracle.
 void judge_windings(const Scene& scene, Random& random, const std::string& what) {
   const std::vector<Crossing> all = scene.crossings();
   const double t = static_cast<double>(random.below(15) * 2 + 1) / 32;
@@ -291,10 +292,11 @@ TEST(Containment, a_path_through_an_edge_or_a_vertex_crosses_once_each_way) {
   scene.from = {{-16, 0, 0}, {-8, -8, 0}, {8, -8, -8}, {-16, 0, 8}, {-16, 8, 0}};
   scene.to = {{16, 0, 0}, {8, 8, 0}, {-8, 8, 8}, {16, 0, 8}, {16, 8, 0}};
   const std::vector<Crossing> all = scene.crossings();
-  const std::vector<double> times = {0.25, 0.25, 1.0 / 3};  // through vertices, edges and the middles of faces
+  // The points pass through vertices, edges and the middles of faces.
+  const std::vector<double> times = {0.25, 0.25, 1.0 / 3};
   for (std::size_t p = 0; p < 5; ++p) {
     const std::span<const Crossing> crossings = of_point(all, p);
-    ASSERT_EQ(crossings.size(), p < 3 ? 2 : 0) << p;  // the last two touch a vertex from outside
+    ASSERT_EQ(crossings.size(), p < 3 ? 2 : 0) << p;  // the last two points touch a vertex from outside
     if (p >= 3) continue;
     EXPECT_TRUE(crossings[0].inward);
     EXPECT_FALSE(crossings[1].inward);
@@ -304,7 +306,7 @@ TEST(Containment, a_path_through_an_edge_or_a_vertex_crosses_once_each_way) {
 }
 
 TEST(Containment, the_surface_may_pass_points_that_rest) {
-  // The cube becomes twice as large: the normal is that of the face at the time.
+  // The cube becomes twice as large, and the normal of a crossing is the face's normal at that time.
   Scene scene = resting_cube();
   for (float& x : scene.mesh_to) x = 2 * x;
   scene.from = scene.to = {{1.5F, 0.25F, 0.125F}, {0.5F, 0.75F, 0.25F}, {2.5F, 1, 1}};
@@ -318,7 +320,7 @@ TEST(Containment, the_surface_may_pass_points_that_rest) {
 }
 
 TEST(Containment, a_touch_changes_the_winding_number_for_a_moment_only) {
-  // At t = 15/32, and only then, the point is on the edge (5, 6), where it crosses nothing.
+  // At t = 15/32, and only then, the point is on the edge (5, 6), without crossing a face.
   Scene scene(kMeshes[2],
               {{3, 2, 1}, {-1, -6, -5}, {-5, -4, -2}, {8, -7, -4}, {4, 5, 3}, {-2, 6, -7}, {7, -8, -6}, {-3, -1, 5}},
               {{6, 0, -8}, {8, 0, 0}, {7, 1, -6}, {3, -2, -6}, {2, 4, 8}, {0, -6, 6}, {8, 1, -4}, {-1, 5, -8}});
@@ -348,7 +350,7 @@ TEST(Containment, winding_numbers_of_a_cube_that_is_turned_inside_out_are_negati
 }
 
 TEST(Containment, faces_of_any_number_of_corners_and_seams_are_closed) {
-  // The cube is made of quads, each with four vertices of its own.
+  // The cube consists of quads that do not share vertices.
   const Scene cube = resting_cube();
   constexpr std::array<std::array<std::size_t, 4>, 6> kQuads{
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
@@ -372,7 +374,7 @@ TEST(Containment, faces_of_any_number_of_corners_and_seams_are_closed) {
   const std::vector<float> from = {0.5F, 0.5F, 0.5F}, to = {0.5F, 0.5F, 2};
   EXPECT_EQ(containment.value().winding_numbers(segment, 0, view(from), view(from)), std::vector<std::int32_t>{1});
   const std::vector<Crossing> crossings = containment.value().crossings(segment, view(from), view(to));
-  ASSERT_EQ(crossings.size(), 1U);  // through the diagonal
+  ASSERT_EQ(crossings.size(), 1U);  // the points cross on the diagonal of the quad
   EXPECT_EQ(crossings[0].face, 1U);
   EXPECT_EQ(crossings[0].normal, (Vec3d{0, 0, 1}));
 

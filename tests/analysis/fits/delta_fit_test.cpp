@@ -27,7 +27,7 @@ DeltaNormals some_deltas(std::mt19937& random) {
   return result;
 }
 
-// Adds a row that asks for the normals that other deltas show.
+// Adds a row to the fit that demands the normals of other deltas at these weights.
 void ask_for(const DeltaNormals& wanted, const std::vector<double>& weights, DeltaFit& fit) {
   std::vector<Vec3d> shown(3), missing(3);
   shown_normals(fit.deltas(), weights, shown);
@@ -66,13 +66,13 @@ TEST(DeltaFit, what_no_row_tells_stays_as_it_was) {
   EXPECT_LT(largest_difference(fit.deltas(), wanted, 0), 1e-5);
   EXPECT_EQ(fit.deltas().deltas[1].deltas, start.deltas[1].deltas);
   EXPECT_EQ(fit.deltas().deltas[2].deltas, start.deltas[2].deltas);
-  // The solved rows leave nothing for the next solve().
+  // solve() consumes the rows, so a second solve() changes nothing.
   fit.solve();
   EXPECT_LT(largest_difference(fit.deltas(), wanted, 0), 1e-5);
 }
 
 TEST(DeltaFit, leaves_the_smallest_sum_of_squares) {
-  // No linear function goes through w^2; the best line through it at 1/2 and 1 is (sum w^3 / sum w^2) w = 0.9 w.
+  // No linear function equals w^2; the best linear fit at 1/2 and 1 is (sum w^3 / sum w^2) w = 0.9 w.
   DeltaNormals start;
   start.base = {0, 0, 1};
   start.deltas.push_back({"", {0}, {0, 0, 0}});

@@ -1,4 +1,4 @@
-// Compares the best scale of one end with brute force in long double over a fine grid of scales and times.
+// Compares the optimal scale of one end with a brute force search in long double over a fine grid of scales and times.
 
 #include "analysis/fits/end_delta.h"
 
@@ -32,7 +32,7 @@ Vec3d vector(Random& random, double size = 1) {
   return {p[0], p[1], p[2]};
 }
 
-// Returns the control normals of a triangle each corner of which moves by about `motion`.
+// Returns the control normals of a triangle whose corners move by about `motion`.
 ControlNormals triangle(Random& random, double motion) {
   const Vec3d e0 = vector(random), f0 = vector(random);
   const Vec3d e1 = e0 + vector(random, motion), f1 = f0 + vector(random, motion);
@@ -45,8 +45,8 @@ Vector exact(const ControlNormals& n, Real w) {
   return add(add(scaled(v * v, real(n.n0)), scaled(2 * v * w, real(n.m))), scaled(w * w, real(n.n1)));
 }
 
-// Returns the largest angle over a grid of w that is dense near both ends too, which is too small by at most about 1e-3
-// of itself.
+// Returns the largest angle over a grid of w that is dense near both ends, too. The result is too small by a relative
+// error of at most about 1e-3.
 Real brute_error(const ControlNormals& normals, const Vector& from, const Vector& to, int steps) {
   using reference::add, reference::scaled;
   Real worst = 0;
@@ -82,15 +82,15 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
         triangle(random, std::array{0.05, 0.3, 1.0, 3.0}[static_cast<std::size_t>(round % 4)]);
     const Vector u0 = reference::normalised(real(normals.n0)), u1 = reference::normalised(real(normals.n1));
     const EndDelta found = best_end_delta(normals);
-    // The search uses a coarse grid, and a fine one around its best.
+    // Searches a coarse grid first, then a fine grid around its best point.
     Brute brute = brute_best(normals, u0, u1, 6, 60, 100);
     for (int i = -20; i <= 20; ++i) {
       const Real s = brute.scale * std::exp(Real(i) / 100);
       brute.best = std::min(brute.best, brute_error(normals, u0, reference::scaled(s, u1), 100));
     }
-    const bool collapses = found.error > 90 * kDegree;  // the largest angle needs a fine grid, too
+    const bool collapses = found.error > 90 * kDegree;  // the largest angle is sensitive to the grid
     EXPECT_LE(found.error, (collapses ? 1.02L : 1.002L) * brute.best + 1e-12L) << round;
-    // The claimed result is true.
+    // The error that the function claims is the true error of its result.
     const Vector to = reference::add(u0, real(found.delta));
     EXPECT_NEAR(static_cast<double>(reference::angle(to, u1)), 0, 1e-11) << round;
     EXPECT_NEAR(static_cast<double>(reference::length(to)), found.scale, 1e-10 * found.scale) << round;
@@ -98,7 +98,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
     EXPECT_NEAR(found.error, claimed, 2e-3 * claimed) << round;
     right_angles += collapses ? 1 : 0;
   }
-  EXPECT_GE(right_angles, 3);  // one valley is not promised there
+  EXPECT_GE(right_angles, 3);  // the error need not have a single minimum there
   EXPECT_LT(right_angles, 100);
 }
 
@@ -131,7 +131,8 @@ TEST(EndDelta, does_not_depend_on_rotation_or_size) {
   for (int round = 0; round < 500; ++round) {
     const ControlNormals n = triangle(random, 1);
     const EndDelta found = best_end_delta(n);
-    // A permutation of the axes is a rotation without rounding, and a power of two is a scale without rounding.
+    // A permutation of the axes is a rotation without rounding, and a power of two is a scale without rounding, so
+    // results must be equal bit by bit.
     const auto turned = [](const Vec3d& v) { return Vec3d{0x1p-40 * v.y, 0x1p-40 * v.z, 0x1p-40 * v.x}; };
     const EndDelta other = best_end_delta({turned(n.n0), turned(n.m), turned(n.n1)});
     EXPECT_NEAR(other.error, found.error, 2e-3 * found.error + 1e-12) << round;
@@ -152,7 +153,7 @@ TEST(EndDelta, time_reversal_inverts_the_scale) {
 
 TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0};
-  // n(w) = 2 w (1-w) x + w^2 y runs along the line from 2 x to y.
+  // n(w) = 2 w (1-w) x + w^2 y turns along the straight line from 2 x to y.
   const EndDelta from_zero = best_end_delta({{}, x, y});
   EXPECT_NEAR(from_zero.scale, 0.5, 1e-9);
   EXPECT_LT(from_zero.error, 1e-9);
@@ -161,7 +162,7 @@ TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const EndDelta to_zero = best_end_delta({x, y, {}});
   EXPECT_NEAR(to_zero.scale, 2, 1e-9);
   EXPECT_LT(to_zero.error, 1e-9);
-  // With only a middle, there is one direction.
+  // With only a middle control normal, n(w) has a single direction.
   const EndDelta middle = best_end_delta({{}, y, {}});
   EXPECT_EQ(middle.delta, Vec3d{});
   EXPECT_EQ(middle.error, 0);
@@ -203,7 +204,7 @@ TEST(EndDelta, errors_of_lines_are_found_wherever_they_are) {
     const auto expected = static_cast<double>(brute_error(normals, real(from), real(to), 1000));
     const double found = largest_line_error(normals, from, to);
     EXPECT_GE(found, 0.998 * expected) << round;
-    EXPECT_LE(found, 1.02 * expected) << round;  // the grid may miss the very top
+    EXPECT_LE(found, 1.02 * expected) << round;  // the grid may miss the exact maximum
   }
 }
 
@@ -214,11 +215,11 @@ TEST(EndDelta, a_line_that_turns_fast_near_an_end_is_seen_there) {
   EXPECT_NEAR(largest_line_error(normals, normals.n0, to), expected, 2e-3 * expected);
 }
 
-// Checks the averages of the table in docs/theory.md, section 4.8.
+// Checks the averages in the table of docs/theory.md, section 4.8.
 TEST(EndDelta, it_helps_where_areas_change) {
   struct Row {
     const char* morph;
-    double unit_ends, best;  // degrees
+    double unit_ends, best;  // degrees, of the unit ends and of the best scale
   };
   for (const Row& row :
        {Row{"cloth", 2.34, 0.36}, {"bend", 4.41, 4.01}, {"twist", 9.58, 8.76}, {"eversion", 69.1, 68.3}}) {

@@ -1,4 +1,4 @@
-// Compares leading eigenvectors with their definition, on matrices that are made from known ones.
+// Compares leading eigenvectors with their definition, on matrices that are built from known eigenvectors.
 #include "analysis/fits/leading_vectors.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace chronormal::leading_vectors_test {
 namespace {
 
-// A matrix with these eigenvalues, and its eigenvectors as rows: products of reflections keep them orthonormal.
+// A matrix with these eigenvalues, and its eigenvectors as rows. Products of reflections keep the rows orthonormal.
 struct Known {
   std::vector<std::vector<double>> vectors;
   std::vector<double> matrix;

@@ -87,7 +87,7 @@ TEST(Quality, parts_add_up) {
   first.add(second);
   EXPECT_NEAR(first.sum, whole.sum, 1e-15);
   EXPECT_EQ(first.max, whole.max);
-  EXPECT_EQ(first.max_at.element, 2u);  // the first of equals
+  EXPECT_EQ(first.max_at.element, 2u);  // the first of equal errors
   EXPECT_EQ(whole.max_at.element, 2u);
   EXPECT_EQ(first.count, 4u);
 }
@@ -125,7 +125,7 @@ TEST(ReferenceNormals, of_a_polygon_are_its_vector_area) {
 }
 
 TEST(ReferenceNormals, a_collapse_is_exact_zero_wherever_it_lies) {
-  // Both edges go through zero at a t that no binary fraction equals: rounding must not become a direction.
+  // Both edges are zero at the same t, which is not a binary fraction. The rounding error must not become a direction.
   for (const auto& [start, end] :
        {std::pair{7.0f, -13.0f}, {1.0f, -9.0f}, {3.0f, -7.0f}, {9.0f, -11.0f}, {17.0f, -3.0f}}) {
     const std::vector<float> from = {0, 0, 0, start, start, 0, 0, start, start};
@@ -145,7 +145,7 @@ TEST(ReferenceNormals, far_from_the_origin_they_lose_nothing) {
   EXPECT_LT(length(near - far), 1e-12);
 }
 
-// Compares faces and sums of faces with whole numbers of any size.
+// Compares normals of faces and sums of faces with integers of any size.
 TEST(ReferenceNormals, of_hard_motions_point_where_whole_numbers_say) {
   constexpr std::uint64_t kSeed = 4950;
   fixtures::Random random(kSeed);
@@ -164,7 +164,7 @@ TEST(ReferenceNormals, of_hard_motions_point_where_whole_numbers_say) {
         const auto judge = [&](const Vec3d& n, const test::IntegerVector& truth) {
           ++judged;
           if (n == Vec3d{}) {
-            // Inside the segment, a rounding of t may decide.
+            // Inside the segment, the rounding of t may decide whether the normal is zero.
             doubtful += test::is_zero(truth) ? 0U : 1U;
             EXPECT_TRUE(test::is_zero(truth) || (0 < t && t < 1)) << family.name << " from seed " << kSeed;
           } else {

@@ -69,14 +69,14 @@ TEST(Surface, third_face_at_an_edge_makes_it_non_manifold) {
   EXPECT_EQ(surface.edges, 7U);
   EXPECT_EQ(surface.non_manifold_edges, (Found{1, 0}));
   EXPECT_EQ(surface.open_edges.count, 6U);
-  EXPECT_EQ(surface.turned_edges.count, 0U);  // a question for two faces
+  EXPECT_EQ(surface.turned_edges.count, 0U);  // the test is only about two faces at an edge
 }
 
 TEST(Surface, a_sheet_that_is_there_twice_is_doubled_and_not_wound_against_itself) {
   const Surface surface = survey_triangles(4, {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3});
   EXPECT_EQ(surface.doubled_faces, (Found{2, 2}));
   EXPECT_EQ(surface.turned_edges.count, 0U);
-  // A face that meets another one with the wrong winding counts, though one of them occurs twice.
+  // A face that meets another face with the wrong winding counts, even if one of the two occurs twice.
   EXPECT_EQ(survey_triangles(4, {0, 1, 2, 0, 1, 3}).turned_edges.count, 1U);
 }
 
@@ -100,7 +100,7 @@ TEST(Surface, polygons_lie_on_each_other_only_with_the_same_outline) {
   };
   EXPECT_EQ(pair({3, 2, 0, 1}).doubled_faces, (Found{1, 1}));
   EXPECT_EQ(pair({3, 1, 0, 2}).back_to_back, (Found{1, 0}));
-  // Polygons on the same four points with crossed edges are neither.
+  // Polygons on the same four points whose outline crosses itself are neither copies nor other sides.
   for (const Corners& crossed : {Corners{0, 3, 1, 2}, Corners{0, 1, 2, 3}, Corners{2, 1, 0, 3}, Corners{3, 0, 2, 1}}) {
     EXPECT_EQ(pair(crossed).back_to_back, Found{});
     EXPECT_EQ(pair(crossed).doubled_faces, Found{});
@@ -113,7 +113,7 @@ TEST(Surface, edge_that_one_face_has_twice_is_open) {
   EXPECT_EQ(alone.open_edges, (Found{2, 0}));
   EXPECT_EQ(alone.turned_edges, Found{});
   EXPECT_EQ(alone.repeating_faces, (Found{1, 0}));
-  // A second face at one of them makes it closed, and not non-manifold.
+  // A second face on one side of the edge makes it closed; it does not become non-manifold.
   const Surface both = survey_vertices(fixtures::make_polygons(4, {0, 4, 7}, {0, 1, 0, 2, 0, 1, 3}));
   EXPECT_EQ(both.edges, 4U);
   EXPECT_EQ(both.open_edges.count, 3U);
@@ -125,7 +125,7 @@ TEST(Surface, faces_that_share_a_vertex_are_one_piece) {
   EXPECT_EQ(survey_triangles(9, {0, 1, 2, 3, 4, 5, 5, 7, 2}).pieces, 1U);
 }
 
-// Every corner of a closed mesh gets a vertex of its own: the mesh is torn for vertices, and whole for points.
+// Every corner of a closed mesh gets its own vertex: the mesh has holes between vertices, but not between points.
 TEST(Surface, copies_of_vertices_are_seams_and_not_holes) {
   for (const auto& mesh : {fixtures::icosphere(2), fixtures::box_grid(4)}) {
     std::vector<fixtures::Point> points;
@@ -152,7 +152,7 @@ TEST(Surface, copies_of_vertices_are_seams_and_not_holes) {
 }
 
 TEST(Surface, one_end_of_an_edge_that_is_kept_apart_makes_it_a_seam) {
-  // The edge joins the points 0 and 1, one of which vertex 4 copies.
+  // The edge joins the points 0 and 1. Vertex 4 is a copy of one of the two.
   const Topology low = fixtures::make_triangles(5, {0, 1, 2, 1, 4, 3}),
                  high = fixtures::make_triangles(5, {0, 1, 2, 4, 0, 3});
   EXPECT_EQ(survey(low, {{0, 1, 2, 3, 0}, 4}).seam_edges, (Found{1, 0}));
@@ -166,7 +166,7 @@ TEST(Surface, copies_are_the_vertices_that_welding_removes) {
   EXPECT_EQ(find_copies(separate_points(5)), Found{});
 }
 
-// Finds the same numbers with maps and sets, one edge and one face after the other.
+// Finds the same numbers with maps and sets, edge by edge and face by face.
 TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
   const bool holds = rc::check("any mesh", [] {
     const MeshFrame mesh = test::random_mesh();
@@ -180,7 +180,7 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
       points.count += is_new ? 1U : 0U;
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<std::size_t>> edges;
-    std::map<Corners, std::vector<std::size_t>> faces;  // keyed by the first of all rotated and reversed outlines
+    std::map<Corners, std::vector<std::size_t>> faces;  // keyed by the smallest of all rotated and reversed outlines
     std::set<std::uint32_t> used;
     std::size_t repeating = 0, pairs = 0;
     std::vector<std::set<std::uint32_t>> pieces;
@@ -228,7 +228,7 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
     RC_ASSERT(surface.unreferenced.count == topology.vertex_count() - used.size());
     RC_ASSERT(surface.repeating_faces.count == repeating);
     RC_ASSERT(surface.pieces == pieces.size());
-    // Each face after the first on the same points is a copy, or else the first with the other winding.
+    // Each later face on the same points is either a copy of the first face, or the first face with the other winding.
     RC_ASSERT(surface.doubled_faces.count <= pairs);
     RC_ASSERT(surface.doubled_faces.count + surface.back_to_back.count >= pairs);
   });

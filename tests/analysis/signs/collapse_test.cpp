@@ -1,4 +1,4 @@
-// Compares the times at which faces collapse with polynomials in whole numbers of any size.
+// Compares the times at which faces collapse with polynomials over integers of any size.
 
 #include "chronormal/analysis/signs.h"
 
@@ -33,7 +33,7 @@ std::array<WholePolynomial, 3> normal_polynomials(const Segment& segment, std::s
 
 bool is_unit(const Vec3d& v) { return std::fabs(length(v) - 1) < 1e-14; }
 
-// Tells whether no component of a direction has another sign than n at t, unless it is almost zero.
+// Tells whether each component of a direction has the sign of n's component at t, or is almost zero.
 bool points_along(const Vec3d& direction, const std::array<WholePolynomial, 3>& n, double t) {
   const std::array<double, 3> components{direction.x, direction.y, direction.z};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -74,8 +74,8 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
       if (length(one.turns_over ? one.before + one.after : one.before - one.after) > 1e-13) return "no opposites";
     }
     if ((starts || ends) && one.turns_over) return "turns over at an end";
-    // If all components are multiples of one, n has the same direction on both sides of its zero; otherwise its limit
-    // is its slope.
+    // If all components are multiples of one linear polynomial, n has opposite directions on the two sides of its zero;
+    // otherwise the limit of the direction is the slope.
     const std::array<int, 3> slopes =
         common.is_linear()
             ? std::array<int, 3>{common.slope_at_root(n[0]), common.slope_at_root(n[1]), common.slope_at_root(n[2])}
@@ -157,7 +157,7 @@ TEST(Collapse, a_face_that_shrinks_to_a_point_and_comes_back_does_not_turn_over)
 TEST(Collapse, one_unit_in_the_last_place_beside_the_line_is_no_collapse) {
   const std::vector<fixtures::Point> from{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}};
   EXPECT_EQ(collapses_of(from, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0}}).count, 1U);
-  // The corner is out of the plane by 2^-149 at both ends, the smallest float.
+  // The corner is out of the plane by the smallest float, 2^-149, at both ends.
   const std::vector<fixtures::Point> beside{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0x1p-149}};
   EXPECT_EQ(collapses_of(beside, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0x1p-149}}).count, 0U);
 }

@@ -1,4 +1,4 @@
-// Compares sides of faces over time with polynomials in whole numbers of any size.
+// Compares sides of faces over time with polynomials over integers of any size.
 
 #include "chronormal/analysis/signs.h"
 
@@ -25,7 +25,7 @@ namespace {
 
 using test::WholePolynomial;
 
-// Returns a vector of doubles times 2^1074, and one of floats in the same unit.
+// Return a vector of doubles, or of floats, in units of 2^-1074.
 test::WholeVector whole(const Vec3d& v) {
   const auto one = [](double x) {
     int exponent = 0;
@@ -38,13 +38,13 @@ test::WholeVector whole(const Vec3d& v) {
 }
 test::WholeVector whole(const Vec3f& v) { return whole(to_double(v)); }
 
-// Returns n(t) . w(t) from positions alone: at t = -1, 0, 1 and 2 the corners are whole.
+// Returns n(t) . w(t) from positions alone, by interpolation at t = -1, 0, 1 and 2, where the corners are integers.
 WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, const View& view) {
   const auto vertices = segment.topology->face(face);
   std::array<test::Whole, 4> values;
   for (const long t : {-1L, 0L, 1L, 2L}) {
     const test::WholeVector a = test::on_line(whole(segment.from[vertices[0]]), whole(segment.to[vertices[0]]), t);
-    // Times are scaled by both whole durations.
+    // Both durations are multiplied to make times integers.
     const auto time = [](double difference) { return test::Whole(std::ldexp(difference, 60)); };
     const test::WholeVector n = test::whole_normal(segment, vertices, t), from = whole(view.from), to = whole(view.to);
     const test::Whole first = time(view.start.end - view.start.start), second = time(view.end.end - view.end.start);
@@ -69,7 +69,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   std::size_t inside = 0;
   double last = -1;
   int side = facing.count == 0 ? sign_of(facing.side) : 0;
-  std::vector<std::pair<double, int>> parts = {{0, side}};  // from where on the sign is known, and which it is
+  std::vector<std::pair<double, int>> parts = {{0, side}};  // the times from which on the sign is known, with the sign
   for (const FacingChange& change : facing.changes()) {
     if (last > change.lower || change.lower > change.upper) return "not ascending";
     if (change.upper - change.lower > kWidestBracket) return "a wide bracket";
@@ -78,7 +78,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
       ++inside;
     } else {
       const int below = f.sign_at(change.lower), above = f.sign_at(change.upper);
-      // A root that is a double has a bracket of its own, and another may follow before the next double.
+      // A root that is a double has its own bracket, and another root may follow before the next double.
       const bool follows_a_root = below == 0 && change.lower == last;
       if (below == 0 && change.lower > 0 && !follows_a_root) return "lower end is a root";
       const bool crosses = below * above < 0;
@@ -92,7 +92,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
     last = change.upper;
   }
   if (inside != roots) return std::to_string(roots) + " roots, found " + std::to_string(inside);
-  // Signs are checked exactly at many instants, close to the brackets too.
+  // Signs are checked exactly at many instants, including instants close to the brackets.
   const std::size_t times = test::wanted_times(random);
   for (std::size_t i = 0; i < times; ++i) {
     double t = random.uniform(0, 1);
@@ -112,7 +112,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   return "";
 }
 
-// Makes a viewer at some place, mostly not a float, or such that the face is edge-on at a simple t.
+// Makes a viewer at a place that is usually not a float, or at which the face is edge-on at a simple t.
 View some_view(const Segment& segment, std::size_t face, test::Random& random) {
   const auto vertices = segment.topology->face(face);
   const Vec3d a = to_double(segment.from[vertices[0]]), b = to_double(segment.to[vertices[1]]),
@@ -134,7 +134,7 @@ View some_view(const Segment& segment, std::size_t face, test::Random& random) {
       return View::of_direction(lattice());
     case 1:
       return View::of_direction(somewhere(1));
-    case 2:  // along an edge: edge-on at t = 1
+    case 2:  // along an edge, so that the face is edge-on at t = 1
       return View::of_direction(clamped(c - b));
     case 3:
       return View::of_eye(lattice());
@@ -144,18 +144,18 @@ View some_view(const Segment& segment, std::size_t face, test::Random& random) {
       return View::of_eye(a);
     case 6:
       return View::of_moving_eye(lattice(), lattice());
-    case 7: {  // a component far below any float
+    case 7: {  // a component far below the smallest float
       const Vec3d p = somewhere(1), q = lattice();
       return View::of_direction({std::ldexp(p.x, -static_cast<int>(random.below(1000))), q.y, q.z});
     }
     case 9:
-    case 10: {  // on a part of its way, of which the ends need not be doubles
+    case 10: {  // on a part of its path, whose ends need not be doubles
       const double before = static_cast<double>(random.below(9)), here = 1 + static_cast<double>(random.below(9)),
                    all = before + here + static_cast<double>(random.below(9));
       const Vec3d p = random.below(2) == 0 ? lattice() : clamped(a + somewhere(1)), q = somewhere(3);
       return View::of_moving_eye(p, q, LocalTime::between(0, before, all), LocalTime::between(0, before + here, all));
     }
-    case 8:  // closer to a corner than any float but itself
+    case 8:  // closer to a corner than any other float
       return View::of_eye(a + std::ldexp(1.0, -static_cast<int>(random.below(300))) * somewhere(1));
     default:
       return View::of_moving_eye(clamped(a + somewhere(1)), clamped(c + somewhere(1)));
@@ -193,7 +193,7 @@ TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
         }
         if (is_front && side == ShutterSide::kBack) return std::string("culled, and shows its front");
         if (is_back && side == ShutterSide::kFront) return std::string("said to show its front alone");
-        // The decision must not be too cautious either.
+        // The function must not answer "undecided" too often either.
         if (side == ShutterSide::kBoth && f.count_roots() == 0) return std::string("undecided without a root");
         return std::string();
       },
@@ -252,7 +252,7 @@ exact::Rational exact_value(const std::vector<double>& p, double at) {
 }
 
 TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
-  // Only the rounding of the search itself can go wrong here.
+  // Only the rounding errors of the search itself can make it fail here.
   constexpr std::size_t kBlocks = 200;
   fixtures::Random random(4711);
   std::size_t found = 0;
@@ -261,7 +261,7 @@ TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
       SingleRoots roots{};
       for (std::size_t lane = 0; lane < kFacingBlock; ++lane) {
         for (std::size_t k = 0; k <= degree; ++k) roots.p[k][lane] = random.uniform(-1, 1);
-        // Some ends are barely on their side.
+        // Some end values barely have their sign.
         if (lane % 4 == 0)
           roots.p[lane % 8 == 0 ? 0 : degree][lane] *= std::ldexp(1, -static_cast<int>(random.below(50)));
       }
@@ -389,7 +389,7 @@ Motion crumpling_grid(std::uint32_t size) {
   return fixtures::make_motion(fixtures::make_triangles(count, std::move(corners)), from, to);
 }
 
-// Looks at the faces of every edge, at instants outside of all brackets.
+// Compares the faces of every edge at instants outside of all brackets.
 TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
   const Motion motion = crumpling_grid(40);
   const Segment segment = motion.segment(0);
@@ -412,7 +412,7 @@ TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
       ++open;
       EXPECT_LT(signs[one.faces[0]] * signs[one.faces[1]], 0);
     }
-    // The number of edges whose faces differ is the same, counted by the faces of each edge.
+    // The number of edges with different sides equals a count with a map of edges.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<int>> edges;
     for (std::size_t f = 0; f < faces; ++f) {
       const auto face = motion.topology.face(f);

@@ -16,7 +16,7 @@ std::vector<ControlNormals> normals_of(const Motion& motion) {
   return normals;
 }
 
-// Returns the curve with these values of a scalar quadratic (in power form) along z, plus a constant vector.
+// Returns a curve along z with the coefficients of a scalar quadratic in powers of t, plus a constant vector.
 ControlNormals along_z(double a0, double a1, double a2, const Vec3d& beside = {}) {
   const auto at = [&](double z) { return beside + Vec3d{0, 0, z}; };
   return {at(a0), at(a0 + a1 / 2), at(a0 + a1 + a2)};
@@ -25,7 +25,7 @@ ControlNormals along_z(double a0, double a1, double a2, const Vec3d& beside = {}
 ControlNormals with_roots(double first, double second) { return along_z(first * second, -(first + second), 1); }
 
 TEST(NearCollapse, vertex_that_crosses_the_opposite_edge_turns_the_face_over_then) {
-  // a and b stand still, and c goes from y = when to y = when - 1 in a plane.
+  // Vertices a and b rest, and c moves in the plane from y = when to y = when - 1, so the face collapses at t = when.
   for (const float when : {0.001F, 0.1F, 0.25F, 0.5F, 0.75F, 0.999F}) {
     const double start = when, end = static_cast<double>(when) - 1;
     const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 2}, {1, 0, 2}, {0.25, start, 2}},
@@ -56,7 +56,7 @@ TEST(NearCollapse, mirror_image_turns_over_half_way) {
   }
 }
 
-// In a plane n(t) is a scalar, whose roots the quadratic formula gives, in long double.
+// In a plane n(t) is a scalar, whose roots follow from the quadratic formula in long double.
 TEST(NearCollapse, in_a_plane_collapses_are_the_roots_of_the_signed_area) {
   Motion motion = fixtures::large_soup(2000, 21);
   for (Motion::Keyframe& keyframe : motion.keyframes) {
@@ -131,7 +131,7 @@ TEST(NearCollapse, faces_without_area_at_the_ends_alone_do_not_collapse_inside) 
        {std::pair{Shape::kLine, Shape::kTriangle}, {Shape::kTriangle, Shape::kLine}, {Shape::kLine, Shape::kLine}}) {
     for (const ControlNormals& normals : normals_of(fixtures::degenerate_soup(start, end))) {
       const NearCollapses found = find_near_collapses(normals);
-      // A find is rare, and true: the reference confirms it at that very instant.
+      // The search finds few faces, and the reference confirms each at the very instant that was found.
       for (std::size_t i = 0; i < found.count; ++i)
         EXPECT_LT(length(normal_at(normals, found.at[i].t)), 1e-5 * (length(normals.m) + length(normals.n1)));
       EXPECT_LE(found.count, 1U);
@@ -152,7 +152,7 @@ TEST(NearCollapse, random_faces_in_space_do_not_collapse) {
     EXPECT_EQ(find_near_collapses(normals).count, 0U);
 }
 
-// The directions lie around an axis at up to 90 degrees, so that |n(t)| may get arbitrarily small.
+// The directions are within 90 degrees of an axis, so |n(t)| may become arbitrarily small.
 TEST(NearCollapse, a_glance_proves_that_almost_every_normal_stays_long_and_is_never_wrong) {
   fixtures::Random random(20261125);
   std::size_t proven = 0, near = 0;
@@ -162,7 +162,7 @@ TEST(NearCollapse, a_glance_proves_that_almost_every_normal_stays_long_and_is_ne
       const auto [x, y, unused] = random.in_cube(1);
       return scale * Vec3d{x, y, z};
     };
-    // In half of the cases both ends are nearly opposite.
+    // In half of the cases the end normals are nearly opposite.
     ControlNormals c{vector(least), vector(least), vector(least)};
     if (i % 2 == 0) c.n1 = {-c.n0.x, -c.n0.y, c.n0.z};
     if (i % 4 == 0) c.m = {(i % 8 == 0 ? 1e-3 : 0) * c.m.x, 0, c.n0.z};

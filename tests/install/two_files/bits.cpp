@@ -1,5 +1,5 @@
-// Prints a hash of all that chronormal_core.h computes for some meshes. It must print the same when it is compiled with
-// the two files and with the library. The meshes are made of whole numbers and powers of two.
+// Prints a hash of all results of chronormal_core.h for some meshes. The hash must be the same with the two files and
+// with the library. The meshes are made of whole numbers and powers of two.
 #include "chronormal_core.h"
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct Mesh {
 };
 
 // Makes a grid whose bands of rows rest, move along, turn, shrink to a point, turn inside out, or move freely. The
-// vertices of its last column coincide with those of the first, so that they weld.
+// vertices of the last column coincide with the first column, so that they are welded.
 Mesh grid(std::uint32_t cells, std::mt19937_64& random) {
   const auto noise = [&random](unsigned bits) {
     return static_cast<float>(static_cast<std::int64_t>(random() & ((1u << bits) - 1)) - (1 << bits) / 2) * 0x1p-12f;

@@ -1,4 +1,4 @@
-// Checks that checksums have their published values, and reveal changes.
+// Checks that checksums have their published values, and detect changes.
 #include "io/bytes/checksum.h"
 
 #include <gtest/gtest.h>

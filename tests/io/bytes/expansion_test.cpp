@@ -1,5 +1,5 @@
-// Tests the limit of what a small file may make us hold or write. Every file here declares far more than it stores;
-// --max-expansion reads it.
+// Tests the limits on memory and output that a small file can cause. Every file here declares far more than it stores;
+// --max-expansion allows reading it.
 
 #include "io/bytes/expansion.h"
 
@@ -25,7 +25,7 @@ namespace {
 
 using test::GltfBuilder, test::npy, test::npy_header, test::raw;
 
-constexpr std::size_t kEnough = 1000000;  // times
+constexpr std::size_t kEnough = 1000000;  // a sufficient value of --max-expansion, as a factor
 
 std::string error_of(const Status& status) { return status ? "no error" : status.error().text(); }
 
@@ -75,7 +75,7 @@ TEST(Expansion, of_deflated_arrays_is_asked_for_before_they_are_unpacked) {
   expect_refused(error_of(read_npz(bomb, "bomb.npz")));
   EXPECT_TRUE(read_npz(bomb, "bomb.npz", 1, kEnough).ok());
   EXPECT_TRUE(read_npz(zeros(2, 1000000, false), "stored.npz").ok()) << "what is stored is there";
-  // Keyframes of one vertex take more memory than their positions.
+  // Keyframes of one vertex take more memory for themselves than for their positions.
   expect_refused(error_of(read_npz(zeros(400000, 3, true), "frames.npz")));
 }
 
@@ -93,7 +93,7 @@ TEST(Expansion, of_many_targets_of_one_line_is_asked_for_one_by_one) {
   expect_refused(error_of(test::read_motion(options)));
 }
 
-// Makes a base of zeros without bytes, and many targets that are all the same.
+// Makes a base of zeros that takes no bytes, and many equal targets.
 GltfBuilder zero_targets(std::size_t vertices, std::size_t targets) {
   GltfBuilder builder;
   const auto zeros = builder.add_accessor_over(std::nullopt, "VEC3", 5126, vertices);
@@ -142,8 +142,8 @@ TEST(Expansion, of_compressed_views_is_asked_for_before_they_are_decompressed) {
   EXPECT_NE(error.find("EXT_meshopt_compression"), std::string::npos) << error;
 }
 
-// The files are "DRACO" 2.2, a mesh without metadata: sequential has its counts at once, edgebreaker after one byte and
-// its vertices.
+// The files are "DRACO" 2.2, a mesh without metadata: in sequential encoding the counts come first, in edgebreaker
+// encoding after one byte and the number of vertices.
 TEST(Expansion, of_faces_that_a_draco_mesh_declares_is_asked_for_before_it_is_decoded) {
   const std::string many("\xFF\xFF\xFF\x7F", 4), few("\x03", 1), head("DRACO\x02\x02\x01", 8), no_flags("\0\0", 2);
   for (const std::string& coded :
@@ -173,7 +173,7 @@ TEST(Expansion, counts_the_files_of_buffers_each_once) {
   EXPECT_EQ(document.expansion().most(), 100 * (text.size() + 1000000));
 }
 
-// Makes a spline that turns so fast that its product with itself needs very many keys.
+// Makes a spline that changes so fast that the product with itself needs very many keys.
 std::string steep_spline(std::size_t keys) {
   GltfBuilder builder = test::quad_document();
   std::vector<float> times, values;

@@ -1,4 +1,4 @@
-// Checks that journals give back the records that were written whole, whatever happened to the end of the file.
+// Checks that journals return the records that were written completely, whatever happened to the end of the file.
 #include "io/bytes/journal.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST(Journal, records_are_read_back_by_the_next_run) {
 TEST(Journal, a_record_that_is_cut_or_damaged_is_dropped_with_all_behind_it) {
   const test::TemporaryFolder folder;
   const std::string whole = test::read_whole(written(folder, {"one", "two", "three"}));
-  const std::size_t begin = whole.find("two") - 9;  // its checksum stands before it
+  const std::size_t begin = whole.find("two") - 9;  // the checksum is before the record
   for (std::size_t size = begin; size < whole.size(); ++size) {
     const std::string path = folder.write("cut.journal", whole.substr(0, size));
     Result<Journal> journal = Journal::open(path, kRun);
@@ -83,7 +83,7 @@ TEST(Journal, belongs_to_one_run_at_a_time) {
   EXPECT_NE(two.error().message.find("another run is writing"), std::string::npos);
 }
 
-// The system refuses bytes beyond a limit, as it would on a full disk.
+// A limit on the size of files acts like a full disk.
 TEST(Journal, a_record_that_the_disk_refuses_is_an_error_with_the_path) {
   const test::TemporaryFolder folder;
   Result<Journal> journal = Journal::open(folder / "out.journal", kRun);

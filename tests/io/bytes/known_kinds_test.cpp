@@ -1,4 +1,4 @@
-// Checks that a file of a known kind under the name of another format gets a message that says what it is.
+// Checks that a known kind of file with the extension of another format gets a message with its real kind.
 #include "io/bytes/known_kinds.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::string_literals;
 
-// The first bytes of files of these kinds by their specifications, and words of the message.
+// The first bytes of files of these kinds by their specifications, and words that the message must have.
 struct Sample {
   std::string bytes, kind;
 };
@@ -54,7 +54,7 @@ const std::vector<Sample> kSamples = {
 
 class KnownKinds : public ::testing::Test {
  protected:
-  // Returns the message about a file with this name and these bytes, beside a mesh if the name is a cache's.
+  // Returns the message about a file with this name and these bytes. If the name is a cache's, a mesh is given too.
   std::string said(const std::string& name, const std::string& bytes) {
     folder_.write(name, bytes);
     folder_.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -75,7 +75,7 @@ TEST_F(KnownKinds, are_named_whatever_the_name_of_the_file_says) {
   for (const std::string name : {"a.glb", "a.gltf", "a.vrm", "a.obj", "a.ply", "a.npz", "a.md2", "a.pc2", "a.mdd",
                                  "a.npy", "a.target", "a.png", "a"}) {
     for (const auto& [bytes, kind] : kSamples) {
-      if (name == "a.target" && kind == "gzip data") continue;  // a target may be gzipped
+      if (name == "a.target" && kind == "gzip data") continue;  // a target may really be gzipped
       EXPECT_NE(said(name, bytes).find(kind), std::string::npos) << name << ' ' << kind << ": " << said(name, bytes);
     }
   }
@@ -106,13 +106,13 @@ TEST(KnownKindsOfBytes, are_no_files_of_ours_and_no_noise) {
   for (int round = 0; round < 20000; ++round) {
     std::string bytes(random() % 40, '\0');
     for (char& c : bytes) c = static_cast<char>(random() % 256);
-    // The text consists of the elements of text formats: numbers, words and brackets.
+    // The random text consists of elements of text formats: numbers, words and brackets.
     std::string text;
     for (int word = 0; word < 6; ++word)
       text += std::vector<std::string>{"v ",  "f ",       "# ", "{\"asset\":", "1.5 ",   "\n",
                                        "-2 ", "o solid ", " <", "[",           "mtllib "}[random() % 11];
     EXPECT_EQ(known_kind(text), "") << text;
-    // Kinds that begin with two or three bytes are not so rare.
+    // Random bytes often begin like kinds that have only two or three bytes at the start.
     const bool may_be_one =
         std::any_of(kShort.begin(), kShort.end(), [&](const std::string& begin) { return bytes.starts_with(begin); });
     EXPECT_TRUE(may_be_one || known_kind(bytes).empty()) << known_kind(bytes);

@@ -1,4 +1,5 @@
-// Checks that a spool gives everything back, wherever it is stored, and that no folder ever shows its file.
+// Checks that a spool returns all of its data, whether in memory or on disk, and that its file is never visible in a
+// folder.
 #include "io/bytes/spool.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ std::string all_of(const Spool& spool, std::uint64_t at, std::uint64_t size) {
   return bytes;
 }
 
-// Makes parts of all lengths, one of which is longer than the buffer by which a file is read.
+// Makes parts of various lengths, one of them longer than the buffer for reading files.
 std::vector<std::string> parts() {
   std::vector<std::string> result = {"a", "", "bc", "def", std::string(1, '\0'), ""};
   std::string large;
@@ -148,7 +149,7 @@ TEST(Spool, in_a_folder_that_is_not_there_says_so) {
   EXPECT_EQ(spool.error().text(), "none/out.glb: can not write in its folder: No such file or directory");
 }
 
-// Returns the system's name for the file of a spool in a folder, where the file itself has no name.
+// Returns the path by which the system reaches the unnamed file of a spool in a folder.
 std::string file_of_spool(const TemporaryFolder& folder) {
   std::string found;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
@@ -171,7 +172,7 @@ TEST(Spool, room_of_what_is_given_away_is_free_again) {
   };
   const auto before = blocks();
   std::size_t given = 0;
-  decltype(blocks()) most = 0;  // while the last quarter is given away
+  decltype(blocks()) most = 0;  // the most blocks on disk while the last quarter is read
   const Status status = spool.give_away(0, spool.size(), [&](std::string_view bytes) -> Status {
     given += bytes.size();
     if (given > std::size_t{25} << 20) most = std::max(most, blocks());

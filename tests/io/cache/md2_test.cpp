@@ -22,7 +22,7 @@ TEST(ReadMd2, reads_frames_as_keyframes_and_turns_the_triangles_round) {
   const Result<Motion> result = read_md2(test::small_md2(), "imp.md2", 10);
   ASSERT_TRUE(result.ok()) << result.error().text();
   const Motion& motion = result.value();
-  EXPECT_EQ(motion.topology, Topology::triangles(3, {0, 1, 2}).value());  // the file says 0 2 1
+  EXPECT_EQ(motion.topology, Topology::triangles(3, {0, 1, 2}).value());  // the file stores 0 2 1
   ASSERT_EQ(motion.keyframes.size(), 2U);
   EXPECT_EQ(motion.keyframes[0].positions, (std::vector<float>{-1, 0, 1, 126.5F, 0, 1, -1, 63.75F, 3}));
   EXPECT_EQ(motion.keyframes[1].positions, (std::vector<float>{-1, 0, 1, 126.5F, 0, 1, -1, 63.5F, 3}));
@@ -33,7 +33,7 @@ TEST(ReadMd2, reads_frames_as_keyframes_and_turns_the_triangles_round) {
 }
 
 TEST(ReadMd2, clips_are_apart) {
-  // Returns the segments that join frames with these names.
+  // Returns the segments between frames with these names.
   const auto segments_of = [](const std::vector<std::string>& names) {
     const std::string small = test::small_md2(), head = small.substr(0, 80), frame = small.substr(80, 52);
     std::string bytes = head;

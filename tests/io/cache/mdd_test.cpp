@@ -1,4 +1,5 @@
-// Checks that MDD files come back as they were written, and that bad ones are refused with their place.
+// Checks that MDD files are read back as they were written, and that invalid files are refused with the place of the
+// fault.
 #include "io/cache/mdd.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +44,7 @@ TEST(ReadMdd, errors_say_where_and_what) {
             "walk.mdd, byte 8: the header declares 2 samples of 2147483647 vertices, for which the file is too short");
   EXPECT_EQ(error_of(test::small_mdd(0, 1) + "xxxx"),
             "walk.mdd, byte 8: the header declares 2 samples of 3 vertices, for which the file is too long");
-  // The start of a file is enough to find its positions, but only if it includes the times.
+  // The start of a file is enough to find its positions, if it includes the times.
   const auto layout = [](std::size_t count) {
     const std::string bytes = test::small_mdd(0, 1);
     return find_mdd_layout(std::string_view(bytes).substr(0, count), bytes.size(), "walk.mdd", {});

@@ -1,4 +1,4 @@
-// Checks that the array `velocities` of .npz comes back as it was written, and is refused unless it has one velocity
+// Checks that the array `velocities` of .npz is read back as it was written, and is refused unless it has one velocity
 // for each vertex.
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Checks that PC2 files come back as they were written, and that bad ones are refused with their place.
+// Checks that PC2 files are read back as they were written, and that invalid files are refused with the place of the
+// fault.
 #include "io/cache/pc2.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Reads caches and models by other people. Needs the environment variable CHRONORMAL_DATA, which says where they are.
+// Reads caches and models by other people. Needs the environment variable CHRONORMAL_DATA, which names their folder.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -38,7 +38,7 @@ class RealCaches : public ::testing::Test {
     const std::string mesh = temporary.write("mesh.obj", obj + "f 1 2 3\n");
     const std::string xml = (data_ / "caches" / folder / "cache.xml").string();
     const Result<Motion> ambiguous = test::read_motion(test::files({mesh, xml}));
-    ASSERT_FALSE(ambiguous.ok());  // both channels have 36 points
+    ASSERT_FALSE(ambiguous.ok());  // both channels have 36 points, so neither can be chosen
     EXPECT_NE(ambiguous.error().message.find("'pCubeShape1' (36), 'pCubeShape2' (36)"), std::string::npos);
     for (const char* const channel : {"#pCubeShape1", "#pCubeShape2"}) {
       const Result<Motion> motion = test::read_motion(test::files({mesh, xml + channel}));
@@ -93,7 +93,7 @@ TEST_F(RealCaches, maya_description_full_of_entities_is_read_and_its_missing_fra
   EXPECT_TRUE(read_maya_points(points.value().bytes(), "cacheFrame1.mc", {1, 36, "pCubeShape2"}).ok());
 }
 
-// Sample 4 is the mesh but for the order of its vertices and a translation.
+// Sample 4 equals the mesh up to the order of vertices and a translation.
 TEST_F(RealCaches, pc2_of_3ds_max_is_read_and_fits_its_mesh_through_the_permutation) {
   const fs::path folder = data_ / "caches/max_cache_box";
   const Result<FileBytes> file = FileBytes::open((folder / "max_cache_box.pc2").string());

@@ -1,4 +1,4 @@
-// Checks that the bytes of a file from GlbBuilder do not depend on where its arrays wait until it is assembled.
+// Checks that the bytes of a file from GlbBuilder are the same, whether its arrays wait in memory or on disk.
 #include "io/gltf/glb/glb_builder.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ std::vector<float> vectors(float first, std::size_t nonzero) {
   return result;
 }
 
-// Adds arrays of every kind: with bytes for all, sparse, of nothing but zeros, the same ones again, and ones that have
-// the same numbers and bounds in another order; returns their accessors.
+// Adds arrays of every kind: dense, sparse, all zeros, repeated, and with the same numbers and bounds in another order.
+// Returns their accessors.
 std::vector<std::size_t> add_all(GlbBuilder& builder) {
   std::vector<std::size_t> accessors = {builder.set_triangles(std::vector<std::uint32_t>{0, 1, 2}, kVertices)};
   std::vector<float> dense = vectors(1, 3 * kVertices), sparse = vectors(1, 30);

@@ -55,7 +55,7 @@ TEST(GltfAccessors, positions_and_normals_may_be_interleaved) {
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
   EXPECT_EQ(geometry_of(builder).normals, normals);
 
-  // This view ends with the last element, before the last stride is full.
+  // This view ends with the last element, so its last stride is incomplete.
   builder.json["bufferViews"][view]["byteLength"] = 24 * 3 + 12;
   builder.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
@@ -79,7 +79,7 @@ TEST(GltfAccessors, whole_numbers_may_be_written_as_floats) {
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
 }
 
-// Elements 1 and 3 of the quad are replaced.
+// A sparse accessor replaces elements 1 and 3 of the quad.
 const std::vector<float> kReplacing = {5, 6, 7, 8, 9, 10};
 const std::vector<float> kReplaced = {0, 0, 0, 5, 6, 7, 1, 1, 0, 8, 9, 10};
 const std::vector<float> kReplacedZeros = {0, 0, 0, 5, 6, 7, 0, 0, 0, 8, 9, 10};
@@ -92,7 +92,7 @@ void expect_sparse() {
   over.make_sparse<Index>(replaced, {1, 3}, kReplacing);
   EXPECT_EQ(geometry_of(over).positions, kReplaced);
 
-  // Without a view the other elements are zero, which suits a target that moves few vertices.
+  // Without a view the other elements are zero, as in a target that moves few vertices.
   GltfBuilder alone;
   const std::size_t base = alone.add_positions(test::kQuad);
   const std::size_t target = alone.add_accessor_over(std::nullopt, "VEC3", 5126, 4);
@@ -138,7 +138,7 @@ TEST(GltfSparse, indices_of_corners_may_be_sparse) {
   EXPECT_EQ(geometry_of(builder).corners, (std::vector<std::uint32_t>{3, 1, 2, 0, 2, 1}));
 }
 
-// Repeats the formulas of the specification, section 3.6.2.2, in long double; the result must be the nearest float.
+// Computes the formulas of section 3.6.2.2 of the specification in long double. The result must be the nearest float.
 template <class T>
 float as_float(T c, bool normalized) {
   if (!normalized) return static_cast<float>(c);
@@ -146,7 +146,7 @@ float as_float(T c, bool normalized) {
   return static_cast<float>(std::max(f, -1.0L));
 }
 
-// Tests twelve components with the ends of the range among them; every element is padded to a multiple of four bytes.
+// Tests twelve components, including both ends of the range. Every element is padded to a multiple of four bytes.
 template <class T>
 void expect_quantised() {
   constexpr T kMin = std::numeric_limits<T>::min(), kMax = std::numeric_limits<T>::max();

@@ -1,4 +1,4 @@
-// Reads files that are wrong in one number, one byte or their length: each must give an error with a place, or a valid
+// Reads files with one wrong number or byte, or a wrong length. Each must give an error with a place, or a valid
 // result.
 #include <gtest/gtest.h>
 
@@ -26,10 +26,10 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostGrowth = std::size_t{256} << 20;
 
-// Reads arbitrary files, and keeps every breach of the rules.
+// Reads arbitrary files, and collects all violations of invariants.
 class Batch {
  public:
-  // Reads a file, or only every seventh under a sanitizer, which is slow.
+  // Reads a file, or under a sanitizer, which is slow, only every seventh file.
   void read(const std::string& label, const std::string& bytes) {
     last_refused_ = true;
     if (++count_ % 7 != 0 && test::is_sanitized()) return;
@@ -45,7 +45,7 @@ class Batch {
   void complain(const std::string& label) { complaints_ += label + "\n"; }
   [[nodiscard]] bool last_was_refused() const { return last_refused_; }
 
-  // Returns "files refused complaints".
+  // Returns the text "files refused complaints", which are three numbers.
   [[nodiscard]] std::string summary() const {
     return std::to_string(count_) + " " + std::to_string(refused_) + " " + complaints_;
   }
@@ -69,13 +69,13 @@ void expect_good_batch(std::size_t least_count, const std::function<void(Batch&)
   EXPECT_GT(refused, 0U);
   EXPECT_EQ(run.text, std::to_string(count) + " " + std::to_string(refused) + " ");
   if (!test::is_sanitized()) {
-    EXPECT_LT(run.peak_growth, kMostGrowth);  // a sanitizer keeps what is freed
+    EXPECT_LT(run.peak_growth, kMostGrowth);  // a sanitizer keeps freed memory
   }
   std::printf("%zu files, %zu of them refused, in %.2f s, %zu KiB\n", count, refused, run.seconds,
               run.peak_growth / 1024);
 }
 
-// Calls visit with a pointer to every number of a document.
+// Calls visit() with a JSON pointer to every number of a document.
 void for_each_number(const Json& value, const Json::json_pointer& at,
                      const std::function<void(const Json::json_pointer&)>& visit) {
   if (value.is_number()) visit(at);
@@ -135,7 +135,7 @@ TEST(GltfBoundary, every_value_of_a_document_of_another_type_or_missing) {
     for (const auto& [name, builder] : test::all_documents()) {
       const Json whole = Json::parse(builder.gltf()), flat = whole.flatten();
       for (const auto& [key, unused] : flat.items()) {
-        // Both the value itself and everything that contains it are replaced.
+        // Replaces the value itself, and then every value that contains it.
         for (Json::json_pointer at(key); !at.empty(); at.pop_back()) {
           for (const Json& value : values) {
             Json broken = whole;
@@ -238,7 +238,7 @@ TEST(GltfBoundary, random_edits) {
       for (int round = 0; round < 2000; ++round) {
         const std::string label = name + " round " + std::to_string(round);
         batch.read(label, test::with_random_edits(builder.gltf(), random));
-        GltfBuilder broken = builder;  // a container that is right, of bytes that are not
+        GltfBuilder broken = builder;  // a valid container with invalid compressed bytes
         broken.buffer = test::with_random_edits(builder.buffer, random);
         batch.read(label + ", buffer", broken.glb());
       }

@@ -36,7 +36,7 @@ GltfGeometry geometry_of(const GltfFixture& file) {
 struct Grid {
   std::vector<float> positions;
   std::vector<float> normals;
-  std::vector<float> bulge;  // a target
+  std::vector<float> bulge;  // the deltas of a target
   Corners corners;
 };
 
@@ -73,7 +73,7 @@ TEST(GltfMeshopt, attributes_and_triangles_come_back_bit_for_bit) {
   EXPECT_EQ(geometry.positions, grid.positions);
   ASSERT_EQ(geometry.targets.size(), 1U);
   EXPECT_EQ(geometry.targets[0].positions, grid.bulge);
-  // Triangles keep their order and their winding, but not their first corner.
+  // The encoder keeps the order of triangles and their winding, but not their first corner.
   ASSERT_EQ(geometry.corners.size(), grid.corners.size());
   for (std::size_t f = 0; f < grid.corners.size(); f += 3) {
     std::array<std::uint32_t, 3> read{}, written{};
@@ -108,7 +108,7 @@ TEST(GltfMeshopt, triangles_of_two_bytes_come_back) {
   EXPECT_EQ(geometry_of(GltfFixture(builder)).corners, kCorners);
 }
 
-// Decodes by the letter of the extension's specification, appendix B: x, y and the one in z as integers.
+// Decodes exactly as appendix B of the extension's specification says; x, y and the value of 1 in z are integers.
 std::array<double, 3> octahedral(const std::array<int, 3>& coded, int largest) {
   const double one = coded[2];
   double x = coded[0] / one, y = coded[1] / one;
@@ -127,7 +127,7 @@ template <class T>
 void expect_octahedral(int bits) {
   const Grid grid = make_grid(20);
   const std::size_t vertices = grid.positions.size() / 3;
-  std::vector<float> four;  // the encoder wants four components
+  std::vector<float> four;  // the encoder requires four components
   for (std::size_t i = 0; i < vertices; ++i) {
     for (std::size_t k = 0; k < 3; ++k) four.push_back((i % 2 == 0 ? 1.0F : -1.0F) * grid.normals[3 * i + k]);
     four.push_back(0);
@@ -151,7 +151,7 @@ void expect_octahedral(int bits) {
   for (std::size_t i = 0; i < vertices; ++i) {
     const auto expected = octahedral({filtered[4 * i], filtered[4 * i + 1], filtered[4 * i + 2]}, largest);
     for (std::size_t k = 0; k < 3; ++k) {
-      // The last digit may fall either way in float arithmetic.
+      // In float arithmetic, the last digit may be rounded either way.
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), expected[k], 1.001 / largest) << i;
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), static_cast<double>(four[4 * i + k]),
                   4.0 / (1 << (bits - 1)))
@@ -219,7 +219,7 @@ TEST(GltfMeshopt, stride_of_a_view_must_be_that_of_its_compressed_elements) {
 }
 
 TEST(GltfMeshopt, elements_wider_than_what_is_read_of_them_need_the_stride_of_the_view) {
-  // The stream has positions and another four bytes in each element.
+  // An element of the stream has a position and four more bytes.
   std::vector<float> wide;
   for (std::size_t i = 0; i < 12; ++i) {
     wide.push_back(test::kQuad[i]);
@@ -236,7 +236,7 @@ TEST(GltfMeshopt, elements_wider_than_what_is_read_of_them_need_the_stride_of_th
     if (has_stride) {
       EXPECT_EQ(geometry_of(file).positions, test::kQuad);
     } else if (file.ok()) {
-      // Then elements are packed, as the core specification says.
+      // Elements are then packed, as the core specification demands.
       const std::vector<float> packed(wide.begin(), wide.begin() + 12);
       EXPECT_EQ(geometry_of(file).positions, packed);
     }
@@ -314,7 +314,7 @@ TEST(GltfDraco, sequential_mesh_comes_back_bit_for_bit_with_its_targets) {
   }
 }
 
-// Returns triangles by the coordinates of their corners, rotated so that the least comes first, and sorted.
+// Returns triangles as coordinates of their corners, rotated to begin with the smallest corner, and sorted.
 std::vector<std::array<float, 9>> sorted_triangles(const std::vector<float>& positions, const Corners& corners) {
   std::vector<std::array<float, 9>> triangles;
   for (std::size_t f = 0; f + 3 <= corners.size(); f += 3) {
@@ -336,7 +336,7 @@ TEST(GltfDraco, quantised_floats_are_within_a_step_of_the_true_ones) {
   builder.add_mesh(test::draco_primitive(builder, coded, grid.positions.size() / 3, grid.corners.size(), false, {}));
   const GltfGeometry geometry = geometry_of(GltfFixture(builder));
   ASSERT_EQ(geometry.positions.size(), grid.positions.size());
-  const float range = *std::max_element(grid.positions.begin(), grid.positions.end());  // the least is 0
+  const float range = *std::max_element(grid.positions.begin(), grid.positions.end());  // the smallest coordinate is 0
   for (std::size_t i = 0; i < grid.positions.size(); ++i)
     EXPECT_NEAR(geometry.positions[i], grid.positions[i], range / 4095) << i;
 }
@@ -438,7 +438,7 @@ TEST(GltfDraco, vertices_that_no_face_names_are_counted) {
   }
 }
 
-// The extension names some of the attributes of the primitive; the others are in ordinary accessors.
+// The extension compresses some attributes of the primitive; the others are in ordinary accessors.
 TEST(GltfDraco, attributes_that_are_not_compressed_are_read_from_their_accessors) {
   const std::vector<float> normals = {0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1};
   const auto read = [&](auto edit) {

@@ -45,7 +45,7 @@ TEST(GltfContainer, glb_and_gltf_hold_the_same) {
 }
 
 TEST(GltfContainer, bin_chunk_has_at_most_3_bytes_more_than_its_buffer) {
-  // The specification allows only the bytes that pad the chunk.
+  // The specification allows only padding bytes after the chunk.
   GltfBuilder builder = test::quad_document();
   builder.buffer.resize((builder.buffer.size() + 3) / 4 * 4);
   for (const std::size_t surplus : {std::size_t{0}, std::size_t{1}, std::size_t{3}, std::size_t{4}, std::size_t{5}}) {
@@ -217,7 +217,7 @@ TEST(GltfStructure, target_names_count_only_when_there_is_one_for_each) {
   }
 }
 
-// Programs that rewrite a file keep only the extras of nodes, and gltfpack hangs the mesh into a new node below.
+// Programs that rewrite a file may keep only the extras of nodes, and gltfpack puts the mesh into a new node below.
 TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
   using Json = nlohmann::json;
   const auto mark = [](double factor) -> Json {
@@ -250,7 +250,7 @@ TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
   ASSERT_TRUE(broken->meshes()[0].mark_fault);
   EXPECT_EQ(broken->meshes()[0].mark_fault->place, "a.gltf, /nodes/1/extras/chronormal/version");
 
-  // The mark of a node with a mesh of its own belongs to that mesh alone.
+  // If a node has its own mesh, its mark belongs only to that mesh.
   builder.json["meshes"].push_back(builder.json["meshes"][0]);
   builder.json["nodes"][0]["mesh"] = 1;
   builder.json["nodes"][1].erase("extras");
@@ -314,7 +314,7 @@ Corners turned(Corners corners) {
   return corners;
 }
 
-// Makes a fan of five vertices around the first one, which serves every mode.
+// Makes five vertices that work for every mode; as a fan they surround the first one.
 GltfGeometry five_vertices(int mode, std::optional<std::vector<std::uint8_t>> indices) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0});
@@ -442,7 +442,7 @@ TEST(GltfGeometry, shading_is_read_when_it_is_wanted) {
 
 TEST(GltfGeometry, that_would_take_more_memory_than_allowed_is_refused) {
   GltfOptions options;
-  options.most_bytes = 3 * 4 * 12;  // the base and two targets
+  options.most_bytes = 3 * 4 * 12;  // room for the base and two targets
   EXPECT_TRUE(GltfFixture(test::quad_document().glb(), std::nullopt, options)->geometry(0, 0, {}).ok());
   --options.most_bytes;
   const GltfFixture file(test::quad_document().glb(), std::nullopt, options);

@@ -1,4 +1,4 @@
-// Tests the destinations of an edited file: containers, folders, streams, and writes that fail.
+// Tests the destinations of an edited file: containers, folders and streams, and failing writes.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ using test::take_apart;
 using test::TemporaryFolder;
 using Json = nlohmann::json;
 
-// Makes two triangles in two buffers with a view of each, which leaves some bytes of the second buffer unused.
+// Makes two triangles in two buffers with one view each; some bytes of the second buffer are unused.
 GltfBuilder two_buffers(const std::string& first, const std::string& second) {
   GltfBuilder builder;
   builder.json["buffers"] = {{{"byteLength", 36}, {"name", "one"}, {"extras", "\xC3\xA9"}}, {{"byteLength", 41}}};
@@ -49,7 +49,7 @@ std::string first_bytes() { return bytes_of(kFirst); }
 std::string second_bytes() { return "skip" + bytes_of(kSecond) + "x"; }
 std::string as_data(const std::string& bytes) { return "data:application/octet-stream;base64," + base64(bytes); }
 
-// Opens a written file, and compares its arrays with those of two_buffers() and an added third.
+// Opens a written file, and compares its arrays with those of two_buffers(), and with a third if it was added.
 void expect_arrays(const std::string& path, bool with_third) {
   const Result<GltfDocument> document = GltfDocument::open(path);
   ASSERT_TRUE(document.ok()) << document.error().text();
@@ -262,7 +262,7 @@ TEST(GltfEditFiles, more_than_a_glb_can_hold_is_refused) {
   constexpr std::uintmax_t kSize = 4294967296;
   folder.write("b.bin", std::string(static_cast<std::size_t>(kSize / 99), '\0'));
   std::error_code error;
-  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // the rest is a hole, as large as is allowed
+  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // the rest is a hole of the largest allowed size
   if (error) GTEST_SKIP() << "the file system has no files of 4 GiB: " << error.message();
   GltfBuilder builder;
   builder.json["buffers"] = {{{"byteLength", kSize}, {"uri", "b.bin"}}};

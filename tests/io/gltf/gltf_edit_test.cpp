@@ -39,7 +39,7 @@ void expect_the_rest_unchanged(const std::string& before, const GltfEdit& edit) 
   EXPECT_EQ(result.rest, source.rest);
 }
 
-// A chunk of an unknown kind.
+// A chunk of a kind that the specification does not define.
 const std::string kUnknownChunk("\x08\0\0\0XTRA12345678", 16);
 
 std::string with_chunk(std::string glb, const std::string& chunk) {
@@ -69,7 +69,7 @@ TEST(GltfEdit, without_changes_writes_the_same_bytes) {
   }
 }
 
-// Everything that a DOM would change when it is printed again.
+// Text that a DOM would change when it prints it again.
 const char* const kNastyJson =
     "{\r\n"
     R"(  "asset" : {"version" : "2.0", "generator" : "caf\u00e9 \ud834\udd1e \"{[,]}\" é", "extras" : 1e400},
@@ -155,7 +155,7 @@ TEST(GltfEdit, number_beyond_double_is_kept_and_refused_where_it_is_read) {
   EXPECT_EQ(error_with("/meshes/0/name", "?"), "a.gltf, /meshes/0/name: this must be a string, not a number");
 }
 
-// Returns the accessor of an array that was added alone to a file without any.
+// Returns the accessor of an array that was added to a file without arrays.
 Json accessor_of(const std::vector<float>& values, const GltfVectors& options, bool scalars = false) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(std::vector<float>(scalars ? 3 : values.size(), 1.0F));

@@ -1,4 +1,4 @@
-// Reads files made to do harm: huge structures, and the broken files of other projects where CHRONORMAL_DATA has them.
+// Reads malicious files: huge structures, and invalid files of other projects from CHRONORMAL_DATA.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostGrowth = std::size_t{256} << 20;
 
-// Reads a file of any size in a process of its own, and returns "" for a result, else the first error. Fails if this
-// takes more memory than allowed beside the file itself, or breaks an invariant.
+// Reads a file of any size in a child process, and returns "" for success or the first error. Fails if reading takes
+// more memory than allowed, in addition to the file itself, or breaks an invariant.
 std::string read_apart(const std::string& label, const std::string& bytes) {
   const test::ChildRun run = test::run_in_child(120, [&]() -> std::string {
     const Result<GltfDocument> document = GltfDocument::read(bytes, "a.gltf");
@@ -75,7 +75,7 @@ TEST(GltfHuge, nested_arrays_are_refused_at_the_level_that_is_too_deep) {
   std::string objects = head;
   for (int i = 0; i < 200000; ++i) objects += R"({"a":)";
   EXPECT_TRUE(read_apart("objects", objects).starts_with("a.gltf, byte "));
-  // Brackets in a string are not levels.
+  // Brackets inside a string do not nest.
   EXPECT_TRUE(read_apart("text", head + "\"\\\"" + std::string(200000, '[') + "\"}").starts_with("a.gltf: "));
 }
 
@@ -107,12 +107,12 @@ TEST(GltfHuge, numbers_and_texts_of_a_million_digits) {
   EXPECT_TRUE(read_apart("exponent", std::string(kHead) + "\"extras\": 1e-" + digits + "}").starts_with("a.gltf"));
   EXPECT_TRUE(read_apart("version", std::string(R"({"asset": {"version": ")") + digits + "\"}}")
                   .starts_with("a.gltf, /asset/version: "));
-  // An extension that nothing uses is a note; the error is that the file is empty.
+  // An unused extension is only a note; the error is that the file is empty.
   EXPECT_TRUE(read_apart("extension", std::string(kHead) + R"("extensionsRequired": [")" + digits + "\"]}")
                   .starts_with("a.gltf: no mesh"));
 }
 
-// Makes few bytes that demand much: the same deltas in many targets, or zeros that no view backs.
+// Makes a small file that demands much memory: equal deltas in many targets, or zeros without a view.
 std::string many_targets(std::size_t vertex_count, std::size_t target_count, bool has_view) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(std::vector<float>(3 * vertex_count, 1.0F));
@@ -150,7 +150,7 @@ TEST(GltfHuge, keys_that_nothing_backs_are_refused_before_they_are_made) {
   EXPECT_TRUE(read_apart("keys", builder.glb()).starts_with("a.gltf, /"));
 }
 
-// Many tracks share the arrays that they are made from: a little file, and a lot of memory.
+// Many tracks share their arrays: a small file would need a lot of memory.
 TEST(GltfHuge, tracks_that_share_their_keys_are_refused_before_these_are_copied) {
   if (test::is_sanitized()) GTEST_SKIP() << kSlow;
   GltfBuilder builder = test::quad_document();
@@ -205,7 +205,7 @@ TEST(GltfHuge, hundred_thousand_channels_are_read_in_a_breath) {
   }
 }
 
-// Gives the tests the files of other projects.
+// Provides the invalid files of other projects.
 class HostileData : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -216,7 +216,7 @@ class HostileData : public ::testing::Test {
   fs::path data_;
 };
 
-// Reads a file strictly, so that a note becomes an error, or in the same way as users.
+// Reads a file strictly, so that a note becomes an error, or leniently like users.
 fuzz::GltfReading read_file(const fs::path& path, bool strict = true) {
   const Result<GltfDocument> document = GltfDocument::open(path.string(), {.strict = strict});
   return fuzz::read_all_of(document, path.filename().string(), GltfMotionOptions().most_bytes);
@@ -244,7 +244,7 @@ TEST_F(HostileData, gltf_files_are_read_or_refused_with_a_place_within_a_second)
   std::printf("%zu files, %zu of them refused\n", count, refused);
 }
 
-// The errors of the Khronos validator that concern what is read: a file that has one must be refused.
+// Errors of the Khronos validator about parts that we read: a file with such an error must be refused.
 const std::set<std::string_view> kRead = {
     "ACCESSOR_INDEX_OOB",
     "ACCESSOR_INDEX_PRIMITIVE_RESTART",
@@ -266,7 +266,7 @@ const std::set<std::string_view> kRead = {
     "VALUE_NOT_IN_RANGE",
 };
 
-// The errors about parts that are not read, or only where they are used, with the reason.
+// Errors about parts that are not read, or read only when they are used, with the reason.
 const std::map<std::string_view, const char*> kNotRead = {
     {"ACCESSOR_INVALID_SIGN", "the sign of tangents does not touch geometry"},
     {"ACCESSOR_JOINTS_INDEX_DUPLICATE", "skins are not read"},
@@ -302,10 +302,10 @@ const std::map<std::string_view, const char*> kNotRead = {
     {"MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", "the file has it in colours, which are not read"},
 };
 
-// The validator only warns of types of later versions.
+// Files with types of later versions, for which the validator only warns.
 const std::set<std::string_view> kOnlyWarned = {"unknown_type.gltf"};
 
-// Tells whether a message is about something that we read. If a code occurs both in parts that we read and in others,
+// Tells whether a message is about something that we read. A code may occur in parts that we read and in others; then
 // the end of its pointer decides.
 bool is_about_what_is_read(const std::string& code, const std::string& pointer) {
   if (kRead.contains(code)) {

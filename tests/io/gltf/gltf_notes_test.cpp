@@ -1,4 +1,5 @@
-// Checks that wrong parts of a file that no other part needs are skipped with a note, and refused by a strict reader.
+// Checks that invalid parts of a file are skipped with a note if no other part needs them, and that a strict reader
+// refuses them.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -23,7 +24,7 @@ using Json = nlohmann::json;
 struct Case {
   const char* label;
   void (*edit)(GltfBuilder& file);
-  const char* pointer;  // the place of the only note begins with it
+  const char* pointer;  // the expected beginning of the note's place
 };
 
 // Makes a quad with two targets, and an animation of them.
@@ -167,10 +168,10 @@ TEST(GltfNotes, a_part_that_nobody_needs_is_passed_over_with_a_note_and_refused_
     }
     const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);
     EXPECT_EQ(reading.broken, "");
-    // An animation of which nothing is left stays in its place, and is an error for whoever asks for it.
+    // An animation whose parts are all skipped keeps its number, and selecting it is an error.
     for (const Error& error : reading.errors)
       EXPECT_NE(error.message.find("gives no weights"), std::string::npos) << error.text();
-    // The targets move as before.
+    // The targets still move as before.
     const Result<GltfMotion> motion = read_gltf_motion(*file, {});
     ASSERT_TRUE(motion.ok()) << motion.error().text();
     EXPECT_GE(motion.value().motion.segments.size(), 2U);
@@ -191,7 +192,7 @@ TEST(GltfNotes, what_the_geometry_needs_is_an_error) {
               f.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
             }).find("/nodes/0/rotation"),
             std::string::npos);
-  // An extension of a part that is read may change its meaning.
+  // An extension of a part that is read may change the part's meaning, so it is an error.
   for (const char* const pointer : {"/meshes/0/primitives/0", "/meshes/0", "/accessors/0", "/bufferViews/0",
                                     "/buffers/0", "/animations/0/samplers/0"}) {
     GltfBuilder builder = animated();
@@ -227,8 +228,8 @@ TEST(GltfNotes, khr_meshopt_compression_is_decoded_where_it_can_be_and_named_whe
   EXPECT_NE(error.find("gltfpack -c"), std::string::npos) << error;
 }
 
-// A lenient reader takes everything that a strict reader takes, in the same way and without a note; for everything that
-// only a lenient reader takes there is a note.
+// A lenient reader reads every file that a strict reader accepts in the same way and without a note. If only the
+// lenient reader accepts a file, there is a note.
 TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
   constexpr std::uint32_t kSeed = 5404;
   std::cout << "seed " << kSeed << '\n';
@@ -239,7 +240,7 @@ TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
     for (std::size_t c = random() % 3; c > 0; --c) {
       try {
         kCases[random() % kCases.size()].edit(builder);
-      } catch (const Json::exception&) {  // the case before has taken away what this one changes
+      } catch (const Json::exception&) {  // an earlier case has removed the member that this case changes
       }
     }
     std::string text = builder.gltf();
@@ -260,7 +261,7 @@ TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
     } else {
       ++noted;
       ASSERT_FALSE(strictly.errors.empty()) << file->notes()[0].text() << text;
-      // Every array stays where another program finds it.
+      // Every array stays at the place where other programs look for it.
       ASSERT_TRUE(GltfEdit(*file).bytes("").ok());
     }
   }

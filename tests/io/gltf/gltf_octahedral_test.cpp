@@ -1,4 +1,4 @@
-// Tests octahedral normals of EXT_meshopt_compression, by the formula of its specification in double, and bit for bit
+// Tests octahedral normals of EXT_meshopt_compression: by the formula of its specification in double, and bit for bit
 // against npm meshoptimizer in browsers.
 #include "io/gltf/decode/gltf_octahedral.h"
 
@@ -21,7 +21,8 @@ namespace chronormal::gltf_octahedral_test {
 namespace {
 
 // Returns every (x, y) of up to most_steps steps along each side of the square, for each number of bits; with few bits
-// these are all values. w is a number that must stay. tests/viewers/filters.test.mjs has the same loop.
+// these are all possible values. w is a component that must not change. tests/viewers/filters.test.mjs has the same
+// loop.
 template <class T>
 std::vector<T> lattice(int least_bits, int most_bits, int most_steps) {
   std::vector<T> elements;
@@ -45,7 +46,7 @@ std::vector<T> decoded(const std::vector<T>& elements) {
   return result;
 }
 
-// Returns the unrounded normal: on the octahedron |x| + |y| + |z| = one, and pushed out to the sphere.
+// Returns the unrounded normal: a point on the octahedron |x| + |y| + |z| = one, projected onto the sphere.
 std::array<double, 3> normal_of(int x, int y, int one, double length) {
   const int z = one - std::abs(x) - std::abs(y);
   const auto fold = [&](int a, int b) { return z < 0 ? (a < 0 ? -1 : 1) * (one - std::abs(b)) : a; };
@@ -55,7 +56,7 @@ std::array<double, 3> normal_of(int x, int y, int one, double length) {
   return {place[0] * scale, place[1] * scale, place[2] * scale};
 }
 
-// Returns the largest distance of a number from its unrounded value.
+// Returns the largest difference between a component and its unrounded value.
 template <class T>
 double worst_rounding(const std::vector<T>& elements) {
   const std::vector<T> result = decoded(elements);
@@ -85,7 +86,7 @@ TEST(GltfOctahedral, normals_of_16_bits_are_the_nearest_but_for_float) {
   EXPECT_LE(worst_rounding(kManyOf16Bits), 0.5 + 0.004);
 }
 
-// npm meshoptimizer 1.3.0 decodes to these constants; tests/viewers/filters.test.mjs computes them.
+// These constants are the results of npm meshoptimizer 1.3.0, computed in tests/viewers/filters.test.mjs.
 TEST(GltfOctahedral, normals_are_bit_for_bit_those_of_browsers) {
   EXPECT_EQ(hash(decoded(kEveryOf8Bits)), 4083453700U);
   EXPECT_EQ(hash(decoded(kManyOf16Bits)), 995496109U);

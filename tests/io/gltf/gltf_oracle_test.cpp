@@ -1,4 +1,4 @@
-// Compares with tinygltf and Assimp on files by other people. Needs CHRONORMAL_DATA, which says where they are.
+// Compares with tinygltf and Assimp on files by other people. Needs CHRONORMAL_DATA, which names their folder.
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>

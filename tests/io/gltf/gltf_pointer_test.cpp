@@ -16,7 +16,7 @@ using test::GltfBuilder, test::GltfFixture;
 
 const std::vector<float> kTimes = {0, 1, 3};
 
-// Adds a channel for one weight.
+// Adds a channel for a single weight.
 void add_pointer(GltfBuilder& builder, const std::string& pointer, const std::vector<float>& times,
                  const std::vector<float>& values, const char* interpolation = "LINEAR") {
   builder.add_track(0, 0, times, values, interpolation);
@@ -31,7 +31,7 @@ GltfBuilder document() {
   return builder;
 }
 
-// Returns the complaint about a document, or the keys of its first track.
+// Returns the error of a document, or the keys of its first track.
 std::string error_of(const GltfBuilder& builder) {
   const GltfFixture file(builder);
   if (!file.ok()) return file.error();
@@ -96,7 +96,7 @@ TEST(GltfPointers, a_weight_of_a_mesh_is_that_of_each_node_without_weights_of_it
   EXPECT_EQ(tracks[1].same_keys_as, 0U);
 }
 
-// Returns the weight that a channel gives at a time, by the formulas of appendix C of the specification.
+// Returns the weight of a channel at a time, by the formulas of appendix C of the specification.
 double weight_at(const std::vector<float>& times, const std::vector<float>& values, const std::string& interpolation,
                  double time) {
   const bool is_cubic = interpolation == "CUBICSPLINE";
@@ -170,7 +170,7 @@ TEST(GltfPointers, equal_times_in_arrays_of_their_own_are_counted_once) {
 }
 
 TEST(GltfPointers, keys_of_many_channels_count_against_the_expansion_that_is_allowed) {
-  // Every key of every channel makes a row of all weights.
+  // Every key of any channel makes a row with all weights.
   GltfBuilder builder = document();
   std::vector<float> times(40000);
   for (std::size_t k = 0; k < times.size(); ++k) times[k] = static_cast<float>(k);

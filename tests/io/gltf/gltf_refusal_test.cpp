@@ -18,7 +18,7 @@ namespace {
 using test::GltfBuilder, test::GltfFixture;
 using Json = nlohmann::json;
 
-// Makes a document in which everything that is checked occurs. The accessors are 0 positions, 1 indices, 2 and 3
+// Makes a document that contains everything that the reader checks. The accessors are 0 positions, 1 indices, 2 and 3
 // targets, 4 and 5 keys, 6 a sparse target in place of 3, 7 normals; the views are in the order in which they were
 // made.
 GltfBuilder rich_document() {
@@ -37,10 +37,10 @@ GltfBuilder rich_document() {
 struct Case {
   const char* label;
   void (*edit)(GltfBuilder& file);
-  const char* pointer;  // the place begins with it
+  const char* pointer;  // the expected beginning of the error's place
 };
 
-// Returns the first error in reading all of a file, or "".
+// Returns the first error that occurs when all of a file is read, or "".
 std::string first_error(const GltfBuilder& builder) {
   const GltfFixture file(builder.gltf());
   const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);

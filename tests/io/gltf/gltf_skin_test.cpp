@@ -19,7 +19,8 @@ using test::GltfBuilder;
 using test::GltfFixture;
 using Json = GltfBuilder::Json;
 
-// A quad with two targets in node 0, whose skin has the joints 1 and 2. Vertex v follows them by 1 - v / 4 and v / 4.
+// A quad with two targets in node 0, whose skin has the joints 1 and 2. The weights of vertex v are 1 - v / 4 and v /
+// 4.
 struct Skinned {
   GltfBuilder builder = test::quad_document();
 
@@ -50,7 +51,7 @@ struct Skinned {
   }
 };
 
-// Reads everything, as an audit does, and returns the shares of the vertices, or the error.
+// Reads everything, like an audit, and returns the joint weights of the vertices, or the error.
 Result<std::vector<JointShare>> read(const GltfFixture& fixture, std::vector<std::size_t>* first = nullptr,
                                      std::optional<std::size_t> animation = std::nullopt) {
   EXPECT_TRUE(fixture.ok()) << fixture.error();
@@ -63,7 +64,7 @@ Result<std::vector<JointShare>> read(const GltfFixture& fixture, std::vector<std
   return shares;
 }
 
-// Returns the shares of every vertex as text: "0 1; 0 0.75, 1 0.25; ...".
+// Returns the joint weights of every vertex as text: "0 1; 0 0.75, 1 0.25; ...".
 std::string shares_of(const Skinned& skinned) {
   const GltfFixture fixture(skinned.builder);
   std::vector<std::size_t> first;
@@ -110,8 +111,8 @@ TEST(GltfSkin, joints_and_weights_may_be_of_every_type_that_the_format_has) {
   Skinned strided;
   strided.weights(
       strided.builder.add_strided("VEC4", std::vector<float>{1, 0, 0, 0, 3, 1, 0, 0, 2, 2, 0, 0, 1, 3, 0, 0}, 20));
-  EXPECT_EQ(shares_of(strided), kExpected);  // they need not add up to 1
-  // A sparse accessor may be the only source of values.
+  EXPECT_EQ(shares_of(strided), kExpected);  // weights need not sum to 1
+  // A sparse accessor may have no other source of values.
   Skinned sparse;
   sparse.weights(sparse.builder.add_accessor_over(std::nullopt, "VEC4", 5126, 4));
   sparse.builder.make_sparse(sparse.builder.json["accessors"].size() - 1, std::vector<std::uint8_t>{0, 1, 2, 3},
@@ -223,7 +224,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
     Skinned skinned;
     spoilt.spoil(skinned);
     EXPECT_EQ(error_of(skinned), spoilt.error);
-    // The shape can be read all the same.
+    // The shape can still be read.
     const GltfFixture fixture(skinned.builder);
     ASSERT_TRUE(fixture.ok()) << spoilt.error;
     EXPECT_TRUE(fixture->geometry(0, 0, {true, true}).ok()) << spoilt.error;
@@ -279,7 +280,7 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
     Skinned skinned;
     spoilt.spoil(skinned);
     EXPECT_EQ(error_of(skinned, 0), spoilt.error);
-    EXPECT_EQ(error_of(skinned), "") << spoilt.error;  // the joints stand as they do without it
+    EXPECT_EQ(error_of(skinned), "") << spoilt.error;  // the animation is skipped, and the joints stay as without it
   }
 }
 
@@ -311,7 +312,7 @@ TEST(GltfSkin, channels_that_move_no_joint_or_point_elsewhere_are_passed_over) {
 const std::vector<std::uint8_t> kDracoJoints = {0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0};
 const std::vector<float> kDracoWeights = {1, 0, 0, 0, 0.75F, 0.25F, 0, 0, 0.5F, 0.5F, 0, 0, 0.25F, 0.25F, 0, 0};
 
-// A quad whose places, joints and weights are in a compressed mesh. The places identify the vertices in any order.
+// A quad whose positions, joints and weights are in a compressed mesh. Positions identify the vertices in any order.
 struct Compressed {
   Skinned skinned;
 
@@ -338,7 +339,7 @@ struct Compressed {
   }
 };
 
-// Adds up the weights of a vertex for joint 0 and joint 1, as the file has them, without any loop of src/.
+// Sums the weights of a vertex for joint 0 and joint 1 from the file's data, without using code of src/.
 std::pair<double, double> expected_shares(std::size_t vertex) {
   std::pair<double, double> of_joints;
   double sum = 0;
@@ -360,7 +361,7 @@ TEST(GltfSkin, joints_and_weights_of_a_compressed_mesh_are_those_that_were_coded
     first.push_back(shares.value().size());
     const std::vector<float> positions = fixture->geometry(0, 0, {}).value().positions;
     for (std::size_t v = 0; v < 4; ++v) {
-      std::size_t coded = 0;  // the vertex at this place before it was coded
+      std::size_t coded = 0;  // index of the vertex at this position before compression
       while (!std::equal(positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
                          positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3),
                          test::kQuad.begin() + static_cast<std::ptrdiff_t>(3 * coded)))
@@ -406,7 +407,7 @@ TEST(GltfSkin, faults_of_a_compressed_mesh_have_their_place) {
   EXPECT_TRUE(error_of(no_mesh).starts_with(extension + ": the compressed mesh is broken: ")) << error_of(no_mesh);
 }
 
-// Sets that all use one accessor take no bytes of the file, but much memory.
+// Sets of weights that share one accessor take few bytes of the file, but much memory.
 TEST(GltfSkin, many_sets_are_held_to_the_limit_of_expansion) {
   Skinned skinned;
   constexpr std::size_t kVertices = 4096, kSets = 120;

@@ -1,4 +1,4 @@
-// Tests where the buffers of a model from a stranger may lie.
+// Tests the places from which buffers of an untrusted model may be read.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -18,7 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::GltfBuilder, test::GltfFixture;
 
-// Makes outside/secret.bin, and outside/asset/ for the asset, with links and a pipe.
+// Makes a folder outside/asset/ for the asset, with links and a pipe, and a file outside/secret.bin that must not be
+// read.
 class GltfUris : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -38,7 +39,7 @@ class GltfUris : public ::testing::Test {
     ASSERT_EQ(mkfifo((asset_ + "/pipe.bin").c_str(), 0600), 0);
   }
 
-  // Returns "" if the geometry could be read, else the error; never waits.
+  // Returns "" if the geometry could be read, or else the error. Never blocks.
   [[nodiscard]] std::string read(const std::string& uri, bool allow_external) const {
     const test::ChildRun run = test::run_in_child(20, [&]() -> std::string {
       GltfOptions options;
@@ -193,12 +194,12 @@ TEST_F(GltfUris, names_that_a_person_would_call_the_same_are_found) {
   const auto write = [&](const std::string& name) {
     std::ofstream(asset_ + "/" + name, std::ios::binary) << builder_.buffer;
   };
-  // A percent sign may encode nothing, and a name may stand in the URI unescaped.
+  // A percent sign need not begin an escape, and a name may be in the URI without escapes.
   write("example 10%.bin");
   EXPECT_EQ(read("example 10%.bin", false), "");
   write("fifty%20percent.bin");
   EXPECT_EQ(read("fifty%20percent.bin", false), "");
-  // A letter with its mark may be one character in the URI and two in the file, or the other way round.
+  // A letter with an accent may be one character in the URI and two in the file name, or the reverse.
   write("cafe\u0301.bin");
   EXPECT_EQ(read("caf\u00E9.bin", false), "");
   EXPECT_EQ(read("caf%C3%A9.bin", false), "");

@@ -1,4 +1,4 @@
-// Tests meshes at the places that the nodes of the scene give them.
+// Tests meshes at the places to which the scene's nodes move them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +49,8 @@ Vec3d first_normal_at_start(const Motion& motion, std::size_t face) {
 TEST(GltfWorld, scale_rotation_and_translation_of_a_node_and_its_parent_apply_in_that_order) {
   GltfBuilder builder = triangle();
   const double half = std::sqrt(0.5);
-  // The child doubles and lifts by 3 along z; the parent makes a quarter turn about z, then moves by 10 along x.
+  // The child node scales by 2 and moves by 3 along z; the parent turns by 90 degrees about z, then moves by 10 along
+  // x.
   builder.add_node(0, {{"scale", {2, 2, 2}}, {"translation", {0, 0, 3}}});
   builder.json["nodes"].push_back({{"children", {0}}, {"rotation", {0, 0, half, half}}, {"translation", {10, 0, 0}}});
   const auto motion = world_motion(builder);
@@ -76,7 +77,7 @@ TEST(GltfWorld, mirrored_faces_keep_their_outward_side) {
   ASSERT_TRUE(result.ok()) << result.error().text();
   const Motion& motion = result.value().motion;
   ASSERT_EQ(motion.topology.face_count(), 3U);
-  // The normal is along +z before; mirrored in x it still is, and mirrored in z it is along -z.
+  // The normal is along +z at first, and after mirroring in x; after mirroring in z it is along -z.
   EXPECT_GT(first_normal_at_start(motion, 0).z, 0);
   EXPECT_GT(first_normal_at_start(motion, 1).z, 0);
   EXPECT_LT(first_normal_at_start(motion, 2).z, 0);

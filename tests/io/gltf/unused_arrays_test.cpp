@@ -1,5 +1,5 @@
-// Checks that every buffer of a result omits the bytes that an edit leaves unused, and that every other array keeps its
-// numbers. The test compares them with its own reader of accessors.
+// Checks that an edited file omits bytes that have become unused, in every buffer, and that all other arrays keep their
+// numbers. The test reads accessors with its own code.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct Parts {
   Json json;
   std::string bin;
 
-  // Returns the bytes of the elements of an accessor, and of its sparse arrays, one after the other.
+  // Returns the bytes of an accessor's elements, followed by its sparse arrays.
   [[nodiscard]] std::string elements(std::size_t index) const {
     const Json& accessor = json.at("accessors").at(index);
     const std::string type = accessor.at("type");
@@ -62,7 +62,7 @@ struct Parts {
   }
 };
 
-// Adds a mesh that needs no triangles, whose base normals are its positions.
+// Adds a mesh without triangles, whose base normals are its positions.
 void add_mesh(GltfBuilder& builder, std::size_t base, const std::vector<Json>& targets) {
   Json primitive = GltfBuilder::primitive(base, std::nullopt, targets);
   primitive["attributes"]["NORMAL"] = base;
@@ -112,7 +112,7 @@ TEST(UnusedArrays, nothing_is_left_out_unless_it_is_asked_for) {
   EXPECT_EQ(Parts(bytes_or_error(edit)).bin.size(), 48U);
 }
 
-// Bytes that an accessor shares with others stay, and so do bytes that only an unknown extension may use.
+// Bytes that an accessor shares with others are kept, and so are bytes that an unknown extension might use.
 TEST(UnusedArrays, bytes_that_something_else_needs_stay) {
   const auto sharing = [] {
     GltfBuilder builder;
@@ -150,7 +150,7 @@ TEST(UnusedArrays, bytes_that_something_else_needs_stay) {
   EXPECT_EQ(left_out(skin), 32U) << "of 48 bytes the first 16 are those of a skin";
 }
 
-// A bake packs the sparse arrays of all targets into one view, so arrays behind an unused one are found by their
+// A bake packs the sparse arrays of all targets into one view, so arrays after an unused one must be found by their new
 // offsets.
 TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_moved) {
   GltfBuilder builder;
@@ -170,14 +170,14 @@ TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_mov
   add_mesh(builder, base, targets);
   const GltfFixture fixture(builder);
   const Parts before(builder.glb()), after(bytes_without_unused(fixture, {1}));
-  const std::size_t left_out = bytes_of(values).size();  // two indices are too few to leave out
+  const std::size_t left_out = bytes_of(values).size();  // omitting two indices is not worthwhile
   EXPECT_EQ(after.bin.size(), before.bin.size() + 48 - left_out);
   for (const std::size_t array : {1U, 3U}) EXPECT_EQ(after.elements(array), before.elements(array));
   EXPECT_EQ(after.json["accessors"][3]["sparse"]["values"]["byteOffset"], 2 * pair.size() + indices.size() - left_out);
 }
 
-// Makes a file in three buffers: one that only its base needs, one of base and old deltas, and one of nothing but old
-// deltas.
+// Makes a file with three buffers: one used only by the base, one used by the base and old deltas, and one used only by
+// old deltas.
 GltfBuilder in_three_buffers(const std::vector<std::string>& uris) {
   GltfBuilder builder;
   const std::string one = bytes_of(kBase),
@@ -206,9 +206,9 @@ TEST(UnusedArrays, unused_arrays_are_left_out_of_files_and_data_uris_wherever_th
   struct Case {
     const char* name;
     std::vector<std::string> uris;
-    std::size_t beside, moved;  // bytes left out of a .gltf beside the source, and of one elsewhere
+    std::size_t beside, moved;  // omitted bytes if a .gltf is written beside the source, and if elsewhere
   };
-  // All 48 bytes in the middle are unused, and all but four of the last buffer, which its views need.
+  // All 48 bytes in the middle are unused, and all of the last buffer except for four bytes that its views need.
   for (const Case& of : {Case{"files.gltf", {"one.bin", "two.bin", "old.bin"}, 0, 92},
                          Case{"mixed.gltf", {"one.bin", as_data(two), "old.bin"}, 48, 92},
                          Case{"data.gltf", {as_data(one), as_data(two), as_data(one)}, 92, 92}}) {
@@ -257,7 +257,7 @@ TEST(UnusedArrays, all_other_arrays_keep_their_numbers) {
     std::vector<std::size_t> views, arrays = {builder.add_positions(kBase)};
     for (std::size_t n = 2 + below(6); n > 0; --n) {
       std::string bytes(48 * (1 + below(3)) + 4 * below(3), '\0');
-      for (char& byte : bytes) byte = static_cast<char>(below(63));  // no NaN, and nothing huge
+      for (char& byte : bytes) byte = static_cast<char>(below(63));  // avoids NaN and huge numbers
       views.push_back(builder.add_view(bytes, below(4) == 0 ? 12 : 0));
       if (below(3) == 0) builder.buffer += std::string(below(9), '\x11');
     }

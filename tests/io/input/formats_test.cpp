@@ -1,4 +1,4 @@
-// Walks the readers of meshes in the table of formats. Fails for one that has no fixtures here, or no fuzz target.
+// Tests all readers of meshes in the table of formats. Fails if a reader has no fixtures here, or no fuzz target.
 #include "io/input/formats.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  // Every file cut off before this byte must be an error; 0 if the format cannot tell.
+  // A file that is cut off before this byte must be an error; 0 if the format cannot detect it.
   std::size_t declared_end = 0;
 };
 
@@ -44,7 +44,7 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
          0},
         {"faces first", "f 1 2 3 4\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 12.5", 0}}},
       {"ply",
-       {{"ascii", ascii, ascii.size() - 1},  // the last line end may be missing
+       {{"ascii", ascii, ascii.size() - 1},  // the last line end is optional
         whole("little endian", test::small_binary_ply(false)),
         whole("big endian", test::small_binary_ply(true)),
         whole("mixed, little endian", test::mixed_binary_ply(false)),
@@ -120,7 +120,7 @@ TEST_P(Readers, truncated_file_is_an_error_or_a_mesh) {
   }
 }
 
-// Returns the places of the numbers in a text: {position, size} of each run of characters of a number.
+// Returns the {position, size} of each number in a text.
 std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& text) {
   constexpr std::string_view kOfNumbers = "0123456789+-.eE";
   std::vector<std::pair<std::size_t, std::size_t>> numbers;

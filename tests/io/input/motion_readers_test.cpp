@@ -1,4 +1,4 @@
-// Walks the readers of motions and caches in the table of formats. Fails for one that has no fixtures here, or no fuzz
+// Tests all readers of motions and caches in the table of formats. Fails if a reader has no fixtures here, or no fuzz
 // target.
 #include "io/input/formats.h"
 
@@ -28,7 +28,7 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  bool is_self_contained = true;  // every file that is cut off is an error
+  bool is_self_contained = true;  // every truncated file is an error
 };
 
 const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() {
@@ -52,7 +52,7 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
   return table;
 }
 
-// Checks what must hold for every error.
+// Checks the parts that every error must have.
 void check_error(const Error& error) {
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
   EXPECT_TRUE(error.place.starts_with("a.bin")) << error.text();
@@ -84,7 +84,7 @@ bool check(const Result<MayaCacheDescription>& result, std::size_t) {
   return true;
 }
 
-// Returns every reader as a function that tells whether the bytes were read.
+// Returns every reader as a function that tells whether it could read the bytes.
 std::map<std::string, std::function<bool(const std::string&)>> all_readers() {
   std::map<std::string, std::function<bool(const std::string&)>> readers;
   for (const Format& format : formats()) {
@@ -198,7 +198,7 @@ TEST_P(MotionReaders, boundary_numbers_in_text_are_errors_or_results) {
                                       "6148914691236517206", "9223372036854775808", "18446744073709551615",
                                       "18446744073709551616", "-1", "-2147483648", "-9223372036854775808", "", "1.5"}) {
         SCOPED_TRACE(fixture.label + ", byte " + std::to_string(at) + " := " + value);
-        // A number of another length may only replace one if the whole file is text.
+        // A number may only be replaced by one of another length if the whole file is text.
         (void)read_anything(std::string(bytes).replace(at, end - at, value));
       }
     }

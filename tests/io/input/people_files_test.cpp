@@ -1,5 +1,5 @@
-// Tests the files that people have: far from the origin, caches of other meshes, padded faces, loops, formats of other
-// programs.
+// Tests problems of real files: positions far from the origin, caches of other meshes, padded faces, loops, and formats
+// of other programs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -86,9 +86,9 @@ TEST(PaddedFaces, are_refused_and_say_so) {
   EXPECT_NE(read(npy_of("<i4", {12}, rows)).find("padded"), std::string::npos);
   EXPECT_NE(read(npy_of("<i4", {2, 5}, std::vector<std::int32_t>{4, 0, 1, 2, 3, 4, 0, 4, 2, 1})).find("padded"),
             std::string::npos);
-  // Only the first face names a vertex that does not exist.
+  // Only the first face has a vertex that does not exist.
   EXPECT_NE(read(npy_of("<i4", {1, 4}, std::vector<std::int32_t>{3, 7, 8, 9})).find("padded"), std::string::npos);
-  // Faces that meet in vertex 3, and faces with other first numbers, are not padded.
+  // Faces that meet in vertex 3, or begin with other numbers, are not padded.
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{3, 0, 1, 2, 3, 2, 4, 0})), "");
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{0, 1, 2, 3, 3, 2, 1, 4})), "");
   EXPECT_EQ(read(npy_of("<i4", {2, 3}, std::vector<std::int32_t>{2, 0, 1, 2, 1, 4})), "");
@@ -136,7 +136,7 @@ TEST(FarOrigin, a_mesh_in_a_survey_has_the_positions_that_it_has_at_the_origin) 
   std::cout << "seed " << kSeed << '\n';
   std::mt19937 random(kSeed);
   for (int round = 0; round < 60; ++round) {
-    // Coordinates are multiples of 1/1024, which ten decimals hold exactly, so that sums are exact in double.
+    // Coordinates are multiples of 1/1024, which ten decimals represent exactly, so sums are exact in double.
     const auto number = [&](std::uint32_t most) { return static_cast<double>(random() % (most * 1024)) / 1024; };
     const std::vector<double> shift = {452312 + number(10000), 5411873 + number(10000), number(100)};
     const TemporaryFolder near, far;
@@ -167,7 +167,7 @@ TEST(FarOrigin, a_mesh_in_a_survey_has_the_positions_that_it_has_at_the_origin) 
           for (std::size_t i = 0; i < motion.keyframes[k].positions.size(); ++i)
             ASSERT_EQ(double{motion.keyframes[k].positions[i]} + motion.origin[i % 3],
                       double{at_origin.keyframes[k].positions[i]} + shift[i % 3]);
-        // Writers add the origin again.
+        // Writers add the subtracted origin again.
         for (const std::string out : {"out.npz", "out_%d.obj", "out_%d.ply"}) {
           const TemporaryFolder written;
           ASSERT_TRUE(write_motion(motion, written / out, false).ok());
@@ -198,7 +198,7 @@ TEST(FarOrigin, what_float32_keeps_stays_as_it_is_and_what_it_has_lost_is_said) 
         {folder.write("a.npz", npz_of(positions, npy_of("<u4", {1, 3}, std::vector<std::uint32_t>{0, 1, 2})))}));
   };
   for (const std::string type : {"<f8", "<f4"}) {
-    Result<Input> near = read(512, type);  // no more digits than float32 keeps
+    Result<Input> near = read(512, type);  // the numbers have no more digits than float32 keeps
     ASSERT_TRUE(near.ok()) << error_of(near);
     EXPECT_TRUE(near.value().notes().empty());
     EXPECT_EQ(near.value().motion().value()->origin, (std::array<double, 3>{}));
@@ -219,7 +219,7 @@ TEST(FarOrigin, any_keyframe_tells_that_there_are_more_digits) {
   std::mt19937 random(kSeed);
   const std::vector<std::uint32_t> corners = {0, 1, 2};
   for (int round = 0; round < 20; ++round) {
-    // One keyframe has digits beyond float32, and no keyframe before or after it has.
+    // Exactly one keyframe has digits beyond float32.
     const std::size_t frames = 2 + random() % 10, telling = random() % frames;
     const TemporaryFolder folder;
     std::vector<double> all;
@@ -272,8 +272,8 @@ TEST(Loops, come_back_to_the_first_keyframe) {
     ASSERT_EQ(motion.value().keyframes.size(), 5U);
     EXPECT_EQ(motion.value().keyframes[4].time, 2.0);
     EXPECT_EQ(motion.value().keyframes[4].positions, motion.value().keyframes[0].positions);
-    // On curves the loop arrives as smoothly as it leaves: the velocity is the difference of the neighbours on both
-    // sides, keyframes 2 and 3, over the time between them.
+    // On curves, a loop is smooth at its end: the velocity there is the difference between the neighbours on both
+    // sides, keyframes 2 and 3, divided by the time between them.
     options.from = 1;
     const Motion straight = test::read_motion(options).value();
     ASSERT_EQ(straight.keyframes.size(), 4U);

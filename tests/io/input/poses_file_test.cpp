@@ -1,4 +1,4 @@
-// Poses of a rig from JSON, and what is said of a file that has none.
+// Tests poses of a rig from JSON, and messages about files without valid poses.
 #include "chronormal/io/input.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Reads the face of MPFB and its 102 targets by other people. Needs the environment variable CHRONORMAL_DATA, which
-// says where they are.
+// names their folder.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -34,7 +34,7 @@ std::vector<float> vertices_of_obj(const fs::path& path) {
   return positions;
 }
 
-// Adds the deltas of a gzipped target; returns how many lines it has.
+// Adds the deltas of a gzipped target. Returns the number of its lines.
 std::size_t add_target(const fs::path& path, std::vector<float>& positions) {
   const gzFile file = ::gzopen(path.c_str(), "rb");
   std::size_t lines = 0;
@@ -63,7 +63,7 @@ TEST(RealTargets, face_and_all_its_targets_are_one_star_of_base_plus_deltas) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(face / "targets")) {
     if (entry.path().extension() == ".gz") paths.push_back(entry.path());
   }
-  std::sort(paths.begin(), paths.end());  // no digits in these
+  std::sort(paths.begin(), paths.end());  // without digits, so the order is alphabetical
   ASSERT_EQ(paths.size(), 102U);
   ASSERT_EQ(motion.keyframes.size(), 103U);
   ASSERT_EQ(motion.segments.size(), 102U);

@@ -45,7 +45,7 @@ std::string error_text(const std::string& bytes, const std::vector<float>& base 
   return target.error().text();
 }
 
-// Checks what must hold for any bytes at all; returns whether they were read.
+// Checks invariants for arbitrary bytes. Returns whether they could be read.
 bool check(const std::string& bytes, const std::vector<float>& base = kSquare) {
   const test::CpuClock clock;
   const Result<MakeHumanTarget> target = read(bytes, base);
@@ -156,7 +156,7 @@ TEST(MakeHumanTarget, gzip_cut_off_anywhere_is_an_error_with_its_byte) {
     EXPECT_EQ(error_text(bytes.substr(0, size)),
               "a.target, byte " + std::to_string(size) + ": the gzip data end early");
   EXPECT_FALSE(check(bytes.substr(0, 1)));
-  // The cut may be inside the second member, too.
+  // The file may also be cut inside the second member of the gzip file.
   for (std::size_t size = 1; size < bytes.size(); ++size)
     EXPECT_FALSE(check(gzip("# first\n") + bytes.substr(0, size)));
 }
@@ -173,8 +173,8 @@ TEST(MakeHumanTarget, damaged_gzip_is_an_error_with_a_byte_or_damaged_where_nobo
         EXPECT_TRUE(error_text(damaged).starts_with("a.target, byte ")) << error_text(damaged);
         continue;
       }
-      // Damage is harmless in the date and the system in the header, and in the bits between the deflated data and the
-      // checksum.
+      // Changed bytes do no harm in the date and the system of the header, or in the bits between the deflated data and
+      // the checksum.
       expect_lift(damaged);
       EXPECT_TRUE(at < 10 || at == bytes.size() - 9);
       ++harmless;
@@ -198,7 +198,7 @@ TEST(MakeHumanTarget, gzip_may_unpack_to_a_stated_size_and_not_a_byte_more) {
   expect_lift(padded(most_target_bytes(4) + 1));
   EXPECT_TRUE(error_text(padded(most_target_bytes(4) + 2)).find("unpacks to more than 66560 bytes") !=
               std::string::npos);
-  // There are many empty members, and then members that are large together.
+  // Tests many empty members, and then members that are large only together.
   std::string members;
   for (int i = 0; i < 1000; ++i) members += gzip("");
   expect_lift(members + gzip(kLiftTarget));

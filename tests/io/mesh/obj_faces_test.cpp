@@ -1,5 +1,5 @@
-// Checks that the positions of files that repeat the faces of another file equal the result of the reader of whole
-// files.
+// Checks that the fast reader for files with the same faces as another file gives the same positions as the full
+// reader.
 #include "io/mesh/obj_faces.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(ObjFaces, of_the_same_text_leave_only_vertices_to_read) {
   const auto positions = positions_like(vertices(0) + kFaces, vertices(7) + kFaces);
   ASSERT_TRUE(positions);
   EXPECT_TRUE(test::same_bits(*positions, read_obj(vertices(7) + kFaces, "x").value().positions));
-  // This file has lines that a program changes from frame to frame, and other line ends.
+  // Programs may change these lines from frame to frame, and line ends may differ.
   const std::string other = "# another frame\r\n" + vertices(8) + "vn 0 0 1\n" + kFaces;
   ASSERT_TRUE(positions_like(vertices(0) + kFaces, other));
 }
@@ -50,11 +50,11 @@ TEST(ObjFaces, whatever_takes_more_than_a_look_is_left_to_the_reader) {
   for (const std::string& bytes : {
            vertices(7) + "f 1 2 3\n" + kFaces,          // one face more
            vertices(7) + "v 0 0 0\n" + kFaces,          // one vertex more
-           vertices(7) + "v 0 0 nan\n" + kFaces,        // no number
+           vertices(7) + "v 0 0 nan\n" + kFaces,        // NaN is not a number
            vertices(7) + "v 0 0 0 1\n" + kFaces,        // a fourth number
-           vertices(7) + "o name \\\n" + kFaces,        // a line that continues
+           vertices(7) + "o name \\\n" + kFaces,        // a line that is continued in the next
            "\xEF\xBB\xBF" + vertices(7) + kFaces,       // a byte order mark
-           vertices(7) + "vt 0 0\nf 1 2 3\nf 3 2 4\n",  // other text
+           vertices(7) + "vt 0 0\nf 1 2 3\nf 3 2 4\n",  // text in other places
            std::string("v 7 0 0\n") + kFaces,           // too few vertices
            kFaces,
            std::string(),

@@ -1,4 +1,4 @@
-// Tests blends in float32, which a caller may ask for.
+// Tests blends in float32, which a caller can request.
 
 #include <gtest/gtest.h>
 
@@ -116,7 +116,7 @@ TEST(BlendFloat, is_chosen_where_it_is_cheaper_than_terms) {
 }
 
 TEST(BlendFloat, has_no_effect_where_a_ring_is_too_long_for_lanes) {
-  // A fan of 80 triangles surrounds vertex 0.
+  // A fan of 80 triangles around vertex 0.
   constexpr std::uint32_t kTriangles = 80;
   BlendSet set;
   set.base = {0, 0, 1};

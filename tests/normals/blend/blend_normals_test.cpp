@@ -1,5 +1,5 @@
 // Compares normals at any weights with blended positions, in rationals or in long double. Uses the real files only if
-// the environment variable CHRONORMAL_DATA says where they are.
+// the environment variable CHRONORMAL_DATA names their folder.
 #include "chronormal/normals/blend_normals.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ Evaluated evaluate(BlendNormals& normals, std::span<const double> weights, Threa
 
 struct Errors {
   double largest = 0;     // radians
-  std::size_t far = 0;    // elements beyond 1e-6 rad
+  std::size_t far = 0;    // elements with an error above 1e-6 rad
   std::size_t zeros = 0;  // (0, 0, 0) written
 };
 
@@ -90,7 +90,7 @@ Errors errors_of(const Evaluated& done, const std::vector<reference::Vector>& ex
   return errors;
 }
 
-// Checks the promise: errors up to 1e-6 rad, except for the elements that are counted.
+// Checks that errors are at most 1e-6 rad, except for the elements that the result counts as uncertain.
 template <class Expected>
 void expect_exact(const Evaluated& done, const std::vector<Expected>& expected, const std::string& what) {
   const Errors errors = errors_of(done, expected);
@@ -165,7 +165,7 @@ RC_GTEST_PROP(BlendNormals, scale_by_a_power_of_two_gives_the_same_bits, ()) {
   }
 }
 
-// At such weights a vertex lies exactly or nearly on the line through others.
+// At such weights a vertex is exactly or nearly on the line through two others.
 TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted_zeros) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -182,14 +182,14 @@ TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted
     const Evaluated zero = evaluate(normals, std::vector{1.0, 0.7});
     EXPECT_EQ(zero.xyz, (std::vector<float>{0, 0, 0}));
     EXPECT_EQ(zero.evaluation.zeros, 1U);
-    // This is so near that double cannot tell, which is reported.
+    // The weight is so near to the collapse that double cannot decide, which is reported.
     const Evaluated near = evaluate(normals, std::vector{1 - 0x1p-50, 0.7});
     EXPECT_EQ(near.evaluation.zeros + near.evaluation.uncertain_elements, 1U);
     EXPECT_EQ(evaluate(normals, std::vector{0.0, 0.7}).evaluation.zeros, 0U);
   }
 }
 
-// There blended positions are rounded, which counts.
+// Far from the origin, the rounding of blended positions matters.
 TEST(BlendNormals, what_double_cannot_promise_far_from_the_origin_is_counted) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -212,7 +212,7 @@ TEST(BlendNormals, what_double_cannot_promise_far_from_the_origin_is_counted) {
   EXPECT_GT(sure, 3U);
 }
 
-// All edges of a face bring their rounding, including edges that follow a short one.
+// All edges of a face contribute rounding errors, including edges after a short one.
 TEST(BlendNormals, what_double_cannot_promise_of_a_triangle_with_one_short_edge_is_counted) {
   BlendSet set;
   set.base = {0, 0, 0, 1, 0, 0, 3000, 1000, 500};
@@ -238,7 +238,7 @@ TEST(BlendNormals, what_double_cannot_promise_of_a_triangle_with_one_short_edge_
   EXPECT_GT(sure, 3U);
 }
 
-// The square of such a normal is subnormal in double, or zero.
+// The square of such a normal is subnormal or zero in double.
 TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -253,8 +253,8 @@ TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
   }
 }
 
-// Each of very many targets rounds the position again, here always in one direction: a vertex goes to 256, on in 250
-// steps of 1 + 127 eps that lose 127 eps each, and all the way back.
+// Each of many targets rounds the position again, here always in the same direction: a vertex moves to 256, then in 250
+// steps of 1 + 127 eps, each of which loses 127 eps, and finally all the way back.
 TEST(BlendNormals, rounding_of_every_target_counts) {
   constexpr double kEps = 0x1p-52;
   constexpr float kSize = 4e-6F;  // the loss of 7e-12 turns such a triangle by 1.8e-6 rad
@@ -274,9 +274,9 @@ TEST(BlendNormals, rounding_of_every_target_counts) {
   }
 }
 
-// A polygon that winds around a triangle of less than an ulp is a point once it has been far away. Its area is all
-// rounding, and its edges are zero, so that only the square of the rounding of positions shows this. With its many
-// corners that outweighs the triangle beside it, which alone has a direction.
+// A polygon that winds around a triangle smaller than an ulp becomes a point after it was moved far away and back. Its
+// area is only rounding error and its edges are zero, so only the square of the rounding of positions accounts for the
+// error. With many corners, this error outweighs the triangle beside it, the only face with a direction.
 TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
   constexpr float kFar = 1.5F * 0x1p52F;  // an ulp is 1 there
   for (const int turns : {0, 10}) {
@@ -290,7 +290,7 @@ TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
     BlendTarget away{"", {0, 1, 2, 3, 4, 5}, {}};
     for (int v = 0; v < 6; ++v) away.deltas.insert(away.deltas.end(), {kFar, kFar, 0});
     set.targets = {away, away};
-    for (const BlendPath path : {BlendPath::kTouched, BlendPath::kWhole}) {  // terms know no positions
+    for (const BlendPath path : {BlendPath::kTouched, BlendPath::kWhole}) {  // the path by terms does not use positions
       BlendNormals normals = BlendNormals::of_groups(set, test::vertices_of(set), {kUnlimited, path});
       const std::vector<float> expected = {0, 0, turns == 0 ? 1.0F : 0.0F};
       EXPECT_EQ(evaluate(normals, std::vector{1.0, -1.0}).of(0), expected) << name_of(path) << ", " << turns;
@@ -312,7 +312,7 @@ TEST(BlendNormals, faces_without_area_in_the_base_count_until_a_target_opens_the
   }
 }
 
-// The remainder of large terms that nearly cancel has the rounding of the large terms.
+// When large terms nearly cancel, the remainder has the rounding error of the large terms.
 TEST(BlendNormals, large_weights_that_nearly_cancel_are_seen) {
   BlendSet set = test::random_blend_set(11, {.targets = 1, .reach = 0.9});
   set.targets.push_back(set.targets[0]);
@@ -408,7 +408,7 @@ void expect_peak(const BlendSet& set, const NormalGroups& groups, std::size_t ma
   EXPECT_LE(normals.bytes(), cost.bytes);
 }
 
-// Makes a cone over one polygon of many corners. Each corner is a vertex with the polygon and two triangles around it.
+// Makes a cone over a polygon with many corners. Each corner is a vertex of the polygon and of two triangles.
 BlendSet cone_over(std::size_t corners) {
   BlendSet set;
   std::vector<std::uint32_t> offsets = {0}, of_faces;
@@ -596,7 +596,7 @@ TEST(BlendNormals, planes_have_the_bits_of_packed_results) {
   }
 }
 
-// The elements fill vectors only in part, and the faces are triangles and polygons.
+// The number of elements is not a multiple of a vector's size, and faces are triangles and polygons.
 TEST(BlendNormals, every_instruction_set_gives_the_same_bits) {
   for (const std::size_t cells : {1U, 2U, 5U, 12U}) {
     const BlendSet set = test::random_blend_set(cells, {.cells = cells, .targets = 6, .reach = 0.7});

@@ -1,5 +1,5 @@
-// Attacks BlendNormals: searches for sets and weights whose normals use up as much as possible of the promised 1e-6
-// rad, on every path, judged in rationals.
+// Attacks BlendNormals: searches for sets and weights whose errors come as close as possible to the promised 1e-6 rad,
+// on every path, judged in rational numbers.
 
 #include <gtest/gtest.h>
 
@@ -21,15 +21,16 @@ namespace {
 
 constexpr double kPromised = 1e-6;  // radians
 
-// A face of 3 or 4 corners, or the faces around vertex 0, three targets, and their weights.
+// A candidate of the search: a face of 3 or 4 corners, or the faces around vertex 0, with three targets and their
+// weights.
 struct Candidate {
   BlendSet set;
   std::vector<double> weights;
   bool is_ring = false;
 };
 
-// Returns the share of the promise that the face, or vertex 0 of a ring, uses up, or 0 if there is no promise or no
-// normal. On the path by terms, elements that are made from positions count as 0 too.
+// Returns the error of the face, or of vertex 0 of a ring, as a share of the promised error; 0 if there is no promise
+// or no normal. On the path by terms, elements that are computed from positions count as 0, too.
 double used_up(const Candidate& candidate, BlendPath path) {
   const BlendNormalsOptions options{std::numeric_limits<std::size_t>::max(), path};
   const Topology& topology = candidate.set.topology;
@@ -47,7 +48,7 @@ double used_up(const Candidate& candidate, BlendPath path) {
 }
 
 // Makes a face near a collapse: the first target puts the last corner almost onto the line through two others, and
-// sometimes all corners are carried far away and back.
+// sometimes all corners move far away and back.
 Candidate near_a_collapse(fixtures::Random& random) {
   Candidate result;
   const auto corners = static_cast<std::uint32_t>(3 + random.below(2));
@@ -78,7 +79,7 @@ Candidate near_a_collapse(fixtures::Random& random) {
 }
 
 // Makes the 4 to 8 triangles around vertex 0, whose normals nearly cancel: the first target puts the ring almost onto a
-// line, where its polygon has no area, whatever areas the triangles have.
+// line, where the outline has no area, although the triangles have.
 Candidate ring_near_a_collapse(fixtures::Random& random) {
   Candidate result;
   result.is_ring = true;
@@ -133,7 +134,7 @@ Candidate changed(Candidate candidate, fixtures::Random& random) {
   return candidate;
 }
 
-// Returns the largest share of the promise that climbing from several starts finds.
+// Returns the largest share of the promised error that hill climbing from several starts finds.
 template <class Start>
 double worst_found(const Start& start_at, int starts, int steps, BlendPath path) {
   fixtures::Random random(79);
@@ -157,8 +158,8 @@ double worst_found(const Start& start_at, int starts, int steps, BlendPath path)
   return worst;
 }
 
-// The search must find at least this share of the promise. Terms are in float32; with positions only the result is,
-// rounded by half an ulp.
+// Returns the share of the promised error that the search must find at least. Terms are in float32, while with
+// positions only the result is rounded to float32, by half an ulp.
 double least_of_a_search(BlendPath path) { return path == BlendPath::kTerms ? 0.3 : 0.04; }
 
 TEST(BlendNormals, keep_the_promise_in_the_worst_cases_that_a_search_finds) {

@@ -1,5 +1,5 @@
 // Checks that a weighting and a grouping of ours reproduce normals stored by other tools. Needs the environment
-// variable CHRONORMAL_DATA, which says where the files are.
+// variable CHRONORMAL_DATA, which names their folder.
 
 #include <gtest/gtest.h>
 
@@ -28,9 +28,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Holds what the reader of the product ignores: the normal of each corner, and the smoothing group of each face.
+// A file with the parts that the product's reader ignores: the normal of each corner, and the smoothing group of each
+// face.
 struct Golden {
-  Motion motion;  // the mesh, twice
+  Motion motion;  // the mesh as both keyframes
   std::vector<float> normal_of_corner;
   std::vector<std::uint32_t> group_of_face;
 };
@@ -114,8 +115,8 @@ NormalGroups split_normals_of(const Golden& golden) {
   return NormalGroups::by_split_normals(golden.motion.topology, no_welding(golden), stored(golden)).value();
 }
 
-// Checks that a file follows the weighting of its tool within 0.01 degrees, by both ways to find its hard edges. All
-// other weightings must have larger errors, or the file tells nothing about the rule.
+// Checks that a file's normals follow the weighting of its tool within 0.01 degrees, with both ways of finding hard
+// edges. All other weightings must have larger errors; otherwise the file could not distinguish the rules.
 void expect_weighting(const Golden& golden, Weighting weighting, const std::vector<Weighting>& others) {
   for (const NormalGroups& groups : {smoothing_groups_of(golden), split_normals_of(golden)}) {
     EXPECT_LT(largest_difference(golden, groups, weighting), 0.01);

@@ -1,5 +1,5 @@
-// Tests the t that counts in every function for normals of a segment: t outside [0, 1] is moved to the nearer end, t
-// below 2^-200 is 0, and NaN is not a time.
+// Tests the t that all functions for normals of a segment use: t outside of [0, 1] is moved to the nearer end, t below
+// 2^-200 is 0, and NaN has no normal.
 
 #include "normals/control/local_time.h"
 
@@ -40,10 +40,11 @@ TEST(LocalTime, is_moved_into_the_segment) {
   EXPECT_TRUE(std::isnan(local_time(kNan)));
 }
 
-// A time between two keys, all doubles: time - start and end - time are multiples of two small integers.
+// A time between two keys, where all three are doubles: time - start and end - time are multiples of a unit by small
+// integers.
 struct Times {
   double start, time, end;
-  double before, after;  // time - start and end - time, in one unit, few bits
+  double before, after;  // time - start and end - time, in the same unit and with few bits
 };
 
 Times random_times(fixtures::Random& random) {
@@ -59,13 +60,13 @@ Times random_times(fixtures::Random& random) {
   t.start = t.time - t.before;
   t.end = t.time + t.after;
   const double unit =
-      kind == 3 ? std::ldexp(1.0, 1011) : power(-900, 900);  // the longest are beyond the range of double
+      kind == 3 ? std::ldexp(1.0, 1011) : power(-900, 900);  // the longest durations exceed the range of double
   for (double* one : {&t.start, &t.time, &t.end}) *one *= unit;
   return t;
 }
 
-// Makes a fan of triangles around vertex 0. The second edge of each has a component that is zero at the time, and only
-// then, while the others are tiny: this component times the rounding of t is larger.
+// Makes a fan of triangles around vertex 0. The second edge of each triangle has a component that is zero only at the
+// time, while the other components are so tiny that a rounding error of t would dominate them.
 Motion edge_on_at(const Times& times, fixtures::Random& random) {
   Motion motion;
   std::vector<std::uint32_t> corners;
@@ -93,7 +94,7 @@ Motion edge_on_at(const Times& times, fixtures::Random& random) {
   return motion;
 }
 
-// Returns n of some faces at a time in rational numbers; where it is zero, the n of a moment before.
+// Returns n of some faces at a time in rational numbers; if it is zero, n shortly before.
 exact::Vector exact_direction(const Segment& segment, std::span<const std::uint32_t> faces, const Times& times) {
   const exact::Rational start(times.start), time(times.time), end(times.end);
   const auto sum_at = [&](const exact::Rational& t) { return exact::sum_of_faces_at(segment, faces, t); };
@@ -199,7 +200,7 @@ TEST(LocalTime, that_is_a_double_keeps_its_bits) {
   EXPECT_TRUE(std::isnan(LocalTime::between(1, kNan, 2).t));
 }
 
-// A way to normals: writes the normals at t and returns how many are (0, 0, 0).
+// A function for normals: it writes the normals at t and returns the number of (0, 0, 0).
 struct Door {
   std::string name;
   std::size_t size;

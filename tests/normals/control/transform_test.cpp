@@ -1,4 +1,4 @@
-// Compares normals of meshes that move as a whole with the normals of the transformed mesh.
+// Compares normals of meshes that move as a whole with normals of the transformed mesh.
 
 #include "chronormal/normals/control_normals.h"
 
@@ -57,7 +57,7 @@ TEST(Transform, normals_are_those_of_the_transformed_face_on_the_outer_side) {
     expect_near(matrix(before), matrix.mirrored ? -after : after);
     mirrored += matrix.mirrored ? 1U : 0U;
 
-    // The outer side stays outside: a point above the face stays above it.
+    // A transform keeps the outer side: a point above the face stays above.
     const Vec3d above = a + before;
     EXPECT_GT(dot(matrix(before), transform(above) - transform(a)), 0);
   }

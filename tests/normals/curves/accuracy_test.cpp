@@ -24,20 +24,20 @@ namespace chronormal::accuracy_test {
 namespace {
 
 constexpr std::size_t kFaces = 300;
-constexpr double kPromised = 1e-6;  // radians, evaluate.h
+constexpr double kPromised = 1e-6;  // radians, as promised in evaluate.h
 
 struct Family {
   const char* name;
   Motion (*make)();
 };
 
-// Makes faces of degree 0, 1 and 2, a third of each; axis-parallel steps give the degrees 0 and 1.
+// Makes faces of degree 0, 1 and 2, a third each; steps along the axes give the degrees 0 and 1.
 Motion mixed_degrees() {
   Motion motion = fixtures::moderate_soup(kFaces, 41);
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
   for (std::size_t f = 0; f < kFaces; ++f) {
-    const std::size_t still = f % 3;  // 0: all corners move; 1: a stands still and b and c too; 2: only c moves
+    const std::size_t still = f % 3;  // 0: all corners move; 1: a rests, and b and c rest too; 2: only c moves
     if (still == 0) continue;
     const std::size_t count = still == 1 ? 9 : 6;
     for (std::size_t k = 0; k < count; ++k) to[9 * f + k] = from[9 * f + k];
@@ -85,7 +85,7 @@ std::vector<ControlNormals> control_normals(const Segment& segment) {
   return normals;
 }
 
-// Returns the time at which |n(t)| is smallest, which is the hardest for float32.
+// Returns the time with the smallest |n(t)|, which is the hardest for float32.
 double hardest_time(const ControlNormals& normals) {
   double best = 0, smallest = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= 256; ++i) {
@@ -120,8 +120,8 @@ std::vector<double> times(const ControlNormals& normals, fixtures::Random& rando
   return result;
 }
 
-// The largest error of one element of `curves` at many times, against exact normals. Times at which n(t) is below 1e-6
-// of the largest control normal count only for elements that are not flagged.
+// The largest error of one element of `curves` at many times, against exact normals. Times with n(t) below 1e-6 of the
+// largest control normal count only for elements that are not flagged.
 struct Judgement {
   double largest = 0;
   double time = 0;
@@ -222,7 +222,8 @@ TEST(NormalCurvesAccuracy, are_within_a_millionth_of_a_radian_of_exact_arithmeti
     std::array<std::size_t, 2> count{}, judged{};
     std::size_t left_out = 0;
     for (std::size_t f = 0; f < normals.size(); ++f) {
-      const NormalCurves curves{std::span(normals).subspan(f, 1)};  // alone, so that the count says whether it is
+      // Prepared alone, so that the count tells whether this face is flagged.
+      const NormalCurves curves{std::span(normals).subspan(f, 1)};
       ASSERT_LE(curves.flagged_count(), 1U);
       const std::size_t flagged = curves.flagged_count();
       const exact::Triangle triangle = exact_triangle(segment, f);
@@ -243,7 +244,7 @@ TEST(NormalCurvesAccuracy, are_within_a_millionth_of_a_radian_of_exact_arithmeti
   }
 }
 
-// All elements share one block of float32 with one exponent: neighbours of another size must not cost accuracy.
+// All elements share a block of float32 with a common exponent, so neighbours of another size must not reduce accuracy.
 TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_degree) {
   fixtures::Random random(54);
   std::vector<ControlNormals> normals;
@@ -256,7 +257,8 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
     for (const Motion& motion : motions) {
       const Segment segment = motion.segment(0);
       const std::size_t repeat =
-          random.below(12) < 8 ? std::size_t{1} : std::size_t{12};  // runs of one family, shorter and longer than 8
+          // Runs of one family, both shorter and longer than 8.
+          random.below(12) < 8 ? std::size_t{1} : std::size_t{12};
       for (std::size_t i = f; i < std::min(f + repeat, kFaces); ++i) {
         normals.emplace_back();
         face_control_normals(segment, {i, 1}, std::span(normals).last(1));
@@ -269,7 +271,7 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
   const NormalCurves curves(normals);
   double largest = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    // An element that is flagged here but not alone is judged as if it were not, which is stricter.
+    // An element that is flagged here but not alone is judged as if it were not flagged, which is stricter.
     const Judgement judgement =
         judge(curves, i, flagged_alone[i], normals[i], triangles[i], exact::control_normals(triangles[i]), random);
     EXPECT_LE(judgement.largest, kPromised) << "element " << i << ", t = " << judgement.time;
@@ -281,7 +283,7 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
 
 // ---- where n(t) = 0 ------------------------------------------------------------------------------------------------
 
-// Returns the exact result where n(t) = 0: at t = 0 the first nonzero control normal, at t = 1 the last one, and in
+// Returns the exact limit for n(t) = 0: at t = 0 the first nonzero control normal, at t = 1 the last one, and in
 // between the direction just before t.
 exact::Vector limit_before(const exact::ControlNormals& normals) {
   if (!exact::is_zero(normals.n1)) return normals.n1;

@@ -69,7 +69,7 @@ void describe(const ControlNormals& c, double t) {
   std::cout.precision(precision);
 }
 
-// Each element is alone, so that nothing more precise in its block can lift it.
+// Each element is prepared alone, so that its block's format is not raised by more demanding neighbours.
 TEST(CompactCurves, keep_the_tolerance_of_every_element_alone) {
   for (const test::HardFamily& family : test::hard_families()) {
     SCOPED_TRACE(family.name);
@@ -111,11 +111,12 @@ TEST(CompactCurves, keep_the_tolerance_among_neighbours_of_any_size_kind_and_deg
   for (const std::uint64_t seed : {72u, 73u, 74u}) {
     fixtures::Random random(seed);
     std::vector<ControlNormals> normals;
-    // There are runs of one family, from one element to a few blocks, and some elements that are zero.
+    // There are runs of one family, from one element to a few blocks, and some zero elements.
     while (normals.size() < 3000) {
       const auto& family = test::hard_families()[random.below(test::hard_families().size())];
       const double scale =
-          random.below(4) == 0 ? std::ldexp(1, static_cast<int>(random.below(1900)) - 900) : 1;  // 1e-271 to 1e301
+          // Scales from 1e-271 to 1e301.
+          random.below(4) == 0 ? std::ldexp(1, static_cast<int>(random.below(1900)) - 900) : 1;
       for (std::size_t left = random.below(3) == 0 ? random.below(90) : 1; left > 0; --left)
         normals.push_back(random.below(40) == 0 ? ControlNormals{} : test::scaled_by(scale, family.make(random)));
     }
@@ -146,7 +147,7 @@ TEST(CompactCurves, keep_the_tolerance_at_every_scale_that_double_has) {
       for (const double tolerance : {1e-6, 2e-4, 1e-3, 1e-2, 0.1}) {
         const NormalCurves curves(std::span(&c, 1), {tolerance});
         for (const double t : {0.0, 0.3, test::hardest_time(c), 1.0}) {
-          // Subnormal control normals have lost digits of their own.
+          // Subnormal control normals have already lost digits.
           if (!has_direction(c, t) || largest_of(c) < 0x1p-960) continue;
           const Vec3f u = unit_normals(curves, t).front();
           ASSERT_LE(angle_to(u, c, t), tolerance) << family.name << " times 2^" << exponent << ", t = " << t;
@@ -157,8 +158,8 @@ TEST(CompactCurves, keep_the_tolerance_at_every_scale_that_double_has) {
   }
 }
 
-// The normals of all vertices of a mesh of triangles at one t, face after face in long double, and the sums of the
-// lengths that went into them.
+// The normals of all vertices of a mesh of triangles at one t, summed face by face in long double, and the sums of the
+// lengths of the summands.
 struct VerticesAt {
   std::vector<std::array<long double, 3>> normals;
   std::vector<long double> lengths;
@@ -197,15 +198,15 @@ struct VerticesAt {
   }
 };
 
-// Vertices are added up in float32 where that is enough. The faces here get flatter and flatter, into needles and
-// slivers; in one of two ways they are less flat in the middle of the mesh than at its ends, so that float32 is enough
-// for some of sixteen neighbours and not for others.
+// Vertices are summed in float32 if its precision is enough. The faces here become flatter and flatter, down to needles
+// and slivers. In one of two variants, faces in the middle of the mesh are less flat than at its ends, so that float32
+// is enough only for some of sixteen neighbours.
 TEST(CompactCurves, keep_the_tolerance_of_vertices_whatever_they_are_added_up_in) {
   for (int flat = 0; flat <= 24; flat += 2) {
     for (const bool along : {false, true}) {
       const Motion motion = test::with_positions(fixtures::smooth_morph(24), [&](const fixtures::Point& p) {
         const double share = std::pow(0.5, flat * (along ? std::fabs(p[0]) : 1));
-        // The mesh is slanted, so that the terms that cancel in the products are large.
+        // The mesh is slanted, so that products consist of large terms that cancel.
         return fixtures::Point{p[0] + 3, share * p[1] + p[0] - 5, share * p[2] - p[0]};
       });
       const Segment segment = motion.segment(0);
@@ -226,8 +227,7 @@ TEST(CompactCurves, keep_the_tolerance_of_vertices_whatever_they_are_added_up_in
   }
 }
 
-// Vertices that hardly move are kept as straight curves, which take fewer bytes, where float32 cannot tell that they
-// bend.
+// Vertices that hardly move are stored as straight curves, which take fewer bytes, unless float32 shows that they bend.
 TEST(CompactCurves, keep_the_tolerance_of_vertices_that_hardly_move) {
   fixtures::Random random(20261126);
   std::cout << "  seed 20261126\n";
@@ -258,7 +258,7 @@ TEST(CompactCurves, keep_the_tolerance_of_vertices_that_hardly_move) {
   EXPECT_GT(bending, 5000U);
 }
 
-// A tolerance as wide as the turn of a shape must still be kept.
+// Even a tolerance as wide as the whole turn of a shape must be kept.
 TEST(CompactCurves, keep_tolerances_without_measure) {
   fixtures::Random random(76);
   for (const double tolerance : {0.2, 0.3, 0.5, 1.0, 1.5, 2.5, 100.0, std::numeric_limits<double>::infinity()}) {
@@ -289,8 +289,8 @@ TEST(CompactCurves, no_tolerance_at_all_is_the_exact_one) {
 
 // ---- the worst elements that a search finds ------------------------------------------------------------------------
 
-// Evaluates one element by the kernels alone, in a kind of block. Precondition: its components are floats of moderate
-// size.
+// Evaluates one element by the kernels alone, in a given kind of block. Precondition: its components are floats of
+// moderate size.
 Vec3f kept_as(BlockKind kind, const ControlNormals& c, double t) {
   ControlTile tile{};
   std::size_t plane = 0;
@@ -318,14 +318,14 @@ struct Format {
   double tolerance;
 };
 
-// Returns the share of the tolerance that the element uses up, or 0 if the curves do not keep it in this format.
+// Returns the error of the element as a share of the tolerance, or 0 if the curves do not store it in this format.
 double used_up(const Format& format, const Candidate& candidate) {
   const NormalCurves curves(std::span(&candidate.c, 1), {format.tolerance});
   if (curves.flagged_count() != 0 || curves.byte_counts().front().bytes != bytes_of(format.kind)) return 0;
   if (curves.degree_counts()[format.kind == BlockKind::kLinear16 || format.kind == BlockKind::kLinear32 ? 1 : 2] == 0)
     return 0;
   const Vec3f u = unit_normals(curves, candidate.t).front();
-  // Two kinds of blocks have 20 bytes.
+  // Two kinds of blocks have 20 bytes; skip the candidate if the other kind was chosen.
   if (bytes_of(format.kind) == 20 && !(u == kept_as(format.kind, candidate.c, candidate.t))) return 0;
   return angle_to(u, candidate.c, candidate.t) / format.tolerance;
 }
@@ -354,7 +354,7 @@ Candidate changed(Candidate candidate, bool linear, fixtures::Random& random) {
       Vec3d& v = *vectors[random.below(3)];
       double* const components[] = {&v.x, &v.y, &v.z};
       double& x = *components[random.below(3)];
-      // The component is a float, so that only the format rounds it.
+      // The component is rounded to float, so that only the format rounds it further.
       x = static_cast<float>(x + step * random.uniform(-1, 1));
     }
   }
@@ -394,7 +394,7 @@ TEST(CompactCurves, keep_the_tolerance_in_the_worst_cases_that_a_search_finds) {
     }
     std::cout << "  " << format.name << " at " << format.tolerance << ": " << worst << " of the tolerance\n";
     EXPECT_LE(worst, 1);
-    EXPECT_GT(worst, 0.05);  // or the search is no search
+    EXPECT_GT(worst, 0.05);  // otherwise the search would be too weak
     if (!(worst <= 1)) describe(worst_candidate.c, worst_candidate.t);
   }
 }
@@ -438,7 +438,7 @@ TEST(CompactCurves, low_degrees_take_12_bytes) {
 }
 
 TEST(CompactCurves, slivers_take_20_bytes_with_scales_of_their_own) {
-  // The lengths begin at 2^-20, of which plain int16 would leave nothing for n0.
+  // The lengths begin at 2^-20, which plain int16 would round to zero for n0.
   const ControlNormals sliver{{0x1p-20, 0, 0x1p-22}, {0x1p-11, 0x1p-13, 0x1p-12}, {1, 0.25, 0.5}};
   const NormalCurves curves(repeated(sliver, 100), {1e-3});
   EXPECT_EQ(share_in(20, curves), 1);
@@ -448,7 +448,7 @@ TEST(CompactCurves, slivers_take_20_bytes_with_scales_of_their_own) {
 }
 
 TEST(CompactCurves, short_runs_join_a_neighbour_that_can_hold_them) {
-  // Two blocks that need less, between blocks that need 20 bytes, are not worth a run of their own. Eight are.
+  // Two blocks that need fewer bytes, between blocks of 20 bytes, are not worth their own run. Eight blocks are.
   const auto among = [](const ControlNormals& other, std::size_t blocks) {
     auto normals = repeated(kQuadratic, 16 * 10);
     const auto middle = repeated(other, 16 * blocks), rest = repeated(kQuadratic, 16 * 10);
@@ -460,7 +460,7 @@ TEST(CompactCurves, short_runs_join_a_neighbour_that_can_hold_them) {
     EXPECT_EQ(share_in(20, among(other, 2)), 1);
     EXPECT_LT(share_in(20, among(other, 8)), 0.8);
   }
-  // A run that needs more bytes is never put into fewer, however short it is.
+  // A short run that needs more bytes is never stored in fewer.
   const ControlNormals hard{{1, 0, 0}, {0, 1e-3, 0}, {-1, 0, 0}};
   const NormalCurves curves = among(hard, 1);
   EXPECT_GT(share_in(36, curves) + static_cast<double>(curves.flagged_count()), 0);
@@ -505,10 +505,10 @@ TEST(CurveWeights, as_integers_stay_within_the_error_that_the_bounds_assume) {
         ASSERT_LE(v, 32767) << t;
         sum += v;
       }
-      // Every component of a control normal is up to 32767.
+      // A component of a control normal is at most 32767.
       ASSERT_LE(sum * 32767, std::numeric_limits<std::int32_t>::max()) << t;
-      // Only ratios count, so the weights are judged by the scale with the smallest error, at which one of them is
-      // exact.
+      // Only ratios of weights matter, so they are compared at the scale with the smallest error, at which one of them
+      // is exact.
       double smallest = 2;
       for (std::size_t j = 0; j < exact.size(); ++j) {
         if (integers[j] == 0) continue;

@@ -36,8 +36,8 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// Makes four motions: one in grid order; one shuffled, with more than a megabyte of positions; one with flagged
-// elements; and one without elements.
+// Makes four motions: in grid order; shuffled, with more than a megabyte of positions; with flagged elements; without
+// elements.
 std::vector<Motion> motions() {
   const Motion smooth = fixtures::smooth_morph(160), large = fixtures::smooth_morph(220);
   return {smooth, test::with_faces_in_order(large, test::shuffled_order(large.topology.face_count(), 7)),
@@ -61,7 +61,7 @@ TEST(CurveSlices, slices_of_any_size_have_the_bits_of_one_go) {
         expect_same(of_faces.finish(), faces);
         expect_same(of_vertices.finish(), vertices);
       }
-      // finish() does the remaining work.
+      // finish() does all remaining work.
       CurveSlices begun(segment, &groups, options, nullptr);
       (void)begun.advance(0.3);
       expect_same(begun.finish(), vertices);
@@ -100,7 +100,7 @@ TEST(CurveSlices, memory_of_curves_before_is_used_again) {
 }
 
 TEST(CurveSlices, many_threads_place_parts_as_one_does) {
-  const Motion motion = fixtures::smooth_morph(300);  // sixteen parts of faces
+  const Motion motion = fixtures::smooth_morph(300);  // sixteen blocks of faces
   const CurveOptions options{kCompactTolerance};
   const CurveData expected = build_curves(motion.segment(0), options, Threads::kOne, nullptr);
   for (const std::size_t threads : {1U, 2U, 3U, 8U, 64U}) {

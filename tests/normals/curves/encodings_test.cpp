@@ -1,4 +1,4 @@
-// Tests unit normals in four bytes: the meaning of the bits, the errors, and the agreement of kernels and functions.
+// Tests unit normals in four bytes: the meaning of the bits, the errors, and that kernels agree with functions.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -17,7 +17,7 @@
 namespace chronormal::encodings_test {
 namespace {
 
-constexpr double kOctahedral = 7e-5, kRgb10A2 = 1.7e-3;  // radians, encodings.h
+constexpr double kOctahedral = 7e-5, kRgb10A2 = 1.7e-3;  // radians, as promised in encodings.h
 
 double angle(const Vec3f& a, const Vec3f& b) { return angle_between(to_double(a), to_double(b)); }
 
@@ -56,7 +56,7 @@ TEST(Octahedral, has_its_components_where_the_header_says) {
   EXPECT_EQ(encode_octahedral({0, -1, 0}).bits, 0x80010000u);
   EXPECT_EQ(encode_octahedral({0, 0, -1}).bits, 0x7FFF7FFFu);
   EXPECT_EQ(encode_octahedral({0.6f, 0, 0.8f}).bits, 14043u);  // 0.6 / 1.4
-  // Below the equator, x = -(1 - 0) and y = 1 - 0.6 / 1.4.
+  // Below the equator: x = -(1 - 0) and y = 1 - 0.6 / 1.4.
   EXPECT_EQ(encode_octahedral({-0.6f, 0, -0.8f}).bits, (32767u - 14043u) << 16 | 0x8001u);
   EXPECT_EQ(encode_octahedral({}).bits, 0u);
   EXPECT_EQ(decode(Octahedral{0}), (Vec3f{0, 0, 1}));
@@ -72,7 +72,7 @@ TEST(Rgb10A2, has_its_components_where_the_header_says) {
   EXPECT_EQ(encode_rgb10a2({0.6f, -0.8f, 0}).bits, 307u | (1024u - 409) << 10);
   EXPECT_EQ(encode_rgb10a2({}).bits, 0u);
   EXPECT_EQ(decode(Rgb10A2{0}), Vec3f{});
-  EXPECT_EQ(decode(Rgb10A2{512}), (Vec3f{-1, 0, 0}));  // the most negative integer counts as the next
+  EXPECT_EQ(decode(Rgb10A2{512}), (Vec3f{-1, 0, 0}));  // the most negative integer has the same value as the next one
 }
 
 template <class Encode>
@@ -121,7 +121,7 @@ TEST(Octahedral, is_the_nearest_point_of_the_grid) {
       x = folded;
     }
     const std::uint32_t bits = encode_octahedral(v).bits;
-    // The error is half an integer, plus the rounding of float32 before it.
+    // The error is half an integer, plus the earlier rounding to float32.
     EXPECT_LE(std::fabs(static_cast<std::int16_t>(bits & 0xFFFF) - x * 32767), 0.51L) << i;
     EXPECT_LE(std::fabs(static_cast<std::int16_t>(bits >> 16) - y * 32767), 0.51L) << i;
   }
@@ -163,7 +163,7 @@ TEST(EncodedResults, are_within_both_tolerances) {
   }
 }
 
-// Kernels compute the integers in another way, which may differ by at most one.
+// Kernels compute the integers differently, so they may differ by 1.
 TEST(EncodedResults, are_those_of_the_functions) {
   fixtures::Random random(86);
   std::vector<ControlNormals> normals;
@@ -189,7 +189,7 @@ TEST(EncodedResults, are_those_of_the_functions) {
       const auto low = [](std::uint32_t bits) { return static_cast<std::int16_t>(bits & 0xFFFF); };
       const auto high = [](std::uint32_t bits) { return static_cast<std::int16_t>(bits >> 16); };
       const bool close = std::abs(low(a) - low(b)) <= 1 && std::abs(high(a) - high(b)) <= 1;
-      // Across a fold, the codes of one direction are far apart.
+      // At a fold, two codes that are far apart mean nearly the same direction.
       ASSERT_TRUE(close || angle(decode(octahedral[i]), view[i]) <= kOctahedral) << i;
     }
   }

@@ -1,4 +1,5 @@
-// Compares the elements that float32 cannot carry, among others in every pattern, with each of them made alone.
+// Compares the elements that float32 cannot represent, mixed with others in every pattern, with the same elements
+// prepared alone.
 
 #include "normals/curves/flagged_elements.h"
 
@@ -26,7 +27,7 @@ namespace {
 enum class Kind { kSmooth, kInsideOut, kInsideOutNeedle };
 using Pattern = std::function<Kind(std::size_t face, fixtures::Random& random)>;
 
-// Makes faces without common vertices, some of which turn inside out while the others hardly move.
+// Makes faces without common vertices. Some turn inside out while the others hardly move.
 Motion patterned(std::size_t faces, const Pattern& kind_of) {
   Motion motion = fixtures::soup({.face_count = faces, .seed = 5, .motion = 0.02});
   fixtures::Random random(20261126);
@@ -35,7 +36,7 @@ Motion patterned(std::size_t faces, const Pattern& kind_of) {
   for (std::size_t f = 0; f < faces; ++f) {
     const Kind kind = kind_of(f, random);
     if (kind == Kind::kSmooth) continue;
-    // Only rounding keeps this corner from lying between both others, so that the normal is hardly more than rounding.
+    // This corner is between the two others except for rounding, so the normal is hardly more than rounding error.
     for (std::size_t i = 9 * f; kind == Kind::kInsideOutNeedle && i < 9 * f + 3; ++i)
       from[i + 6] = 0.7F * from[i] + 0.3F * from[i + 3];
     for (std::size_t i = 9 * f; i < 9 * f + 9; ++i) to[i] = -1.02F * from[i] + 0.03F * (to[i] - from[i]);
@@ -45,7 +46,7 @@ Motion patterned(std::size_t faces, const Pattern& kind_of) {
 
 struct Elements {
   std::size_t count = 0;
-  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // two ways, which bound errors differently
+  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // two computations with different error bounds
 };
 
 // Returns control normals in double, or without any rounding if double is hardly more than noise.
@@ -132,7 +133,7 @@ TEST(FlaggedElements, are_what_each_is_alone_in_every_pattern) {
     for (const std::size_t faces : {16U, 37U, 1003U, 4000U}) {
       const Motion motion = patterned(faces, pattern);
       const Segment segment = motion.segment(0);
-      // Every vertex has one face, and stands beside the other vertices of that face.
+      // Every vertex has one face, and is listed beside the other vertices of its face.
       const NormalGroups groups =
           NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
       for (const double tolerance : {kExactTolerance, kCompactTolerance}) {

@@ -1,4 +1,5 @@
-// Checks for the same bits from every instruction set, number of threads and compiler, by one constant for all of them.
+// Checks a single hash of all results, which must be the same for every instruction set, number of threads and
+// compiler.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@
 namespace chronormal::golden_bits_test {
 namespace {
 
-// FNV-1a over words of 32 bits, so that the order of bytes does not matter.
+// The hash FNV-1a over 32-bit words, so that the byte order does not matter.
 class Hash {
  public:
   void add(std::uint32_t word) { value_ = (value_ ^ word) * 0x100000001B3u; }
@@ -72,7 +73,7 @@ void add_curves(Hash& hash, const NormalCurves& curves, Results& results) {
     curves.normals(0.34375, packed);
     for (const float v : results.xyz) hash.add(v);
   }
-  // Three times are evaluated at once.
+  // Evaluates three times at once.
   results.three.resize(9 * n);
   const double times[] = {0.125, 0.5, 0.9375};
   VectorView<float> three[3];
@@ -90,12 +91,12 @@ void add_recompute(Hash& hash, NormalRecompute recompute, Results& results) {
   }
 }
 
-// This constant changes with any bit of any result, and with the format that a block gets. Replace it where that is
+// This constant changes with any bit of any result, and with the format of any block. Replace it only if the change is
 // intended.
 constexpr std::uint64_t kGolden = 0x3b625b5cb14a70ca;
 
 TEST(GoldenBits, are_the_same_on_every_instruction_set_number_of_threads_and_compiler) {
-  // 67,712 faces make fifteen parts in preparation, and 34,225 vertices make three pieces in evaluation.
+  // 67,712 faces are prepared in fifteen parts, and 34,225 vertices are evaluated in three pieces.
   const Motion motion = test::integer_grid(184);
   const Segment segment = motion.segment(0);
   const NormalGroups groups =

@@ -1,5 +1,5 @@
-// Tests what accuracy_test.cpp and theorems_test.cpp leave open: runs by degree, layouts, degenerate elements,
-// extremes.
+// Tests the parts that accuracy_test.cpp and theorems_test.cpp leave open: runs by degree, layouts, degenerate
+// elements, and extreme values.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -59,7 +59,7 @@ TEST(NormalCurves, counts_degrees_as_they_are) {
 }
 
 TEST(NormalCurves, every_mixture_of_degrees_gives_what_each_element_gives_alone) {
-  // Runs are long and short, at the ends and inside, so that some are raised to a higher degree.
+  // Runs are short and long, at the ends and inside, so some are raised to a higher degree.
   const auto mixed = repeated({{kStill, 2},
                                {kQuadratic, 9},
                                {kLinear, 1},
@@ -153,7 +153,7 @@ TEST(UnitNormal, nothing_at_all_is_none) {
 }
 
 TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
-  // Products of these coordinates are not exact in double: their rounding must not become a direction.
+  // Products of these coordinates are not exact in double; the rounding error must not become a direction.
   const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
   std::vector<float> p(9);
   int tested = 0;
@@ -161,7 +161,7 @@ TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
     const float x = 0.1f * static_cast<float>(i), y = 1e-7f * static_cast<float>(i * i),
                 z = 3e5f / static_cast<float>(i);
     p = {0, 1e10f, 0, x, 1e10f + y, z, 2 * x, 1e10f + 2 * y, 2 * z};
-    // The test skips points that float32 did not keep collinear; these differences are exact.
+    // Skips points that are not collinear after rounding to float32; these differences are exact.
     if (p[3] - p[0] != p[6] - p[3] || p[4] - p[1] != p[7] - p[4] || p[5] - p[2] != p[8] - p[5]) continue;
     ++tested;
     const auto view = VectorView<const float>::packed(p.data(), 3);
@@ -174,8 +174,8 @@ TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
 }
 
 TEST(ControlNormalsOfFaces, corners_that_are_not_quite_collinear_give_what_there_is) {
-  // c = 2 b, and a is hardly off the origin: b x c is zero, and n = a x (b - c) = b x a is far below the rounding of
-  // its products.
+  // c = 2 b, and a is very close to the origin: b x c is zero, and n = a x (b - c) = b x a is far below the rounding
+  // errors of its products.
   const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
   const float p[] = {1e-20f, 0, 0, 0.3f, 0.7f, 0.1f, 2 * 0.3f, 2 * 0.7f, 2 * 0.1f};
   const auto view = VectorView<const float>::packed(p, 3);

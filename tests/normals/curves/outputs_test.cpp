@@ -1,4 +1,4 @@
-// Checks that curves give the same bits in every form of results, for many t at once, and on any number of threads.
+// Checks that curves give the same bits in every output format, for many t at once, and on any number of threads.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::array<double, 4> kTolerances{1e-6, 1e-3, 5e-3, 2e-2};
 
-// Makes elements of all kinds and degrees, flagged and zero ones among them, in runs that sometimes exceed one block.
+// Makes elements of all kinds and degrees, including flagged and zero elements, in runs that sometimes exceed a block.
 std::vector<ControlNormals> mixed_elements(std::size_t count, std::uint64_t seed) {
   fixtures::Random random(seed);
   std::vector<ControlNormals> normals;
@@ -54,7 +54,7 @@ class Guarded {
   }
   [[nodiscard]] T* data() { return words_.data() + begin_; }
   [[nodiscard]] std::span<T> span() { return {data(), count_}; }
-  // Tells whether only results have changed, except for results that `may_be_written` excludes.
+  // Tells whether nothing but results has changed, and among results only those that `may_be_written` allows.
   [[nodiscard]] bool is_intact(const std::function<bool(std::size_t)>& may_be_written = nullptr) const {
     for (std::size_t i = 0; i < words_.size(); ++i) {
       const bool inside = i >= begin_ && i < begin_ + count_ && (!may_be_written || may_be_written(i - begin_));
@@ -73,7 +73,7 @@ class Guarded {
 
 bool same_bits(const Vec3f& a, const Vec3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-// The results one element after the other in (n, 3), from an aligned address.
+// The results, one element after the other in (n, 3), at an aligned address.
 struct Reference {
   std::vector<Vec3f> normals;
   std::size_t without_direction = 0;
@@ -154,7 +154,7 @@ TEST(Outputs, of_every_form_and_size_are_the_same_bits_and_touch_nothing_else) {
       for (const double tolerance : kTolerances)
         expect_all_forms_agree(NormalCurves(some, {tolerance}), size % 3 == 0 ? 0 : 0.37);
     }
-    // There are more elements than are handled at a time on the stack.
+    // There are more elements than the stack holds at a time.
     for (const double tolerance : kTolerances) expect_all_forms_agree(NormalCurves(elements, {tolerance}), 0.71);
   }
 }
@@ -261,8 +261,8 @@ TEST(ThreadsOfCurves, give_the_bits_of_one) {
   }
 }
 
-// The results that are compared. Curves made from positions know the lengths of collapsing elements better than curves
-// made from control normals, so that lengths then differ in the last bit.
+// The results that are compared. For collapsing elements, curves from positions have more precise lengths than curves
+// from control normals, so lengths may differ in the last bit.
 enum class Say { kEverything, kNoLengths };
 
 std::vector<std::uint32_t> everything(const NormalCurves& curves, Say say = Say::kEverything) {
@@ -288,7 +288,7 @@ std::vector<std::uint32_t> everything(const NormalCurves& curves, Say say = Say:
 }
 
 TEST(ThreadsOfCurves, prepare_the_same_curves) {
-  const Motion motion = test::integer_grid(260);  // 135,200 faces: sixteen parts
+  const Motion motion = test::integer_grid(260);  // 135,200 faces are sixteen parts
   const Segment segment = motion.segment(0);
   std::vector<ControlNormals> normals(motion.topology.face_count());
   face_control_normals(segment, {0, normals.size()}, normals);
@@ -298,7 +298,7 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
     const CurveOptions options{tolerance};
     const auto faces = everything(NormalCurves::of_faces(segment, options));
     const auto vertices = everything(NormalCurves::of_groups(segment, groups, options));
-    // Compact curves are prepared in float32 where that is enough, while control normals are in double.
+    // Compact curves are prepared in float32 if its precision is enough, while control normals are in double.
     if (tolerance <= kExactTolerance) {
       EXPECT_EQ(everything(NormalCurves::of_faces(segment, options), Say::kNoLengths),
                 everything(NormalCurves(normals, options), Say::kNoLengths))
@@ -312,7 +312,7 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
   }
 }
 
-// If neighbours are scattered in memory, both ends of a vertex are first put side by side.
+// If neighbours are scattered in memory, both ends of a vertex are first copied side by side.
 TEST(ScatteredMesh, has_the_curves_of_its_control_normals) {
   const Motion motion = test::shuffled_grid(220);
   const Segment segment = motion.segment(0);
@@ -382,7 +382,8 @@ Topology repeated_grid(const Topology& grid, std::size_t faces) {
   return fixtures::make_triangles(grid.vertex_count(), std::move(repeated));
 }
 
-// Evaluates to aligned memory, on one thread and on all, and to memory one word off, which is never streamed.
+// Evaluates to aligned memory, with one thread and with all, and to memory one word further, to which streaming stores
+// never write.
 template <class T, class Evaluate>
 void expect_streamed_as_stored(std::size_t words, const Evaluate& evaluate) {
   Guarded<T> streamed(words, 0), stored(words, 1);
@@ -425,7 +426,8 @@ TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
       return curves.unit_normals(0.3, VectorView<float>::planes(x, x + plane, x + 2 * plane - 1, faces), threads);
     });
     const VectorView<float> wide{nullptr, nullptr, nullptr, faces, 4};
-    expect_streamed_as_stored<float>(4 * faces, [&](float* x, Threads threads) {  // every fourth word is left alone
+    // Every fourth word must not be written.
+    expect_streamed_as_stored<float>(4 * faces, [&](float* x, Threads threads) {
       for (std::size_t i = 0; i < faces; ++i) x[4 * i + 3] = 0;
       VectorView<float> view = wide;
       view.x = x, view.y = x + 1, view.z = x + 2;
@@ -452,7 +454,7 @@ TEST(StreamedResults, at_many_t_have_the_bits_of_stored_ones) {
     SCOPED_TRACE(target_name(target));
     for (const double tolerance : {1e-6, 5e-3}) {
       const NormalCurves curves(elements, {tolerance});
-      // All times write to the same memory, so that the last t stays.
+      // All times write to the same memory, so the result for the last t remains.
       Guarded<float> packed(3 * elements.size(), 0), planes(3 * plane, 0);
       Guarded<Octahedral> words(elements.size(), 0);
       const auto times = [](std::size_t count) {

@@ -1,5 +1,5 @@
 // Tests whole meshes from arrays: which vertices share a normal, the outputs of each vertex that shows it, ranges and
-// threads, and refused input. The truth is a sum of cross products made here, or of whole numbers.
+// threads, and refused input. The expected normals are sums of cross products in double, or of integers.
 #include "chronormal/normals/mesh_normals.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ namespace {
 
 using fixtures::Random;
 
-// Two triangles share an edge, once by the same vertices (0 1 2 and 2 1 3) and once with a seam between them: 4 and 5
-// lie where 1 and 2 do.
+// Two triangles share an edge: in one mesh by the same vertices (0 1 2 and 2 1 3), in the other with a seam, where the
+// vertices 4 and 5 are at the places of 1 and 2.
 const std::vector<std::uint32_t> kCorners = {0, 1, 2, 5, 4, 3};
 const std::vector<float> kFrom = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5F, 1, 0, 0, 0, 1, 0};
 const std::vector<float> kTo = {0, 0, 1, 1, 0.5F, 0, 0, 1, 1, 2, 1, -1, 1, 0.5F, 0, 0, 1, 1};
@@ -89,7 +89,7 @@ TEST(MeshNormals, vertices_across_a_seam_share_a_normal_unless_they_are_separate
 }
 
 TEST(MeshNormals, a_motion_says_in_all_its_keyframes_which_vertices_are_one) {
-  // In a third keyframe the seam opens, so that it counts as a seam in the first segment as well.
+  // In a third keyframe the seam opens, so it counts as a seam in the first segment, too.
   Motion motion;
   motion.topology = pair_of_triangles();
   std::vector<float> open = kTo;
@@ -158,12 +158,13 @@ TEST(MeshNormals, a_fitted_weighting_states_its_bound) {
   EXPECT_EQ(normals_at(normals.value(), 0), shown);
 }
 
-// Sharing is decided by the first segment, in which 4 and 5 lie where 1 and 2 do; the others may be elsewhere.
+// The first segment, where 4 and 5 coincide with 1 and 2, decides who shares a normal; in other segments they may be
+// elsewhere.
 TEST(MeshNormals, another_object_knows_who_shares_a_normal_and_nothing_of_where_vertices_are) {
   std::vector<float> apart = kTo;
   apart[3 * 4] += 0.25F;
   for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices, ElementKind::kCorners}) {
-    const std::vector<std::uint32_t> groups = {1, 2};  // hard between the two faces, of corners
+    const std::vector<std::uint32_t> groups = {1, 2};  // smoothing groups that make the edge hard
     MeshNormalsOptions options{.elements = {kind}};
     if (kind == ElementKind::kCorners) options.elements.group_of_face = groups;
     MeshNormals first = MeshNormals::make(pair_of_triangles(), options).value();
@@ -182,7 +183,7 @@ TEST(MeshNormals, another_object_knows_who_shares_a_normal_and_nothing_of_where_
     ASSERT_TRUE(anew.set_segment(view(kFrom), view(kTo)).ok());
     ASSERT_TRUE(anew.set_segment(view(apart), view(kFrom)).ok());
     EXPECT_EQ(normals_at(late, 0.75), normals_at(anew, 0.75));
-    first = MeshNormals::make(pair_of_triangles()).value();  // the mesh stays as long as anybody has it
+    first = MeshNormals::make(pair_of_triangles()).value();  // the mesh lives as long as any object refers to it
     EXPECT_EQ(normals_at(late, 0.75), normals_at(anew, 0.75));
   }
 }
@@ -217,19 +218,19 @@ TEST(MeshNormals, what_does_not_fit_is_refused_with_its_place) {
 
 // ---- ranges, threads, forms ----------------------------------------------------------------------------------------
 
-// Makes a mesh with seams, and with thin and collapsing faces among others, in random order.
+// Makes a mesh with seams and in random order, in which some faces are thin or collapse.
 Motion hard_mesh(Random& random, std::uint32_t cells) {
   Motion motion = fixtures::smooth_morph(cells);
   auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
-  for (std::uint32_t i = 0; i < cells; ++i) {  // collapses at the end
+  for (std::uint32_t i = 0; i < cells; ++i) {  // some faces collapse at the end
     const std::size_t a = random.below(from.size() / 3), b = random.below(from.size() / 3);
     std::copy_n(to.begin() + static_cast<std::ptrdiff_t>(3 * a), 3, to.begin() + static_cast<std::ptrdiff_t>(3 * b));
   }
   return test::with_faces_in_order(motion, test::shuffled_order(motion.topology.face_count(), random.below(1000)));
 }
 
-// Gives every corner a vertex of its own, as in a file with seams everywhere.
+// Gives every corner its own vertex, as in a file with seams everywhere.
 Motion torn(const Motion& motion) {
   Motion result;
   std::vector<std::uint32_t> corners(motion.topology.corner_count());
@@ -258,7 +259,7 @@ BlendSet shapes_of(const Motion& motion, Random& random) {
   return set;
 }
 
-// Cuts 0 ... size at random places, and calls body(range) for each piece.
+// Cuts 0 ... size at random places, and calls body(range) for each part.
 template <class Body>
 void for_pieces(std::size_t size, Random& random, const Body& body) {
   for (std::size_t first = 0; first < size;) {
@@ -289,14 +290,14 @@ TEST(MeshNormals, ranges_of_any_size_on_any_threads_have_the_bits_of_one_call) {
         std::vector<float> all(3 * n), pieces(3 * n), blended(3 * n), blended_pieces(3 * n);
         std::vector<Octahedral> octahedral(n), octahedral_pieces(n);
         std::vector<Rgb10A2> rgb(n), rgb_pieces(n);
-        std::vector<float> records(7 * n);  // three floats of each 28 bytes
+        std::vector<float> records(7 * n);  // a normal is three floats of a record of 28 bytes
         const auto strided = VectorView<float>::strided(records.data(), n, 28);
         const std::size_t zeros = normals.unit_normals(t, VectorView<float>::packed(all));
         const std::size_t blended_zeros = normals.unit_normals(VectorView<float>::packed(blended));
         EXPECT_EQ(normals.unit_normals(t, std::span(octahedral)), zeros);
         EXPECT_EQ(normals.unit_normals(t, std::span(rgb)), zeros);
 
-        // Eight threads take pieces in turn.
+        // Eight threads take turns with the ranges.
         std::vector<IndexRange> ranges;
         for_pieces(n, random, [&](IndexRange range) { ranges.push_back(range); });
         std::atomic<std::size_t> zeros_of_pieces = 0, blended_of_pieces = 0;
@@ -324,7 +325,7 @@ TEST(MeshNormals, ranges_of_any_size_on_any_threads_have_the_bits_of_one_call) {
         for (std::size_t i = 0; i < n; ++i) counted += view(all)[i] == Vec3f{} ? 1U : 0U;
         EXPECT_EQ(counted, zeros);
 
-        // One call takes many times, one uses the pool of threads, and one blends.
+        // One call computes many times, one uses the thread pool, and one blends.
         std::vector<float> two(3 * n), other(3 * n);
         const double times[] = {0.5, t};
         const VectorView<float> views[] = {VectorView<float>::packed(other), VectorView<float>::packed(two)};
@@ -404,7 +405,7 @@ std::int32_t signed_bits(std::uint32_t word, unsigned first, unsigned count) {
   return static_cast<std::int32_t>(word << (32 - first - count)) >> (32 - count);
 }
 
-// Decodes a record as a shader reads it.
+// Decodes a record like a shader.
 ControlNormals decoded(ControlFormat format, const std::byte* record) {
   std::array<double, 9> v{};
   if (format == ControlFormat::kFloat32) {

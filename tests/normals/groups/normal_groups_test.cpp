@@ -1,4 +1,4 @@
-// Tests which corners share a normal: fixtures made by hand, and the rules on random meshes against an oracle.
+// Tests which corners share a normal, on fixtures made by hand and on random meshes against an oracle.
 
 #include "chronormal/normals/normal_groups.h"
 
@@ -36,7 +36,8 @@ NormalGroups creased(const Motion& motion, double degrees) {
 }
 
 // Makes triangles around the z axis from the hinge (0 0 0)-(0 0 1), at the given angles in degrees. Vertices 0 and 1
-// are the hinge, and corner 3 f + 2 of each face is at its tip. Neighbours are wound in opposite ways, as on a surface.
+// are the hinge, and corner 3 f + 2 of face f is its tip. Neighbours have opposite winding along the hinge, as on a
+// surface.
 Motion pages(const std::vector<double>& angles) {
   std::vector<Point> points = {{0, 0, 0}, {0, 0, 1}};
   std::vector<std::uint32_t> corners;
@@ -104,7 +105,7 @@ TEST(NormalGroups, copies_show_the_normal_of_their_element) {
 // ---- crease angles -------------------------------------------------------------------------------------------------
 
 TEST(CreaseAngle, an_edge_is_hard_above_it_and_smooth_at_it) {
-  const Motion motion = pages({0, 150});  // normals 30 degrees apart
+  const Motion motion = pages({0, 150});  // the normals are 30 degrees apart
   EXPECT_EQ(elements(creased(motion, 29.9)), (Elements{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(elements(creased(motion, 30)), (Elements{0, 1, 2, 1, 0, 3}));
   EXPECT_EQ(elements(creased(motion, 180)), (Elements{0, 1, 2, 1, 0, 3}));
@@ -123,7 +124,8 @@ TEST(CreaseAngle, is_measured_in_keyframe_0_alone) {
 }
 
 TEST(CreaseAngle, smoothness_spreads_from_edge_to_edge) {
-  // A cone has 12 faces; neighbours are 24 degrees apart and opposite ones 100, so the tip is smooth all round.
+  // A cone has 12 faces; neighbours are 24 degrees apart and opposite faces 100 degrees, so the tip is smooth all
+  // around.
   std::vector<Point> points = {{0, 0, 1}};
   std::vector<std::uint32_t> corners;
   for (std::uint32_t i = 0; i < 12; ++i) {
@@ -151,7 +153,7 @@ TEST(CreaseAngle, an_edge_of_three_faces_is_smooth_between_those_that_are_close)
 }
 
 TEST(CreaseAngle, every_pair_of_the_faces_at_an_edge_counts_and_not_only_neighbours_in_the_file) {
-  // The face that stands on the edge now comes between the two others in the file.
+  // The standing face is now between the two others in the file.
   const Motion motion = test::with_faces_in_order(pages({0, 180, 90}), {0, 2, 1});
   const NormalGroups groups = creased(motion, 30);
   EXPECT_EQ(groups.element_of_corner()[0], groups.element_of_corner()[7]);
@@ -171,7 +173,8 @@ TEST(CreaseAngle, neighbours_wound_in_opposite_ways_have_a_hard_edge) {
 
 TEST(CreaseAngle, a_face_without_area_shares_with_none_below_180_degrees) {
   const Motion motion = test::still(make_triangles(5, {0, 1, 2, 2, 1, 3, 3, 1, 4}),
-                                    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 2, 0}, {2, 2, 0}});  // 1 2 3 on a line
+                                    // The points 1 2 3 are on a line.
+                                    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 2, 0}, {2, 2, 0}});
   EXPECT_EQ(creased(motion, 179).size(), 9u);
   EXPECT_EQ(creased(motion, 180).size(), 5u);
 }
@@ -198,11 +201,11 @@ TEST(CreaseAngle, outside_0_to_180_degrees_is_an_error) {
   }
 }
 
-// Tells whether corners share normals exactly where a flood over all pairs of corners says so, on a mesh that is shaken
-// by a seed.
+// Tells whether corners share normals exactly as a flood fill over all pairs of corners says, on a mesh that is
+// perturbed by a seed.
 bool equals_a_flood(std::uint64_t seed, bool of_polygons, bool tear, double degrees) {
   Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(2) : fixtures::icosphere(0), 0.8, seed);
-  std::swap(motion.keyframes[0].positions, motion.keyframes[1].positions);  // the irregular end first
+  std::swap(motion.keyframes[0].positions, motion.keyframes[1].positions);  // puts the irregular keyframe first
   if (tear) motion = test::torn(motion);
   const Points points = tear ? weld_coincident(motion) : no_welding(motion);
   const NormalGroups groups = NormalGroups::by_crease_angle(motion, points, degrees).value();
@@ -220,9 +223,9 @@ RC_GTEST_PROP(CreaseAngle, equals_a_flood_over_all_pairs_of_corners, ()) {
 }
 
 TEST(CreaseAngle, allows_a_millionth_more_for_the_rounding_of_positions) {
-  // Two faces of this mesh meet at 65.3217 degrees plus less than 1e-6 rad.
+  // Two faces of this mesh meet at 65.3217 degrees plus less than 1e-6 rad, which is within the tolerance.
   for (const bool tear : {false, true}) EXPECT_TRUE(equals_a_flood(154186546385, false, tear, 65.3217));
-  // In a mesh made by hand, an excess of 1e-7 rad is allowed, and one of 1e-5 is not.
+  // In a mesh made by hand, an angle of 1e-7 rad above the limit is allowed, and 1e-5 is not.
   constexpr double kDegreesPerRadian = 57.29577951308232;
   const Motion motion = pages({0, 150});  // its faces are at 30 degrees
   EXPECT_EQ(creased(motion, 30 - 1e-7 * kDegreesPerRadian).size(), creased(motion, 31).size());
@@ -267,7 +270,7 @@ Result<NormalGroups> split(const Topology& topology, const std::vector<float>& n
 
 TEST(SplitNormals, corners_with_one_stored_normal_share_it) {
   const Topology topology = make_triangles(4, {0, 1, 2, 2, 1, 3});
-  // Vertex 1 (corners 1 and 4) has one normal, in two lengths; vertex 2 (corners 2 and 3) has two.
+  // Vertex 1 (corners 1 and 4) has one normal direction in two lengths; vertex 2 (corners 2 and 3) has two directions.
   const auto groups = split(topology, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 2, 0, 0, 1});
   EXPECT_EQ(elements(groups.value()), (Elements{0, 1, 2, 3, 1, 4}));
 }

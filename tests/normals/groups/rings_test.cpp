@@ -1,4 +1,4 @@
-// Checks that paths around elements have the area of the faces there, whether these are closed, open, in pieces, or
+// Checks that the path around an element has the area of its faces, for closed and open rings, rings in pieces, and
 // polygons.
 #include "normals/groups/rings.h"
 
@@ -15,7 +15,7 @@
 namespace chronormal::rings_test {
 namespace {
 
-// Returns whole numbers, so that every sum is exact.
+// Returns points with integer coordinates, so that every sum is exact.
 Vec3d point(std::size_t v) {
   const auto of = [v](std::size_t factor, std::size_t modulus) { return static_cast<double>(v * factor % modulus); };
   return {of(7, 19), of(11, 23), of(5, 17)};
@@ -87,7 +87,7 @@ TEST(Rings, with_too_many_points_are_left_out) {
 }
 
 TEST(Rings, of_few_triangles_are_those_of_any_polygons) {
-  // A square far away makes this a mesh of polygons with the same faces.
+  // A distant square makes this a mesh of polygons, with otherwise the same faces.
   fixtures::Random random(17);
   for (int i = 0; i < 200; ++i) {
     std::vector<std::uint32_t> corners;

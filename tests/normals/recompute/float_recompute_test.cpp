@@ -43,8 +43,9 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// A sum of normals in double, by the shoelace formula about a point of the face, and the angle by which float32 may
-// turn it: every position has an error of a few roundings of its size, relative to the edges around the face.
+// A sum of normals in double, by the shoelace formula about a point of the face, and the error in radians that float32
+// may cause: every position is rounded a few times relative to its magnitude, which counts relative to the edges around
+// the face.
 struct Expected {
   Vec3d n;
   double error = 0;
@@ -71,7 +72,7 @@ void expect_close(const Normals& normals, const std::vector<Expected>& expected,
   std::size_t compared = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const double limit = expected[i].error / length(expected[i].n);
-    if (!(limit < 0.1)) continue;  // there is no promise
+    if (!(limit < 0.1)) continue;  // float32 guarantees nothing here
     ++compared;
     const Vec3d u = to_double(normals[i]);
     EXPECT_NEAR(length(u), 1, 4e-7) << what << ", " << i;
@@ -114,7 +115,7 @@ Motion polygons() {
   return mixed;
 }
 
-// Makes a fan of triangles around vertex 0, with faces in random order; an open fan lacks one of them.
+// Makes a fan of triangles around vertex 0, with faces in random order; an open fan lacks one triangle.
 Motion fan(std::size_t faces, bool is_open) {
   std::vector<fixtures::Point> from = {{0, 0, 0.3}}, to = {{0, 0, -0.1}};
   std::vector<std::uint32_t> corners;
@@ -131,7 +132,7 @@ Motion fan(std::size_t faces, bool is_open) {
   return fixtures::make_motion(fixtures::make_triangles(from.size(), std::move(corners)), from, to);
 }
 
-// Makes random faces over few vertices, which give paths that do not join, and paths with more than one continuation.
+// Makes random faces over few vertices, so that paths do not close or can continue in several ways.
 Motion tangle(std::size_t vertex_count, std::size_t face_count) {
   fixtures::Random random(3);
   std::vector<fixtures::Point> from, to;
@@ -175,12 +176,12 @@ TEST(FloatRecompute, corners_across_creases_and_seams_are_as_right) {
   ASSERT_GT(creased.size(), smooth.topology.vertex_count());
   check_groups(smooth, creased, "creases");
 
-  const Motion torn = test::torn(smooth);  // every face has vertices of its own
+  const Motion torn = test::torn(smooth);  // every face has its own vertices
   const NormalGroups welded = NormalGroups::of_vertices(torn.topology, weld_coincident(torn));
   ASSERT_EQ(welded.size(), smooth.topology.vertex_count());
   check_groups(torn, welded, "seams");
 
-  // Each of these points consists of vertices at different places.
+  // Each of these points consists of vertices at different positions.
   const Motion tangled = tangle(60, 200);
   Points points{std::vector<std::uint32_t>(60), 20};
   for (std::uint32_t v = 0; v < 60; ++v) points.point_of_vertex[v] = v / 3;
@@ -190,7 +191,7 @@ TEST(FloatRecompute, corners_across_creases_and_seams_are_as_right) {
 TEST(FloatRecompute, a_closed_ring_of_six_has_seven_points_and_a_centre) {
   const Motion motion = fan(6, false);
   const FloatRecompute recompute(motion.topology, vertices_of(motion));
-  // There is one slice of 7 elements, with 7 positions. Paths that did not join would have 12 points.
+  // There is one slice of 7 elements with 7 positions. Without joining paths there would be 12 points.
   EXPECT_EQ(recompute.bytes(), 16 * (1 + 7) * sizeof(std::uint32_t) + 2 * sizeof(std::size_t) + 7 * 16);
 }
 
@@ -199,7 +200,7 @@ TEST(FloatRecompute, what_has_no_normal_in_float32_gets_zeros_and_is_counted) {
   std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
   corners[1] = corners[0];                                  // face 0 has no area
   for (std::size_t i = 9; i < 12; ++i) corners[i] = 63;     // nor has face 3
-  motion.topology = fixtures::make_triangles(65, corners);  // vertex 64 has no face
+  motion.topology = fixtures::make_triangles(65, corners);  // vertex 64 belongs to no face
   for (auto& keyframe : motion.keyframes) keyframe.positions.insert(keyframe.positions.end(), {1, 2, 3});
   std::size_t zeros = 0;
   FloatRecompute faces(motion.topology), vertices(motion.topology, vertices_of(motion));
@@ -210,7 +211,7 @@ TEST(FloatRecompute, what_has_no_normal_in_float32_gets_zeros_and_is_counted) {
   EXPECT_EQ(zeros, 1U);
   EXPECT_EQ(of_vertices[64], Vec3f{});
 
-  // Infinities reach the faces of their vertex and no others.
+  // Infinities affect only the faces of their vertex.
   motion.keyframes[0].positions[3 * 30] = std::numeric_limits<float>::infinity();
   const Normals beside = evaluate(faces, motion.segment(0), 0.5, Threads::kOne, &zeros);
   EXPECT_GT(zeros, 2U);
@@ -219,7 +220,7 @@ TEST(FloatRecompute, what_has_no_normal_in_float32_gets_zeros_and_is_counted) {
     const bool is_touched = std::find(face.begin(), face.end(), 30U) != face.end();
     EXPECT_EQ(beside[f], is_touched ? Vec3f{} : of_faces[f]) << f;
   }
-  // The squares of these lengths are beyond the range of float32.
+  // The squares of these lengths exceed the range of float32.
   for (const float size : {1e-13F, 1e11F}) {
     Motion scaled = fixtures::smooth_morph(3);
     for (auto& keyframe : scaled.keyframes) {
@@ -262,7 +263,7 @@ TEST(FloatRecompute, every_layout_and_number_of_elements_has_the_same_bits_and_n
   for (std::size_t count = 1; count <= 40; ++count) {
     Motion motion = fixtures::smooth_morph(8);
     const auto corners = motion.topology.corners().subspan(0, 3 * count);
-    // The arrays end with the last vertex.
+    // The arrays end with the last used vertex.
     const std::size_t vertices = 1 + *std::max_element(corners.begin(), corners.end());
     motion.topology = fixtures::make_triangles(vertices, {corners.begin(), corners.end()});
     std::array<std::unique_ptr<float[]>, 2> positions;
@@ -332,7 +333,7 @@ TEST(FloatRecompute, every_instruction_set_and_number_of_threads_has_the_same_bi
 }
 
 TEST(FloatRecompute, results_past_the_caches_have_the_same_bits) {
-  // Only large results are written past the caches (kStreamFrom), so the test calls the kernel itself.
+  // Only large results are written with streaming stores (kStreamFrom), so the test calls the kernel directly.
   const Motion motion = fixtures::smooth_morph(10);
   const Segment segment = motion.segment(0);
   const std::size_t n = motion.topology.face_count();

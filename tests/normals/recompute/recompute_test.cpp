@@ -1,5 +1,5 @@
-// Compares normals recomputed at every t with exact rational arithmetic, and all ways to the same result with each
-// other.
+// Compares normals that are recomputed at every t with exact rational arithmetic, and all ways to the same result with
+// each other.
 
 #include "chronormal/normals/recompute.h"
 
@@ -92,7 +92,7 @@ struct Family {
 
 constexpr std::size_t kFaces = 203;
 
-// Makes faces two sides of which are nearly the same, and so long that the product of their squares overflows float32.
+// Makes faces with two nearly equal sides that are so long that the product of their squares exceeds float32.
 Motion soup_with_far_first_corners() {
   Motion motion = fixtures::large_soup(kFaces);
   for (Motion::Keyframe& keyframe : motion.keyframes) {
@@ -144,7 +144,7 @@ TEST(Recompute, faces_are_within_the_promise_of_exact_arithmetic) {
 }
 
 TEST(Recompute, hard_motions_are_within_the_promise_of_whole_numbers) {
-  constexpr std::size_t kFewest = 4000;  // faces of a family
+  constexpr std::size_t kFewest = 4000;  // number of faces of each family
   for (const test::HardMotions& family : test::hard_motions()) {
     fixtures::Random random(8200);
     double worst = 0;
@@ -181,7 +181,7 @@ double worst_of_groups(const Segment& segment, const NormalGroups& groups, doubl
   return worst;
 }
 
-// Makes random faces over few vertices, which cancel to all degrees.
+// Makes random faces over few vertices, whose normals cancel more or less.
 Motion tangle(std::size_t vertex_count, std::size_t face_count, double offset, std::uint64_t seed) {
   fixtures::Random random(seed);
   std::vector<fixtures::Point> from, to;
@@ -236,7 +236,7 @@ TEST(Recompute, corners_across_creases_and_polygons_are_within_the_promise) {
     EXPECT_LE(angle(normals[f], exact_normal(segment, f, 0.6)), kPromised);
 }
 
-// The first faces of a motion alone, over arrays that end with the last vertex.
+// The first faces of a motion, with arrays that end with their last vertex.
 struct Part {
   Part(const Motion& motion, std::size_t count) {
     const auto corners = motion.topology.corners().subspan(0, 3 * count);
@@ -305,7 +305,7 @@ TEST(Recompute, every_layout_of_the_result_has_the_same_bits_and_nothing_else_is
 }
 
 TEST(Recompute, results_past_the_caches_have_the_same_bits) {
-  // Only large results go past the caches (kStreamFrom), so the test calls the kernel itself.
+  // Only large results are written with streaming stores (kStreamFrom), so the test calls the kernel directly.
   const Motion motion = fixtures::soup({.face_count = 203, .seed = 47, .size = 1e-20});
   const Segment segment = motion.segment(0);
   const MovingTriangles triangles{.corners = motion.topology.corners().data(),
@@ -358,7 +358,7 @@ MovingTriangles triangles_of(const Motion& motion) {
 }
 
 TEST(Recompute, thin_triangles_are_left_to_nobody) {
-  // Heights are 0.05 to 1e-6 of the sides: edges in float32 are not precise enough for any of these triangles.
+  // The heights are 0.05 to 1e-6 of the sides, for which edges in float32 are not precise enough.
   for (const double needle : {0.05, 1e-3, 1e-6}) {
     const Motion motion = fixtures::soup({.face_count = 203, .seed = 43, .needle = needle});
     std::vector<float> result(3 * 203);
@@ -413,19 +413,19 @@ TEST(Recompute, faces_in_any_order_give_vertices_the_same_bits) {
   }
   for (const std::size_t distance : {300U, 700U, 1000U, 1500U, 2500U}) {
     SCOPED_TRACE(distance);
-    std::vector<std::size_t> order = as_it_is(count);  // just inside the window, and just outside
+    std::vector<std::size_t> order = as_it_is(count);  // the faces are just inside the window, and just outside
     for (std::size_t i = 0; i + distance < count; i += 5000) std::swap(order[i], order[i + distance]);
     expect_same(order);
   }
   for (const std::size_t block : {600U, 2000U, 5000U}) {
     SCOPED_TRACE(block);
-    std::vector<std::size_t> order;  // jumps to and fro
+    std::vector<std::size_t> order;  // the order jumps to and fro
     for (std::size_t end = count; end > 0; end -= std::min(block, end)) {
       for (std::size_t i = end - std::min(block, end); i < end; ++i) order.push_back(i);
     }
     expect_same(order);
   }
-  expect_same(test::shuffled_order(count, 5));  // an array of all face normals
+  expect_same(test::shuffled_order(count, 5));  // needs an array of all face normals
 }
 
 TEST(Recompute, threads_do_not_share_windows) {
@@ -440,7 +440,8 @@ TEST(Recompute, threads_do_not_share_windows) {
 TEST(Recompute, a_vertex_with_faces_everywhere_does_not_slow_or_change_the_others) {
   Motion motion = fixtures::smooth_morph(100);
   std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
-  for (std::size_t i = 0; i < corners.size(); i += 30) corners[i] = 5;  // thousands of faces, in the window and not
+  // A vertex with thousands of faces, inside and outside of the window.
+  for (std::size_t i = 0; i < corners.size(); i += 30) corners[i] = 5;
   motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), corners);
   const Normals expected = of_groups(motion.segment(0), vertices_of(motion), 0.3);
   const Motion shuffled = test::with_faces_in_order(motion, test::shuffled_order(motion.topology.face_count(), 6));
@@ -501,7 +502,7 @@ TEST(Recompute, needles_and_collapses_have_the_same_bits_on_every_instruction_se
 }
 
 TEST(Recompute, a_collapse_takes_the_limit_and_nothing_at_all_is_zero_and_counted) {
-  // The first face goes through a line at 1/2, the second grows from a point, the third stays a point, and the fourth
+  // The first face collapses to a line at 1/2, the second grows from a point, the third stays a point, and the fourth
   // is ordinary.
   const std::vector<fixtures::Point> from = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 2, 2}, {2, 2, 2}, {2, 2, 2},
                                              {3, 3, 3}, {3, 3, 3}, {3, 3, 3}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -520,7 +521,8 @@ TEST(Recompute, a_collapse_takes_the_limit_and_nothing_at_all_is_zero_and_counte
 }
 
 TEST(Recompute, a_line_for_ever_is_no_direction_made_of_rounding) {
-  // c lies on the line through a and b at both ends, and so at every t; in double at 0.3 it is slightly off.
+  // c is on the line through a and b at both ends, and therefore at every t; computed in double at 0.3, it is slightly
+  // beside the line.
   const std::vector<fixtures::Point> from = {{0, 0, 0}, {1, 2, 3}, {3, 6, 9}};
   const std::vector<fixtures::Point> to = {{0, 0, 0}, {5, 7, 11}, {15, 21, 33}};
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), from, to);

@@ -1,4 +1,4 @@
-// Compares sums of products on every instruction set, bit by bit, with three loops.
+// Compares sums of products on every instruction set, bit by bit, with three nested loops.
 #include "analysis/fits/kernels/products.h"
 
 #include <gtest/gtest.h>

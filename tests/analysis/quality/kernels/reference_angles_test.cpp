@@ -1,5 +1,5 @@
-// Checks that angles and reference normals in lanes have the bits of their scalar forms on every instruction set, and
-// that angles agree with long double.
+// Checks that angles and reference normals computed in lanes have the bits of the scalar functions on every instruction
+// set, and that angles agree with long double.
 #include "analysis/quality/kernels/reference_angles.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ struct Pairs {
 
 Vec3d to_vector(const fixtures::Point& p) { return {p[0], p[1], p[2]}; }
 
-// Makes pairs with angles from none to half a turn and lengths from 1e-60 to 1e60, and vectors without a direction.
+// Makes pairs with angles from 0 to 180 degrees and lengths from 1e-60 to 1e60, and vectors without a direction.
 Pairs hard_pairs() {
   fixtures::Random random(24);
   Pairs pairs;

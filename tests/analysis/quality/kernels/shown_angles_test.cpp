@@ -26,7 +26,7 @@ TEST(TrianglesInMotion, have_the_bits_of_vector_areas_of_interpolated_positions_
     const Segment segment = motion.segment(0);
     const auto corners = motion.topology.corners();
     TrianglesInMotion triangles;
-    triangles.gather(segment.to, segment.from, corners.first(3));  // leaves data of another segment behind
+    triangles.gather(segment.to, segment.from, corners.first(3));  // leaves data of another segment in the tiles
     triangles.gather(segment.from, segment.to, corners);
     std::vector<TrianglesInMotion::Normal> normals;
     for (const double t : {0.0, 0.35, 1.0}) {
@@ -58,7 +58,7 @@ TEST(SumsAround, have_the_bits_of_sums_from_left_to_right_on_every_instruction_s
   for (std::size_t count = 0; count < 40; ++count) {
     std::vector<std::uint32_t> faces, ends;
     for (std::size_t e = 0; e < count; ++e) {
-      const std::size_t around = random.below(9);  // sometimes none
+      const std::size_t around = random.below(9);  // sometimes 0
       for (std::size_t i = 0; i < around; ++i) faces.push_back(static_cast<std::uint32_t>(random.below(100)));
       ends.push_back(static_cast<std::uint32_t>(faces.size()));
     }
@@ -100,8 +100,7 @@ TEST(ShownAngles, have_the_bits_of_one_angle_after_the_other_on_every_instructio
     ends[i] = i % 20 < 2 ? -starts[i] : unit(starts[i] + random.uniform(0, 1) * unit(vector()));
     sums[i] = i % 15 == 0 ? Vec3d{} : vector();
     const double size = max_abs(sums[i]);
-    // There are elements without a normal, elements that are hardly more than rounding, and elements that are not
-    // drawn.
+    // Some elements have no normal, some normals are hardly more than rounding error, and some elements are not drawn.
     put(from, i, starts[i], i % 4 == 0 ? 2 * size : 0.3 * size);
     put(to, i, ends[i], 0);
     put(right, i, sums[i], i % 6 == 0 ? 1e14 * size : i % 8 == 0 ? 4 * size : size);

@@ -1,4 +1,4 @@
-// Compares what a glance finds about faces with long double, and with the search for collapses, on every instruction
+// Compares what a glance claims about faces with long double, and with the search for collapses, on every instruction
 // set.
 
 #include "analysis/signs/kernels/face_glance.h"

@@ -1,2 +1,2 @@
-// Stands in for the chronormal_core.h of tools/two_files.py, with the library.
+// Replaces the chronormal_core.h of tools/two_files.py, using the library.
 #include "chronormal/chronormal.h"

@@ -1,5 +1,5 @@
-// Compares the tiles of faces with the public function for one face at a time, which uses no vectors of lanes, and with
-// sums of products in long double.
+// Compares the tiles of faces with the public function for single faces, which uses no lanes, and with sums of products
+// in long double.
 
 #include "normals/control/kernels/face_tiles.h"
 
@@ -28,7 +28,7 @@ namespace {
 
 using fixtures::Point;
 
-// Computes one face by itself: the kernel begins at four faces.
+// Computes a single face, without lanes: the kernel is only used from four faces on.
 ControlNormals one_face(const Segment& segment, std::size_t f) {
   ControlNormals normals;
   face_control_normals(segment, {f, 1}, {&normals, 1});
@@ -44,7 +44,7 @@ bool same_bits(T a, T b) {
   return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
-// Returns the largest sum of absolute products of any component of any of the four cross products of a triangle.
+// Returns the largest sum of absolute products over all components of the four cross products of a triangle.
 long double largest_products(const Segment& segment, std::size_t f) {
   const auto face = segment.topology->face(f);
   const auto edge = [&](const VectorView<const float>& points, std::size_t corner) {
@@ -65,7 +65,7 @@ long double largest_products(const Segment& segment, std::size_t f) {
   return largest;
 }
 
-// Describes the first difference between the tiles of a range and its faces one by one, or returns "".
+// Describes the first difference between the tiles of a range and its faces computed singly, or returns "".
 std::string difference(const Segment& segment, IndexRange faces) {
   std::vector<ControlTile> tiles((faces.count + kTile - 1) / kTile);
   face_control_tiles(segment, faces, tiles);
@@ -103,7 +103,7 @@ std::string difference_on_all_targets(const Segment& segment) {
   return difference_on_all_targets(segment, {0, segment.topology->face_count()});
 }
 
-// Positions in a layout of their own, in memory that ends with the last coordinate.
+// Positions with a custom layout, in memory that ends with the last coordinate.
 class Laid {
  public:
   enum class Layout { kPacked, kPlanes, kStrideFour, kStrideSeven };
@@ -146,10 +146,12 @@ std::vector<Motion> motions_of_every_degree() {
   };
   std::vector<Motion> motions = {start};
   motions.push_back(moved([](float v, std::size_t) { return v; }));
-  motions.push_back(moved([](float v, std::size_t) { return v + 2; }));                     // rounded: not exactly one
+  // Not exactly a degree of one, because of rounding.
+  motions.push_back(moved([](float v, std::size_t) { return v + 2; }));
   motions.push_back(moved([](float v, std::size_t i) { return i % 3 == 0 ? 3 * v : v; }));  // a stretch
   motions.push_back(moved([](float v, std::size_t i) { return i == 21 ? v + 1 : v; }));     // one vertex
-  motions.push_back(moved([](float v, std::size_t i) { return v + (i % 5 == 0 ? 1e-6F : 0); }));  // near the tolerance
+  // Changes near the tolerance.
+  motions.push_back(moved([](float v, std::size_t i) { return v + (i % 5 == 0 ? 1e-6F : 0); }));
   return motions;
 }
 
@@ -196,7 +198,7 @@ TEST(FaceTiles, have_no_noise_where_a_component_vanishes_and_no_negative_zero) {
     for (const auto end : kShapes)
       ASSERT_EQ(difference_on_all_targets(fixtures::degenerate_soup(start, end).segment(0)), "");
   }
-  // The planes go through axes and diagonals, where products are zero or cancel, in every orientation.
+  // The planes contain axes and diagonals, where products are zero or cancel, in every orientation.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double slope : {0.0, 1.0, -1.0, 1.0 / 3}) {
       const Motion motion = test::with_positions(fixtures::moderate_soup(100), [k, slope](const Point& p) {
@@ -316,8 +318,8 @@ TEST(FaceControlNormals, have_the_bits_of_single_faces_on_every_target) {
 
 // ---- in float32 ----------------------------------------------------------------------------------------------------
 
-// Compares the tiles of all triangles in float32, which must have the same bits on all targets, with the tiles of one
-// face at a time.
+// Compares the tiles of all triangles in float32, which must have the same bits on all targets, with the tiles of
+// single faces.
 void look_at(test::FloatTileFaults& seen, const Motion& motion) {
   const Segment segment = motion.segment(0);
   const std::size_t count = segment.topology->face_count();

@@ -1,5 +1,5 @@
-// Compares certificates of sixteen elements in lanes with certificates of one element, on elements that are about to be
-// flagged.
+// Compares certificates of sixteen elements in lanes with certificates of single elements, on elements that are close
+// to being flagged.
 
 #include "normals/curves/kernels/certify.h"
 
@@ -30,7 +30,7 @@ Vec3d vector(fixtures::Random& random) {
 
 double decade(fixtures::Random& random, double low, double high) { return std::pow(10, random.uniform(low, high)); }
 
-// Draws mostly curves that come as close to zero as one of the tests looks for, and sometimes ordinary ones or curves
+// Draws mostly curves that come as close to zero as the limits of the tests, and sometimes ordinary curves or curves
 // that no lane should decide.
 BoundedNormals element(fixtures::Random& random) {
   const Vec3d n0 = vector(random);
@@ -38,8 +38,8 @@ BoundedNormals element(fixtures::Random& random) {
   ControlNormals& c = result.normals;
   c = {n0, vector(random), vector(random)};
   if (random.below(4) != 0) {
-    // The curve is (s - k t)^2 n0 plus something small, which lies in a plane for half of the curves. If k + 1 is a
-    // power of two, halves meet at the zero, so that proofs go on to the smallest distance.
+    // The curve is (s - k t)^2 n0 plus a small curve, which is in a plane for half of the candidates. If k + 1 is a
+    // power of two, bisection hits the zero, so proofs must continue down to the smallest distance.
     const double halves[] = {1, 3, 7, 1.0 / 3};
     const double k = random.below(2) == 0 ? halves[random.below(4)] : decade(random, -3, 3);
     const double little = decade(random, -17, 0);
@@ -94,7 +94,7 @@ Decided decided(const BoundedNormals& c, const PrecisionLimits& limits) {
   return result;
 }
 
-// Describes the fault of the certificates of one element, or returns "". `alone` says that no other element was
+// Describes the fault of the certificates of one element, or returns "". `alone` means that no other element was
 // requested.
 std::string fault(const TileCertificates& found, std::size_t lane, const Decided& expected, bool alone) {
   const auto has = [lane](std::uint32_t bits) { return (bits >> lane & 1) != 0; };
@@ -152,7 +152,7 @@ TEST(CertifyTile, decides_as_for_one_element_on_every_target) {
       }
     }
   }
-  // Every answer was given often.
+  // Every possible answer must occur often.
   EXPECT_GT(flagged, 3000U);
   EXPECT_GT(needing_exact, 1000U);
   EXPECT_GT(flagged - needing_exact, 1000U);

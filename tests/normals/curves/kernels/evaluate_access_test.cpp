@@ -1,5 +1,5 @@
-// Checks that every kind of access to memory, on every instruction set and kind of block, writes the bits of plain
-// stores and nothing else.
+// Checks that every kind of memory access, on every instruction set and kind of block, writes the same bits as plain
+// stores, and no other memory.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@
 namespace chronormal::evaluate_access_test {
 namespace {
 
-constexpr std::size_t kMost = 208;  // elements, of whole blocks
-constexpr std::size_t kGuard = 64;  // words, so that arrays stay aligned
+constexpr std::size_t kMost = 208;  // most elements, a multiple of whole blocks
+constexpr std::size_t kGuard = 64;  // guard words, a multiple that keeps arrays aligned
 constexpr std::uint32_t kMark = 0xDEADBEEF;
 constexpr std::array kKinds = {BlockKind::kUnit,        BlockKind::kUnitLength,  BlockKind::kLinear16,
                                BlockKind::kQuadratic11, BlockKind::kQuadratic16, BlockKind::kScaled16,
@@ -31,7 +31,7 @@ bool is_float(BlockKind kind) {
          kind == BlockKind::kQuadratic32;
 }
 
-// Makes blocks of floats from 1 to 2, or of random bits, since any bits of the other kinds give directions.
+// Makes blocks of floats from 1 to 2, or of random bits: in the other kinds of blocks, any bits are directions.
 AlignedArray<std::uint32_t> some_blocks(BlockKind kind, fixtures::Random& random) {
   AlignedArray<std::uint32_t> words(kMost * bytes_of(kind) / 4);
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -41,7 +41,7 @@ AlignedArray<std::uint32_t> some_blocks(BlockKind kind, fixtures::Random& random
   return words;
 }
 
-// A form of results: how it is evaluated into words, and which words it may write.
+// An output format: how it is evaluated into words, and the words that it may write.
 struct Form {
   const char* name;
   std::function<void(const BlockSpan&, const CurveWeights&, float* words, MemoryAccess)> evaluate;

@@ -1,4 +1,5 @@
-// Checks that evaluations prefetch curves at the distance with the fastest median, after a limited number of trials.
+// Checks that evaluations prefetch curves at the distance with the fastest median, and that the number of trials is
+// limited.
 
 #include "normals/curves/kernels/prefetch.h"
 
@@ -26,7 +27,7 @@ TEST(PrefetchRule, the_fastest_distance_in_the_median_decides) {
     std::array<std::size_t, PrefetchRule::kDistances.size()> trials{};
     while (const std::optional<std::size_t> trial = rule.next()) {
       const std::size_t turn = trials[*trial]++;
-      // The system interrupts two trials of the fastest distance, and each of the others is lucky once.
+      // The system interrupts two trials of the fastest distance, and each other distance is lucky once.
       const bool is_odd = turn == 3 || (*trial == fastest && turn == 7);
       rule.take(*trial, *trial == fastest ? (is_odd ? 500.0f : 0.1f) : (is_odd ? 0.09f : 0.13f));
     }
@@ -48,7 +49,7 @@ TEST(PrefetchRule, trials_are_repeated_after_a_while_and_replace_those_before) {
   constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
   EXPECT_EQ(try_all(3), kAll);
   for (const std::size_t fastest : {1U, 4U}) {
-    // The call that ended the trials got none either.
+    // The call that ended the trials was not a trial itself.
     for (std::size_t call = 2; call < PrefetchRule::kCallsBetween; ++call) ASSERT_FALSE(rule.next()) << call;
     EXPECT_EQ(try_all(fastest), kAll);
     EXPECT_EQ(rule.best(), PrefetchRule::kDistances[fastest]);
@@ -81,7 +82,7 @@ TEST(PrefetchRule, a_rule_of_few_distances_tries_no_others) {
   EXPECT_EQ(rule.next(), std::nullopt);
 }
 
-// Threads meet at the last trial only in some of many rounds, so they start together and with few trials left.
+// Threads compete for the last trial only in few of many rounds, so they start together with few trials left.
 TEST(PrefetchRule, threads_share_trials) {
   constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
   constexpr std::size_t kThreads = 4, kLeft = 3;
@@ -118,7 +119,7 @@ TEST(PrefetchRule, large_evaluations_try_until_they_know_and_keep_their_bits) {
   (void)curves.unit_normals(0.3, VectorView<float>::packed(first));
   for (std::size_t i = 0; i < PrefetchRule::kTrials; ++i)
     (void)curves.unit_normals(0.3, VectorView<float>::packed(later));
-  // The trials are over, unless a repetition has begun after tests that ran earlier in the same process.
+  // All trials are done, unless tests that ran earlier in this process have begun a repetition.
   std::size_t left = 0;
   while (left <= PrefetchRule::kTrials * PrefetchRule::kDistances.size() &&
          prefetch_of_curves(WorkingSet::kSharedCache).next())

@@ -1,4 +1,4 @@
-// Compares the tiles of vertices and corners with sums of single faces, in the order that NormalGroups keeps.
+// Compares the tiles of vertices and corners with sums of single faces in the order that NormalGroups keeps.
 
 #include "normals/groups/kernels/group_tiles.h"
 
@@ -34,8 +34,8 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// The expected content of the tiles: the public sums of faces, each computed alone and so without vectors of lanes; and
-// the sums of the absolute products along the path around each element, by component, of which the largest counts.
+// The expected content of the tiles: sums of faces by the public function, each computed singly and therefore without
+// lanes; and the largest component of the sums of absolute products along the path around each element.
 struct Expected {
   std::vector<ControlNormals> normals;
   std::vector<double> magnitudes;
@@ -74,7 +74,7 @@ Expected expected_of(const Segment& segment, const NormalGroups& groups) {
   return expected;
 }
 
-// Tells whether a component is within the rounding of a sum in another order; zero must be zero, with this sign.
+// Tells whether a component agrees with a sum in another order up to rounding; zero must be zero with the same sign.
 bool is_right(float value, double expected, float magnitude) {
   const auto rounded = static_cast<float>(expected);
   if (std::memcmp(&value, &rounded, sizeof(float)) == 0) return true;
@@ -103,7 +103,7 @@ std::string difference(const Expected& expected, IndexRange elements, std::span<
   return "";
 }
 
-// Compares all elements in ranges of `step` from `first` on, both multiples of 16, by one object.
+// Compares all elements, in ranges of `step` that begin at `first`, both multiples of 16, with one object.
 std::string difference_on_all_targets(const Segment& segment, const NormalGroups& groups, std::size_t first = 0,
                                       std::size_t step = 256) {
   const Expected expected = expected_of(segment, groups);
@@ -176,7 +176,7 @@ TEST(GroupTiles, have_the_public_sums_for_every_count_and_offset) {
   const NormalGroups groups = vertices_of(motion);
   for (std::size_t step = kTile; step <= 10 * kTile; step += kTile)
     ASSERT_EQ(difference_on_all_targets(motion.segment(0), groups, 3 * kTile, step), "");
-  // The paths are open and closed, of odd and even length, in every place of a slice and at its end.
+  // The paths are open and closed, of odd and even length, at every position in a slice and at its end.
   for (std::size_t columns = 1; columns < 12; ++columns)
     ASSERT_EQ(difference_on_all_targets(grid(columns, 7)), "") << columns;
 }
@@ -265,7 +265,7 @@ TEST(GroupTiles, take_a_vertex_of_many_faces) {
 }
 
 TEST(GroupTiles, have_no_noise_where_faces_cancel) {
-  // Every face occurs twice, in both orientations, in an order of its own; then some of them occur once more.
+  // Every face occurs twice, in both orientations, in random order; then some faces occur once more.
   for (const std::size_t more : {std::size_t{0}, std::size_t{3}}) {
     Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.3, 7);
     std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
@@ -276,8 +276,8 @@ TEST(GroupTiles, have_no_noise_where_faces_cancel) {
     motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), corners);
     ASSERT_EQ(difference_on_all_targets(motion), "");
   }
-  // Six faces surround a vertex. Other vertices at the same places have the same faces in the other orientation, with a
-  // path that begins elsewhere, so that other products are added up.
+  // Six faces surround a vertex. Other vertices at the same places have the same faces in the opposite orientation,
+  // with a path that begins elsewhere, so other products are summed.
   fixtures::Random random(14);
   std::vector<Point> from = {random.in_cube(1)}, to = {random.in_cube(1)};
   for (std::size_t i = 0; i < 6; ++i) {
@@ -293,7 +293,7 @@ TEST(GroupTiles, have_no_noise_where_faces_cancel) {
     corners.insert(corners.end(), {0, 7 + i, 7 + (i + 1) % 6});
   }
   ASSERT_EQ(difference_on_all_targets(fixtures::make_motion(fixtures::make_triangles(13, corners), from, to)), "");
-  // One sheet is flat, and one stands on an axis.
+  // One sheet is flat, the other is perpendicular to an axis.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double slope : {0.0, 1.0, 1.0 / 3}) {
       const Motion flat = test::with_positions(grid(20, 20), [k, slope](const Point& p) {
@@ -352,7 +352,7 @@ TEST(FloatGroupTiles, are_off_by_no_more_than_they_say) {
   test::FloatTileFaults seen;
   for (std::size_t columns = 1; columns < 12; ++columns) look_at(seen, grid(columns, 7));
   look_at(seen, grid(60, 60));
-  EXPECT_EQ(seen.bending, seen.elements);  // every vertex of these moves, so that float32 knows that the curves bend
+  EXPECT_EQ(seen.bending, seen.elements);  // all vertices of these meshes move, so float32 shows that the curves bend
   EXPECT_LT(seen.largest_bound, 1e-5);
   for (const bool of_polygons : {false, true}) {
     const Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(5) : fixtures::icosphere(3), 0.1, 6);
@@ -363,7 +363,7 @@ TEST(FloatGroupTiles, are_off_by_no_more_than_they_say) {
   look_at(seen, in_another_order(grid(70, 70), true));
   EXPECT_EQ(seen.fault, "");
   std::cout << "  largest error: " << seen.largest_share << " of its bound\n";
-  EXPECT_GT(seen.largest_share, 0.02);  // or the bounds would be of little use
+  EXPECT_GT(seen.largest_share, 0.02);  // otherwise the bounds would be too wide to be useful
 }
 
 TEST(FloatGroupTiles, say_so_of_needles_and_slivers_and_far_from_the_origin) {
@@ -392,7 +392,7 @@ TEST(FloatGroupTiles, leave_a_vertex_of_many_faces_to_double) {
   test::FloatTileFaults seen;
   look_at(seen, fixtures::make_motion(fixtures::make_triangles(kCount + 1, corners), from, to));
   EXPECT_EQ(seen.fault, "");
-  EXPECT_EQ(seen.elements, kCount);  // all but one
+  EXPECT_EQ(seen.elements, kCount);  // all elements but one
 }
 
 TEST(FloatGroupTiles, never_take_a_line_for_a_curve) {
@@ -419,7 +419,7 @@ std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, 
     std::vector<BoundedTile> tiles((groups.size() + kTile - 1) / kTile);
     for (std::size_t e = 0; e < groups.size(); e += kTile) {
       BoundedTile& tile = tiles[e / kTile];
-      tile.left_out = 0xFFFF;  // bits of another tile
+      tile.left_out = 0xFFFF;  // the mask of another tile
       ControlTile rounded;
       writer.write({e, std::min(kTile, groups.size() - e)}, std::span(&rounded, 1), std::span(&tile, 1));
       const std::uint32_t unknown = tile.left_out;
