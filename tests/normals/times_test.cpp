@@ -297,14 +297,14 @@ std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times
   const auto same = [](const Normals& a, const Normals& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
   };
-  // Each time is computed by an object that has seen no other.
+  // Each time is computed by an object that has computed no other time.
   std::vector<Normals> alone;
   for (const double t : times) alone.push_back(way.make()({t})[0]);
   if (expected.empty()) expected = alone;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!same(alone[i], expected[i])) return way.name + ": other bytes at t = " + std::to_string(times[i]);
   }
-  // Then two times, and all of them in some order, are computed together.
+  // Then two times are computed together, and all of them in some order.
   std::vector<std::size_t> order(times.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
@@ -321,7 +321,7 @@ std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times
   return "";
 }
 
-// Compares the normals of all elements at all times with whole numbers.
+// Compares the normals of all elements at all times with integers.
 std::string fault_in_directions(double tolerance, const std::vector<double>& times, const std::vector<Normals>& found,
                                 const IntegerNormals& oracle, const NormalGroups* groups) {
   for (std::size_t i = 0; i < times.size(); ++i) {

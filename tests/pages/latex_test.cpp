@@ -1,4 +1,4 @@
-// Checks that LaTeX accepts the tables of `compare --table latex`, whatever the inputs are called.
+// Checks that LaTeX accepts the tables of `compare --table latex` for all names of inputs.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ TEST(Latex, both_tables_compile_for_one_motion_and_for_several) {
     run(program + " compare " + inputs + " --samples 3 --schemes " + schemes + " --table latex --force -o tables.tex");
     const std::string latex = "pdflatex -halt-on-error -interaction=nonstopmode paper";
     run(latex);
-    const std::string log = run(latex);  // the second run knows the numbers of the tables
+    const std::string log = run(latex);  // LaTeX needs two runs to number the tables
     EXPECT_EQ(log.find("undefined"), std::string::npos) << log;
     EXPECT_EQ(log.find("Overfull"), std::string::npos) << log;
     EXPECT_EQ(log.find("Missing character"), std::string::npos) << log;

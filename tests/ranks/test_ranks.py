@@ -1,5 +1,6 @@
-"""The program under mpirun: any number of ranks gives the bytes of one process, and a rank that fails or dies ends the run
-with its number in the message and leaves nothing behind. CHRONORMAL_PROGRAM names the program, which was built with MPI."""
+"""The program under mpirun: any number of ranks gives the bytes of one process. If a rank fails or dies, the run
+ends, the message names the rank, and no files are left behind. CHRONORMAL_PROGRAM names the program, which was
+built with MPI."""
 
 import array
 import math
@@ -43,7 +44,7 @@ def write_cache(path, side, poses):
 
 
 def is_rank(process, rank):
-    """Whether a process is this rank of a run."""
+    """Tell whether a process is this rank of a run."""
     try:
         with open(f"/proc/{process}/environ", "rb") as file:
             return f"OMPI_COMM_WORLD_RANK={rank}".encode() in file.read().split(b"\0")
@@ -58,7 +59,7 @@ class RanksTest(unittest.TestCase):
         os.chdir(cls.folder.name)
         write_mesh("small.obj", 12)
         write_cache("small.pc2", 12, [pose(12, k) for k in range(7)])
-        # More than the 64 MiB up to which all keyframes stay in memory.
+        # Keyframes of up to 64 MiB stay in memory; these are larger.
         side, poses = 200, [pose(200, k) for k in range(5)]
         write_mesh("large.obj", side)
         write_cache("large.pc2", side, poses * 30)
@@ -92,7 +93,7 @@ class RanksTest(unittest.TestCase):
                     self.assertEqual((run.returncode, run.stdout), (alone.returncode, alone.stdout), run.stderr)
 
     def test_each_rank_of_an_audit_reads_its_own_segments_alone(self):
-        # The last rank meets the keyframe that is broken; the others do not, though all know how long normals get.
+        # Only the last rank reads the invalid keyframe, although all ranks know the largest length of normals.
         run = self.run_program("audit large.obj broken.pc2 --no-weld --samples 2 -o x.txt", 3)
         self.assertEqual(run.returncode, 3, run.stderr)
         self.assertIn("rank 2: broken.pc2", run.stderr)
@@ -173,7 +174,7 @@ class RanksTest(unittest.TestCase):
         self.assertEqual((run.returncode, run.stdout), (0, alone.stdout))
 
     def test_mpi_is_not_started_without_mpirun(self):
-        broken = {**os.environ, "OMPI_MCA_pml": "none", "OMPI_MCA_ess": "none"}  # MPI_Init() fails with these
+        broken = {**os.environ, "OMPI_MCA_pml": "none", "OMPI_MCA_ess": "none"}  # these settings make MPI_Init() fail
         command = [PROGRAM] + "compare small.obj small.pc2 --json --no-times".split()
         run = subprocess.run(command, capture_output=True, text=True, timeout=60, env=broken)
         self.assertEqual((run.returncode, run.stderr), (0, ""))
@@ -198,12 +199,12 @@ class RanksTest(unittest.TestCase):
         self.assertEqual(run.stderr.count("short.pc2"), 1, run.stderr)
 
     def begin_long_run(self, cache):
-        """Begins samples of two gigabytes on three ranks, and returns once all of them write."""
+        """Start samples of two gigabytes on three ranks, and return once all ranks are writing."""
         arguments = f"sample large.obj {cache} --times 0:0.033:149 -q -o long.npy"
         run = subprocess.Popen(MPIRUN + ["3", PROGRAM] + arguments.split(), stderr=subprocess.PIPE, stdout=subprocess.PIPE,
                                text=True)
         self.addCleanup(lambda: run.poll() is None and run.kill())
-        last_row = 3 * 40000 * 4 * 4516 * 2 // 3  # where the last rank begins
+        last_row = 3 * 40000 * 4 * 4516 * 2 // 3  # the first row of the last rank
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline and run.poll() is None:
             for name in os.listdir("."):
@@ -262,7 +263,7 @@ class RanksTest(unittest.TestCase):
                 self.assertEqual(run.stderr.count("No space"), 1, run.stderr)
 
     def test_a_rank_without_memory_says_so_with_its_number(self):
-        # MPI itself takes some hundred megabytes of addresses. The files are as sparse as is allowed.
+        # MPI itself takes some hundred megabytes of address space. The files are as sparse as the program allows.
         count = 40000000
         with open("huge.ply", "wb") as file:
             file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {count}\nproperty float x\nproperty float y\n"

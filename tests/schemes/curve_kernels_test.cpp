@@ -1,4 +1,4 @@
-// Checks that formulas give the same bits on every instruction set, in every layout, at every remainder.
+// Checks that formulas give the same bits on every instruction set, in every layout, for every remainder of the count.
 // oracle_test.cpp compares their results with an independent oracle.
 
 #include "schemes/kernels/curve_kernels.h"
@@ -21,7 +21,7 @@
 namespace chronormal::curve_kernels_test {
 namespace {
 
-// The schemes that together use all formulas, including each that can be played.
+// Schemes that together use all formulas, including each formula that can be played step by step.
 const std::vector<std::string> kSchemes = {
     "linear",          "quadratic", "cubic",         "lagrange:4",       "lagrange:9",        "linear:scaled",
     "rational",        "slerp",     "decasteljau:2", "decasteljau:4",    "decasteljau:5",     "quaternion:matrix",
@@ -29,7 +29,7 @@ const std::vector<std::string> kSchemes = {
 
 constexpr std::size_t kElements = 150;
 
-// Faces that move by much, by little, not at all and to their opposite; every tenth has no area at all.
+// Faces that move much, little, not at all, and to their opposite; every tenth face never has an area.
 struct Subject {
   Subject() : normals(kElements) {
     fixtures::Random random(5);
@@ -39,7 +39,7 @@ struct Subject {
       for (int corner = 0; corner < 3; ++corner) {
         fixtures::Point a = random.in_cube(1), b = random.in_cube(far);
         for (std::size_t k = 0; k < 3; ++k) b[k] += a[k];
-        if (face % 7 == 3) {  // mirrored within its plane: the opposite normal
+        if (face % 7 == 3) {  // mirrored within its plane, so that the normal becomes its opposite
           a[2] = 0;
           b = {-a[0], a[1], 0};
         }
@@ -80,7 +80,7 @@ class Layout {
   static constexpr int kCount = 5;
 
   Layout(int layout, std::size_t count) : values_(8 * count + 16, kUntouched) {
-    float* p = values_.data() + 1;  // aligned to nothing
+    float* p = values_.data() + 1;  // not aligned
     switch (layout) {
       case 0:
         view_ = VectorView<float>::packed(p, count);
@@ -88,10 +88,10 @@ class Layout {
       case 1:
         view_ = VectorView<float>::planes(p, p + count, p + 2 * count, count);
         break;
-      case 2:  // vectors of four, as a graphics card has them
+      case 2:  // vectors of four floats, as on a graphics card
         view_ = {p, p + 1, p + 2, count, 4};
         break;
-      case 3:  // backwards
+      case 3:  // in reverse order
         view_ = {p + 2, p + 1, p, count, 3};
         break;
       default:
@@ -215,7 +215,7 @@ INSTANTIATE_TEST_SUITE_P(all, CurveKernels, testing::ValuesIn(kSchemes), [](cons
   return label;
 });
 
-// Coefficients from a seed, without any mathematics library.
+// Coefficients from a seed, made without functions of a mathematics library.
 struct Blocks {
   Blocks(std::size_t plane_count, std::size_t element_count)
       : values((element_count + kBlock - 1) / kBlock * kBlock * plane_count) {
@@ -250,7 +250,7 @@ TEST(CurveFormulas, write_past_the_caches_what_they_write_into_them) {
       AlignedArray<float> cached(3 * kCount), streamed(3 * kCount + 1);
       const auto expected = VectorView<float>::packed(cached.data(), kCount);
       evaluate_curves(kernel.formula, blocks.curves, kShared, expected);
-      for (const std::size_t offset : {0u, 1u}) {  // aligned, and not
+      for (const std::size_t offset : {0u, 1u}) {  // aligned and unaligned
         const auto result = VectorView<float>::packed(streamed.data() + offset, kCount);
         evaluate_curves(kernel.formula, blocks.curves, kShared, result, 0);
         ASSERT_EQ(bits_of(result), bits_of(expected)) << target_name(id) << ", offset " << offset;
@@ -259,7 +259,7 @@ TEST(CurveFormulas, write_past_the_caches_what_they_write_into_them) {
   }
 }
 
-// Hashes the results of all formulas, and three steps of all that are played, by FNV-1a.
+// Hashes by FNV-1a the results of all formulas, and of three steps of each formula that can be played.
 TEST(CurveFormulas, give_the_bits_that_every_compiler_and_instruction_set_has_given) {
   constexpr std::size_t kCount = 777;
   for (const std::int64_t id : supported_targets()) {
@@ -315,7 +315,7 @@ TEST(CurveFormulas, slerp_turns_between_opposite_vectors_and_stays_between_equal
   } pairs[] = {
       {{1, 0, 0}, {-1, 0, 0}, 1e-6},     {{0, 0.6f, 0.8f}, {0, -0.6f, -0.8f}, 1e-6},
       {{0, 1, 0}, {0, 1, 0}, 1e-6},      {{0, 1, 0}, {2e-5f, 1, 0}, 1e-6},
-      {{0, 0, 1}, {5e-5f, 0, -1}, 1e-4},  // a difference of 1e-7 over a sine of 5e-5
+      {{0, 0, 1}, {5e-5f, 0, -1}, 1e-4},  // a difference of 1e-7 divided by a sine of 5e-5
       {{0, 0, 1}, {0, 1, 0}, 1e-6},      {{}, {}, 0},
   };
   AlignedArray<float> planes(6 * kCount);

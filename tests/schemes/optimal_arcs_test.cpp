@@ -1,5 +1,5 @@
 // Tests the fast search of quaternion:optimal on every instruction set, and the elements that it leaves to the slow
-// one. oracle_test.cpp measures the quality of its arcs by a dense search.
+// search. oracle_test.cpp measures the quality of its arcs by a dense search.
 #include "schemes/kernels/optimal_arcs.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Vec3d vector(fixtures::Random& random) {
   return {p[0], p[1], p[2]};
 }
 
-// Makes elements that turn by about `turn`, on a path that is bent by about the share `bend` of the turn.
+// Makes elements that turn by about the angle `turn`, on a path that is bent by about `bend` times the turn.
 std::vector<ControlNormals> turning(fixtures::Random& random, double turn, double bend, std::size_t count) {
   std::vector<ControlNormals> normals;
   for (std::size_t i = 0; i < count; ++i) {
@@ -69,7 +69,7 @@ TEST(OptimalArcs, are_within_a_few_ten_thousandths_of_the_best_of_many) {
       const ExactSamples exact(normals[i]);
       const double error = exact.mean_error(circles.arc(phis[i]));
       double best = error;
-      // One set of samples covers the whole family, and the other is dense around the arc that was found.
+      // One set of samples covers the whole family of arcs, and another is dense around the arc that was found.
       for (int k = -200; k <= 200; ++k) {
         best = std::min(best, exact.mean_error(circles.arc(k * kPi / 400)));
         best = std::min(best, exact.mean_error(circles.arc(phis[i] + 1e-4 * k)));
@@ -87,9 +87,9 @@ TEST(OptimalArcs, leave_what_is_not_mild_to_others) {
       {x, x, x},                       // no turn
       {x, x, -x},                      // opposite ends
       {x, x + y, y},                   // more than a radian
-      {x, -0.98 * x, x + 0.1 * y},     // a fast turn on the way
+      {x, -0.98 * x, x + 0.1 * y},     // a fast turn in between
       {{}, x, y},                      // zero at the start
-      {x, 0.5 * x + z, x + 1e-3 * y},  // far out and back
+      {x, 0.5 * x + z, x + 1e-3 * y},  // a path that goes far out and back
   };
   std::vector<double> phis(normals.size());
   find_optimal_arcs(normals, phis);

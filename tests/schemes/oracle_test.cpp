@@ -31,12 +31,12 @@ using test::scheme_names;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Returns the allowed deviation of a length from 1. Only `rational` divides by a length that is evaluated and not
-// measured, as a quartic in float32 that loses digits where n(t) is small against its control normals; its direction is
-// as good as any.
+// Returns the allowed deviation of a length from 1. Only `rational` divides by a length from a quartic in float32
+// instead of the length of the result. The quartic loses digits if n(t) is small relative to its control normals; the
+// direction is still as accurate as in other schemes.
 double length_tolerance(std::string_view scheme) { return scheme == "rational" ? 2e-6 : 1e-6; }
 
-// A motion with all data that schemes and oracles are prepared from.
+// A motion with all data from which schemes and oracles are prepared.
 struct Subject {
   explicit Subject(Motion moving) : motion(std::move(moving)), normals(motion.topology.face_count()) {
     face_control_normals(motion.segment(0), faces(), normals);
@@ -107,13 +107,13 @@ const std::array<Family, 3> kFamilies{
     Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(); }},
 };
 
-// Families of fewer faces, for the dense searches.
+// Families with fewer faces, for the dense searches.
 const std::array<Family, 4> kSmallFamilies{
     Family{"smooth morph", [] { return fixtures::smooth_morph(10); }},
     Family{"soup, independent ends", [] { return fixtures::large_soup(200, 11); }},
     Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(200, 12); }},
-    // Small steps, as from one frame to the next, have ends so close that all circles that differ are crammed into phi
-    // near +-pi/2.
+    // Small steps, like those between two frames, have ends so close that all visibly different circles have phi near
+    // +-pi/2.
     Family{"soup, motion 0.02", [] { return fixtures::soup({.face_count = 200, .seed = 13, .motion = 0.02}); }},
 };
 
@@ -161,7 +161,7 @@ TEST_P(SchemeOracle, agrees_with_the_scheme) {
   }
 }
 
-// Motions on which something vanishes, overflows or is undefined in some scheme.
+// Motions for which some scheme divides by zero, overflows or is undefined.
 const std::array<Family, 16> kNastyFamilies{
     Family{"needles", [] { return fixtures::needle_soup(200); }},
     Family{"edges of 1e-6", [] { return fixtures::tiny_soup(200); }},
@@ -199,7 +199,7 @@ TEST_P(SchemeOracle, meets_unit_vectors_or_zero_wherever_the_motion_is_nasty) {
           continue;
         }
         const double off = std::fabs(reference::length(given) - 1);
-        if (!(off <= off_length)) {  // NaN as well
+        if (!(off <= off_length)) {  // this form is also true for NaN
           off_length = off;
           worst_face = f;
           worst_time = output.time(i);
@@ -265,7 +265,7 @@ INSTANTIATE_TEST_SUITE_P(all, SchemeOracle, testing::ValuesIn(scheme_names()), [
   return label;
 });
 
-// The turn of a random frame depends on the segment too.
+// The angle of a random frame depends on the segment, too.
 TEST(Oracle, agrees_with_random_frames_in_a_second_segment) {
   Motion motion = fixtures::large_soup(50, 36);
   motion.keyframes.insert(motion.keyframes.begin(), motion.keyframes[1]);
@@ -273,7 +273,7 @@ TEST(Oracle, agrees_with_random_frames_in_a_second_segment) {
   motion.segments.clear();
   motion.connect_as_sequence();
   ASSERT_EQ(motion.segments.size(), 2U);
-  const Subject same_segment(fixtures::large_soup(50, 36));  // gives the triangles of segment 1
+  const Subject same_segment(fixtures::large_soup(50, 36));  // has the same triangles as segment 1
   const Segment segment = motion.segment(1);
   ASSERT_EQ(segment.index, 1U);
   auto scheme = make_scheme("quaternion:random:7");
@@ -316,7 +316,7 @@ TEST(Oracle, finds_every_quaternion_slerp_on_a_circle_of_constant_speed) {
       if (!at(0.5L)) continue;
       const auto circle = reference::circle_through(*at(0), *at(0.5L), *at(1));
       ASSERT_TRUE(circle);
-      EXPECT_LE(circle->end, reference::kPi + 1e-6L);  // quaternions on the shorter arc turn by half a turn at most
+      EXPECT_LE(circle->end, reference::kPi + 1e-6L);  // quaternions on the shorter arc turn by at most half a turn
       for (const reference::Real t : {0.1L, 0.3L, 0.77L}) {
         EXPECT_LT(reference::angle(*at(t), circle->at(t * circle->end)), 1e-9L) << name << ", face " << f;
         ++judged;
@@ -346,8 +346,8 @@ TEST(Oracle, finds_no_pair_of_frames_better_than_its_dense_search) {
 
 // ---- searched schemes ----------------------------------------------------------------------------------------------
 
-// Compares the average errors, face by face, of a scheme that searches with a dense search over the same family and
-// with members of the family that a scheme computes outright.
+// Compares the average errors, face by face, of a scheme that searches with a dense search over the same family, and
+// with members of the family that other schemes compute directly.
 template <class DenseSearch>
 void expect_nearly_optimal(const std::string& name, const std::vector<std::string>& members, DenseSearch&& search) {
   constexpr std::size_t kSamples = 201;
@@ -403,8 +403,8 @@ TEST(LinearScaled, is_within_a_few_thousandths_of_a_dense_search_and_never_worse
 }
 
 TEST(LinearScaled, meets_an_element_of_degree_1_by_the_ratio_of_its_areas) {
-  // One edge rests and one moves, so that n is linear in t and a line from n0 to n1 has its direction throughout. A
-  // search that is not told the ratio of the areas stops up to 3e-4 rad short of it.
+  // One edge rests and one moves, so n is linear in t, and the scaled linear scheme is exact with the right scale. A
+  // search without the ratio of the areas as a candidate stops up to 3e-4 rad away.
   struct Case {
     double ratio, turn;
   };

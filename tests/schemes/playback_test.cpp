@@ -1,4 +1,4 @@
-// Tests sequential access to every scheme that can be played.
+// Tests sequential access for every scheme that can be played step by step.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -87,7 +87,7 @@ TEST(Playback, drift_is_real_and_anchors_remove_it) {
   EXPECT_GT(drift_of_scheme("circle", twist, 5000, 0), 2 * drift_of_scheme("circle", twist, 5000, 32));
 }
 
-// Makes the polynomial of some control normals, as elements of a segment that is never read.
+// Makes the polynomial of given control normals, as elements of a segment that is never read.
 std::unique_ptr<Scheme> polynomial_of(const std::vector<ControlNormals>& normals, const Segment& segment) {
   auto scheme = make_scheme("polynomial").value();
   scheme->prepare({&segment, {0, normals.size()}, normals});
@@ -95,7 +95,7 @@ std::unique_ptr<Scheme> polynomial_of(const std::vector<ControlNormals>& normals
 }
 
 TEST(Playback, a_face_that_shrinks_keeps_its_direction) {
-  // The error of the state is absolute, so an element that shrinks must not be played.
+  // The rounding error of the state is absolute, so an element that shrinks must not be played.
   const Segment segment;
   for (const double shrink : {0.1, 1e-2, 1e-4, 1e-8}) {
     for (const double tilt : {0.0, 0.2}) {
@@ -121,7 +121,7 @@ TEST(Playback, one_anchor_per_step_is_random_access) {
 }
 
 TEST(Playback, is_anchored_at_every_nth_step_and_at_no_other) {
-  // Its bits must equal a playback without anchors that began at the last anchor.
+  // The bits must equal a playback without anchors that begins at the last anchor.
   constexpr std::size_t kInterval = 8;
   constexpr double kStep = 0x1p-6;  // makes all times exact
   const Prepared twist("twist");
@@ -192,14 +192,14 @@ TEST(Playback, schemes_without_an_incremental_form_say_so) {
 }
 
 TEST(Playback, a_quadratic_steps_with_two_additions_per_component) {
-  // The rest is the normalisation: 2 additions, 6 products, a quotient and a root.
+  // The remaining operations are the normalisation: 2 additions, 6 products, a quotient and a root.
   EXPECT_EQ(*make_scheme("polynomial").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("quadratic").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("cubic").value()->sequential_operations(), (OperationCounts{9 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(make_scheme("slerp").value()->sequential_operations()->trigonometric, 0);
 }
 
-// The count follows the code that runs: one more vector in a sum adds three products and three sums.
+// The count is computed by the code that runs: one more vector in a sum adds three products and three sums.
 TEST(Operations, one_vector_more_changes_the_count) {
   const std::vector<float> coefficients(12, 0.5F), state(12, 0.25F);
   SharedValues weights{};

@@ -1,4 +1,4 @@
-"""Memory of commands that read a sequence keyframe by keyframe: it does not grow with the number of keyframes."""
+"""Memory of commands that read a sequence keyframe by keyframe: it must not grow with the number of keyframes."""
 
 import os
 import struct
@@ -11,14 +11,14 @@ from pathlib import Path
 import numpy as np
 
 PROGRAM = os.environ["CHRONORMAL_PROGRAM"]
-SIDE = 320  # vertices along a side of a sheet: a keyframe has 1.2 MB
+SIDE = 320  # vertices along a side of the sheet: a keyframe has 1.2 MB
 COMMANDS = {
     "sample": ["--times", "0:0.23:23", "--format", "npy"],
     "compare": ["--schemes", "linear", "--samples", "2"],
     "audit": ["--samples", "2"],
     "inspect": [],
 }
-# A process of its own starts the command, since a process counts the memory of the one that it was forked from as its own.
+# Starts the command from a small process, since a process counts the memory of its parent at the fork as its own.
 MEASURE = """
 import os, sys
 nothing = os.open(os.devnull, os.O_WRONLY)
@@ -46,7 +46,7 @@ def write_sheet(folder, frames):
 
 class Streams(unittest.TestCase):
     def test_memory_does_not_grow_with_the_number_of_keyframes(self):
-        few, many = 80, 320  # 98 and 393 MB; what takes 64 MiB or less is held
+        few, many = 80, 320  # 98 and 393 MB; up to 64 MiB would be kept in memory
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             for frames in (few, many):

@@ -1,4 +1,4 @@
-/// Counts the memory that the code of a test takes from the heap.
+/// Counts the heap memory that a part of a test allocates.
 #ifndef CHRONORMAL_TESTS_SUPPORT_ALLOCATION_COUNTER_H_
 #define CHRONORMAL_TESTS_SUPPORT_ALLOCATION_COUNTER_H_
 
@@ -6,10 +6,11 @@
 
 namespace chronormal::test {
 
-/// Counts what operator new gives to this thread while it lives. A thread can have one counter at a time.
+/// Counts the memory that operator new gives to this thread during the counter's lifetime. A thread can have one
+/// counter at a time.
 class AllocationCounter {
  public:
-  /// Returns false under a sanitizer, which has an operator new of its own, so that nothing is counted.
+  /// Returns false under a sanitizer, whose own operator new prevents counting.
   [[nodiscard]] static bool works() noexcept;
 
   AllocationCounter();
@@ -20,7 +21,7 @@ class AllocationCounter {
   [[nodiscard]] std::size_t allocations() const noexcept;
   /// Returns the most bytes that were in use at once, beyond those at the start.
   [[nodiscard]] std::size_t peak_bytes() const noexcept;
-  /// Returns the bytes in use now; negative if more were given back than taken.
+  /// Returns the bytes in use now; negative if more were freed than allocated.
   [[nodiscard]] std::ptrdiff_t bytes() const noexcept;
 };
 

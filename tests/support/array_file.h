@@ -1,4 +1,4 @@
-/// Reads .npy and .npz files by a parser of its own, which accepts only what chronormal writes.
+/// Reads .npy and .npz files by an independent parser, which accepts only files in the form that chronormal writes.
 #ifndef CHRONORMAL_TESTS_SUPPORT_ARRAY_FILE_H_
 #define CHRONORMAL_TESTS_SUPPORT_ARRAY_FILE_H_
 
@@ -32,7 +32,7 @@ struct ArrayFile {
   return value;
 }
 
-/// Throws if the file has another form, or another number of elements than its shape says.
+/// Parses an array. Throws if the file has another form, or a number of elements that differs from its shape.
 [[nodiscard]] inline ArrayFile parse_npy(const std::string& bytes) {
   if (bytes.compare(0, 8, std::string("\x93NUMPY\1\0", 8)) != 0) throw std::runtime_error("no .npy file");
   const std::size_t begin = 10 + little_endian(bytes, 8, 2);
@@ -61,7 +61,7 @@ struct ArrayFile {
   return file;
 }
 
-/// Returns the arrays of a .npz file by name, read from member to member in their order.
+/// Returns the arrays of a .npz file by name. Reads member after member, without the directory.
 [[nodiscard]] inline std::map<std::string, ArrayFile> parse_npz(const std::string& bytes) {
   std::map<std::string, ArrayFile> arrays;
   std::size_t at = 0;

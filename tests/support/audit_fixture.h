@@ -1,4 +1,4 @@
-/// Audits files that a test builds.
+/// Audits glTF files that a test builds.
 #ifndef CHRONORMAL_TESTS_SUPPORT_AUDIT_FIXTURE_H_
 #define CHRONORMAL_TESTS_SUPPORT_AUDIT_FIXTURE_H_
 

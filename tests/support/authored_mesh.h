@@ -1,6 +1,6 @@
-/// A sheet as an author has it: quads, some hexagons and some faces shaded flat. Its normals are sums over polygons by
-/// the angle of their corners, of all polygons around a smooth point. Some were bent by hand, differently in each
-/// target, and some of the bent ones look to the other side.
+/// A sheet as an artist models it: quads, some hexagons, and some flat-shaded faces. The normal of a smooth point is
+/// the sum over all polygons around it, weighted by the angle at their corners. Some normals were edited by hand,
+/// differently in each target, and some of the edited normals point to the other side.
 #ifndef CHRONORMAL_TESTS_SUPPORT_AUTHORED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_AUTHORED_MESH_H_
 
@@ -19,8 +19,8 @@ namespace chronormal::test {
 
 class AuthoredMesh {
  public:
-  /// Makes a sheet over n x n points, with three targets. The last one pulls the point in the middle up so far that
-  /// every edge leaves it close to its normal. `flat` is the share of polygons that are shaded flat.
+  /// Makes a sheet over n x n points, with three targets. The last target pulls the middle point up so far that all its
+  /// edges are nearly parallel to its normal. `flat` is the share of polygons that are shaded flat.
   AuthoredMesh(std::uint64_t seed, std::size_t n, double flat = 0.15) : random_(seed), n_(n), flat_(flat) {
     make_polygons();
     make_keys();
@@ -33,14 +33,14 @@ class AuthoredMesh {
 
  private:
   struct Polygon {
-    std::vector<std::size_t> corners;  // counterclockwise
-    std::vector<std::size_t> cut;      // the corners of the triangles that an exporter makes of it
+    std::vector<std::size_t> corners;  // in counterclockwise order
+    std::vector<std::size_t> cut;      // the corners of the triangles into which an exporter cuts the polygon
     bool is_flat = false;
   };
 
   [[nodiscard]] double around(double size) { return random_.uniform(-size, size); }
   [[nodiscard]] std::size_t middle() const { return n_ / 2 * n_ + n_ / 2; }
-  // Tells whether a point is in the middle or beside it.
+  // Tells whether a point is the middle point or a neighbour.
   [[nodiscard]] bool is_near(std::size_t i, std::size_t j) const {
     const std::size_t m = n_ / 2;
     return i + 1 >= m && i <= m + 1 && j + 1 >= m && j <= m + 1;
@@ -89,7 +89,7 @@ class AuthoredMesh {
     return unit_of(sum);
   }
 
-  // Returns the unit normals of all points, to which all polygons around a point contribute.
+  // Returns the unit normals of all points, summed over all polygons around each point.
   [[nodiscard]] std::vector<Vector> point_normals(const std::vector<Vector>& p) const {
     std::vector<Vector> sums(p.size(), Vector{0, 0, 0});
     for (const Polygon& polygon : polygons_) {
@@ -117,7 +117,7 @@ class AuthoredMesh {
     }
   }
 
-  // Adds a vertex: a point with a normal of each key.
+  // Adds a vertex: a point, with a normal for the base and for each target.
   std::uint32_t add(std::size_t point, const std::vector<Vector>& normals) {
     const auto push = [](std::vector<float>& values, const Vector& v) {
       for (const Real c : v) values.push_back(static_cast<float>(c));
@@ -157,7 +157,8 @@ class AuthoredMesh {
   std::size_t n_;
   double flat_;
   std::vector<Polygon> polygons_;
-  std::vector<std::vector<Vector>> keys_, normals_;  // at points: the base, and each target at weight 1
+  // Per point: positions and normals of the base, and of each target at weight 1.
+  std::vector<std::vector<Vector>> keys_, normals_;
   ShadedMesh mesh_;
 };
 

@@ -1,4 +1,4 @@
-/// Fields of hills that morph, as glTF files, and their bakes.
+/// Hills that morph, as glTF files, and bakes of these files.
 #ifndef CHRONORMAL_TESTS_SUPPORT_BAKE_FIXTURE_H_
 #define CHRONORMAL_TESTS_SUPPORT_BAKE_FIXTURE_H_
 
@@ -17,10 +17,10 @@
 
 namespace chronormal::test {
 
-/// A document, the bake of it, and viewers of both.
+/// A document, its bake, and readers of both.
 struct Baked {
   std::unique_ptr<GltfFixture> source;
-  std::string bytes;  ///< the result; empty if there is none
+  std::string bytes;  ///< the result; empty if the bake failed
   std::string error;
   GltfBake report;
   std::unique_ptr<GltfPlayer> before, after;
@@ -80,7 +80,7 @@ class Hills {
       }
     }
     for (std::size_t v = 0; v < side * side; ++v) {
-      // The normals look upwards, as an author might have bent them.
+      // The normals point upwards, tilted as if an author had edited them.
       const double x = uniform(-0.3, 0.3), y = uniform(-0.3, 0.3), length = std::sqrt(x * x + y * y + 1);
       for (const double c : {x, y, 1.0}) normals.push_back(static_cast<float>(c / length));
     }
@@ -96,7 +96,7 @@ class Hills {
   [[nodiscard]] std::size_t below(std::size_t count) {
     return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_);
   }
-  /// Draws random deltas for a share of the rows.
+  /// Draws random deltas for a share of the vertices.
   [[nodiscard]] std::vector<float> deltas(double share = 1, double size = 0.4) {
     std::vector<float> result(positions.size());
     const auto rows = static_cast<std::size_t>(std::ceil(share * static_cast<double>(side_)));
@@ -132,14 +132,14 @@ class Hills {
   return builder;
 }
 
-/// Makes the same hills with an animation that has no track yet.
+/// Makes the same hills with an empty animation.
 [[nodiscard]] inline GltfBuilder hills_document(std::size_t targets, unsigned seed = 1) {
   GltfBuilder builder = still_hills_document(targets, seed);
   builder.add_animation("move");
   return builder;
 }
 
-/// Gives the document normal deltas with large errors at every weight but 0, so that any bake improves it.
+/// Gives the document normal deltas with large errors at every weight except 0, so that any bake improves it.
 [[nodiscard]] inline GltfBuilder with_misleading_normals(GltfBuilder builder) {
   for (auto& mesh : builder.json["meshes"]) {
     for (auto& primitive : mesh["primitives"]) {
@@ -153,7 +153,7 @@ class Hills {
   return builder;
 }
 
-/// Returns the error of a track at 101 times.
+/// Returns the errors of a track at 101 times.
 [[nodiscard]] inline ShownError track_error(const Baked& baked, std::size_t animation = 0, std::size_t channel = 0) {
   const auto& target = baked.before->json["animations"][animation]["channels"][channel]["target"];
   const std::size_t mesh = baked.before->json["nodes"][target["node"].get<std::size_t>()]["mesh"];

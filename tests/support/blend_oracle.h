@@ -1,5 +1,5 @@
-/// Blend shapes for tests, and their normals from blended positions by a way of its own: the vector area of a polygon
-/// as the sum of p_i x p_{i+1}, never over a fan and never from a term, in rationals or in long double.
+/// Blend shapes for tests, and an independent computation of their normals from blended positions: the vector area of a
+/// polygon as the sum of p_i x p_{i+1}, in rationals or in long double, without fans and without terms.
 #ifndef CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
 
@@ -21,15 +21,15 @@
 namespace chronormal::test {
 
 struct BlendShapeOptions {
-  std::size_t cells = 6;  ///< a bumpy sheet of cells x cells quads, of which some are cut into triangles
+  std::size_t cells = 6;  ///< a bumpy sheet of cells x cells quads, some of which are cut into triangles
   std::size_t targets = 5;
-  double reach = 0.35;  ///< radius of each target around a random point, in edges of the sheet, which is 2 wide
+  double reach = 0.35;  ///< radius of each target around a random point; the sheet is 2 wide
   double size = 0.3;    ///< size of the deltas
   double scale = 1;     ///< scale of everything
   double offset = 0;    ///< offset of the base, before scaling
 };
 
-/// Makes a sheet whose targets each move the vertices around a point; some move none at all.
+/// Makes a sheet with targets that each move the vertices around a point; some move no vertex.
 [[nodiscard]] inline BlendSet random_blend_set(std::uint64_t seed, const BlendShapeOptions& options = {}) {
   fixtures::Random random(seed);
   const std::size_t cells = options.cells;
@@ -62,7 +62,7 @@ struct BlendShapeOptions {
       offsets.push_back(static_cast<std::uint32_t>(corners.size()));
     }
   }
-  // One vertex has no faces.
+  // One vertex belongs to no face.
   put(set.base, {0, 0, 5});
   set.topology = fixtures::make_polygons(points.size() + 1, std::move(offsets), std::move(corners));
   for (std::size_t k = 0; k < options.targets; ++k) {
@@ -79,7 +79,7 @@ struct BlendShapeOptions {
   return set;
 }
 
-/// Draws weights in [-1, 2], 0 for all but `active` targets.
+/// Draws weights in [-1, 2] for `active` targets; all other weights are 0.
 [[nodiscard]] inline std::vector<double> random_weights(std::uint64_t seed, std::size_t targets, std::size_t active) {
   fixtures::Random random(seed);
   std::vector<double> weights(targets);
@@ -92,7 +92,7 @@ struct BlendShapeOptions {
   return weights;
 }
 
-/// Returns the faces around each element; without groups, each face is an element.
+/// Returns the faces around each element. Without groups, each face is an element.
 [[nodiscard]] inline std::vector<std::vector<std::uint32_t>> faces_of_elements(const BlendSet& set,
                                                                                const NormalGroups* groups) {
   std::vector<std::vector<std::uint32_t>> result;
@@ -109,7 +109,7 @@ struct BlendShapeOptions {
   return NormalGroups::of_vertices(set.topology, separate_points(set.topology.vertex_count()));
 }
 
-/// Returns B(p, q) of a face, where p and q give a vector for each vertex; n = B(p, p).
+/// Returns the bilinear form B(p, q) of a face, where p and q give a vector for each vertex; n = B(p, p).
 template <class P, class Q>
 [[nodiscard]] exact::Vector exact_form(std::span<const std::uint32_t> face, const P& p, const Q& q) {
   exact::Vector sum{0, 0, 0};
@@ -160,7 +160,7 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// Does the same in long double, about a corner of each face, for sets that are too large for rationals.
+/// Computes the same normals in long double, about a corner of each face, for sets that are too large for rationals.
 [[nodiscard]] inline std::vector<reference::Vector> real_normals(const BlendSet& set, const NormalGroups* groups,
                                                                  std::span<const double> weights) {
   std::vector<reference::Vector> positions;
@@ -192,7 +192,7 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// Tells which elements have a face with a corner that an active target moves.
+/// Tells for each element whether an active target moves a corner of one of its faces.
 [[nodiscard]] inline std::vector<bool> touched_elements(const BlendSet& set, const NormalGroups* groups,
                                                         std::span<const double> weights) {
   std::set<std::uint32_t> moved;

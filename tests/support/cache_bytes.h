@@ -1,4 +1,4 @@
-/// Makes point caches, MD2 models, arrays and zip files byte by byte, independent of the writers.
+/// Makes point caches, MD2 models, arrays and zip files byte by byte, without using the writers.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CACHE_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_CACHE_BYTES_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::test {
 
-/// Three vertices at two times, (1, 3, 3) each: a triangle that turns.
+/// Positions of three vertices at two times, (1, 3, 3) each: a triangle that turns.
 inline const std::vector<float> kTurning[2] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 1, 0, 0, 0, 1.5F}};
 
 /// Returns the same triangle as a motion.
@@ -65,7 +65,7 @@ class MayaWriter {
  public:
   explicit MayaWriter(bool wide) : wide_(wide) {}
 
-  /// Returns a chunk, which is padded unless it is a group.
+  /// Returns a chunk, padded unless it is a group.
   [[nodiscard]] std::string chunk(const std::string& tag, const std::string& content, bool is_group = false) const {
     ByteWriter writer(tag, true);
     if (wide_) {
@@ -87,7 +87,7 @@ class MayaWriter {
   [[nodiscard]] std::string header(std::int32_t start) const {
     return group("CACH", chunk("VRSN", std::string("0.1\0", 4)) + integer("STIM", start) + integer("ETIM", start));
   }
-  /// Returns the three chunks of one channel.
+  /// Returns the three chunks of a channel.
   template <class Real, class Given = float>
   [[nodiscard]] std::string points(const std::string& channel, const std::vector<Given>& positions) const {
     ByteWriter writer("", true);
@@ -100,7 +100,7 @@ class MayaWriter {
   bool wide_;
 };
 
-/// Makes a cache of two times (250 and 375 ticks) and the channels "other" (1 point) and "body" (3 points).
+/// Makes a cache with two times (250 and 375 ticks) and the channels "other" (1 point) and "body" (3 points).
 template <class Real>
 [[nodiscard]] std::string small_maya(bool wide) {
   const MayaWriter writer(wide);
@@ -123,7 +123,7 @@ template <class Real>
          "\n</Channels>\n</Autodesk_Cache_File>\n";
 }
 
-/// Makes an array with the given header, whose length has 16 bits in version 1 and 32 bits otherwise.
+/// Makes an array with the given header; the length of the header has 16 bits in version 1 and 32 bits otherwise.
 [[nodiscard]] inline std::string npy(const std::string& header, const std::string& data, std::uint8_t version = 1) {
   ByteWriter writer("\x93NUMPY", false);
   writer.add(version).add(std::uint8_t{0});
@@ -161,7 +161,7 @@ struct ZipMember {
   std::string name;
   std::string bytes;
   bool is_deflated = false;
-  bool has_zip64_header = false;  ///< in its own header only, as np.savez writes it
+  bool has_zip64_header = false;  ///< only in the member's own header, as np.savez does
   std::uint32_t flags = 0;
 };
 
@@ -212,7 +212,7 @@ struct ZipMember {
     file += data;
     ByteWriter entry(fields("PK\1\2", true, false), false);
     entry.add(std::uint16_t{0}).add(std::uint16_t{0}).add(std::uint16_t{0}).add(std::uint32_t{0}).add(offset);
-    directory += entry.bytes() + member.name + std::string("\x55\x58\1\0x", 5);  // with a field that nobody knows
+    directory += entry.bytes() + member.name + std::string("\x55\x58\1\0x", 5);  // with an unknown extra field
   }
   ByteWriter end(file + directory + "PK\5\6", false);
   end.add(std::uint32_t{0});
@@ -222,7 +222,7 @@ struct ZipMember {
   return end.bytes() + comment;
 }
 
-/// Makes a motion with all arrays, each in another form.
+/// Makes a motion with all arrays, each of a different type.
 [[nodiscard]] inline std::string small_npz(bool is_deflated) {
   return zip({{"positions.npy", npy(npy_header("<f4", "(2, 3, 3)"), raw(turning_elements<float>(false))), is_deflated},
               {"other.npy", npy("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': ()}", "abcd")},

@@ -22,13 +22,13 @@
 #define CHRONORMAL_SANITIZED
 #endif
 
-// This function exists only if the compiler instruments the code for coverage (CHRONORMAL_COVERAGE).
+// This function exists only if the compiler adds coverage counters (CHRONORMAL_COVERAGE).
 extern "C" __attribute__((weak)) int __llvm_profile_write_file(void);
 
 namespace chronormal::test {
 namespace {
 
-// Resets the largest resident memory so far, so that the peak of the parent does not count.
+// Resets the peak of resident memory, so that the parent's peak does not count.
 void forget_peak() { std::ofstream("/proc/self/clear_refs") << 5; }
 
 std::size_t peak_bytes() {
@@ -48,8 +48,8 @@ void limit_address_space(std::size_t growth) {
   setrlimit(RLIMIT_AS, &limit);
 }
 
-// Takes the large pieces of the heap that the parent has freed, and makes the system serve all later large memory.
-// Otherwise the child would fill those pieces, and keep their pages when it frees them.
+// Allocates the large pieces of the heap that the parent has freed, and makes the system serve all later large
+// allocations. Otherwise the child would use those pieces, and keep their pages after freeing them.
 void take_free_pieces() {
   constexpr std::size_t kLarge = std::size_t{1} << 16;
   mallopt(M_MMAP_THRESHOLD, kLarge);
@@ -57,7 +57,7 @@ void take_free_pieces() {
     for (;;) {
       const std::size_t from_system = mallinfo2().hblks;
       void* const piece = std::malloc(size);
-      if (mallinfo2().hblks == from_system && piece != nullptr) continue;  // it is kept
+      if (mallinfo2().hblks == from_system && piece != nullptr) continue;  // keeps the piece allocated
       std::free(piece);
       break;
     }
@@ -72,10 +72,11 @@ void write_all(int file, const std::string& text) {
   }
 }
 
-// Writes the growth as text, a mark, and the text of the work to the pipe.
+// Writes the growth as text, a separator, and the text of the work to the pipe.
 [[noreturn]] void work_and_exit(int out, unsigned most_seconds, const std::function<std::string()>& work,
                                 const std::function<void()>& prepare) {
-  constexpr unsigned kWaits = 20;  // times that long for what waits, or for other processes
+  // Limit of elapsed time, as a multiple of the processor time, for waiting and for other processes.
+  constexpr unsigned kWaits = 20;
   const rlimit limit{most_seconds, most_seconds};
   setrlimit(RLIMIT_CPU, &limit);
   alarm(kWaits * most_seconds);
@@ -94,7 +95,8 @@ void write_all(int file, const std::string& text) {
     code = 1;
   }
   write_all(out, std::to_string(peak_bytes() - start) + "\n" + text);
-  if (__llvm_profile_write_file != nullptr) (void)__llvm_profile_write_file();  // _exit() would lose what was counted
+  // _exit() would lose the coverage counters.
+  if (__llvm_profile_write_file != nullptr) (void)__llvm_profile_write_file();
   _exit(code);
 }
 

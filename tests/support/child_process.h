@@ -1,4 +1,4 @@
-/// Runs a part of a test in a process of its own, so that its cost can be measured and it cannot break the test
+/// Runs a part of a test in a child process, so that its cost can be measured, and so that it cannot crash the test
 /// program.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CHILD_PROCESS_H_
 #define CHRONORMAL_TESTS_SUPPORT_CHILD_PROCESS_H_
@@ -11,17 +11,17 @@ namespace chronormal::test {
 
 struct ChildRun {
   bool finished = false;        ///< false if it crashed, was killed, or threw
-  std::string text;             ///< result of the work, or why it did not finish
+  std::string text;             ///< result of the work, or the reason why it did not finish
   double seconds = 0;           ///< processor time
-  std::size_t peak_growth = 0;  ///< bytes of resident memory at the peak, above those at the start
+  std::size_t peak_growth = 0;  ///< bytes of resident memory at the peak, minus those at the start
 };
 
-/// Tells whether a sanitizer is active, under which memory is more than the program itself takes.
+/// Tells whether a sanitizer is active, which needs additional memory.
 [[nodiscard]] bool is_sanitized();
 
-/// Does the work in a forked process, which is stopped after most_seconds of processor time and, except under a
-/// sanitizer, may not take a GiB of address space more than at its start. `prepare` runs before that in the same
-/// process: the memory that it brings in, such as the program's own pages, does not count as growth.
+/// Does the work in a forked process, which is stopped after most_seconds of processor time. Except under a sanitizer,
+/// its address space may grow by at most a GiB. `prepare` runs first in the same process: the memory that it touches,
+/// such as the program's own pages, does not count as growth.
 [[nodiscard]] ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work,
                                     const std::function<void()>& prepare = {});
 

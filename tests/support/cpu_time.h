@@ -1,5 +1,5 @@
-/// Measures the processor time of this process, which a test may limit because other work on the machine does not
-/// count.
+/// Measures the processor time of this process. Tests can limit it, since other programs on the machine do not affect
+/// it.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 #define CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::test {
 
-/// Returns the processor seconds of all threads, and of the system on their behalf.
+/// Returns the processor seconds of all threads, in the program and in the system.
 [[nodiscard]] inline double cpu_seconds(const rusage& usage) {
   const auto seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -22,7 +22,7 @@ namespace chronormal::test {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// A clock that starts when it is made. Processes that were started since then count once they have ended.
+/// A clock of processor time that starts when it is made. Child processes count once they have ended.
 class CpuClock {
  public:
   [[nodiscard]] double seconds() const { return now() - start_; }
@@ -37,9 +37,9 @@ class CpuClock {
   double start_ = now();
 };
 
-/// Expects that `many()` takes at most `limit` times as long as `few()` plus `once` seconds. Both run in turn until
-/// this holds for the least time of each, at most ten times: a busy machine only ever adds time, and work that grows
-/// faster fails all ten. Does nothing under sanitizers, whose own work grows in other ways.
+/// Expects that `many()` takes at most `limit` times as long as `few()`, plus `once` seconds. Runs both in turn, at
+/// most ten times, until this holds for the shortest times: a busy machine can only add time, and work that grows
+/// faster fails all ten times. Does nothing under sanitizers, whose additional work grows differently.
 template <class Few, class Many>
 void expect_growth(double limit, double once, const Few& few, const Many& many) {
   if (is_sanitized()) return;

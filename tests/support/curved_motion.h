@@ -1,5 +1,5 @@
 /// A sequence of keyframes whose vertices turn, swell and wander, and the positions of these vertices on curves through
-/// the keyframes, by the formulas of textbooks. It shares no code with the product.
+/// the keyframes, by textbook formulas. This file shares no code with the product.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CURVED_MOTION_H_
 #define CHRONORMAL_TESTS_SUPPORT_CURVED_MOTION_H_
 
@@ -14,7 +14,8 @@
 
 namespace chronormal::test {
 
-/// Makes a round body with bumps, of more than one block of elements, that turns by `angle` over the time from 0 to 1.
+/// Makes a round body with bumps that turns by `angle` over the time from 0 to 1. It has more than one block of
+/// elements.
 [[nodiscard]] inline Motion curved_motion(const std::vector<double>& times, double angle, std::size_t around = 48,
                                           std::size_t up = 24) {
   constexpr double kPi = 3.14159265358979323846;
@@ -48,9 +49,9 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Returns the positions (V, 3) of all vertices on the cubic from keyframe s to s + 1 at local t. The velocities are
-/// those of the keyframes if `given`. Otherwise each comes from the parabola through a keyframe and its neighbours, and
-/// at both ends from the cubic through the nearest four keyframes, or through all if there are fewer.
+/// Returns the positions (V, 3) of all vertices on the cubic from keyframe s to s + 1 at local t. If `given`, the
+/// keyframes have the velocities. Otherwise a velocity is the slope of the parabola through a keyframe and its
+/// neighbours, and at both ends of the cubic through the nearest four keyframes, or through all if there are fewer.
 [[nodiscard]] inline std::vector<long double> on_curve(const Motion& motion, std::size_t s, long double t,
                                                        bool given = false) {
   const auto& keys = motion.keyframes;
@@ -60,7 +61,7 @@ namespace chronormal::test {
     const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, keys.size()), first = k == 0   ? 0
                                                                                          : is_end ? keys.size() - used
                                                                                                   : k - 1;
-    // Newton's divided differences are differentiated at the time of k.
+    // Newton's divided differences are differentiated at the time of keyframe k.
     std::vector<long double> x, f;
     for (std::size_t i = 0; i < used; ++i) {
       x.push_back(keys[first + i].time);

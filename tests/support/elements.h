@@ -1,4 +1,4 @@
-/// Shared by the tests of vertices and corners: motions in the form of the oracle, and shuffled and moved meshes.
+/// Functions for tests of vertices and corners: motions in the form of the oracle, and shuffled and moved meshes.
 #ifndef CHRONORMAL_TESTS_SUPPORT_ELEMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_ELEMENTS_H_
 
@@ -33,7 +33,7 @@ namespace chronormal::test {
   return mesh;
 }
 
-/// Returns the corners of every element for the oracle. Both number corners face after face.
+/// Returns the corners of every element for the oracle. Groups and oracle both number corners face by face.
 [[nodiscard]] inline std::vector<std::vector<reference::Corner>> reference_corners(const reference::Mesh& mesh,
                                                                                    const NormalGroups& groups) {
   const auto all = reference::corners_of(mesh);
@@ -44,7 +44,7 @@ namespace chronormal::test {
   return result;
 }
 
-/// Returns the same motion over polygons with the faces in the given order.
+/// Returns the same motion, as polygons, with the faces in the given order.
 [[nodiscard]] inline Motion with_faces_in_order(const Motion& motion, const std::vector<std::size_t>& order) {
   std::vector<std::uint32_t> offsets = {0}, corners;
   for (const std::size_t f : order) {
@@ -65,7 +65,7 @@ namespace chronormal::test {
   return order;
 }
 
-/// Returns the same motion with every position changed, in the same way in each keyframe.
+/// Returns the same motion with all positions changed by a function.
 [[nodiscard]] inline Motion with_positions(Motion motion,
                                            const std::function<fixtures::Point(const fixtures::Point&)>& change) {
   for (Motion::Keyframe& keyframe : motion.keyframes) {
@@ -78,7 +78,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Returns the same surface with a vertex for each corner, so that every edge is a seam.
+/// Returns the same surface with a separate vertex for each corner, so that every edge is a seam.
 [[nodiscard]] inline Motion torn(const Motion& motion) {
   Motion result = motion;
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -100,7 +100,7 @@ namespace chronormal::test {
   return result;
 }
 
-/// Makes a mesh that stands still.
+/// Makes a mesh that does not move.
 [[nodiscard]] inline Motion still(Topology topology, const std::vector<fixtures::Point>& points) {
   return fixtures::make_motion(std::move(topology), points, points);
 }

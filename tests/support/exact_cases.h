@@ -1,5 +1,5 @@
-/// Segments for tests that allow no wrong answer at all: hard motions, and small whole coordinates, which have every
-/// exact coincidence again and again.
+/// Segments for tests in which no answer may be wrong: hard motions, and small integer coordinates, for which exact
+/// coincidences are frequent.
 #ifndef CHRONORMAL_TESTS_SUPPORT_EXACT_CASES_H_
 #define CHRONORMAL_TESTS_SUPPORT_EXACT_CASES_H_
 
@@ -14,17 +14,17 @@
 
 namespace chronormal::test {
 
-/// Returns the number of requested cases: the value of CHRONORMAL_FULL_CASES, or else 100,000, or 10,000 under a
+/// Returns the number of cases to test: the value of CHRONORMAL_FULL_CASES, or else 100,000, or 10,000 under a
 /// sanitizer.
 [[nodiscard]] inline std::size_t wanted_cases() {
   const char* const full = std::getenv("CHRONORMAL_FULL_CASES");
   if (full != nullptr) return static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
   return is_sanitized() ? 10000 : 100000;
 }
-/// Returns the number of instants at which a case is tested: few, and 64 for one case in fifty.
+/// Returns the number of instants at which a case is tested: 64 for one case in fifty, and 3 for the others.
 [[nodiscard]] inline std::size_t wanted_times(Random& random) { return random.below(50) == 0 ? 64 : 3; }
 
-/// Makes a triangle with corners among -3 ... 3, which lie in a plane in half of the cases.
+/// Makes a triangle with integer coordinates from -3 to 3, which stays in a plane in half of the cases.
 [[nodiscard]] inline MovingTriangle on_a_lattice(Random& random) {
   MovingTriangle triangle;
   const bool is_flat = random.below(2) == 0;
@@ -46,8 +46,8 @@ namespace chronormal::test {
   return triangle;
 }
 
-/// Calls judge(segment, face, random), which describes a fault or returns "", on faces of all families until
-/// wanted_cases() / share are done. Returns the number of wrong answers, and prints a line for each family.
+/// Calls judge(segment, face, random), which describes a fault or returns "", on faces of all families for
+/// wanted_cases() / share cases. Returns the number of wrong answers, and prints a line for each family.
 template <class Judge>
 std::size_t judge_cases(std::uint64_t seed, const Judge& judge, std::size_t share = 1) {
   std::vector<HardMotions> families = hard_motions();

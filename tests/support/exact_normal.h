@@ -1,7 +1,7 @@
 /// Computes normals of moving triangles without any rounding, in rational numbers.
 ///
-/// Floats and doubles are rationals, and normals are polynomials in them, so n(t) and the control normals are rationals
-/// too. The only rounding is at the very end, when an angle becomes a double.
+/// Floats and doubles are rational numbers, and normals are polynomials of them, so n(t) and the control normals are
+/// rational, too. Only the final conversion of an angle to double rounds.
 #ifndef CHRONORMAL_TESTS_SUPPORT_EXACT_NORMAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_EXACT_NORMAL_H_
 
@@ -26,7 +26,7 @@ struct ControlNormals {
   Vector n0, m, n1;
 };
 
-/// Takes any three finite floats or doubles exactly. (Rationals have no NaN: GMP would divide by zero.)
+/// Converts three finite floats or doubles exactly. (Rationals have no NaN: GMP would divide by zero.)
 template <class S>
 [[nodiscard]] Vector vector(S x, S y, S z) {
   return {Rational(static_cast<double>(x)), Rational(static_cast<double>(y)), Rational(static_cast<double>(z))};
@@ -54,7 +54,7 @@ template <class S>
 
 [[nodiscard]] inline bool is_zero(const Vector& a) { return max_abs(a) == 0; }
 
-/// Returns n(t) by eq. 1 from the corners at t, which may be any rational.
+/// Returns n(t) by eq. 1 from the corners at t, which may be any rational number.
 [[nodiscard]] inline Vector normal_at(const Triangle& triangle, const Rational& time) {
   std::array<Vector, 3> corner;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -93,7 +93,8 @@ template <class SegmentOfMesh, class Faces>
   return sum;
 }
 
-/// Returns n0, m and n1, the last two without eq. 5: m makes the quadratic pass through the normal at t = 1/2.
+/// Returns n0, m and n1 without eq. 5: n0 and n1 are the normals at the ends, and m makes the quadratic pass through
+/// the normal at t = 1/2.
 [[nodiscard]] inline ControlNormals control_normals(const Triangle& triangle) {
   ControlNormals result{normal_at(triangle, 0.0), {}, normal_at(triangle, 1.0)};
   const Vector half = normal_at(triangle, 0.5);
@@ -114,9 +115,9 @@ template <class SegmentOfMesh, class Faces>
 /// Returns the exact a / b as a double, with one rounding. Precondition: b is not zero.
 [[nodiscard]] inline double ratio(const Rational& a, const Rational& b) { return Rational(a / b).get_d(); }
 
-/// Returns the angle in radians between a direction, taken to the last bit, and an exact vector. It is right to 1e-15
-/// relative, so that 1e-12 and 1e-13 differ: cross and dot product are exact, and both are divided exactly by the
-/// scales of the lengths before they become doubles. Returns NaN if either is zero, or the direction is not finite.
+/// Returns the angle in radians between a direction, exactly as stored, and an exact vector. Its relative error is
+/// 1e-15, so even tiny angles are precise: the cross and dot products are exact, and are divided exactly by the scales
+/// of the lengths before they are rounded to double. Returns NaN if either is zero, or the direction is not finite.
 template <class S>
 [[nodiscard]] double angle(S x, S y, S z, const Vector& exact) {
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return std::nan("");

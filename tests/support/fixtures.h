@@ -1,8 +1,8 @@
-/// Makes motions for tests from a seed, the same to the last bit on every compiler and standard library.
+/// Makes motions for tests from a seed, with the same bits for every compiler and standard library.
 ///
-/// Random numbers come straight from std::mt19937_64, whose output the standard prescribes, and never through a
-/// distribution, whose algorithm it does not. Coordinates that went through sin or cos are rounded to a grid that is
-/// far coarser than the differences between mathematics libraries.
+/// Random numbers come straight from std::mt19937_64, whose output the standard prescribes, and never from a
+/// distribution, whose algorithm the standard leaves open. Coordinates that went through sin or cos are rounded to a
+/// grid that is far coarser than the differences between mathematics libraries.
 #ifndef CHRONORMAL_TESTS_SUPPORT_FIXTURES_H_
 #define CHRONORMAL_TESTS_SUPPORT_FIXTURES_H_
 
@@ -38,14 +38,14 @@ class Random {
     return {x, y, uniform(-half_size, half_size)};
   }
 
-  /// Draws an integer below `bound`; not perfectly evenly, but well enough for tests.
+  /// Draws an integer below `bound`, almost uniformly, which is enough for tests.
   std::size_t below(std::size_t bound) { return static_cast<std::size_t>(engine_() % bound); }
 
  private:
   std::mt19937_64 engine_;
 };
 
-/// Makes a motion of one segment between two keyframes. Throws if the topology is broken, which no fixture is.
+/// Makes a motion of one segment between two keyframes. Throws if the topology is invalid.
 [[nodiscard]] inline Motion make_motion(Topology topology, const std::vector<Point>& from,
                                         const std::vector<Point>& to) {
   Motion motion;
@@ -76,15 +76,15 @@ class Random {
   return std::move(topology).value();
 }
 
-/// Makes triangles that share no vertices: 3 F vertices, face f has the corners 3 f, 3 f + 1, 3 f + 2.
+/// Makes triangles that share no vertices: of 3 F vertices, face f has the corners 3 f, 3 f + 1 and 3 f + 2.
 [[nodiscard]] inline Topology make_soup(std::size_t face_count) {
   std::vector<std::uint32_t> corners(3 * face_count);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
   return make_triangles(3 * face_count, std::move(corners));
 }
 
-/// Makes a sheet of 2 x cells x cells triangles that twists, bends and waves: normals turn by up to about a right
-/// angle, and every face moves. cells = 32 gives 2,048 faces.
+/// Makes a sheet of 2 x cells x cells triangles that twists, bends and waves: normals turn by up to about 90 degrees,
+/// and every face moves. cells = 32 gives 2,048 faces.
 [[nodiscard]] inline Motion smooth_morph(std::size_t cells = 32) {
   const auto snapped = [](Point p) {
     for (double& c : p) c = std::nearbyint(c * 0x1p20) * 0x1p-20;
@@ -121,10 +121,11 @@ class Random {
 struct SoupOptions {
   std::size_t face_count = 1000;
   std::uint64_t seed = 1;
-  double size = 1;     ///< corners lie in a cube of this edge
-  double motion = -1;  ///< corners move by up to motion x size in each coordinate; negative: ends are independent
-  double offset = 0;   ///< in x, y and z, of both ends
-  double needle = 0;   ///< c is put on the line through a and b, this far beside it; 0: anywhere
+  double size = 1;  ///< corners are in a cube with this edge length
+  /// Corners move by up to motion x size in each coordinate; if negative, both ends are independent.
+  double motion = -1;
+  double offset = 0;  ///< added to x, y and z at both ends
+  double needle = 0;  ///< distance of c from the line through a and b; if 0, c is anywhere
 };
 
 /// Makes random triangles that share no vertices.
@@ -164,7 +165,7 @@ struct SoupOptions {
   return make_motion(make_soup(options.face_count), from, to);
 }
 
-/// Makes independent triangles at both ends, the largest possible motion.
+/// Makes triangles that are independent at both ends, which is the largest possible motion.
 [[nodiscard]] inline Motion large_soup(std::size_t face_count = 1000, std::uint64_t seed = 1) {
   return soup({.face_count = face_count, .seed = seed});
 }
@@ -174,7 +175,7 @@ struct SoupOptions {
   return soup({.face_count = face_count, .seed = seed, .motion = 0.2});
 }
 
-/// Makes triangles that are 1e-4 of their length wide, at both ends.
+/// Makes triangles whose width is 1e-4 of their length, at both ends.
 [[nodiscard]] inline Motion needle_soup(std::size_t face_count = 1000, std::uint64_t seed = 3) {
   return soup({.face_count = face_count, .seed = seed, .needle = 1e-4});
 }
@@ -187,13 +188,13 @@ struct SoupOptions {
   return soup({.face_count = face_count, .seed = seed, .size = 1e6});
 }
 
-/// Makes edges around 1 at coordinates around 10,000, where neighbouring floats are a thousandth apart.
+/// Makes edges of length about 1 at coordinates around 10,000, where neighbouring floats differ by a thousandth.
 [[nodiscard]] inline Motion far_soup(std::size_t face_count = 1000, std::uint64_t seed = 6) {
   return soup({.face_count = face_count, .seed = seed, .offset = 1e4});
 }
 
-/// Makes triangles whose normal nearly vanishes on the way: c passes the line through a and b as closely as `gap` times
-/// the size, at a different time for each face.
+/// Makes triangles whose normal nearly vanishes in between: c passes the line through a and b at a distance of `gap`
+/// times the size, at a different time for each face.
 [[nodiscard]] inline Motion collapsing_soup(double gap, std::size_t face_count = 1000, std::uint64_t seed = 7) {
   Random random(seed);
   std::vector<Point> from, to;
@@ -217,8 +218,8 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Makes triangles that move by every order of magnitude from 1e-9 to 1 of their size, so that their normals have every
-/// degree, and coefficients of every size.
+/// Makes triangles that move by all orders of magnitude from 1e-9 to 1 times their size, so that normals have all
+/// degrees, with coefficients of all magnitudes.
 [[nodiscard]] inline Motion graded_soup(std::size_t face_count = 1000, std::uint64_t seed = 10) {
   Random random(seed);
   std::vector<Point> from, to;
@@ -226,7 +227,7 @@ struct SoupOptions {
     const auto place = static_cast<double>(f) / static_cast<double>(face_count);
     const double step = std::ldexp(1.0, -static_cast<int>(30 * place));
     for (int corner = 0; corner < 3; ++corner) {
-      // Close to the origin, floats are dense enough to tell small steps from none.
+      // Close to the origin, floats are dense enough to represent small steps.
       const Point start = random.in_cube(0.5), by = random.in_cube(0.5);
       from.push_back(start);
       to.push_back({start[0] + step * by[0], start[1] + step * by[1], start[2] + step * by[2]});
@@ -236,14 +237,14 @@ struct SoupOptions {
 }
 
 /// Makes needles as thin as coordinates of 20 bits allow: two edges of about 2^20 each with integer coordinates that
-/// span an area of 1 in one of the coordinate planes. They lie in that plane if in_plane, and otherwise anywhere across
-/// it.
+/// span an area of 1 in one of the coordinate planes. The triangles are in that plane if in_plane, and otherwise tilted
+/// against it.
 [[nodiscard]] inline Motion thinnest_soup(bool in_plane, std::size_t face_count = 1000, std::uint64_t seed = 13) {
   Random random(seed);
   const auto some = [&random] { return static_cast<std::int64_t>((1U << 19U) + random.below(1U << 19U)); };
   const auto append = [&](std::vector<Point>& points, std::size_t axis) {
     std::int64_t p = 0, q = 0, r = 0, s = 0;
-    for (std::int64_t divisor = 0; divisor != 1;) {  // p s - q r = 1 by Euclid's algorithm, for p and q without divisor
+    for (std::int64_t divisor = 0; divisor != 1;) {  // Euclid's algorithm gives p s - q r = 1 for coprime p and q
       p = some();
       q = some();
       std::int64_t a = p, b = q, ar = 1, as = 0, br = 0, bs = 1;  // a = ar p + as q, b = br p + bs q
@@ -273,7 +274,8 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Makes triangles that end as their own mirror image, b and c swapped: antipodal ends, and no normal half way through.
+/// Makes triangles that end as their own mirror image, with b and c swapped: the end normals are opposite, and in the
+/// middle there is no normal.
 [[nodiscard]] inline Motion inside_out_soup(std::size_t face_count = 1000, std::uint64_t seed = 8) {
   Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
   auto& to = motion.keyframes[1].positions;
@@ -283,7 +285,7 @@ struct SoupOptions {
   return motion;
 }
 
-/// Makes triangles that shrink to a point and grow out of it again, inside out twice: n(t) = (1 - 2 t)^2 n0.
+/// Makes triangles that shrink to a point and grow out of it as their point reflection: n(t) = (1 - 2 t)^2 n0.
 [[nodiscard]] inline Motion point_reflected_soup(std::size_t face_count = 1000, std::uint64_t seed = 14) {
   Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
   for (float& c : motion.keyframes[1].positions) c = -c;
@@ -293,13 +295,14 @@ struct SoupOptions {
 /// The shape of the corners of degenerate_soup() at one end.
 enum class Shape { kTriangle, kLine, kPoint };
 
-/// Makes triangles that start and end as given. On a line they have exactly no normal, since coordinates are small
-/// integers; from line to line they do have one in between.
+/// Makes triangles that start and end with the given shapes. A line has exactly no normal, since coordinates are small
+/// integers; a motion from line to line has normals in between.
 [[nodiscard]] inline Motion degenerate_soup(Shape start, Shape end, std::size_t face_count = 200,
                                             std::uint64_t seed = 9) {
   Random random(seed);
   const auto coordinate = [&random] { return static_cast<double>(random.below(2001)) - 1000; };
-  // On a line, c divides a b in the ratio `along`. If it were the same at both ends, the corners would stay on a line.
+  // On a line, c divides a b in the ratio `along`. If the ratio were equal at both ends, the corners would always be on
+  // a line.
   const auto append = [&](std::vector<Point>& points, Shape shape, double along) {
     std::array<Point, 3> corners{};
     for (Point& corner : corners) {
@@ -319,13 +322,13 @@ enum class Shape { kTriangle, kLine, kPoint };
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// A closed mesh: its points on the unit sphere, and its faces.
+/// A closed mesh: points on the unit sphere, and faces.
 struct ClosedMesh {
   std::vector<Point> points;
   Topology topology;
 };
 
-/// Makes a sphere of 20 x 4^subdivisions triangles, which is not round to the last bit.
+/// Makes a sphere of 20 x 4^subdivisions triangles, round up to rounding.
 [[nodiscard]] inline ClosedMesh icosphere(int subdivisions = 2) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   std::vector<Point> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
@@ -385,7 +388,7 @@ struct ClosedMesh {
             quad[c][u] = i + (c == 1 || c == 2 ? 1 : 0);
             quad[c][v] = j + (c >= 2 ? 1 : 0);
           }
-          if (side == 0) std::swap(quad[1], quad[3]);  // outwards on both sides
+          if (side == 0) std::swap(quad[1], quad[3]);  // makes the faces of both opposite sides point outwards
           for (const auto& corner : quad) corners.push_back(vertex(corner));
           offsets.push_back(static_cast<std::uint32_t>(corners.size()));
         }

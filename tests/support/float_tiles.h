@@ -1,4 +1,4 @@
-/// Checks the promises of tiles that were made in float32 against control normals in double.
+/// Checks the error bounds of tiles that were computed in float32 against control normals in double.
 #ifndef CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 #define CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 
@@ -19,8 +19,8 @@
 
 namespace chronormal::test {
 
-/// Gives the motion another end, so that normals are of degree 1 or 0: each point moves along z; all move alike; they
-/// grow along x; or nothing moves.
+/// Changes the end of the motion so that normals have degree 1 or 0, by kind: each point moves along z; all move alike;
+/// they grow along x; nothing moves.
 [[nodiscard]] inline Motion of_low_degree(Motion motion, int kind) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -31,7 +31,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Gives the motion another end: every coordinate goes a share of its way, plus a little of its own.
+/// Changes the end of the motion: every coordinate moves by a share of its way, plus a small random amount.
 [[nodiscard]] inline Motion of_small_steps(Motion motion, double share, fixtures::Random& random) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -46,12 +46,12 @@ struct FloatTileFaults {
   std::size_t bending = 0;           ///< elements with a stated degree of 2
   std::size_t straight = 0;          ///< elements with a lower stated degree
   double largest_share = 0;          ///< largest error divided by its bound
-  double largest_share_of_line = 0;  ///< likewise for lines that stand for curves
+  double largest_share_of_line = 0;  ///< likewise for curves that are stored as lines
   double largest_bound = 0;          ///< relative to the absolute products
   std::string fault;
 
-  /// Checks one element. `right` are its control normals, `products` is at least the sum of the absolute products in
-  /// any of their components, and `count` is the number of cross products in the sum.
+  /// Checks one element. `right` has its control normals, `products` is at least the sum of the absolute products in
+  /// each component, and `count` is the number of cross products in the sum.
   void look_at(const ControlTile& tile, std::size_t lane, const ControlNormals& right, double products,
                std::size_t count) {
     const std::string place = "element " + std::to_string(elements++);
@@ -65,8 +65,7 @@ struct FloatTileFaults {
       for (const double component : {v.x, v.y, v.z}) {
         const double off = std::fabs(double{tile.normals[k++][lane]} - component);
         if (off > 0 && in_range) largest_share = std::max(largest_share, off / bound);
-        // An error that underflows is too small to matter for any curve. NaN exceeds a bound, unless the bound is
-        // infinite.
+        // An error that underflows is too small to matter. NaN exceeds every bound except an infinite one.
         if (!(off <= bound + 0x1p-140) && bound <= std::numeric_limits<float>::max())
           fault = place + " is off by " + std::to_string(off / bound) + " of its bound";
       }
@@ -85,8 +84,8 @@ struct FloatTileFaults {
   }
 
  private:
-  /// Returns the largest distance from n(t) of a curve without m, which is the line between the ends or n0 alone, as a
-  /// share of the bound.
+  /// Returns the largest distance between n(t) and the curve without m (the line between the ends, or n0 alone),
+  /// divided by the bound.
   [[nodiscard]] static double share_of_line(const ControlTile& tile, std::size_t lane, const ControlNormals& right) {
     const double n0[3] = {right.n0.x, right.n0.y, right.n0.z}, m[3] = {right.m.x, right.m.y, right.m.z},
                  n1[3] = {right.n1.x, right.n1.y, right.n1.z};
@@ -104,8 +103,8 @@ struct FloatTileFaults {
   }
 };
 
-/// Checks that elements that hardly move are kept as lines, or as one normal, and that the stated error of a tile
-/// includes this. look(seen, motion) checks the tiles of a motion.
+/// Checks that elements that hardly move are stored as lines or as single normals, and that the stated error of a tile
+/// includes the difference. look(seen, motion) checks the tiles of a motion.
 template <class Look>
 void expect_lines_within_their_errors(const Motion& motion, const Look& look) {
   constexpr std::uint64_t kSeed = 20261126;

@@ -1,4 +1,4 @@
-/// Takes GLB files that an edit wrote apart, without the reader.
+/// Splits GLB files that an edit wrote into their parts, without the reader.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 
@@ -15,7 +15,7 @@
 namespace chronormal::test {
 
 struct GlbParts {
-  std::string json, bin, rest;  ///< contents of chunks; rest: further chunks with their headers
+  std::string json, bin, rest;  ///< contents of the chunks; `rest` has further chunks with their headers
 };
 
 [[nodiscard]] inline GlbParts take_apart(const std::string& bytes) {
@@ -41,7 +41,7 @@ struct GlbParts {
   return result;
 }
 
-/// Returns the bytes that an edit would write, or the text of its error.
+/// Returns the bytes that an edit writes, or the text of its error.
 [[nodiscard]] inline std::string bytes_or_error(const GltfEdit& edit, const std::string& path = "") {
   const Result<std::string> bytes = edit.bytes(path);
   return bytes ? bytes.value() : bytes.error().text();

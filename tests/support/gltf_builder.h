@@ -1,4 +1,4 @@
-/// Makes glTF files in memory, piece by piece, independent of the reader. A quad with one target:
+/// Makes glTF files in memory, piece by piece, without using the reader. A quad with one target:
 ///
 ///     GltfBuilder builder;
 ///     const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
@@ -7,7 +7,7 @@
 ///                                                               {{{"POSITION", lift}}}));
 ///     builder.glb();
 ///
-/// Tests reach everything else through json and buffer, which are public, and break them as they like.
+/// Tests change everything else through the public members json and buffer, also to make invalid files.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_BUILDER_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_BUILDER_H_
 
@@ -26,7 +26,7 @@
 
 namespace chronormal::test {
 
-/// Returns the bytes of values as they are in memory (little endian, like all machines of the tests).
+/// Returns the bytes of values as they are in memory (little endian, on all machines that run the tests).
 template <class T>
 [[nodiscard]] std::string bytes_of(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');
@@ -46,7 +46,7 @@ template <class T>
   return text;
 }
 
-/// Makes a GLB file of these chunks, with the required padding. Without bin there is no second chunk.
+/// Makes a GLB file of these chunks, with the required padding. Without `bin` there is no second chunk.
 [[nodiscard]] inline std::string glb_bytes(std::string json, std::optional<std::string> bin) {
   const auto word = [](std::size_t value) {
     return bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)});
@@ -76,7 +76,7 @@ class GltfBuilder {
     return add("bufferViews", std::move(view));
   }
 
-  /// Adds an accessor over a view of its own, tightly packed.
+  /// Adds an accessor with its own view, tightly packed.
   template <class T>
   std::size_t add_accessor(const char* type, const std::vector<T>& values, bool normalized = false) {
     return add_accessor_over(add_view(bytes_of(values)), type, component_type<T>(), values.size() / components(type),
@@ -94,7 +94,7 @@ class GltfBuilder {
   std::size_t add_indices(const std::vector<T>& values) {
     return add_accessor("SCALAR", values);
   }
-  /// Adds an accessor whose elements stand `stride` bytes apart; 0xEE fills the gaps.
+  /// Adds an accessor whose elements begin `stride` bytes apart; 0xEE fills the gaps.
   template <class T>
   std::size_t add_strided(const char* type, const std::vector<T>& values, std::size_t stride, bool normalized = false) {
     const std::size_t size = components(type) * sizeof(T), count = values.size() / components(type);
@@ -103,7 +103,7 @@ class GltfBuilder {
     for (std::size_t i = 0; i < count; ++i) bytes.replace(i * stride, size, packed, i * size, size);
     return add_accessor_over(add_view(bytes, stride), type, component_type<T>(), count, normalized);
   }
-  /// Gives an accessor (from add_accessor_over, with a view or without) elements that replace some of its own.
+  /// Replaces some elements of an accessor from add_accessor_over(), which may have a view or not, by sparse elements.
   template <class I, class T>
   void make_sparse(std::size_t accessor, const std::vector<I>& indices, const std::vector<T>& values) {
     const std::size_t index_view = add_view(bytes_of(indices)), value_view = add_view(bytes_of(values));
@@ -150,11 +150,11 @@ class GltfBuilder {
     target["channels"].push_back({{"sampler", sampler}, {"target", {{"node", node}, {"path", "weights"}}}});
   }
 
-  /// Returns the document with buffer 0 inside it, as base64.
+  /// Returns the document with buffer 0 embedded as base64.
   [[nodiscard]] std::string gltf() const {
     return gltf_with_uri("data:application/octet-stream;base64," + base64(buffer));
   }
-  /// Returns the document with buffer 0 elsewhere.
+  /// Returns the document with buffer 0 in another file.
   [[nodiscard]] std::string gltf_with_uri(const std::string& uri) const { return with_buffer(uri).dump(); }
   [[nodiscard]] std::string glb() const { return glb_bytes(with_buffer(std::nullopt).dump(), buffer); }
 
@@ -178,7 +178,7 @@ class GltfBuilder {
   [[nodiscard]] static std::size_t components(std::string_view type) {
     return type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
   }
-  // Further buffers stay if a test added them after a first placeholder.
+  // Further buffers that a test has added after a placeholder are kept.
   [[nodiscard]] Json with_buffer(const std::optional<std::string>& uri) const {
     Json document = json;
     if (buffer.empty()) return document;
@@ -190,8 +190,8 @@ class GltfBuilder {
   }
 };
 
-/// A document and the bytes that it reads from. It is read strictly by default, so that what would only be a note
-/// (gltf_notes_test.cpp) is an error here.
+/// A document and the bytes that it reads from. It is read strictly by default, so that notes (gltf_notes_test.cpp)
+/// become errors.
 class GltfFixture {
  public:
   explicit GltfFixture(std::string bytes, const std::optional<std::string>& folder = std::nullopt,
@@ -212,13 +212,13 @@ class GltfFixture {
   Result<GltfDocument> document_;
 };
 
-// A quad that is not planar, its triangles, and two targets; all numbers are exact in binary.
+// A non-planar quad, its triangles, and two targets. All numbers are exact in binary.
 inline const std::vector<float> kQuad = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5F};
 inline const std::vector<std::uint16_t> kQuadCorners = {0, 1, 2, 0, 2, 3};
 inline const std::vector<float> kLift = {0, 0, 1, 0, 0, -1, 0, 0, 2, 0.5F, 0, 0};
 inline const std::vector<float> kShift = {0.25F, 0, 0, 0, -0.5F, 0, 0, 0, 0, 0, 0.125F, 4};
 
-/// Makes the quad with its two targets as a mesh of a node. The accessors are 0 base, 1 corners, 2 and 3 targets.
+/// Makes the quad with its two targets as the mesh of a node. The accessors are: 0 base, 1 corners, 2 and 3 targets.
 [[nodiscard]] inline GltfBuilder quad_document() {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(kQuad), corners = builder.add_indices(kQuadCorners);

@@ -1,4 +1,4 @@
-/// Makes compressed pieces of glTF files with the encoders of meshoptimizer and Draco.
+/// Makes compressed parts of glTF files with the encoders of meshoptimizer and Draco.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_COMPRESSED_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_COMPRESSED_H_
 
@@ -21,7 +21,7 @@
 
 namespace chronormal::test {
 
-/// Encodes vertex data for EXT_meshopt_compression, mode ATTRIBUTES. stride is the bytes of an element.
+/// Encodes vertex data for EXT_meshopt_compression in mode ATTRIBUTES. `stride` is the number of bytes per element.
 [[nodiscard]] inline std::string meshopt_attributes(const std::string& bytes, std::size_t stride) {
   const std::size_t count = bytes.size() / stride;
   std::vector<unsigned char> coded(meshopt_encodeVertexBufferBound(count, stride));
@@ -30,7 +30,7 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// Encodes for mode TRIANGLES, which may rotate the corners of a triangle but keeps their order.
+/// Encodes triangles for mode TRIANGLES, which may rotate the corners of a triangle but keeps the order of triangles.
 [[nodiscard]] inline std::string meshopt_triangles(const std::vector<std::uint32_t>& corners, std::size_t vertices) {
   std::vector<unsigned char> coded(meshopt_encodeIndexBufferBound(corners.size(), vertices));
   meshopt_encodeIndexVersion(1);
@@ -38,7 +38,7 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// Encodes for mode INDICES.
+/// Encodes indices for mode INDICES.
 [[nodiscard]] inline std::string meshopt_indices(const std::vector<std::uint32_t>& indices, std::size_t vertices) {
   std::vector<unsigned char> coded(meshopt_encodeIndexSequenceBound(indices.size(), vertices));
   meshopt_encodeIndexVersion(1);
@@ -46,7 +46,8 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// Adds a view of `count` elements of `size` bytes that exist only compressed: buffer 1 is the fallback, without a URI.
+/// Adds a view of `count` elements of `size` bytes that exist only in compressed form. Buffer 1 is the fallback without
+/// a URI.
 inline std::size_t add_meshopt_view(GltfBuilder& builder, const std::string& coded, std::size_t count, std::size_t size,
                                     const char* mode, const char* filter = nullptr) {
   builder.buffer.resize((builder.buffer.size() + 3) / 4 * 4, '\0');
@@ -74,7 +75,7 @@ inline std::size_t add_meshopt_view(GltfBuilder& builder, const std::string& cod
   return builder.add("bufferViews", std::move(view));
 }
 
-/// Adds such a view of floats of an attribute, without a filter.
+/// Adds a compressed view of the floats of an attribute, without a filter.
 inline std::size_t add_meshopt_positions(GltfBuilder& builder, const std::vector<float>& positions) {
   const std::string coded = meshopt_attributes(bytes_of(positions), 12);
   const std::size_t count = positions.size() / 3;
@@ -84,7 +85,7 @@ inline std::size_t add_meshopt_positions(GltfBuilder& builder, const std::vector
 enum class DracoOrder {
   kKept,
   kFree
-};  ///< sequential encoding keeps vertices and faces in order, edgebreaker does not
+};  ///< sequential encoding keeps the order of vertices and faces, edgebreaker does not
 
 template <class T>
 [[nodiscard]] constexpr draco::DataType draco_type() {
@@ -95,14 +96,14 @@ template <class T>
   if constexpr (std::is_same_v<T, float>) return draco::DT_FLOAT32;
 }
 
-/// Joints and weights, four for each vertex.
+/// Joints and weights for skinning, four for each vertex.
 struct DracoShares {
   std::vector<std::uint8_t> joints = {};
   std::vector<float> weights = {};
 };
 
 /// Encodes a triangle mesh with Draco. The attributes are POSITION, NORMAL, JOINTS and WEIGHTS, numbered from 0 among
-/// the given ones. It is lossless, unless `bits` is set, to which positions are quantised.
+/// the given ones. The encoding is lossless, unless `bits` is set: then positions are quantised to so many bits.
 template <class T>
 [[nodiscard]] std::string draco_mesh(const std::vector<T>& positions, const std::vector<std::uint32_t>& corners,
                                      DracoOrder order, const std::vector<float>& normals = {}, int bits = 0,
@@ -140,7 +141,7 @@ template <class T>
   return {coded.data(), coded.size()};
 }
 
-/// Makes a primitive whose indices, positions and normals exist only in Draco's encoding; targets are ordinary.
+/// Makes a primitive whose indices, positions and normals exist only in Draco's encoding; targets are not compressed.
 [[nodiscard]] inline GltfBuilder::Json draco_primitive(GltfBuilder& builder, const std::string& coded,
                                                        std::size_t vertex_count, std::size_t corner_count,
                                                        bool has_normals,

@@ -1,4 +1,4 @@
-/// Makes small documents to be damaged, which together use everything that the reader of glTF supports.
+/// Makes small documents that tests then damage. Together they use everything that the glTF reader supports.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_DOCUMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_DOCUMENTS_H_
 
@@ -12,8 +12,8 @@
 
 namespace chronormal::test {
 
-/// Makes a document with strided normals, a sparse target over zeros, weights, a chain of nodes, and LINEAR and STEP
-/// tracks.
+/// Makes a document with strided normals, a sparse target without a view, weights, a chain of nodes, and LINEAR and
+/// STEP tracks.
 [[nodiscard]] inline GltfBuilder sparse_document() {
   GltfBuilder builder = quad_document();
   const std::size_t sparse = builder.add_accessor_over(std::nullopt, "VEC3", 5126, 4);
@@ -72,7 +72,7 @@ namespace chronormal::test {
   return builder;
 }
 
-/// Makes a document with KHR_draco_mesh_compression of positions and normals, with a target beside them.
+/// Makes a document with KHR_draco_mesh_compression of positions and normals, and an uncompressed target.
 [[nodiscard]] inline GltfBuilder draco_document(DracoOrder order = DracoOrder::kKept) {
   GltfBuilder builder;
   const std::size_t lift = builder.add_positions(kLift);

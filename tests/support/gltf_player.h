@@ -1,5 +1,5 @@
-/// A viewer of glTF in a few lines, independent of the library: it reads a GLB, plays its weight tracks by appendix C
-/// of the specification, adds up targets in float32, and computes the right normals from the positions.
+/// A small viewer of glTF, independent of the library: reads a GLB, plays its weight tracks by appendix C of the
+/// specification, adds up targets in float32, and computes the true normals from the positions.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 
@@ -64,7 +64,7 @@ class GltfPlayer {
     return values;
   }
 
-  /// Returns the weights that a channel gives at a time, in float32 as in viewers.
+  /// Returns the weights of a channel at a time, in float32 like viewers.
   [[nodiscard]] std::vector<float> weights_at(std::size_t animation, std::size_t channel, double time) const {
     const Json& a = json.at("animations").at(animation);
     const Json& sampler = a.at("samplers").at(a.at("channels").at(channel).at("sampler").get<std::size_t>());
@@ -95,7 +95,7 @@ class GltfPlayer {
     return result;
   }
 
-  /// Adds up the stored normal of a vertex and its deltas in float32.
+  /// Adds the weighted deltas to the stored normal of a vertex in float32.
   [[nodiscard]] Vector shown(const Json& primitive, std::size_t vertex, const std::vector<float>& weights) const {
     const std::vector<float>& normals = cached(primitive.at("attributes").at("NORMAL"));
     std::array<float, 3> sum = {normals[3 * vertex], normals[3 * vertex + 1], normals[3 * vertex + 2]};

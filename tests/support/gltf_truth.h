@@ -1,4 +1,4 @@
-/// Computes the right normals of the vertices of a glTF mesh from their positions alone, by cross products in long
+/// Computes the true normals of the vertices of a glTF mesh from their positions alone, by cross products in long
 /// double.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_TRUTH_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_TRUTH_H_
@@ -12,7 +12,7 @@
 
 namespace chronormal::test {
 
-/// One mesh of a file before the bake. Its vertices are the vertices of all primitives with faces and normals.
+/// One mesh of a file before the bake. Its vertices are those of all primitives with faces and normals.
 class GltfTruth {
  public:
   using Json = nlohmann::json;
@@ -60,7 +60,7 @@ class GltfTruth {
     Vector stored;
   };
   std::vector<Vertex> vertices;
-  bool uniform = false;  ///< all faces count alike, instead of by their area
+  bool uniform = false;  ///< true if all faces have equal weight, instead of their area
 
   /// Returns n(w) of each vertex. Weights beyond the targets of the file are ignored.
   [[nodiscard]] std::vector<Vector> normals_at(const std::vector<double>& weights) const {
@@ -89,13 +89,13 @@ class GltfTruth {
     return at;
   }
 
-  /// Turns n by the smallest rotation from `from` to `to`, which may have any length.
+  /// Turns n by the smallest rotation from the direction of `from` to that of `to`.
   [[nodiscard]] static Vector turn(const Vector& from, const Vector& to, const Vector& n) {
     const Real scale = length_of(from) * length_of(to);
     if (scale == 0) return n;
     const Vector axis = crossed(from, to);
     const Real s = length_of(axis) / scale, c = dotted(from, to) / scale, norm = length_of(axis);
-    if (norm == 0) return n;  // the tests have no opposite normals
+    if (norm == 0) return n;  // the tests have no opposite vectors
     const Vector k = {axis[0] / norm, axis[1] / norm, axis[2] / norm};
     const Vector across = crossed(k, n);
     const Real along = dotted(k, n) * (1 - c);
@@ -119,7 +119,7 @@ class GltfTruth {
     }
   }
 
-  // Lets vertices at one place share a normal if their stored normals agree to 0.1 degrees, one by one.
+  // Lets vertices at the same place share a normal if their stored normals agree within 0.1 degrees with each other.
   void group(const std::vector<std::size_t>& here) {
     std::vector<std::size_t> root(here.size());
     for (std::size_t a = 0; a < here.size(); ++a) root[a] = a;
@@ -134,12 +134,12 @@ class GltfTruth {
     for (std::size_t a = 0; a < here.size(); ++a) group_[here[a]] = here[root[a]];
   }
 
-  std::vector<std::vector<Vector>> positions_;  // for each vertex: the base, and the delta of each target
+  std::vector<std::vector<Vector>> positions_;  // for each vertex: the base position, and the delta of each target
   std::vector<std::array<std::size_t, 3>> faces_;
   std::vector<std::size_t> group_;
 };
 
-/// Angles in degrees between the rendered normals and the right ones.
+/// Angles in degrees between rendered and true normals.
 struct ShownError {
   double sum = 0, worst = 0;
   std::size_t judged = 0, left_out = 0;
@@ -152,13 +152,13 @@ struct ShownError {
   }
 };
 
-/// A pose of one mesh: the weights in the file before the bake, and after it.
+/// A pose of a mesh: the weights in the file before the bake, and in the file after it.
 struct Pose {
   std::vector<double> before;
   std::vector<float> after;
 };
 
-/// Compares a mesh after the bake with the truth from before. Leaves out samples where |n(w)| is below 1e-4 of the
+/// Compares a mesh after the bake with its true normals before. Leaves out samples where |n(w)| is below 1e-4 of the
 /// largest |n| of the vertex in these poses.
 [[nodiscard]] inline ShownError shown_error(const GltfTruth& truth, const GltfPlayer& after, std::size_t mesh,
                                             const std::vector<Pose>& poses) {
@@ -187,7 +187,7 @@ struct Pose {
   return error;
 }
 
-/// Returns the poses of a weight track at 101 times, from its first key to its last.
+/// Returns the poses of a weight track at 101 times, from the first key to the last.
 [[nodiscard]] inline std::vector<Pose> poses_of(const GltfPlayer& before, const GltfPlayer& after,
                                                 std::size_t animation, std::size_t channel) {
   const auto& a = before.json.at("animations").at(animation);

@@ -1,5 +1,5 @@
 /// Computes weights of morph targets over time by the formulas of the glTF specification (appendix C), in long double,
-/// and the positions of a motion, to compare the two.
+/// and the positions of a motion to compare with.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_WEIGHTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_WEIGHTS_H_
 
@@ -12,8 +12,8 @@
 
 namespace chronormal::test {
 
-/// Returns the weights of target_count targets at a time. values are laid out as in the file: (K, N), or (K, 3, N) for
-/// a cubic spline. At a key of STEP, the value of that key counts.
+/// Returns the weights of target_count targets at a time. `values` has the layout of the file: (K, N), or (K, 3, N) for
+/// a cubic spline. With STEP, the value at a key is that key's own.
 [[nodiscard]] inline std::vector<double> weights_at(GltfInterpolation interpolation, const std::vector<float>& times,
                                                     const std::vector<float>& values, std::size_t target_count,
                                                     double time) {
@@ -23,7 +23,7 @@ namespace chronormal::test {
     return static_cast<long double>(values.at(index));
   };
   constexpr std::size_t kIn = 0, kValue = 1, kOut = 2;
-  // Finds the last key that is not after the time.
+  // Finds the last key at or before the time.
   const auto after = std::upper_bound(times.begin(), times.end(), time, [](double t, float key) { return t < key; });
   const auto next = static_cast<std::size_t>(after - times.begin());
   std::vector<double> weights;
@@ -46,8 +46,8 @@ namespace chronormal::test {
   return weights;
 }
 
-/// Returns all positions of a sequence at a time, on the straight line of the segment that contains it; outside, the
-/// nearer end.
+/// Returns all positions of a sequence at a time, on the straight line of its segment; outside of the range, those of
+/// the nearer end.
 [[nodiscard]] inline std::vector<double> positions_at(const Motion& motion, double time) {
   for (const Motion::SegmentKeys& segment : motion.segments) {
     const Motion::Keyframe& from = motion.keyframes.at(segment.from);

@@ -1,7 +1,6 @@
-/// Makes small motions whose normals are hard to compute with the right direction in double, and ordinary ones among
-/// them.
+/// Makes small motions whose normals are hard to compute in double, and some ordinary motions.
 ///
-/// They depend on random numbers alone, and are the same on every compiler but for the last bits of std::pow.
+/// They depend only on random numbers, and are the same for every compiler except for the last bits of std::pow.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
 #define CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
 
@@ -33,14 +32,14 @@ struct MovingTriangle {
 
 [[nodiscard]] inline Point scaled_point(double s, const Point& p) { return {s * p[0], s * p[1], s * p[2]}; }
 
-/// Draws coordinates that are whole numbers up to 2^10, so that sums of a few of them do not round.
+/// Draws integer coordinates up to 2^10, so that sums of a few of them are exact.
 [[nodiscard]] inline Point whole_point(Random& random) {
   const auto one = [&random] { return static_cast<double>(random.below(2049)) - 1024; };
   const double x = one(), y = one();
   return {x, y, one()};
 }
 
-/// Makes a triangle each corner of which, at either end, has a size of its own between 1e-10 and 1e10.
+/// Makes a triangle in which each corner at either end has its own random magnitude between 1e-10 and 1e10.
 [[nodiscard]] inline MovingTriangle mixed_scales(Random& random) {
   MovingTriangle triangle;
   const bool stands_still = random.below(3) == 0, each_coordinate = random.below(4) == 0;
@@ -56,8 +55,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle whose three corners lie on a line through the origin but for the rounding of float32, one of them
-/// hardly off the origin.
+/// Makes a triangle whose three corners are on a line through the origin except for the rounding of float32; one corner
+/// is very close to the origin.
 [[nodiscard]] inline MovingTriangle sliver_at_origin(Random& random) {
   MovingTriangle triangle;
   const double ratio = random.below(2) == 0 ? 2 : random.uniform(0.3, 3);
@@ -65,7 +64,7 @@ struct MovingTriangle {
     (*corners)[0] = scaled_point(random_decade(random, -14, -4), random.in_cube(1));
     (*corners)[1] = random.in_cube(2);
     for (std::size_t k = 0; k < 3; ++k) {
-      // The coordinate is rounded to float32, and sometimes to the next float above or below.
+      // The coordinate is rounded to the nearest float32, or sometimes to the next float above or below.
       const auto b = static_cast<float>((*corners)[1][k]);
       const auto product = static_cast<float>(ratio * static_cast<double>(b));
       const std::array<float, 3> near{product, std::nextafter(product, 10.0F), std::nextafter(product, -10.0F)};
@@ -76,8 +75,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes c pass the line through a and b at t = 1/2 at a distance of exactly `gap`: everything else lies in a plane, in
-/// whole numbers.
+/// Makes c pass the line through a and b at t = 1/2 at a distance of exactly `gap`. Everything else is in a plane, with
+/// integer coordinates.
 [[nodiscard]] inline MovingTriangle passing_collapse(Random& random, double gap) {
   const Point a = whole_point(random), step = whole_point(random), by = whole_point(random);
   const double along = static_cast<double>(random.below(5)) - 2;
@@ -94,10 +93,10 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes the corners shrink to a point at t = 1 / (1 + r) and grow out of it again, where n(t) has a double zero. Half
-/// of the triangles do so only nearly.
+/// Makes the corners shrink to a point at t = 1 / (1 + r) and grow out of it again, so that n(t) has a double zero.
+/// Half of the triangles only come close to the point.
 [[nodiscard]] inline MovingTriangle double_zero(Random& random) {
-  constexpr std::array<double, 5> kRatios{1, 3, 7, 1.0 / 4, 1.5};  // 1.5 and 1/4: no double is 1 / (1 + r)
+  constexpr std::array<double, 5> kRatios{1, 3, 7, 1.0 / 4, 1.5};  // for r = 1.5 and 1/4, 1 / (1 + r) is not a double
   const double r = kRatios[random.below(kRatios.size())];
   const Point center = whole_point(random);
   MovingTriangle triangle;
@@ -115,10 +114,10 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a flat triangle that turns over: the normal is zero once, and antipodal before and after.
+/// Makes a flat triangle that turns over: the normal is zero once, with opposite directions before and after.
 [[nodiscard]] inline MovingTriangle turning_over(Random& random) {
   MovingTriangle triangle;
-  // The plane is z = 7 + slope x - y over whole numbers, or lies along two axes.
+  // The plane is z = 7 + slope x - y for integers, or parallel to two axes.
   const bool is_whole = random.below(2) == 0;
   const std::size_t across = random.below(3);
   const double slope = static_cast<double>(random.below(4)), height = random.uniform(-1, 1);
@@ -131,7 +130,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle without a normal at one end or at both: a line or a point, exactly or as nearly as float32 can.
+/// Makes a triangle without a normal at one or both ends: it is a line or a point there, exactly or as nearly as
+/// float32 allows.
 [[nodiscard]] inline MovingTriangle collapsed_at_ends(Random& random) {
   MovingTriangle triangle;
   for (auto* corners : {&triangle.from, &triangle.to}) {
@@ -153,7 +153,7 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle anywhere that moves by up to twice its size, at any scale and distance from the origin.
+/// Makes a triangle at any place that moves by up to twice its size, at any scale and distance from the origin.
 [[nodiscard]] inline MovingTriangle ordinary(Random& random) {
   MovingTriangle triangle;
   const double size = random.below(3) == 0 ? random_decade(random, -44, 38) : 1;
@@ -207,7 +207,7 @@ template <class Make>
   return soup_of(triangles);
 }
 
-/// Makes two huge faces around vertex 0 that cancel, wholly or nearly, and a small one beside them.
+/// Makes two huge faces around vertex 0 that cancel, exactly or nearly, and a small face beside them.
 [[nodiscard]] inline Motion cancelling_fan(Random& random) {
   const double huge = random_decade(random, 2, 9), small = random_decade(random, -7, 0);
   std::vector<Point> from{{0, 0, 0}}, to{{0, 0, 0}};
@@ -220,7 +220,7 @@ template <class Make>
     for (std::size_t k = 0; k < 3; ++k) to[v][k] += by[k];
   }
   std::vector<std::uint32_t> corners{0, 1, 2, 0, 2, 1, 0, 3, 4};
-  if (random.below(2) == 0) {  // instead of the second a copy that is a little off
+  if (random.below(2) == 0) {  // replaces the second one by a slightly different copy
     for (const std::size_t v : {1U, 2U}) {
       for (auto* points : {&from, &to}) {
         Point copy = (*points)[v];
@@ -235,7 +235,7 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-/// Makes a dozen faces over a few vertices, which cancel to all degrees; sometimes there are quads among them.
+/// Makes a dozen faces over a few vertices, whose normals cancel more or less; sometimes some are quads.
 [[nodiscard]] inline Motion tangle_of_faces(Random& random) {
   const std::size_t vertices = 4 + random.below(5), faces = 4 + random.below(12);
   std::vector<Point> from, to;
@@ -256,8 +256,8 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_polygons(vertices, std::move(offsets), std::move(corners)), from, to);
 }
 
-/// Makes so many faces around one vertex that their sum rounds more than a sum of a few does, and opposite ones among
-/// them.
+/// Makes a vertex with so many faces that their sum has larger rounding errors than a sum of a few; some faces are
+/// opposite.
 [[nodiscard]] inline Motion many_faces(Random& random) {
   const std::size_t rim = 90 + random.below(400);
   const double height = random_decade(random, -9, 0);
@@ -276,14 +276,14 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(rim + 1, std::move(corners)), from, to);
 }
 
-/// Makes a fan of faces around vertex 0 that nearly cancel and nearly stand still. The rim lies in a plane, in whole
-/// numbers, and goes there and back, so that it encloses no area; its height over the plane is a small whole number
-/// times a power of two that double loses beside the height of vertex 0.
+/// Makes a fan of faces around vertex 0 that nearly cancel and nearly rest. The rim has integer coordinates in a plane
+/// and goes there and back, so it encloses no area. The rim's height over the plane is a small integer times a power of
+/// two that is lost in double relative to the height of vertex 0.
 [[nodiscard]] inline Motion cancelling_star(Random& random) {
   const std::size_t half = 2 + random.below(6), across = random.below(3);
   const auto small = [&random] { return static_cast<double>(random.below(15)) - 7; };
   const int low = -static_cast<int>(30 + random.below(60)), shift = static_cast<int>(random.below(40)) - 20;
-  const bool moves = random.below(3) == 0;  // in its plane, by whole numbers
+  const bool moves = random.below(3) == 0;  // moves within its plane by integers
   std::vector<Point> way(half);
   for (Point& p : way)
     for (double& x : p) x = small();

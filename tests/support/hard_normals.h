@@ -1,7 +1,7 @@
-/// Makes control normals that are hard to keep in few bits, and judges the kept ones.
+/// Makes control normals that are hard to store in few bits, and measures the errors of stored ones.
 ///
-/// They depend on random numbers and powers of two alone, and have the same bits on every compiler. The judge works in
-/// long double on the control normals as they are: on x86 its error is below 1e-18 of the largest control normal.
+/// They depend only on random numbers and powers of two, and have the same bits for every compiler. Errors are computed
+/// in long double from the original control normals: on x86 its error is below 1e-18 of the largest control normal.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HARD_NORMALS_H_
 #define CHRONORMAL_TESTS_SUPPORT_HARD_NORMALS_H_
 
@@ -40,7 +40,7 @@ using RealVector = std::array<Real, 3>;
   return static_cast<double>(std::atan2(length({x, y, z}), u.x * n[0] + u.y * n[1] + u.z * n[2]));
 }
 
-/// Returns the t at which |n(t)| is smallest, to 2^-40.
+/// Returns the t with the smallest |n(t)|, with a precision of 2^-40.
 [[nodiscard]] inline double hardest_time(const ControlNormals& c) {
   const auto size = [&c](double t) { return length(normal_in_long_double(c, t)); };
   double best = 0;
@@ -59,8 +59,8 @@ using RealVector = std::array<Real, 3>;
   return size(low) < size(best) ? low : best;
 }
 
-/// Returns times at which errors show: the ends and their neighbourhood, simple fractions, the neighbourhood of the
-/// hardest time, and random ones.
+/// Returns times at which errors are likely: the ends and their neighbourhood, simple fractions, the neighbourhood of
+/// the hardest time, and random times.
 [[nodiscard]] inline std::vector<double> hard_times(const ControlNormals& c, fixtures::Random& random) {
   std::vector<double> times{0,   1,       1e-3,    1e-6, 0x1p-40, 1 - 1e-3, 1 - 1e-6,
                             0.5, 1.0 / 3, 2.0 / 3, 0.25, 0.75,    0x1p-150, 1 - 0x1p-53};
@@ -88,7 +88,8 @@ using RealVector = std::array<Real, 3>;
   return {s * c.n0, s * c.m, s * c.n1};
 }
 
-/// Returns three vectors whose lengths `factor` gives, each turned away from n by a vector of up to `turn`.
+/// Returns three vectors along n with the lengths that `factor` returns, each changed by a random vector of up to
+/// `turn`.
 template <class Factor>
 [[nodiscard]] ControlNormals three_near(fixtures::Random& random, const Vec3d& n, double turn, Factor factor) {
   std::array<Vec3d, 3> v;
@@ -104,7 +105,7 @@ struct HardFamily {
   ControlNormals (*make)(fixtures::Random&);
 };
 
-/// Returns the families; each makes one element.
+/// Returns the families of hard elements; each makes one element.
 [[nodiscard]] inline const std::vector<HardFamily>& hard_families() {
   using fixtures::Random;
   static const std::vector<HardFamily> families{
@@ -136,7 +137,7 @@ struct HardFamily {
          const ControlNormals c{n, s * (n + random_vector(r)), wholly ? Vec3d{} : s * s * random_vector(r)};
          return at_start ? ControlNormals{c.n1, c.m, c.n0} : c;
        }},
-      {"collapse inside, or nearly",  // (t - z)^2 n, and as much beside it
+      {"collapse inside, or nearly",  // (t - z)^2 n, plus a part of similar size beside it
        [](Random& r) {
          const Vec3d n = random_vector(r);
          const double z = r.uniform(0.02, 0.98), gap = random_power(r, 30);
@@ -157,7 +158,7 @@ struct HardFamily {
          const double bend = r.below(2) == 0 ? 0 : std::ldexp(1, -static_cast<int>(24 + r.below(8)));
          return ControlNormals{n0, 0.5 * (n0 + n1) + bend * random_vector(r), n1};
        }},
-      {"around a wide cone",  // in the middle of the segment the three cancel but for what they have along its axis
+      {"around a wide cone",  // in the middle of the segment the three vectors cancel except along the axis
        [](Random& r) {
          const double height = r.uniform(0.3, 0.6) * random_power(r, 8);
          const auto turned = [axis = r.below(3)](const Vec3d& v) {
@@ -167,7 +168,8 @@ struct HardFamily {
          const auto near = [&r, height](const Vec3d& v) { return v + 0.1 * height * random_vector(r); };
          return ControlNormals{near(c.n0), 0.5 * near(c.m), near(c.n1)};
        }},
-      {"where integers round",  // components of M, -M, half an integer of M / 1023 or M / 32767, and a little beside
+      // Components of M, -M, half an integer times M / 1023 or M / 32767, and values close to these.
+      {"where integers round",
        [](Random& r) {
          const double largest = r.below(3) == 0 ? r.uniform(0.5, 1) : 1;
          const auto component = [&] {
@@ -191,7 +193,7 @@ struct HardFamily {
            return Vec3d{x, y, component()};
          };
          ControlNormals c{vector(), vector(), vector()};
-         // All vectors lie in one half of space, so that most are long enough for integers.
+         // All vectors are in one half of space, so most sums are long enough for integers.
          for (Vec3d* v : {&c.n0, &c.m, &c.n1}) v->z = std::fabs(v->z);
          if (r.below(2) == 0) c.m.z = largest;
          return c;
@@ -200,7 +202,7 @@ struct HardFamily {
   return families;
 }
 
-/// Makes one element of any family, if any_scale at any scale that double has.
+/// Makes an element of a random family; if any_scale, at any scale of double.
 [[nodiscard]] inline ControlNormals hard_element(fixtures::Random& random, bool any_scale) {
   const auto& families = hard_families();
   const ControlNormals c = families[random.below(families.size())].make(random);

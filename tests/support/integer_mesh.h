@@ -1,5 +1,6 @@
-/// Makes a moving grid with integers and powers of two alone, so that its coordinates have the same bits on every
-/// compiler and mathematics library: for tests that compare with a constant, and for large meshes that cost little.
+/// Makes a moving grid only from integers and powers of two, so that its coordinates have the same bits for every
+/// compiler and mathematics library. It serves tests that compare with a constant, and tests that need large meshes
+/// quickly.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_
 
@@ -15,11 +16,11 @@
 
 namespace chronormal::test {
 
-/// Makes cells x cells squares of two triangles. Bands of rows stand still, move along, turn in their plane, shrink to
-/// a point at an end, or move freely, so that all degrees, formats and flagged elements occur.
+/// Makes cells x cells squares of two triangles each. Bands of rows rest, move along, turn in their plane, shrink to a
+/// point at an end, or move freely, so that all degrees, formats and flagged elements occur.
 [[nodiscard]] inline Motion integer_grid(std::size_t cells, std::uint64_t seed = 91) {
   std::mt19937_64 engine(seed);
-  // Returns a signed integer of `bits` bits over 2^12.
+  // Returns a signed integer of `bits` bits, divided by 2^12.
   const auto noise = [&engine](unsigned bits) {
     return static_cast<float>(static_cast<std::int64_t>(engine() & ((1u << bits) - 1)) - (1 << bits) / 2) * 0x1p-12F;
   };
@@ -41,16 +42,16 @@ namespace chronormal::test {
         case 2:
           to = {-from[1], from[0], from[2]};
           break;
-        case 3:  // to a point
+        case 3:  // shrinks to a point
           to = {7, 7, 7};
           break;
-        case 4:  // almost to a point
+        case 4:  // shrinks almost to a point
           to = {7 + from[0] * 0x1p-12F, 7 + from[1] * 0x1p-12F, from[2]};
           break;
-        case 5:  // inside out
+        case 5:  // turns inside out
           to = {-from[0], from[1] + noise(6), -from[2]};
           break;
-        case 6:  // anything
+        case 6:  // moves freely
           to = {noise(16), noise(16), noise(16)};
           break;
         default:

@@ -1,11 +1,11 @@
-/// Computes normals of moving polygons at one t in whole numbers of any size, fast enough for millions of them.
+/// Computes normals of moving polygons at one t in integers of any size, fast enough for millions of normals.
 ///
 /// A float is an integer times 2^-149 and a double t is T 2^-e, so the corners at t are (2^e - T) p + T q in units of
-/// 2^(-149 - e), and their cross products are integers as well. GMP holds them all; only the direction becomes a double
-/// at the end. (exact_normal.h gives the same in rational numbers, a hundred times as slowly.)
+/// 2^(-149 - e), and their cross products are integers as well. All of them are GMP integers; only the final direction
+/// is rounded to double. (exact_normal.h computes the same in rational numbers, a hundred times slower.)
 ///
-/// If n(t) = 0, the direction is that of n a moment earlier (at t = 0 later): by 2^-1500 of the segment, far less than
-/// any two terms of n can differ by.
+/// If n(t) = 0, the result is the direction of n slightly earlier, or at t = 0 slightly later: by 2^-1500 of the
+/// segment, far less than any difference between two terms of n.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
 
@@ -26,7 +26,7 @@ namespace chronormal::test {
 
 using IntegerVector = std::array<mpz_class, 3>;
 
-/// An instant as T 2^-e, where T is any integer.
+/// An instant t = T 2^-e, where T is any integer.
 struct IntegerTime {
   mpz_class t;
   unsigned e = 0;
@@ -34,14 +34,14 @@ struct IntegerTime {
   [[nodiscard]] static IntegerTime of(double t) {
     int exponent = 0;
     const double mantissa = std::ldexp(std::frexp(t, &exponent), 53);
-    const int e = 53 - exponent;  // t <= 1, so that it is positive
+    const int e = 53 - exponent;  // t <= 1, so e is positive
     return {mpz_class(mantissa), t == 0 ? 0 : static_cast<unsigned>(e)};
   }
-  /// Returns a moment before, or after.
+  /// Returns an instant slightly before (sign -1) or after (sign 1).
   [[nodiscard]] IntegerTime moved(int sign) const { return {(t << 1500) + sign, e + 1500}; }
 };
 
-/// Returns value / 2^-149.
+/// Returns value / 2^-149, which is an integer.
 [[nodiscard]] inline mpz_class integer_of(float value) {
   int exponent = 0;
   const auto mantissa = static_cast<long>(std::ldexp(std::frexp(value, &exponent), 24));
@@ -51,7 +51,7 @@ struct IntegerTime {
                     : mpz_class(result >> static_cast<unsigned>(-shift));
 }
 
-/// Returns the direction of v, of any length.
+/// Returns the direction of v, which is not a unit vector.
 [[nodiscard]] inline std::array<double, 3> direction_of(const IntegerVector& v) {
   std::array<double, 3> mantissa{};
   std::array<long, 3> exponent{};
@@ -65,7 +65,7 @@ struct IntegerTime {
   return mantissa;
 }
 
-/// Returns the angle between u and n in radians, right to 1e-15; NaN if u is not finite or zero.
+/// Returns the angle between u and n in radians, with an error of 1e-15; NaN if u is not finite or zero.
 [[nodiscard]] inline double angle_between(const Vec3f& u, const std::array<double, 3>& n) {
   const double x = u.y * n[2] - u.z * n[1], y = u.z * n[0] - u.x * n[2], z = u.x * n[1] - u.y * n[0];
   if (!(double{u.x} * u.x + double{u.y} * u.y + double{u.z} * u.z > 0.5)) return std::nan("");

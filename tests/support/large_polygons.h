@@ -1,4 +1,5 @@
-/// Makes random motions of polygons with many corners, whose vertices all share them.
+/// Makes random motions of meshes of one or two polygons with many corners, where every vertex belongs to one of these
+/// polygons.
 #ifndef CHRONORMAL_TESTS_SUPPORT_LARGE_POLYGONS_H_
 #define CHRONORMAL_TESTS_SUPPORT_LARGE_POLYGONS_H_
 
@@ -16,12 +17,14 @@
 namespace chronormal::test {
 
 enum class LargePolygons {
-  kAlone,   ///< a polygon
-  kPillow,  ///< two of them against each other: normals of vertices are exact, and those of double next to nothing
-  kPrism,   ///< two polygons with a band of quadrilaterals between them
+  kAlone,  ///< a single polygon
+  /// Two polygons back to back: the vertex normals cancel almost completely, and only exact arithmetic finds their
+  /// directions.
+  kPillow,
+  kPrism,  ///< two polygons, joined by a band of quadrilaterals
 };
 
-/// Makes a wavy polygon, or two, through a few keyframes.
+/// Makes one or two wavy polygons with a few keyframes.
 [[nodiscard]] inline Motion large_polygons(LargePolygons kind, std::uint32_t corners, fixtures::Random& random,
                                            int keyframes = 2) {
   const double height = kind == LargePolygons::kPrism ? std::ldexp(random.uniform(1, 2), -40) : 0;
@@ -35,7 +38,7 @@ enum class LargePolygons {
   add_face(rim.begin(), rim.end());
   std::uint32_t vertices = corners;
   if (kind == LargePolygons::kPillow) {
-    rim.push_back(vertices++);  // without it the two would cancel to nothing
+    rim.push_back(vertices++);  // without this corner the two polygons would cancel exactly
     add_face(rim.rbegin(), rim.rend());
   } else if (kind == LargePolygons::kPrism) {
     vertices = 2 * corners;

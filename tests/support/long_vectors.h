@@ -1,4 +1,4 @@
-/// Vectors of long double and their angles, for the oracles of files. Shares no code with the product.
+/// Vectors of long double and their angles, for the oracles of files. This file shares no code with the product.
 #ifndef TESTS_SUPPORT_LONG_VECTORS_H_
 #define TESTS_SUPPORT_LONG_VECTORS_H_
 

@@ -1,4 +1,4 @@
-/// Makes PLY files byte by byte, independent of the writer.
+/// Makes PLY files byte by byte, without using the writer.
 #ifndef CHRONORMAL_TESTS_SUPPORT_PLY_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_PLY_BYTES_H_
 
@@ -30,7 +30,7 @@ class ByteWriter {
   bool big_endian_;
 };
 
-/// Returns a header of V vertices and F faces, both of the most common form.
+/// Returns a header for V vertices and F faces with the most common properties.
 [[nodiscard]] inline std::string ply_header(const std::string& encoding, const std::string& vertices,
                                             const std::string& faces) {
   return "ply\nformat " + encoding + " 1.0\nelement vertex " + vertices +
@@ -47,8 +47,8 @@ class ByteWriter {
   return writer.bytes();
 }
 
-/// Makes a file with everything that may stand in one: other elements before, between and after, lists, every scalar
-/// type, and faces before the vertices (1, 2, 3, 4 x 0.5; a quad and a triangle).
+/// Makes a file with everything that a PLY file can contain: other elements before, between and after, lists, every
+/// scalar type, and faces before the vertices (1, 2, 3, 4 x 0.5; a quad and a triangle).
 [[nodiscard]] inline std::string mixed_binary_ply(bool big_endian) {
   ByteWriter writer(std::string("ply\r\nformat ") + (big_endian ? "binary_big_endian" : "binary_little_endian") +
                         " 1.0\r\ncomment a b c\r\nobj_info d\r\n"

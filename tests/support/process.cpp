@@ -21,11 +21,11 @@ std::string contents(const std::filesystem::path& path) {
 }  // namespace
 
 ProcessResult run_shell(const std::string& command, const std::string& folder, const std::string& input) {
-  // Streams go through files, since a pipe could fill up.
+  // Streams are redirected to files, since a pipe could fill up.
   char name[] = "/tmp/chronormal_process_XXXXXX";
   const std::filesystem::path scratch = mkdtemp(name);
   std::ofstream(scratch / "in", std::ios::binary) << input;
-  // Settings of a person's terminal must not change the results of a test.
+  // Unsets variables of a person's terminal, which must not change the results of a test.
   const std::string line = "unset COLUMNS NO_COLOR CLICOLOR_FORCE; cd '" + folder + "' && ( " + command + " ) <'" +
                            (scratch / "in").string() + "' >'" + (scratch / "out").string() + "' 2>'" +
                            (scratch / "err").string() + "'";

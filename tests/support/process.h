@@ -1,4 +1,4 @@
-/// Runs a program the way a shell would, and keeps its output.
+/// Runs a program through a shell, and returns its output.
 #ifndef TESTS_SUPPORT_PROCESS_H_
 #define TESTS_SUPPORT_PROCESS_H_
 
@@ -7,7 +7,7 @@
 namespace chronormal {
 
 struct ProcessResult {
-  int exit_code = -1;  ///< 128 + signal where it was killed
+  int exit_code = -1;  ///< 128 + signal if a signal ended it
   std::string out;     ///< standard output
   std::string err;     ///< standard error
 };

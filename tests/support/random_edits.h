@@ -1,4 +1,4 @@
-/// Damages bytes at random, for readers that must withstand anything.
+/// Changes bytes at random, to test readers that must withstand any input.
 #ifndef CHRONORMAL_TESTS_SUPPORT_RANDOM_EDITS_H_
 #define CHRONORMAL_TESTS_SUPPORT_RANDOM_EDITS_H_
 
@@ -8,7 +8,8 @@
 
 namespace chronormal::test {
 
-/// Returns the bytes after one to six edits: a byte changed or inserted, or a few erased or repeated from elsewhere.
+/// Returns the bytes after one to six edits: a byte is changed or inserted, or some bytes are erased or copied from
+/// elsewhere.
 [[nodiscard]] inline std::string with_random_edits(std::string bytes, std::mt19937& random) {
   for (std::size_t edits = 1 + random() % 6; edits > 0 && !bytes.empty(); --edits) {
     const std::size_t at = random() % bytes.size();

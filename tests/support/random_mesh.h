@@ -1,4 +1,4 @@
-/// Makes meshes of any shape for round trips through files.
+/// Makes random meshes for round trips through files.
 #ifndef CHRONORMAL_TESTS_SUPPORT_RANDOM_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_RANDOM_MESH_H_
 
@@ -38,7 +38,7 @@ namespace chronormal::test {
   return frame;
 }
 
-/// Tells whether two lists of coordinates have the same bits (so that -0 is not 0).
+/// Tells whether two lists of coordinates have the same bits (-0 and 0 differ).
 [[nodiscard]] inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {

@@ -1,4 +1,4 @@
-/// Makes motions of any shape for round trips through files.
+/// Makes random motions for round trips through files.
 #ifndef CHRONORMAL_TESTS_SUPPORT_RANDOM_MOTION_H_
 #define CHRONORMAL_TESTS_SUPPORT_RANDOM_MOTION_H_
 
@@ -15,8 +15,8 @@
 
 namespace chronormal::test {
 
-/// Makes 2 to 5 keyframes, with coordinates of any finite bit pattern and times that are float32, over faces that all
-/// have the same number of corners.
+/// Makes 2 to 5 keyframes with coordinates of any finite bit pattern and float32 times, over faces with equally many
+/// corners.
 [[nodiscard]] inline Motion random_motion(bool equal_steps) {
   const MeshFrame mesh = random_mesh();
   const auto corners = *rc::gen::inRange<std::size_t>(3, 6);

@@ -1,5 +1,6 @@
-// Property tests draw from a fixed seed, so that a failure occurs again in the next run. RapidCheck reads the
-// environment variable RC_PARAMS when the first property runs, and prints the seed. A value from the caller is kept:
+// Sets a fixed seed for property tests, so that a failure occurs again in the next run. RapidCheck reads the
+// environment variable RC_PARAMS when the first property runs, and prints the seed. If the variable is already set, it
+// is kept:
 //     RC_PARAMS=seed=1234 build/dev/tests/test_curves --gtest_filter=...
 
 #include <cstdlib>

@@ -10,7 +10,7 @@
 
 namespace chronormal::test {
 
-/// Returns the motion of an input, by itself.
+/// Returns the motion of an input.
 [[nodiscard]] inline Result<Motion> read_motion(const InputOptions& options) {
   Result<Input> input = open_input(options);
   if (!input) return input.error();

@@ -1,7 +1,7 @@
-/// An oracle for every scheme: the textbook definition, in long double, by a way of its own.
+/// An oracle for every scheme: the textbook definition in long double, computed independently.
 ///
-/// This file includes no chronormal header and shares no line with src/: a slip in docs, headers and code alike would
-/// have to be made a second time to stay hidden. Where there is a choice the long way is taken:
+/// This file includes no chronormal header and shares no line with src/: a mistake in the product would have to be
+/// repeated here to stay hidden. If there are several methods, the more direct and slower one is taken:
 ///
 ///     exact        eq. 1 on the interpolated vertices, never a polynomial
 ///     lagrange     Neville's recursion, never weights
@@ -13,7 +13,7 @@
 ///
 /// A triangle is given by six points; t runs over [0, 1]. Functions return std::nullopt where a scheme is not defined
 /// (antipodal ends of a slerp, two coinciding points of a circle, a node without a normal, a quaternion arc of exactly
-/// half a turn) or so close to it that its answer is a rounding decision: tests leave those samples out.
+/// half a turn) or so close to such a case that rounding decides the answer; tests leave these samples out.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REFERENCE_H_
 
@@ -39,20 +39,20 @@ using Real = long double;
 template <class S>
 using Vec = std::array<S, 3>;
 using Vector = Vec<Real>;
-using VectorD = Vec<double>;  ///< for the dense searches, which cost millions of angles
+using VectorD = Vec<double>;  ///< for the dense searches, which compute millions of angles
 
 inline constexpr Real kPi = std::numbers::pi_v<Real>;
 
-/// Two ends closer than this to antipodal have no trustworthy great circle between them, radians.
+/// The distance from antipodal, in radians, within which rounding decides the great circle between two ends.
 inline constexpr Real kNearAntipodal = 1e-6L;
-/// Two points closer than this count as one when a circle goes through them, radians.
+/// The distance in radians below which two points count as one when a circle is put through them.
 inline constexpr Real kNearCoincident = 1e-6L;
-/// Below this angle a slerp is a normalised lerp to the last bit of float32 many times over, radians.
+/// The angle in radians below which slerp equals a normalised lerp far beyond the precision of float32.
 inline constexpr Real kTinyAngle = 1e-9L;
 /// If |q0 . q1| is below this, rounding decides which arc is the shorter one.
 inline constexpr Real kNearHalfTurn = 1e-9L;
 
-/// The face and the segment of a triangle: `quaternion:random` turns each by an angle of its own.
+/// The face and the segment of a triangle, which determine the angle of `quaternion:random`.
 struct Place {
   std::uint64_t element = 0;
   std::uint64_t segment = 0;
@@ -107,7 +107,7 @@ template <class S>
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Returns the angle in radians, by atan2; neither vector needs length 1.
+/// Returns the angle in radians, by atan2. The vectors need not be unit vectors.
 template <class S>
 [[nodiscard]] S angle(const Vec<S>& a, const Vec<S>& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
@@ -130,7 +130,7 @@ template <class S>
   return cross(subtract(corner[1], corner[0]), subtract(corner[2], corner[0]));
 }
 
-/// Returns the exact unit normal, or nothing if it is zero or drowned by the rounding of long double.
+/// Returns the exact unit normal, or nothing if it is zero or below the rounding error of long double.
 [[nodiscard]] inline std::optional<Vector> exact_unit_normal(const Triangle& triangle, Real t) {
   const Vector normal = exact_normal(triangle, t);
   Real edge = 0;
@@ -149,16 +149,16 @@ template <class S>
 template <std::size_t N>
 [[nodiscard]] std::optional<std::array<Real, N>> slerp(const std::array<Real, N>& from, const std::array<Real, N>& to,
                                                        Real t) {
-  // Half the angle comes from chord and diagonal: this is well conditioned for near and far alike, and needs no cross
-  // product, which four dimensions do not have.
+  // Half the angle follows from chord and diagonal, which is accurate for small and large angles, and needs no cross
+  // product, which does not exist in four dimensions.
   const Real theta = 2 * std::atan2(length(subtract(to, from)), length(add(to, from)));
   if (theta > kPi - kNearAntipodal) return std::nullopt;
   if (theta < kTinyAngle) return normalised(add(scaled(1 - t, from), scaled(t, to)));
   return scaled(1 / std::sin(theta), add(scaled(std::sin((1 - t) * theta), from), scaled(std::sin(t * theta), to)));
 }
 
-/// Returns exact unit normals at `count` equidistant times from 0 to 1. Moving is a Triangle, or any other type that
-/// exact_unit_normal() takes.
+/// Returns exact unit normals at `count` equidistant times from 0 to 1. Moving is a Triangle, or another type that
+/// exact_unit_normal() accepts.
 template <class Moving>
 [[nodiscard]] std::optional<std::vector<Vector>> exact_nodes(const Moving& triangle, std::size_t count) {
   std::vector<Vector> nodes;
@@ -170,7 +170,8 @@ template <class Moving>
   return nodes;
 }
 
-/// Interpolates exact unit normals with degree `degree` by Lagrange, with Neville's recursion, and normalises.
+/// Interpolates exact unit normals by Lagrange's polynomial of degree `degree`, with Neville's recursion, and
+/// normalises.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> lagrange(const Moving& triangle, std::size_t degree, Real t) {
   auto nodes = exact_nodes(triangle, degree + 1);
@@ -182,7 +183,7 @@ template <class Moving>
       (*nodes)[i] = add(scaled(left, (*nodes)[i]), scaled(1 - left, (*nodes)[i + 1]));
     }
   }
-  if (length(nodes->front()) < 1e-7L) return std::nullopt;  // float32 could not tell it from zero
+  if (length(nodes->front()) < 1e-7L) return std::nullopt;  // float32 cannot distinguish it from zero
   return normalised(nodes->front());
 }
 
@@ -274,7 +275,8 @@ template <std::size_t N>
                                    1 + 2 * r[2][2] - trace};
   const auto largest = static_cast<std::size_t>(
       std::distance(four_squares.begin(), std::max_element(four_squares.begin(), four_squares.end())));
-  // Products of two components follow, four times each: w x, w y, w z from the odd part, the others from the even part.
+  // Computes products of two components, times four: w x, w y, w z from the antisymmetric part, the others from the
+  // symmetric part.
   const Real wx = r[2][1] - r[1][2], wy = r[0][2] - r[2][0], wz = r[1][0] - r[0][1];
   const Real xy = r[0][1] + r[1][0], xz = r[0][2] + r[2][0], yz = r[1][2] + r[2][1];
   Quaternion q{};
@@ -348,7 +350,7 @@ template <std::size_t N>
   return std::nullopt;
 }
 
-/// Returns the angle by which `quaternion:random:SEED` turns the second frame about its normal.
+/// Returns the angle by which `quaternion:random:SEED` rotates the second frame about its normal.
 [[nodiscard]] inline Real random_turn(std::uint64_t seed, const Place& place) {
   std::uint64_t z = seed + 0x9E3779B97F4A7C15U * (1 + place.element + 0x100000000U * place.segment);
   z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
@@ -382,7 +384,8 @@ template <std::size_t N>
     Frame mapped{};
     mapped.normal = *normal1;
     mapped.binormal = normalised(Vector{image[0], image[1], image[2]});
-    // The paper prints n1 x b1, which makes a frame of determinant -1; tangent = binormal x normal.
+    // The paper prints n1 x b1, which would make a frame of determinant -1; the right formula is tangent = binormal x
+    // normal.
     mapped.tangent = cross(mapped.binormal, mapped.normal);
     return std::pair{*frame0, mapped};
   }
@@ -398,12 +401,12 @@ template <std::size_t N>
 
 // ---- circles -------------------------------------------------------------------------------------------------------
 
-/// The circle through three points, walked from the first past the second to the third.
+/// The circle through three points, traversed from the first through the second to the third.
 struct Circle {
-  Vector centre, x, y;  ///< x points to the first point; the walk sets out along y; both of length 1
+  Vector centre, x, y;  ///< unit vectors: x points to the first point, and the traversal starts along y
   Real radius = 0;
-  Real middle = 0;  ///< angle at which the second point is met
-  Real end = 0;     ///< angle at which the third point is met; 0 < middle < end < 2 pi
+  Real middle = 0;  ///< angle of the second point
+  Real end = 0;     ///< angle of the third point; 0 < middle < end < 2 pi
 
   [[nodiscard]] Vector at(Real turn) const {
     return add(centre, add(scaled(radius * std::cos(turn), x), scaled(radius * std::sin(turn), y)));
@@ -417,14 +420,14 @@ struct Circle {
     return std::nullopt;
   }
   const Vector normal = cross(p, q);
-  // The circumcentre of the triangle of the three points follows.
+  // Computes the circumcentre of the three points.
   const Vector arm = scaled(1 / (2 * dot(normal, normal)),
                             add(scaled(dot(q, q), cross(normal, p)), scaled(dot(p, p), cross(q, normal))));
   Circle circle;
   circle.centre = add(first, arm);
   circle.radius = length(arm);
   circle.x = scaled(-1 / circle.radius, arm);
-  // Either side of the plane will do: the angles below decide the direction of the walk.
+  // Either side of the plane may be chosen, since the angles below decide the direction of traversal.
   const Real side = normal[0] + Real(0.37L) * normal[1] + Real(0.11L) * normal[2] > 0 ? 1 : -1;
   circle.y = cross(normalised(scaled(side, normal)), circle.x);
   const auto turn = [&circle](const Vector& point) {
@@ -434,7 +437,7 @@ struct Circle {
   };
   circle.middle = turn(second);
   circle.end = turn(third);
-  if (circle.middle > circle.end) {  // this way round the end would come first: walk the other way
+  if (circle.middle > circle.end) {  // the end would come first, so the direction is reversed
     circle.y = scaled(Real(-1), circle.y);
     circle.middle = 2 * kPi - circle.middle;
     circle.end = 2 * kPi - circle.end;
@@ -449,7 +452,7 @@ template <class Moving>
   const auto uh = exact_unit_normal(triangle, Real(0.5L));
   const auto u1 = exact_unit_normal(triangle, 1);
   if (!u0 || !uh || !u1) return std::nullopt;
-  if (length(add(*u0, *uh)) < kNearCoincident) return std::nullopt;  // a stated fallback of the scheme
+  if (length(add(*u0, *uh)) < kNearCoincident) return std::nullopt;  // a documented fallback of the scheme
   const auto circle = circle_through(*u0, *uh, *u1);
   if (!circle) return std::nullopt;
   Real share = t;
@@ -462,7 +465,7 @@ template <class Moving>
 
 // ---- every scheme by its name --------------------------------------------------------------------------------------
 
-/// A scheme's name in parts: "quaternion:random:7" is kind "quaternion:random" with number 7.
+/// The parts of a scheme's name: "quaternion:random:7" is kind "quaternion:random" with number 7.
 struct SchemeName {
   std::string_view kind;
   std::uint64_t number = 0;
@@ -489,16 +492,16 @@ struct SchemeName {
   return std::nullopt;
 }
 
-/// Tells whether the path of a scheme is only known up to one number that it searches for.
+/// Tells whether the path of a scheme depends on a number that the scheme searches for.
 [[nodiscard]] inline bool is_searched(std::string_view name) {
   return name == "quaternion:optimal" || name == "linear:scaled";
 }
 
 /// Returns the unit normal that the scheme must give at t, or nothing where it is not defined or `name` is unknown.
 ///
-/// For searched schemes, `observed_middle` is the result of the tested scheme at t = 1/2: it fixes the one number of
-/// the search, from which every other t must then follow. Without it they have no answer here; the search itself is
-/// judged by optimal_circle_error() and scaled_linear_error().
+/// For searched schemes, `observed_middle` is the result of the tested scheme at t = 1/2. It determines the number that
+/// was searched for, and thereby the result at every other t. Without it, this function returns nothing for searched
+/// schemes; optimal_circle_error() and scaled_linear_error() judge the search itself.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> unit_normal(std::string_view name, const Moving& triangle, Real t,
                                                 const Place& place = {},
@@ -526,7 +529,7 @@ template <class Moving>
     const auto ends = exact_nodes(triangle, 2);
     if (!ends || !observed_middle) return std::nullopt;
     if (kind == "linear:scaled") {
-      // The middle is u0 + s u1 of some length: s is the ratio of the areas that it spans with either end.
+      // The middle is parallel to u0 + s u1, where s is the ratio of the areas that it spans with the two ends.
       const Real with_end = length(cross(*observed_middle, ends->back()));
       const Real with_start = length(cross(ends->front(), *observed_middle));
       if (length(cross(ends->front(), ends->back())) < kNearCoincident) return std::nullopt;
@@ -541,12 +544,12 @@ template <class Moving>
     const auto pair = frames(kind.substr(kind.find(':') + 1), triangle, scheme->number, place);
     return pair ? quaternion_slerp(pair->first, pair->second, t) : std::nullopt;
   }
-  return std::nullopt;  // frames are those of faces
+  return std::nullopt;  // only faces have frames
 }
 
 // ---- errors and dense searches -------------------------------------------------------------------------------------
 
-/// Exact unit normals at equidistant t = i / (count - 1), in double; nothing where the normal is zero.
+/// Exact unit normals at equidistant t = i / (count - 1), in double; nothing if the normal is zero.
 struct ExactSamples {
   std::vector<std::optional<VectorD>> unit;
 
@@ -562,8 +565,8 @@ struct ExactSamples {
   }
 };
 
-/// Returns the average angle in radians between exact samples and a curve, a function of t that returns a VectorD of
-/// any length. Looks at every `stride`-th sample.
+/// Returns the average angle in radians between exact samples and a curve, which is a function of t that returns a
+/// VectorD, not necessarily a unit vector. Uses every `stride`-th sample.
 template <class Curve>
 [[nodiscard]] double mean_error(const ExactSamples& exact, Curve&& curve, std::size_t stride = 1) {
   double sum = 0;
@@ -576,7 +579,7 @@ template <class Curve>
   return counted == 0 ? 0 : sum / static_cast<double>(counted);
 }
 
-/// Returns the smallest value of f that a golden-section search in [low, high] meets.
+/// Returns the smallest value of f that a golden-section search in [low, high] finds.
 template <class F>
 [[nodiscard]] double golden_section_minimum(F&& f, double low, double high, int steps) {
   const double golden = (std::sqrt(5.0) - 1) / 2;
@@ -596,8 +599,8 @@ template <class F>
   return best;
 }
 
-/// Returns the global minimum of f over [grid.front(), grid.back()]: looks at all grid points with `coarse`, then
-/// refines around the best few local minima with `fine`. The grid must ascend.
+/// Returns the global minimum of f over [grid.front(), grid.back()]: evaluates `coarse` at all grid points, then
+/// refines the best few local minima with `fine`. The grid must ascend.
 template <class Coarse, class Fine>
 [[nodiscard]] double dense_minimum(const std::vector<double>& grid, Coarse&& coarse, Fine&& fine) {
   std::vector<double> values;
@@ -634,8 +637,8 @@ template <class Coarse, class Fine>
 /// Searches all pairs of frames densely and returns the smallest average error in radians, over `exact`, of any
 /// constant-speed circle of eq. 6 on its shorter arc (|phi| <= pi/2), or nothing if the ends coincide or are antipodal.
 ///
-/// `density` points are spread evenly over phi, and as many evenly over the direction in which the circle leaves u0:
-/// where u0 and u1 are close, all circles that differ visibly are crammed into phi near +-pi/2.
+/// `density` points are spread evenly over phi, and as many evenly over the direction in which the circle leaves u0: if
+/// u0 and u1 are close, all visibly different circles have phi near +-pi/2.
 [[nodiscard]] inline std::optional<double> optimal_circle_error(const Triangle& triangle, const ExactSamples& exact,
                                                                 std::size_t density = 100,
                                                                 std::size_t coarse_stride = 5) {
@@ -673,7 +676,7 @@ template <class Coarse, class Fine>
   const auto end0 = exact_unit_normal(triangle, 0), end1 = exact_unit_normal(triangle, 1);
   if (!end0 || !end1) return std::nullopt;
   const VectorD u0 = to_double(*end0), u1 = to_double(*end1);
-  std::vector<double> grid;  // log2 of s
+  std::vector<double> grid;  // values of log2(s)
   for (std::size_t i = 0; i <= density; ++i) {
     grid.push_back(16 * (2 * static_cast<double>(i) / static_cast<double>(density) - 1));
   }

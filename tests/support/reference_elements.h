@@ -1,8 +1,8 @@
-/// An oracle for the normals of vertices and corners, in long double, by a way of its own.
+/// An independent oracle for the normals of vertices and corners, in long double.
 ///
-/// Like reference.h, this file includes no chronormal header and shares no line with src/. Where there is a choice the
-/// slow way is taken: vector areas from the vertices at t about their centre, never from a fan or a polynomial; groups
-/// of corners by flooding over all pairs, never by sorting.
+/// Like reference.h, this file includes no chronormal header and shares no line with src/. If there are several
+/// methods, the slow one is taken: vector areas come from the vertices at t about their centre, not from a fan or a
+/// polynomial; groups of corners come from a flood fill over all pairs, not from sorting.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
 
@@ -19,7 +19,7 @@ namespace chronormal::reference {
 
 /// Polygons whose vertices move on straight lines.
 struct Mesh {
-  std::vector<std::vector<std::size_t>> faces;  ///< vertices of each
+  std::vector<std::vector<std::size_t>> faces;  ///< vertices of each face
   std::vector<Vector> from, to;                 ///< positions of each vertex
 };
 
@@ -45,7 +45,7 @@ struct Corner {
   return add(scaled(1 - t, mesh.from[vertex]), scaled(t, mesh.to[vertex]));
 }
 
-/// Returns twice the vector area of a polygon at t, or zero if the area is nothing but rounding.
+/// Returns twice the vector area of a polygon at t, or zero if the area is only rounding error.
 [[nodiscard]] inline Vector vector_area(const Mesh& mesh, std::size_t face, Real t) {
   const auto& vertices = mesh.faces[face];
   std::vector<Vector> points;
@@ -64,7 +64,7 @@ struct Corner {
   return length(sum) > 1e-15L * size ? sum : Vector{};
 }
 
-/// Returns the contribution of one corner to the normal of its element. `weighting` is a name of the command line.
+/// Returns the contribution of one corner to the normal of its element. `weighting` is a name as on the command line.
 [[nodiscard]] inline Vector contribution(const Mesh& mesh, const Corner& corner, const std::string& weighting, Real t) {
   const Vector area = vector_area(mesh, corner.face, t);
   const Vector here = position(mesh, vertex_of(mesh, corner), t);
@@ -82,7 +82,7 @@ struct Corner {
     if (!(edges > 0)) return {};
     return scaled(std::pow(edges, weighting == "inverse-edges" ? Real(-1) : Real(-0.5L)), normalised(area));
   }
-  // The angle comes from the half-angle formula of Kahan, not from a cross product.
+  // The angle comes from Kahan's half-angle formula instead of a cross product.
   Real corner_angle = 0;
   if (length(next) > 0 && length(previous) > 0) {
     const Vector a = normalised(next), b = normalised(previous);
@@ -91,7 +91,7 @@ struct Corner {
   return scaled(corner_angle, weighting == "angle" ? normalised(area) : area);
 }
 
-/// Returns the normal at t of corners that share one.
+/// Returns the normal at t that some corners share.
 [[nodiscard]] inline Vector element_normal(const Mesh& mesh, const std::vector<Corner>& corners,
                                            const std::string& weighting, Real t) {
   Vector sum{};
@@ -112,8 +112,8 @@ struct MovingElement {
   return normalised(normal);
 }
 
-/// Numbers the classes of the relation that `related` generates on 0 ... count - 1, in the order of their first
-/// members.
+/// Returns the equivalence classes on 0 ... count - 1 of the relation that `related` generates, numbered in the order
+/// of their first members.
 [[nodiscard]] inline std::vector<std::size_t> flood(std::size_t count,
                                                     const std::function<bool(std::size_t, std::size_t)>& related) {
   std::vector<std::size_t> class_of(count, count);
@@ -137,12 +137,12 @@ struct MovingElement {
   return class_of;
 }
 
-/// Returns classes of corners that share a normal at a crease angle in degrees; `point` names the point of each vertex.
+/// Returns classes of corners that share a normal at a crease angle in degrees; `point` has the point of each vertex.
 /// Faces must have normals at t = 0, and no angle may be within rounding of the crease angle.
 [[nodiscard]] inline std::vector<std::size_t> crease_classes(const Mesh& mesh, const std::vector<std::size_t>& point,
                                                              Real degrees) {
   const std::vector<Corner> corners = corners_of(mesh);
-  const Real crease = degrees * kPi / 180 + 1e-6L;  // the contract allows for rounding of positions
+  const Real crease = degrees * kPi / 180 + 1e-6L;  // the tolerance that the contract allows for rounding of positions
   const auto neighbours = [&](const Corner& c) {
     return std::pair{point[vertex_of(mesh, c, 1)], point[vertex_of(mesh, c, mesh.faces[c.face].size() - 1)]};
   };

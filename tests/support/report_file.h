@@ -1,5 +1,5 @@
-/// Reads a report as a page does: takes the container apart, and computes the number that a page shows at a vertex of a
-/// sample, in double and from the container alone. Nothing here includes code of src/.
+/// Reads a report like a page: splits the container into its parts, and computes the error that a page shows for a
+/// vertex of a sample, in double and from the container alone. Nothing here includes code of src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 
@@ -33,7 +33,7 @@ class ReportFile {
     json = Json::parse(bytes_.substr(16, length));
   }
 
-  Json json;  ///< null where the bytes are no report
+  Json json;  ///< null if the bytes are not a report
 
   template <class T>
   [[nodiscard]] std::vector<T> numbers(const Json& array) const {
@@ -50,7 +50,7 @@ class ReportFile {
 
   [[nodiscard]] const Json& part(std::size_t p) const { return json["parts"][p]; }
 
-  /// Returns the angle in degrees between the rendered normal and the right one at a place of json["worst"].
+  /// Returns the angle in degrees between the rendered and the true normal at a place of json["worst"].
   [[nodiscard]] double degrees_at(const Json& place) const {
     const Json& of = part(place["part"]);
     const Json& motion = of["motions"][place["motion"].get<std::size_t>()];
@@ -86,11 +86,11 @@ class ReportFile {
   static double length(const Point& a) { return std::sqrt(dot(a, a)); }
   static Point unit(const Point& a) { return length(a) > 0 ? scaled(a, 1 / length(a)) : a; }
   static double angle(const Point& a, const Point& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
-  // Turns v about an axis of length 1.
+  // Turns v about an axis, which is a unit vector.
   static Point turned(const Point& axis, double by, const Point& v) {
     return sum(sum(scaled(v, std::cos(by)), cross(axis, v), std::sin(by)), axis, dot(axis, v) * (1 - std::cos(by)));
   }
-  // Turns v by the rotation from `from` to `to`, but by no more than `most`.
+  // Turns v by the rotation from `from` to `to`, but by at most `most` radians.
   static Point turned(const Point& from, const Point& to, const Point& v, double most = 10) {
     const Point axis = cross(from, to);
     if (length(axis) < 1e-12) return v;
@@ -109,7 +109,7 @@ class ReportFile {
     const std::string weighting = of["weighting"];
     Point result = {};
     for (std::size_t t = 0; 3 * t < triangles.size();) {
-      // Collects the polygon of a fan.
+      // Collects the polygon of a fan of triangles.
       const std::size_t first = 3 * t;
       std::vector<std::uint32_t> polygon(triangles.begin() + static_cast<std::ptrdiff_t>(3 * t),
                                          triangles.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
@@ -122,7 +122,7 @@ class ReportFile {
     return result;
   }
 
-  // Returns the contribution of a corner of a polygon to a sum.
+  // Returns the contribution of a corner of a polygon to the sum of an element.
   static Point term(const std::string& weighting, const std::vector<Point>& positions,
                     const std::vector<std::uint32_t>& polygon, std::size_t corner) {
     const auto place = [&](std::size_t i) { return positions[polygon[i % polygon.size()]]; };
@@ -158,7 +158,7 @@ class ReportFile {
                                      corners = numbers<std::uint32_t>(sums["polygons"]["corners"]),
                                      terms = numbers<std::uint32_t>(sums["terms"]),
                                      elements = numbers<std::uint32_t>(of["element"]);
-    std::set<std::size_t> counted;  // corners
+    std::set<std::size_t> counted;  // corners that were already added
     for (std::size_t i = 0; i < terms.size(); i += 2)
       if (terms[i + 1] == element) counted.insert(terms[i]);
     for (std::size_t c = 0; sums["terms"].is_null() && c < corners.size(); ++c)
@@ -172,7 +172,7 @@ class ReportFile {
     return result;
   }
 
-  // Adds the author's offset to a sum, as an angle from it and one around it.
+  // Adds the author's offset to a sum. The offset is an angle to the sum, and an azimuth around it.
   [[nodiscard]] Point with_offset(const Json& offsets, const std::vector<Point>& positions,
                                   const std::vector<double>& weights, std::uint32_t element, const Point& n) const {
     const std::vector<std::uint32_t> elements = numbers<std::uint32_t>(offsets["elements"]),

@@ -1,4 +1,4 @@
-/// Lists all schemes by name, so that tests leave out no new one.
+/// Lists all schemes by name, so that tests cannot omit a new one.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SCHEME_NAMES_H_
 #define CHRONORMAL_TESTS_SUPPORT_SCHEME_NAMES_H_
 
@@ -9,7 +9,7 @@
 
 namespace chronormal::test {
 
-/// Returns all names that make_scheme() knows, with numbers for K and SEED.
+/// Returns all names that make_scheme() accepts, with numbers for K and SEED.
 [[nodiscard]] inline std::vector<std::string> scheme_names() {
   std::vector<std::string> names;
   for (const SchemeDescription& description : scheme_descriptions()) {

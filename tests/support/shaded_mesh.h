@@ -1,5 +1,5 @@
-/// A morphing mesh with normals, as a glTF file and as an oracle of what it shows, in long double and with loops of its
-/// own: nothing here includes code of src/ except for the builder of files.
+/// A morphing mesh with normals, as a glTF file and as an oracle of its rendered normals, in long double. The loops
+/// share no code with src/; only the builder of files is used.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 
@@ -29,7 +29,7 @@ inline Vector vector_at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-/// Turns v by the rotation that takes the unit vector `from` to `to`, by the formula of Rodrigues.
+/// Turns v by the smallest rotation from the unit vector `from` to `to`, by Rodrigues' formula.
 inline Vector rotated(const Vector& from, const Vector& to, const Vector& v) {
   const Vector axis = crossed(from, to);
   if (length_of(axis) == 0) return v;
@@ -42,7 +42,7 @@ inline Vector rotated(const Vector& from, const Vector& to, const Vector& v) {
 
 struct ShadedMesh {
   struct Target {
-    std::vector<float> positions, normals, tangents;  ///< deltas; empty: none
+    std::vector<float> positions, normals, tangents;  ///< deltas; empty if the target has none
   };
   std::vector<std::uint32_t> corners;
   std::vector<float> positions, normals, tangents;
@@ -50,7 +50,7 @@ struct ShadedMesh {
 
   [[nodiscard]] std::size_t vertices() const { return positions.size() / 3; }
 
-  /// Returns the file: mesh 0 with this as its only primitive, on node 0.
+  /// Returns the file: node 0 has mesh 0, whose only primitive is this mesh.
   [[nodiscard]] GltfBuilder file() const {
     GltfBuilder builder;
     builder.add_node(builder.add_mesh(primitive(builder)));
@@ -72,7 +72,7 @@ struct ShadedMesh {
     return result;
   }
 
-  /// Tells whether two vertices share their place, their stored normal and all their deltas of positions.
+  /// Tells whether two vertices have the same position, stored normal, and deltas of positions.
   [[nodiscard]] bool same_element(std::size_t a, std::size_t b) const {
     const auto same = [&](const std::vector<float>& v) {
       return v.empty() || (v[3 * a] == v[3 * b] && v[3 * a + 1] == v[3 * b + 1] && v[3 * a + 2] == v[3 * b + 2]);
@@ -117,7 +117,7 @@ struct ShadedMesh {
   }
 };
 
-/// Makes two triangles, 0 1 2 in the plane z = 0 and 2 1 3 beside it, which a target folds up by 90 degrees about the
+/// Makes two triangles: 0 1 2 in the plane z = 0, and 2 1 3 beside it, which a target folds up by 90 degrees about the
 /// edge from 1 to 2. Both are halves of squares of size 2, and all base normals are (0, 0, 1).
 [[nodiscard]] inline ShadedMesh hinge() {
   ShadedMesh mesh;
@@ -128,8 +128,8 @@ struct ShadedMesh {
   return mesh;
 }
 
-/// Makes a bumpy sheet of n x n vertices, with base normals that are tilted from the geometry's by up to `tilt`
-/// radians, and targets that move and shade at random.
+/// Makes a bumpy sheet of n x n vertices. Its base normals are tilted from the geometry's by up to `tilt` radians, and
+/// its targets have random deltas of positions and normals.
 [[nodiscard]] inline ShadedMesh random_sheet(std::uint64_t seed, std::size_t n, std::size_t target_count, double tilt) {
   fixtures::Random random(seed);
   ShadedMesh mesh;
@@ -150,7 +150,7 @@ struct ShadedMesh {
     for (std::size_t v = 0; v < n * n; ++v) {
       const bool moves = random.below(3) > 0;
       const double side = moves ? 0.35 : 0, up = moves ? 0.7 : 0;
-      // The numbers are drawn one after the other, since the compiler chooses the order of arguments.
+      // Draws one number per statement, since the compiler chooses the order in which arguments are evaluated.
       const double x = random.uniform(-side, side), y = random.uniform(-side, side);
       push(target.positions, x, y, random.uniform(-up, up));
       const double nx = random.uniform(-0.5, 0.5), ny = random.uniform(-0.5, 0.5);
@@ -158,7 +158,7 @@ struct ShadedMesh {
     }
   }
   const std::vector<double> none(target_count);
-  std::vector<float> normals;  // while the mesh has none, places alone tell its elements apart
+  std::vector<float> normals;  // without normals, elements are distinguished by positions alone
   for (std::size_t v = 0; v < n * n; ++v) {
     const Vector geometry = unit_of(mesh.normal(v, none));
     const Vector stored = unit_of(plus(geometry, {random.uniform(-tilt, tilt), random.uniform(-tilt, tilt), 0}));

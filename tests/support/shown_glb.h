@@ -1,6 +1,6 @@
-/// A viewer for tests of baked sequences: shows a GLB file with one morphing mesh of one primitive and one animation,
-/// all of whose targets have positions and normals. Computes weights in double and adds up normals in float, as viewers
-/// do. Throws on any other file.
+/// A viewer for tests of baked sequences. It accepts only a GLB file with one animation and one morphing mesh of one
+/// primitive, whose targets all have positions and normals, and throws for any other file. Weights are computed in
+/// double, and normals are added up in float, like in viewers.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 
@@ -85,7 +85,7 @@ class ShownGlb {
   nlohmann::json json;
   std::vector<float> positions, normals, times;
   std::vector<std::vector<float>> position_deltas, normal_deltas;
-  std::vector<std::uint32_t> corners;  ///< three for each triangle
+  std::vector<std::uint32_t> corners;  ///< three corners for each triangle
 
  private:
   [[nodiscard]] double track(std::size_t row, std::size_t target) const { return track_.at(row * targets() + target); }

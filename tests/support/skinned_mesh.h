@@ -1,5 +1,5 @@
-/// A skin over a morphing mesh, as JSON and bytes of a glTF file and as an oracle of its effect, in long double and
-/// with loops of its own: nothing here includes code of src/ except for the builder of files.
+/// A skin for a morphing mesh, as JSON and bytes of a glTF file, and as an oracle of its effect, in long double. The
+/// loops share no code with src/; only the builder of files is used.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::test {
 
-/// A matrix of three rows of four numbers, which maps (x, y, z, 1) to a place.
+/// A matrix of three rows of four numbers, which maps (x, y, z, 1) to a position.
 struct Rows {
   std::array<std::array<Real, 4>, 3> m = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
@@ -34,7 +34,7 @@ struct Rows {
   }
 };
 
-/// Returns the product that applies b first, then a.
+/// Returns the product of matrices that applies b first, then a.
 [[nodiscard]] inline Rows after(const Rows& a, const Rows& b) {
   Rows result;
   for (std::size_t r = 0; r < 3; ++r) {
@@ -46,13 +46,13 @@ struct Rows {
   return result;
 }
 
-/// A place by translation, rotation (a quaternion x, y, z, w of any length) and scale.
+/// A transform by translation, rotation (a quaternion x, y, z, w, not necessarily of length 1) and scale.
 struct Trs {
   std::array<Real, 3> translation = {0, 0, 0};
   std::array<Real, 4> rotation = {0, 0, 0, 1};
   std::array<Real, 3> scale = {1, 1, 1};
 
-  /// Returns the matrix, whose axes are turned by v + 2 w (u x v) + 2 u x (u x v), u = (x, y, z).
+  /// Returns the matrix. Axes are rotated by v + 2 w (u x v) + 2 u x (u x v), where u = (x, y, z).
   [[nodiscard]] Rows rows() const {
     Real length = 0;
     for (const Real c : rotation) length += c * c;
@@ -79,13 +79,13 @@ struct Trs {
   }
 };
 
-/// A skin: the joints and weights of each vertex, four a set, and inverse bind matrices.
+/// A skin: the joints and weights of each vertex, four in each set, and inverse bind matrices.
 struct Skin {
-  std::vector<std::array<float, 16>> inverse_binds;  ///< column by column; empty: the file has none
-  std::vector<std::vector<std::uint8_t>> joints;     ///< for each set, four for each vertex
-  std::vector<std::vector<float>> weights;           ///< laid out like joints
+  std::vector<std::array<float, 16>> inverse_binds;  ///< column by column; empty if the file has none
+  std::vector<std::vector<std::uint8_t>> joints;     ///< for each set, four joints for each vertex
+  std::vector<std::vector<float>> weights;           ///< with the same layout as `joints`
 
-  /// Appends the skin, whose joints are these nodes, and gives it to node 0 and the first primitive of mesh 0.
+  /// Adds the skin with these nodes as joints to the file, and gives it to node 0 and to the first primitive of mesh 0.
   void add_to(GltfBuilder& builder, const std::vector<std::size_t>& nodes) const {
     GltfBuilder::Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
     for (std::size_t n = 0; n < joints.size(); ++n) {
@@ -102,7 +102,7 @@ struct Skin {
     builder.json["nodes"][0]["skin"] = builder.add("skins", skin);
   }
 
-  /// Returns the matrix that takes a vertex to where a joint carries it.
+  /// Returns the matrix by which a joint moves a vertex.
   [[nodiscard]] Rows of_joint(std::size_t joint, const std::vector<Rows>& world) const {
     Rows bind;
     for (std::size_t k = 0; k < 12 && !inverse_binds.empty(); ++k)
@@ -110,7 +110,7 @@ struct Skin {
     return after(world[joint], bind);
   }
 
-  /// Returns the blended matrix of a vertex for joints at these places of the world.
+  /// Returns the blended matrix of a vertex for joints with these world matrices.
   [[nodiscard]] Rows blended(std::size_t vertex, const std::vector<Rows>& world) const {
     Real sum = 0;
     for (const auto& of_set : weights)
@@ -130,8 +130,8 @@ struct Skin {
   }
 };
 
-/// The ways in which viewers carry a normal: through the blended matrix, through its inverse transpose, or through the
-/// cofactors of each joint.
+/// The ways in which viewers transform a normal: by the blended matrix, by its inverse transpose, or by the cofactors
+/// of each joint.
 enum class Carry { kBlended, kInverseTranspose, kByJoint };
 
 [[nodiscard]] inline Vector by_cofactors(const Rows& matrix, const Vector& n) {
@@ -152,9 +152,9 @@ enum class Carry { kBlended, kInverseTranspose, kByJoint };
   return sum;
 }
 
-/// The errors on the screen: the angle between the rendered and the right normal of a vertex, both carried by the
-/// blended matrix; and the angle between the normal of the geometry, carried likewise, and the normal of the skinned
-/// surface.
+/// The errors on the screen: the angle between the rendered and the true normal of a vertex, both transformed by the
+/// blended matrix; and the angle between the geometry's normal, transformed in the same way, and the normal of the
+/// skinned surface.
 struct SeenErrors {
   double shown = 0, skinning = 0;
 };

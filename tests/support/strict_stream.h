@@ -1,4 +1,4 @@
-/// A stream that keeps only the keyframes that are held, to show how many its user needs.
+/// A stream that keeps only the keyframes in use, to measure how many its user needs.
 #ifndef CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 #define CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 
@@ -12,8 +12,8 @@
 
 namespace chronormal::test {
 
-/// Reads the keyframes of `source`, and sets most_held to the largest number in memory, including one that is being
-/// read. Both must outlive the stream.
+/// Returns a stream of the keyframes of `source`. Sets most_held to the largest number of keyframes in memory,
+/// including one that is being read. Both arguments must outlive the stream.
 inline MotionStream strict(MotionStream& source, std::size_t& most_held) {
   Motion outline = source.motion();
   for (auto& keyframe : outline.keyframes) keyframe.positions = {};

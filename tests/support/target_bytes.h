@@ -1,4 +1,4 @@
-/// Makes a base mesh and targets over it byte by byte.
+/// Makes a base mesh and its targets byte by byte.
 #ifndef CHRONORMAL_TESTS_SUPPORT_TARGET_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_TARGET_BYTES_H_
 
@@ -13,7 +13,7 @@
 
 namespace chronormal::test {
 
-/// A square of two triangles, (4, 3), and the same square as OBJ.
+/// A square of two triangles: positions (4, 3), and the text of an OBJ file.
 inline const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
 inline const std::string kSquareObj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 

@@ -1,4 +1,4 @@
-/// Gives a test a folder of its own, which is removed with all its contents.
+/// A temporary folder for a test, which is removed with all its contents.
 #ifndef CHRONORMAL_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 #define CHRONORMAL_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 
@@ -35,7 +35,7 @@ class TemporaryFolder {
     std::ofstream(path_ / name, std::ios::binary) << bytes;
     return *this / name;
   }
-  /// Returns the number of files and folders in it.
+  /// Returns the number of files and folders in the folder.
   [[nodiscard]] std::size_t entry_count() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
   }

@@ -1,5 +1,5 @@
-/// Repeats what viewers show: plain loops over the formulas of their sources, in double and in integers, without any of
-/// the library. Each viewer is written down by itself, under its name.
+/// Computes the normals that viewers render: plain loops over the formulas in their sources, in double and in integers,
+/// without using the library. Each viewer has its own code under its name.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
 
@@ -26,7 +26,7 @@ using Triple = std::array<double, 3>;
   return size > 0 ? Triple{v[0] / size, v[1] / size, v[2] / size} : Triple{};
 }
 
-/// Returns a value as a 16-bit float, by its bits: ten digits are kept, and the first digit that is dropped rounds up.
+/// Rounds a value to a 16-bit float: keeps ten binary digits, and rounds up if the first dropped digit is 1.
 [[nodiscard]] inline double as_half(double value) {
   const auto narrow = static_cast<float>(value);
   std::uint32_t bits = 0;
@@ -34,7 +34,7 @@ using Triple = std::array<double, 3>;
   const int exponent = static_cast<int>((bits >> 23) & 255U) - 127;
   std::uint32_t digits = bits & 0x7FFFFFU;
   int dropped = 13;
-  if (exponent < -14) {  // below the least exponent fewer digits are left
+  if (exponent < -14) {  // subnormal numbers have fewer digits
     if (exponent < -26) return 0;
     digits |= 0x800000U;
     dropped += -14 - exponent;
@@ -45,15 +45,15 @@ using Triple = std::array<double, 3>;
   return std::copysign((1 + kept) * std::pow(2.0, exponent), value);
 }
 
-/// Maps a direction to two coordinates on an octahedron, whose lower half is folded out; sum is |x| + |y| + |z|.
+/// Maps a direction to two coordinates on an octahedron, whose lower half is folded outwards; `sum` is |x| + |y| + |z|.
 [[nodiscard]] inline std::array<double, 2> on_octahedron(const Triple& v, double sum) {
   const double x = v[0] / sum, y = v[1] / sum;
   if (v[2] >= 0) return {x, y};
   return {(1 - std::fabs(y)) * (x >= 0 ? 1 : -1), (1 - std::fabs(x)) * (y >= 0 ? 1 : -1)};
 }
 
-/// Keeps a direction as Godot does: on an octahedron with two coordinates that are truncated to integers from 0 to
-/// 65535.
+/// Encodes and decodes a direction like Godot: on an octahedron with two coordinates that are truncated to integers
+/// from 0 to 65535.
 [[nodiscard]] inline Triple through_godot(const Triple& v) {
   const double sum = std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]);
   if (sum == 0) return {};
@@ -70,16 +70,16 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({x, y, z});
 }
 
-/// Keeps a normal as Filament does without texture coordinates: makes a frame by Frisvad's rule, turns its matrix (t, n
-/// x t, n) into a quaternion by the four cases of Shepperd's method, keeps four integers of 16 bits, and takes the
-/// third axis.
+/// Encodes and decodes a normal like Filament without texture coordinates: makes a frame by Frisvad's rule, converts
+/// its matrix (t, n x t, n) to a quaternion by the four cases of Shepperd's method, rounds it to four 16-bit integers,
+/// and takes the third axis.
 [[nodiscard]] inline Triple through_filament(const Triple& n) {
   if (n == Triple{}) return {};
   const double a = 1 / (1 + n[1]);
   Triple t = {-n[2] * n[0] * a, -n[2], 1 - n[2] * n[2] * a};
   if (n[1] < -0.9999999) t = {-1, 0, 0};
   const Triple b = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
-  double w = 0, x = 0, y = 0, z = 0;  // four times each times the largest of them
+  double w = 0, x = 0, y = 0, z = 0;  // four times each component, times the largest component
   if (t[0] + b[1] + n[2] > 0) {
     w = 1 + t[0] + b[1] + n[2], x = b[2] - n[1], y = n[0] - t[2], z = t[1] - b[0];
   } else if (t[0] >= b[1] && t[0] >= n[2]) {
@@ -94,7 +94,7 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({2 * x * z + 2 * w * y, 2 * y * z - 2 * w * x, 1 - 2 * x * x - 2 * y * y});
 }
 
-/// Returns the integer nearest to |value| times `most`, found by trying all of them, with the sign of the value.
+/// Returns the integer nearest to |value| times `most`, with the sign of the value. It is found by trying all integers.
 [[nodiscard]] inline int nearest_integer(double value, int most) {
   int best = 0;
   for (int k = 1; k <= most; ++k)
@@ -102,11 +102,11 @@ using Triple = std::array<double, 3>;
   return value < 0 ? -best : best;
 }
 
-/// Keeps a value as gltfpack does, and glTF Transform at 8 bits.
+/// Rounds a value like gltfpack, and like glTF Transform at 8 bits.
 [[nodiscard]] inline double as_byte(double value) { return nearest_integer(value, 127) / 127.0; }
 
-/// Keeps a value as glTF Transform does at 10 bits: nine binary digits beside the sign are written, and a part of them
-/// again, to make fifteen.
+/// Rounds a value like glTF Transform at 10 bits: nine binary digits and the sign are written, and the leading digits
+/// are repeated to make fifteen.
 [[nodiscard]] inline double as_ten_bits(double value) {
   std::string digits;
   const int kept = std::abs(nearest_integer(value, 511));
@@ -115,8 +115,8 @@ using Triple = std::array<double, 3>;
   return std::copysign(std::stoi(fifteen, nullptr, 2) / 32767.0, value);
 }
 
-/// Keeps a direction as glTF Transform's meshopt does: on an octahedron with coordinates from -127 to 127, and then as
-/// three such bytes.
+/// Encodes and decodes a direction like the meshopt command of glTF Transform: on an octahedron with coordinates from
+/// -127 to 127, and then as three bytes.
 [[nodiscard]] inline Triple through_meshopt(const Triple& v) {
   const double sum = std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]);
   if (sum == 0) return {};
@@ -136,7 +136,7 @@ using Triple = std::array<double, 3>;
   return {change(v[0]), change(v[1]), change(v[2])};
 }
 
-/// Returns the unit normal that a viewer shows for N, its deltas and these weights.
+/// Returns the unit normal that a viewer renders for N, its deltas and these weights.
 [[nodiscard]] inline Triple shown_by(std::string_view viewer, const Triple& normal, const std::vector<Triple>& deltas,
                                      const std::vector<double>& weights) {
   const auto plus = [](const Triple& a, double w, const Triple& b) {
@@ -181,7 +181,8 @@ using Triple = std::array<double, 3>;
   return scaled_to_one(sum);
 }
 
-/// Returns the weights that a viewer plays from a track at a time between keys. start and end belong to the animation.
+/// Returns the weights that a viewer plays from a track at a time between keys. `start` and `end` are those of the
+/// animation.
 [[nodiscard]] inline std::vector<double> played_by(std::string_view viewer, GltfInterpolation interpolation,
                                                    const std::vector<float>& times, const std::vector<float>& values,
                                                    std::size_t targets, double start, double end, double time) {
@@ -209,7 +210,7 @@ using Triple = std::array<double, 3>;
     return weights;
   }
   if (viewer == "playcanvas" && is_spline) {
-    // Its parser makes one track of single numbers for each number of a key.
+    // PlayCanvas's parser makes a separate track for each number of a key.
     const std::size_t tracks = values.size() / times.size(), keys = times.size();
     std::vector<double> weights;
     for (std::size_t j = 0; j < targets; ++j) {

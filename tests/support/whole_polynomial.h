@@ -1,9 +1,8 @@
-/// Polynomials with whole coefficients of any size, which judge the roots and signs that the product claims to know
-/// exactly.
+/// Polynomials with integer coefficients of any size, to check the exact roots and signs that the product finds.
 ///
-/// Positions in float32 are whole numbers times 2^-149, and a whole t needs no fractions, so values at t = -1, 0, 1 and
-/// 2 are whole, and determine the polynomial. Roots are counted by Descartes' rule and halving, on the polynomial
-/// without its multiple roots.
+/// Positions in float32 are integers times 2^-149, so values at the integers t = -1, 0, 1 and 2 are integers, too, and
+/// determine the polynomial. Roots are counted by Descartes' rule and bisection, on the polynomial without its multiple
+/// roots.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
 
@@ -31,7 +30,7 @@ using WholeVector = std::array<Whole, 3>;
   return {one(v.x), one(v.y), one(v.z)};
 }
 
-/// Returns p + t (q - p) for a whole t.
+/// Returns p + t (q - p) for an integer t.
 [[nodiscard]] inline WholeVector on_line(const WholeVector& p, const WholeVector& q, long t) {
   WholeVector result;
   for (std::size_t k = 0; k < 3; ++k) result[k] = p[k] + t * (q[k] - p[k]);
@@ -50,7 +49,7 @@ using WholeVector = std::array<Whole, 3>;
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-/// Returns the normal of a polygon at a whole t: the sum over its triangles, times 2^298.
+/// Returns the normal of a polygon at an integer t: the sum over its triangles, times 2^298.
 [[nodiscard]] inline WholeVector whole_normal(const Segment& segment, std::span<const std::uint32_t> vertices, long t) {
   const auto corner = [&](std::size_t c) {
     return on_line(whole(segment.from[vertices[c]]), whole(segment.to[vertices[c]]), t);
@@ -78,7 +77,7 @@ class WholePolynomial {
 
   [[nodiscard]] static WholePolynomial greatest_common_divisor(WholePolynomial p, WholePolynomial q);
 
-  /// Returns the sign at a double, which may be anything finite.
+  /// Returns the sign at any finite double.
   [[nodiscard]] int sign_at(double t) const {
     int exponent = 0;
     const Whole mantissa(std::ldexp(std::frexp(t, &exponent), 53));
@@ -100,20 +99,20 @@ class WholePolynomial {
       slope = slope * root + static_cast<unsigned long>(k) * p.a_[k] * power;
       power *= unit;
     }
-    const bool is_odd = p.a_.size() >= 2 && p.a_.size() % 2 == 1;  // the power of unit that slope was multiplied by
+    const bool is_odd = p.a_.size() >= 2 && p.a_.size() % 2 == 1;  // the power of `unit` by which slope was multiplied
     return is_odd ? sgn(slope) * sgn(unit) : sgn(slope);
   }
 
-  /// Counts the different roots in [0, 1].
+  /// Counts the distinct roots in [0, 1].
   [[nodiscard]] std::size_t count_roots() const {
     const std::size_t at_ends = (sign_at(0) == 0 ? 1U : 0U) + (sign_at(1) == 0 ? 1U : 0U);
     const std::vector<Whole> b = bernstein();
     return at_ends + (variations(b) < 2 ? variations(b) : count_in(without_multiple_roots().bernstein()));
   }
 
-  /// Counts the different roots in [low, high], for 0 <= low < high <= 1.
+  /// Counts the distinct roots in [low, high], for 0 <= low < high <= 1.
   [[nodiscard]] std::size_t count_roots(double low, double high) const {
-    // Computes p(low + s (high - low)), with low and high whole numbers times 2^-shift.
+    // Computes p(low + s (high - low)), where low and high are integers times 2^-shift.
     constexpr int kShift = 1080;
     const auto scaled = [](double t) {
       int exponent = 0;
@@ -125,7 +124,7 @@ class WholePolynomial {
     std::vector<Whole> moved;
     Whole power = 1;
     for (std::size_t k = a_.size(); k-- > 0;) {
-      // This step is moved = moved * (from + s step) + a_k power.
+      // Computes moved = moved * (from + s step) + a_k power.
       std::vector<Whole> next(moved.size() + 1);
       for (std::size_t i = 0; i < moved.size(); ++i) {
         next[i] += moved[i] * from;
@@ -158,7 +157,7 @@ class WholePolynomial {
     return result;
   }
 
-  // The quotient and the remainder of a multiple.
+  // The quotient and the remainder of a pseudo-division.
   struct Division;
   [[nodiscard]] Division divided_by(const WholePolynomial& q) const;
   [[nodiscard]] WholePolynomial without_multiple_roots() const;
@@ -190,7 +189,7 @@ class WholePolynomial {
     return count;
   }
 
-  // Counts the roots in the open interval (0, 1), all of which are simple.
+  // Counts the roots in the open interval (0, 1), all of which must be simple.
   static std::size_t count_in(const std::vector<Whole>& b) {
     if (variations(b) < 2) return variations(b);
     // Both halves are scaled by 2^n.
@@ -204,7 +203,7 @@ class WholePolynomial {
     return count_in(before) + (sgn(after[0]) == 0 ? 1U : 0U) + count_in(after);
   }
 
-  std::vector<Whole> a_;  // coefficients of rising powers; the last is not zero
+  std::vector<Whole> a_;  // coefficients by ascending powers; the last one is not zero
 };
 
 struct WholePolynomial::Division {

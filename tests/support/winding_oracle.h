@@ -1,9 +1,9 @@
-/// Computes winding numbers and crossings of moving points in whole numbers and rationals, to check containment.
+/// Computes winding numbers and crossings of moving points in integers and rational numbers, to check containment.
 ///
-/// A winding number is counted along a slanted half-line, and not an upright one, with signs of determinants of whole
-/// numbers. If a determinant is zero because the point lies on something, the point is actually moved, by a small step
-/// along x, a far smaller one along y, and a still smaller one along z, and the question is repeated. Roots are
-/// isolated by Sturm's theorem in rationals.
+/// A winding number is counted along a slanted half-line, unlike in the product, with signs of integer determinants. If
+/// a determinant is zero because the half-line meets an edge or a vertex, the point is moved by a small step along x, a
+/// far smaller step along y, and a still smaller step along z, and the computation is repeated. Roots are isolated by
+/// Sturm's theorem in rational numbers.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 
@@ -27,7 +27,7 @@ namespace chronormal::exact {
 using Integers = std::array<mpz_class, 3>;
 using Corners = std::array<std::uint32_t, 3>;
 
-/// Returns a float times 2^149, which is whole.
+/// Returns a float times 2^149, which is an integer.
 [[nodiscard]] inline mpz_class whole(float x) {
   int exponent = 0;
   const auto mantissa = static_cast<long>(std::ldexp(std::frexp(x, &exponent), 24));
@@ -45,7 +45,7 @@ struct Fraction {
   }
 };
 
-/// Returns 2^(149 + 53) times a coordinate at t relative to a moving point, which is whole.
+/// Returns 2^(149 + 53) times a coordinate at t relative to a moving point, which is an integer.
 [[nodiscard]] inline Integers seen_at(const Vec3f& from, const Vec3f& to, const Vec3f& point_from,
                                       const Vec3f& point_to, const Fraction& t) {
   const mpz_class after = t.numerator, before = (std::int64_t{1} << 53) - t.numerator;
@@ -56,7 +56,7 @@ struct Fraction {
           at(from.z, to.z, point_from.z, point_to.z)};
 }
 
-/// A place whose Integer is mpz_class, or std::int64_t if that is enough.
+/// A position. Integer is mpz_class, or std::int64_t if it is large enough.
 template <class Integer>
 using Place = std::array<Integer, 3>;
 
@@ -76,7 +76,7 @@ template <class Integer>
   int number = 0;
   for (const Corners& face : faces) {
     const Place<Integer>&a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
-    if (a == b || b == c || c == a) continue;  // without area
+    if (a == b || b == c || c == a) continue;  // triangles without area
     const int ab = sign_of_determinant(direction, a, b);
     if (ab == 0) return std::nullopt;
     const int bc = sign_of_determinant(direction, b, c);
@@ -105,7 +105,7 @@ template <class Integer>
       if (abs(x) > largest) largest = abs(x);
     }
   }
-  // Common factors of two are removed to make the numbers as small as possible.
+  // Removes common factors of two, to make the numbers as small as possible.
   for (Integers& v : vertices) {
     for (mpz_class& x : v) x >>= zeros;
   }
@@ -117,7 +117,7 @@ template <class Integer>
   }
   const std::array<Integers, 4> directions{{{3, 7, 11}, {-13, 5, 8}, {17, -19, 6}, {-5, -23, 29}}};
   if (const auto number = winding_along(vertices, faces, directions[0])) return *number;
-  // The steps are small against anything that is not zero: volumes and areas are whole, and areas are below size^2.
+  // The steps are small compared with every nonzero value: volumes and areas are integers, and areas are below size^2.
   const mp_bitcnt_t size = mpz_sizeinbase(largest.get_mpz_t(), 2) + 8, finest = 7 * size;
   for (Integers& v : vertices) {
     for (std::size_t k = 0; k < 3; ++k) v[k] = (v[k] << finest) - (mpz_class(1) << (finest - (2 * k + 3) * size));
@@ -128,7 +128,7 @@ template <class Integer>
   throw std::logic_error("no direction meets no edge");
 }
 
-/// The coefficients of 1, t, t^2 ...
+/// The coefficients of 1, t, t^2, ...
 using Polynomial = std::vector<mpq_class>;
 
 [[nodiscard]] inline Polynomial times(const Polynomial& p, const Polynomial& q) {
@@ -149,7 +149,7 @@ using Polynomial = std::vector<mpq_class>;
   return sgn(value);
 }
 
-/// Counts by Sturm's sequence the different roots between two times that are not roots.
+/// Counts the distinct roots between two times that are not roots, by Sturm's sequence.
 class SturmSequence {
  public:
   explicit SturmSequence(Polynomial p) {
@@ -197,11 +197,11 @@ class SturmSequence {
 
 struct ExactCrossing {
   std::size_t face;
-  mpq_class low, high;  // the root is between
+  mpq_class low, high;  // bounds of the root
   bool inward;
 };
 
-/// All crossings of faces for a point that goes through no edge and touches no face; otherwise is_general is false.
+/// All crossings of faces by a point that meets no edge and touches no face; otherwise is_general is false.
 struct ExactCrossings {
   bool is_general = true;
   std::vector<ExactCrossing> list;
@@ -218,7 +218,8 @@ struct ExactCrossings {
     };
     return Line{seen(a.x, b.x, from.x, to.x), seen(a.y, b.y, from.y, to.y), seen(a.z, b.z, from.z, to.z)};
   };
-  // The test uses the normal, and not a vertical line: the point is between the edges if all three areas point like n.
+  // Uses the normal instead of a vertical line: the point is inside the face if all three areas have the direction of
+  // n.
   const auto cross = [](const Line& a, const Line& b) {
     Line result;
     for (std::size_t k = 0; k < 3; ++k) {

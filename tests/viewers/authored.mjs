@@ -1,6 +1,6 @@
-// A sheet as an author has it: quads, some hexagons and some faces shaded flat. Its normals are sums over polygons by
-// the angle of their corners, of all polygons around a smooth point. Some were bent by hand, differently in each key,
-// and some look to the other side.
+// A sheet as an artist models it: quads, some hexagons, and some flat-shaded faces. The normal of a smooth point is the
+// sum over all polygons around it, weighted by the angle at their corners. Some normals were edited by hand,
+// differently in each key, and some point to the other side.
 import { writeFile } from './fixtures.mjs';
 import { randomNumbers } from './random.mjs';
 
@@ -29,7 +29,7 @@ function polygonsOf(n, random) {
 
 const faceNormal = ({ corners }, p) => unit(corners.reduce((sum, v, i) => plus(sum, cross(p[v], p[corners[(i + 1) % corners.length]])), [0, 0, 0]));
 
-// Returns the unit normals of all points, to which all polygons around a point contribute.
+// Returns the unit normals of all points, summed over all polygons around each point.
 function pointNormals(polygons, p) {
   const sums = p.map(() => [0, 0, 0]);
   for (const polygon of polygons) {
@@ -42,7 +42,7 @@ function pointNormals(polygons, p) {
   return sums.map(unit);
 }
 
-/** Writes the file. Target 2 pulls the point in the middle up so far that none of its edges leaves beside its normal. */
+/** Writes the file. Target 2 pulls the middle point up so far that all its edges are nearly parallel to its normal. */
 export async function writeAuthored(path, seed, n = 12) {
   const random = randomNumbers(seed), around = (size) => size * (2 * random() - 1);
   const polygons = polygonsOf(n, random), middle = (n >> 1) * n + (n >> 1), keys = [];

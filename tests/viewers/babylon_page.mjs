@@ -1,5 +1,5 @@
-// Babylon.js as a viewer, in the page: its loader, its animation groups, and the normals that its own glTF material
-// computes, which it can show instead of colours.
+// Babylon.js as a viewer in the page: its loader, its animation groups, and its glTF material, which can show its
+// normals as colours.
 import { Animation } from '@babylonjs/core/Animations/animation.js';
 import { AnimationGroup } from '@babylonjs/core/Animations/animationGroup.js';
 import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
@@ -15,8 +15,8 @@ import '@babylonjs/loaders/glTF/2.0/index.js';
 import { driveBabylon } from '../../examples/drive.mjs';
 import * as live from '../../js/src/babylon.js';
 
-const FRAMES_PER_SECOND = 60;  // the loader multiplies seconds by this
-const SHADED_NORMALS = 5;      // PBRMaterial.debugMode
+const FRAMES_PER_SECOND = 60;  // the loader multiplies seconds by this number
+const SHADED_NORMALS = 5;      // value of PBRMaterial.debugMode
 
 let engine;
 
@@ -36,7 +36,7 @@ function toBase64(bytes) {
   return btoa(text);
 }
 
-// Sets every object to a time, by the animation group.
+// Sets all objects to a time, by the animation group.
 export function play(model, animation, time) {
   model.scene.animationGroups.forEach((group) => group.stop());
   if (animation === null) return;

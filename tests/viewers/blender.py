@@ -1,9 +1,10 @@
-"""Imports a glTF file into Blender, says what came of it, and exports it again. Run inside Blender by blender.test.mjs:
+"""Imports a glTF file into Blender, reports the result, and exports it again. blender.test.mjs runs this inside
+Blender:
 
     blender --background --factory-startup --python-exit-code 1 --python blender.py -- IN.glb REPORT.json OUT.glb
 
-REPORT.json has, of each mesh in order of name: `keys`, the names of its shape keys without the basis, and `positions`, those of
-all vertices at ten instants of the animation, one instant after the other, in Blender's own axes.
+REPORT.json has for each mesh, in the order of names: `keys`, the names of its shape keys without the basis; and
+`positions`, the positions of all vertices at ten instants of the animation, in Blender's axes.
 """
 import json
 import sys

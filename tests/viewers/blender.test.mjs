@@ -1,8 +1,8 @@
-// Imports baked files into Blender, and bakes what Blender exports. Run by ctest as `blender`, where Blender is
+// Imports baked files into Blender, and bakes files that Blender exports. ctest runs this as `blender` if Blender is
 // installed (`./test --full pipelines` installs it).
 //
-// Blender renders normals that it computes itself, so that a bake changes no picture there. It must not change the
-// shape either; and an exported file can be baked again.
+// Blender renders normals that it computes by itself, so a bake changes no picture in Blender. The bake must not change
+// the shape either, and an exported file can be baked again.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -22,7 +22,7 @@ let folder;
 before(() => (folder = mkdtempSync(join(tmpdir(), 'chronormal_blender_'))));
 after(() => rmSync(folder, { recursive: true, force: true }));
 
-// Opens a file in Blender, and exports it to `again`.
+// Imports a file into Blender, and exports it as `again`.
 function throughBlender(input, again) {
   const report = `${again}.json`;
   runBlender('blender.py', input, report, again);
@@ -32,7 +32,7 @@ function throughBlender(input, again) {
 const audited = (path) => JSON.parse(chronormal('audit', path, '--json', '--quiet'));
 const kinds = (path) => audited(path).findings.map(({ kind }) => kind);
 
-// Returns the largest distance of a vertex from its former place. Shape keys must keep their names.
+// Returns the largest distance of a vertex from its earlier position. Shape keys must keep their names.
 function distance(before, after) {
   assert.equal(after.meshes.length, before.meshes.length);
   let worst = 0;
@@ -46,7 +46,7 @@ function distance(before, after) {
   return worst;
 }
 
-// Names the targets, since Blender 3.4 imports no target whose name is empty.
+// Gives the targets names, since Blender 3.4 does not import a target with an empty name.
 async function nameTargets(path) {
   const document = await newIO().read(path);
   for (const mesh of document.getRoot().listMeshes())
@@ -75,14 +75,13 @@ async function checkRoundTrip(context, original) {
     const second = bake(again, anew);
     assert.deepEqual(await newComplaints(anew, again), []);
     assert.ok(kinds(anew).includes('baked') && !kinds(anew).includes('emptied'), `${encoding}: ${kinds(anew)}`);
-    // The author of the second file is Blender, which computed its normals anew: they are no polynomial, so the bake
-    // fits them.
+    // Blender has computed the normals of the second file anew: they are not a polynomial, so the bake fits them.
     const text = ({ mean_degrees_before: before, mean_degrees_after: mean, worst_degrees_after: worst }) =>
       `${before.toFixed(3)} on average -> ${mean.toFixed(3)} / ${worst.toFixed(2)}`;
     const outcome = `${encoding}: first ${text(first)}, again ${text(second)}`;
     context.diagnostic(outcome);
     assert.ok(second.mean_degrees_after <= Math.max(1.2 * first.mean_degrees_after + 0.05, 0.1 * second.mean_degrees_before), outcome);
-    // A surface gets better as a whole, while a single normal may get a little worse.
+    // The surface must improve as a whole; a single normal may become slightly worse.
     assert.ok(second.worst_degrees_after <= 1.2 * second.worst_degrees_before + 0.05, outcome);
     const spare = join(folder, 'spare.glb');
     if (encoding === 'harmless') assert.ok(distance(throughBlender(again, spare), throughBlender(anew, spare)) < 1e-5);

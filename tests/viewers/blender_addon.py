@@ -1,9 +1,10 @@
-"""Uses the add-on of blender/ as a person does, and writes down what comes of it. Run inside Blender by blender_addon.test.mjs,
-with the add-on in the folder for add-ons (BLENDER_USER_SCRIPTS):
+"""Uses the add-on of blender/ like a person, and records the results. blender_addon.test.mjs runs this inside
+Blender, with the add-on in the folder for add-ons (BLENDER_USER_SCRIPTS):
 
-    blender --background --factory-startup --python-exit-code 1 --python blender_addon.py -- TASK FOLDER ARGUMENT...
+    blender --background --factory-startup --python-exit-code 1 --python blender_addon.py -- TASK FOLDER
+    ARGUMENT...
 
-Each task is a function below. What it found is in FOLDER/TASK.json, and the files that it exported lie beside that.
+Each task is a function below. The results are in FOLDER/TASK.json, beside the exported files.
 """
 import json
 import os
@@ -21,7 +22,8 @@ ADDON = "chronormal_blender"
 
 
 def switch_on(program):
-    """Enables the add-on and gives it a program: its preferences. It is off after every start and every new model."""
+    """Enables the add-on and sets its program in the preferences. The add-on is off after every start and every new
+    model."""
     bpy.ops.preferences.addon_enable(module=ADDON)
     preferences = bpy.context.preferences.addons[ADDON].preferences
     preferences.program = program
@@ -29,7 +31,7 @@ def switch_on(program):
 
 
 def part(name):
-    """A module of the add-on."""
+    """Returns a module of the add-on."""
     return sys.modules[f"{ADDON}.{name}"]
 
 
@@ -39,7 +41,7 @@ def select(o):
 
 
 def looked_at(o, over, judged):
-    """Judges an object by the panel: degrees on average and at worst, the rows of the list, the colours."""
+    """Checks an object by the panel. Returns degrees on average and at worst, the rows of the list, and the colours."""
     select(o)
     state = bpy.context.window_manager.chronormal
     state.judged = judged
@@ -53,13 +55,14 @@ def looked_at(o, over, judged):
 
 
 def everything():
-    """Names of all that a file has."""
+    """Returns the names of all data in the file."""
     kinds = ("scenes", "objects", "meshes", "actions", "shape_keys", "materials")
     return {kind: sorted(one.name for one in getattr(bpy.data, kind)) for kind in kinds}
 
 
 def models(folder, program, seed):
-    """Exports every model without the add-on, with it switched off, and with it switched on; and looks at each."""
+    """Exports every model without the add-on, with the add-on switched off, and with it switched on; and checks each
+    by the panel."""
     result = {}
     for name in blender_truth.MODELS:
         truth, how = blender_truth.make(int(seed), name)
@@ -98,7 +101,7 @@ def models(folder, program, seed):
 
 
 def jumps(o):
-    """Jumps to the worst pair of keys: what the panel said of it, and what it says there."""
+    """Jumps to the worst pair of keys. Returns what the panel listed for it, and what the panel shows there."""
     state = bpy.context.window_manager.chronormal
     if looked_at(o, "KEYS", "PLAIN")["findings"] == []:
         return None
@@ -113,7 +116,7 @@ def jumps(o):
 
 
 def failures(folder, program):
-    """Exports where something is in the way. Programs that fail lie in the folder."""
+    """Exports under conditions that make a bake fail. The folder has programs that fail."""
     truth, how = blender_truth.make(1, "triangles")
     path = lambda name: os.path.join(folder, name)  # noqa: E731
     blender_truth.export(path("plain.glb"), how)
@@ -148,7 +151,7 @@ def failures(folder, program):
 
 
 def leaves(folder, program):
-    """Compares Blender before the add-on was there with Blender after it."""
+    """Compares Blender before the add-on was enabled with Blender after it was disabled."""
     from io_scene_gltf2.io.exp import gltf2_io_export
 
     def state():
@@ -167,7 +170,7 @@ def leaves(folder, program):
     preferences.use = True
     looked_at(truth.object, "NOW", "BAKED")
     blender_truth.export(os.path.join(folder, "left.glb"), how)
-    # An export that fails before it writes leaves the function of the add-on in the exporter.
+    # If an export fails before it writes, the replaced function stays in the exporter.
     part("export").before_export({})
     part("colours").show()
     during = state()
@@ -176,7 +179,8 @@ def leaves(folder, program):
 
 
 def by_hand(path, program):
-    """Imports a file without the add-on, and mutes its corrections by the button: how many are muted."""
+    """Imports a file without the add-on, and mutes its correction keys by the button. Returns the number of muted
+    keys."""
     bpy.ops.preferences.addon_disable(module=ADDON)
     bpy.ops.import_scene.gltf(filepath=path)
     switch_on(program)
@@ -189,7 +193,8 @@ def by_hand(path, program):
 
 
 def imports(folder, program, *names):
-    """Imports files and exports them again: NAME.glb as NAME.again.glb, and with the add-on switched off as NAME.again_off.glb."""
+    """Imports files and exports them again: NAME.glb as NAME.again.glb, and with the add-on switched off as
+    NAME.again_off.glb."""
     result = {}
     for name in names:
         path = os.path.join(folder, name)
@@ -214,7 +219,7 @@ def imports(folder, program, *names):
 
 
 def installs(folder, archive):
-    """Installs the zip as the preferences do, and exports with the program that ships in it."""
+    """Installs the zip like the preferences do, and exports with the program inside."""
     truth, how = blender_truth.make(1, "triangles")
     bpy.ops.preferences.addon_install(filepath=archive)
     preferences = switch_on("")

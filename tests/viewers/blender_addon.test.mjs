@@ -1,7 +1,7 @@
-// Uses the add-on of blender/ in Blender as a person does, and judges its files by the normals that Blender itself
-// evaluates. Run by ctest as `blender`, where Blender is installed.
+// Uses the add-on of blender/ in Blender like a person, and compares the normals of its files with those that Blender
+// evaluates. ctest runs this as `blender` if Blender is installed.
 //
-//   CHRONORMAL_SEED  another seed for the models and poses; the one that is used is printed
+//   CHRONORMAL_SEED  another seed for the models and poses; the seed in use is printed
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { chmodSync, copyFileSync, cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -18,15 +18,16 @@ import { read, shownNormals } from './reader.mjs';
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 
-// Limits in degrees, as in blender_truth.test.mjs: at the base and at keys, and at times of the animation.
+// The largest errors in degrees, as in blender_truth.test.mjs: at the base and at keys, and at times of the animation.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
 
-// The difference in degrees between two judges of one pose, which match corners and vertices in different ways.
+// The largest difference in degrees between two measurements of the same pose, which match corners and vertices in
+// different ways.
 const AGREE = 0.02;
 
-// The edges of `facets` become hard by their angle only in a deformed pose, which no target can show.
+// The edges of `facets` become hard by their angle only in a deformed pose, which a morph target cannot represent.
 const HARD_IN_POSES = ['facets'];
 
 const PLAIN = /the plain file stands/;
@@ -35,7 +36,7 @@ let folder, program;
 const at = (name) => join(folder, name);
 const bytes = (name) => readFileSync(at(name));
 
-// Runs a task of blender_addon.py, and returns its results. The add-on is the one of the folder unless `how` names
+// Runs a task of blender_addon.py, and returns its results. The add-on is the one in blender/, unless `how` names
 // another.
 function run(how, task, ...args) {
   const env = { BLENDER_USER_SCRIPTS: at('user'), TMPDIR: folder, HOME: folder, ...how.env };
@@ -49,7 +50,7 @@ function write(name, text, mode) {
 }
 
 before(() => {
-  // Everything lies in a folder that any user may read. One task runs as another user, since root may write into every
+  // All files are in a folder that every user may read. One task runs as another user, since root may write into every
   // folder.
   folder = mkdtempSync(join(tmpdir(), 'chronormal_addon_'));
   chmodSync(folder, 0o777);
@@ -67,7 +68,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 const text = ({ stills, times }) =>
   [stills, times].map(({ mean, worst }) => `${mean.toFixed(4)} / ${worst.toFixed(3)}`).join(', at times ');
 
-// Returns the worst error of a file at an instant of a truth, over the vertices of the file.
+// Returns the worst error of a file's vertices at one recorded instant.
 function worstAt(model, posed, i) {
   let worst = 0;
   model.exported.meshes[0].primitives.forEach((primitive, p) => {
@@ -109,8 +110,8 @@ describe('The add-on', () => {
         assert.ok(times.mean <= MEAN && times.worst <= WORST, `${form}: ${times.mean} / ${times.worst} degrees`);
       }
       own.diagnostic(said);
-      // A warning says that the error at a key half-way exceeds the tolerance, which no file can mend without a
-      // program.
+      // The operator warns if the error halfway to a key exceeds the tolerance, which no file can avoid unless a
+      // program sets the weights of correction targets.
       assert.equal(level, said.includes('no candidate is within') ? 'WARNING' : 'INFO', said);
       assert.match(said, HARD_IN_POSES.includes(model.name) ? /^Normals/ : /^Normals were corrected: error on average .* correction targets?\./);
       assert.ok(!said.includes('--'), 'an artist knows no option of a command');
@@ -131,7 +132,7 @@ describe('The add-on', () => {
     eachModel(context, (model, { over_time: plain, baked_over_time: baked, leaves }, own) => {
       const { times } = errors(model.exported, model);
       own.diagnostic(`plain ${plain.average}, corrected ${baked.average}, the file ${times.mean}`);
-      // The panel looks at every frame, but the truth was recorded at every third.
+      // The panel checks every frame, but only every third frame was recorded.
       assert.ok(plain.poses > 40 && plain.worst >= times.worst - AGREE);
       assert.ok(plain.findings.some(([kind]) => kind === 'FRAME') && plain.findings.some(([kind]) => kind === 'PLACE'));
       if (!HARD_IN_POSES.includes(model.name)) assert.ok(baked.mean <= MEAN && baked.worst <= WORST, JSON.stringify(baked));
@@ -145,8 +146,8 @@ describe('The add-on', () => {
       if (jumps) assert.ok(Math.abs(jumps.said - jumps.there) < 1e-3 && jumps.ones === 2, JSON.stringify(jumps));
     }));
 
-  // Blender imports triangles with custom normals, which is another model than the author's. So the baked file is
-  // compared with the plain file, imported and exported.
+  // Blender imports triangles with custom normals, which differ from the author's model. Therefore the baked file is
+  // compared with the plain file after importing and exporting both.
   test('makes the corrections of a baked file idle when it is imported, and bakes the keys of its author again', async (context) => {
     const names = ['head', 'sharp_cylinder', 'triangles', 'mixed', 'weighted'];
     for (const name of names) chronormal('bake', at(`${name}.glb`), '-o', at(`${name}.baked.glb`), '--quiet');

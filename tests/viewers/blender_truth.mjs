@@ -1,15 +1,15 @@
-// Reads the normals that Blender itself evaluates for a model, as blender_truth.py writes them, and compares them with
-// a viewer that adds up the deltas of a file.
+// Reads the normals that Blender evaluates for a model, which blender_truth.py has written, and compares them with a
+// viewer that adds up the deltas of a file.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { angle } from './exact.mjs';
 import { nodeWeights, read, shownNormals } from './reader.mjs';
 
-// The largest distance at which two places are one; models are about two units wide.
+// The largest distance at which two positions count as equal; models are about two units wide.
 const ROUNDING = 1e-5;
 
-// Reads what blender_truth.py wrote: {loops, instants, place(instant, loop), normal(instant, loop)}.
+// Reads a file by blender_truth.py: {loops, instants, place(instant, loop), normal(instant, loop)}.
 export function readTruth(path) {
   const { loops, instants } = JSON.parse(readFileSync(`${path}.json`, 'utf8'));
   const bytes = readFileSync(`${path}.bin`);
@@ -28,8 +28,8 @@ const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);
 const near = (a, b) => a.every((x, c) => Math.abs(x - b[c]) < ROUNDING);
 const plus = (array, delta, v) => vector(array, v).map((x, c) => x + (delta?.[3 * v + c] ?? 0));
 
-// Finds the loop of Blender's mesh that each vertex of an exported primitive was made from: it has the place of the
-// vertex in the base and at each key, and the nearest normals.
+// Finds for each vertex of an exported primitive the loop of Blender's mesh from which it was made: the loop at the
+// same position, in the base and at each key, that has the nearest normals.
 function loopsOf(primitive, truth) {
   const stills = truth.instants.flatMap(({ time }, i) => (time === undefined ? [i] : []));
   const deltas = [null, ...primitive.targets];
@@ -47,19 +47,20 @@ function loopsOf(primitive, truth) {
   });
 }
 
-// Blender's normals of the vertices of a primitive at an instant, whose loops these are.
+// Returns Blender's normals of the vertices of a primitive at an instant. `loops` has the loop of each vertex.
 export function truthOf({ truth }, instant, loops) {
   return Float32Array.from({ length: 3 * loops.length }, (_, i) => truth.normal(instant, loops[Math.floor(i / 3)])[i % 3]);
 }
 
-// Reads {name, path, truth, exported, loops}: `path` lacks the ending, `loops` has an array for each primitive.
+// Reads a model: {name, path, truth, exported, loops}. `path` has no extension; `loops` has an array for each
+// primitive.
 export async function readModel(path) {
   const [truth, exported] = [readTruth(path), await read(`${path}.glb`)];
   const loops = exported.meshes[0].primitives.map((primitive) => loopsOf(primitive, truth));
   return { name: basename(path), path, truth, exported, loops };
 }
 
-// Returns the degrees between the normals of a file that was baked from a model and those of Blender: {stills, times},
+// Returns the degrees between the normals of a file that was baked from a model and Blender's normals: {stills, times},
 // each {mean, worst}. The stills are the base and the keys.
 export function errors(file, { truth, exported, loops }) {
   const result = { stills: { sum: 0, count: 0, worst: 0 }, times: { sum: 0, count: 0, worst: 0 } };
@@ -67,7 +68,7 @@ export function errors(file, { truth, exported, loops }) {
     assert.deepEqual(primitive.positions, exported.meshes[0].primitives[p].positions);
     truth.instants.forEach(({ time, weights }, i) => {
       const still = time === undefined;
-      // A bake adds targets, which are 0 where a key is set alone.
+      // A bake adds targets, whose weights are 0 when a single key is set.
       const alone = file.meshes[0].weights.map((_, k) => weights[k] ?? 0);
       const normals = shownNormals(primitive, still ? alone : nodeWeights(file, 0, file.animations[0], time));
       const kind = still ? result.stills : result.times;

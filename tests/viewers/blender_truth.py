@@ -1,11 +1,12 @@
-"""Makes models with shape keys, exports them, and writes the normals that Blender itself evaluates beside them. Run
-inside Blender by blender_truth.test.mjs:
+"""Makes models with shape keys, exports them, and writes beside them the normals that Blender evaluates.
+blender_truth.test.mjs runs this inside Blender:
 
     blender --background --factory-startup --python-exit-code 1 --python blender_truth.py -- FOLDER SEED [NAME...]
 
-Writes NAME.glb, NAME.json and NAME.bin for each model, or for the models named. NAME.json lists the `instants`: the
-base, each key alone, and times of the animation, all with the `weights` of the keys. NAME.bin holds, for one instant
-after the other, position and normal of each of the `loops` (the corners of the polygons): six float32 in glTF's axes.
+Writes NAME.glb, NAME.json and NAME.bin for each model, or for the models named. NAME.json lists the `instants`:
+the base, each key alone, and times of the animation, all with the `weights` of the keys. NAME.bin holds, instant
+by instant, the position and normal of each of the `loops` (the corners of the polygons): six float32 in glTF's
+axes.
 """
 import json
 import math
@@ -28,7 +29,7 @@ KEYFRAMES = [0, 12, 24, 36, 48]
 INSTANTS = [0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 33, 36, 39, 42, 45, 48]
 
 
-# Deformations: each draws its parameters, and returns a function from the place of a vertex to another place.
+# Deformations. Each draws its parameters, and returns a function from the position of a vertex to another position.
 
 def bend(draw, _):
     across, along = draw.sample(range(3), 2)
@@ -54,7 +55,7 @@ def dent(draw, places):
     return lambda co: co + way * (size * max(0, 1 - (co - center).length_squared / radius**2) ** 2)
 
 
-# Models: each makes an object with a mesh and no keys, about two units wide.
+# Models. Each function makes an object with a mesh and no keys, about two units wide.
 
 def edit(mesh, change):
     """Changes a mesh by a function of its BMesh."""
@@ -84,7 +85,7 @@ def apply(o, kind, **settings):
 
 
 def split_at_sharp_edges(o, is_sharp):
-    """Marks edges by their BMesh edge. Normals are split there alone, in every pose."""
+    """Marks edges as sharp, chosen by their BMesh edge. Normals are then split only there, in every pose."""
     def mark(editable):
         for edge in editable.edges:
             edge.smooth = not is_sharp(edge)
@@ -94,7 +95,7 @@ def split_at_sharp_edges(o, is_sharp):
 
 
 def tube(draw, rows):
-    """A closed cylinder with n-gons as caps and rows of quads around it."""
+    """Makes a closed cylinder with n-gons as caps and rows of quads around it."""
     bpy.ops.mesh.primitive_cylinder_add(vertices=draw.randrange(11, 17), radius=0.7)
     o = bpy.context.object
 
@@ -118,7 +119,7 @@ def sharp_cylinder(draw):
 
 
 def polygons(draw):
-    """N-gons everywhere, by edges that are dissolved."""
+    """Makes a mesh of n-gons by dissolving edges."""
     o = tube(draw, 8)
 
     def dissolve(editable):
@@ -129,7 +130,7 @@ def polygons(draw):
 
 
 def weighted(draw):
-    """Custom normals: a bevelled block with those of the modifier for weighted normals."""
+    """Makes a bevelled block with custom normals by the modifier for weighted normals."""
     bpy.ops.mesh.primitive_cube_add(size=1.4)
     o = bpy.context.object
     edit(o.data, lambda editable: cut_in_rows(editable, 3))
@@ -142,8 +143,8 @@ def weighted(draw):
 
 
 def ball(draw):
-    """Rows of quads between two poles of triangles, with texture coordinates that have a seam. (The vertices of
-    Blender's own sphere come in another order in every run.)
+    """Makes rows of quads between two poles of triangles, with texture coordinates that have a seam. (The vertices
+    of Blender's own sphere are in another order in every run.)
     """
     rows, columns = draw.randrange(9, 13), draw.randrange(14, 19)
 
@@ -171,7 +172,7 @@ def ball(draw):
 
 
 def mixed(draw):
-    """Triangles, quads and flat faces, whose corners are summed at the smooth ones too."""
+    """Makes triangles, quads and flat faces; flat faces also contribute to the normals of smooth corners."""
     o = ball(draw)
 
     def cut(editable):
@@ -181,14 +182,14 @@ def mixed(draw):
 
 
 def mixed_split(draw):
-    """Triangles, quads and flat faces, split where a face is flat."""
+    """Makes triangles, quads and flat faces; normals are split at flat faces."""
     o = mixed(draw)
     split_at_sharp_edges(o, lambda edge: False)
     return o
 
 
 def mirrored(draw):
-    """Two halves that meet in a seam, in an object of negative scale."""
+    """Makes two halves that meet in a seam, in an object of negative scale."""
     bpy.ops.mesh.primitive_cube_add(size=2)
     o = bpy.context.object
     roundness = draw.uniform(0.3, 0.7)
@@ -205,7 +206,7 @@ def mirrored(draw):
 
 
 def materials(draw):
-    """Bands of materials on a smooth ball with a seam of its texture coordinates."""
+    """Makes a smooth ball with bands of materials and a seam of its texture coordinates."""
     o = ball(draw)
     for name in "red", "green", "blue":
         o.data.materials.append(bpy.data.materials.new(name))
@@ -215,7 +216,7 @@ def materials(draw):
 
 
 def facets(_):
-    """A flat-shaded cube whose sides are planar: edges inside of them are hard in keys alone."""
+    """Makes a flat-shaded cube with planar sides, in which edges inside a side become hard only in keys."""
     bpy.ops.mesh.primitive_cube_add(size=1.6)
     o = bpy.context.object
     edit(o.data, lambda editable: cut_in_rows(editable, 2))
@@ -231,19 +232,19 @@ def grid(draw, height):
 
 
 def triangles(draw):
-    """A grid of plain triangles, cut as an exporter cuts quads."""
+    """Makes a grid of plain triangles, cut as an exporter cuts quads."""
     o = grid(draw, 0.3)
     edit(o.data, lambda editable: bmesh.ops.triangulate(editable, faces=editable.faces[:], quad_method="FIXED"))
     return o
 
 
 def sheet(draw):
-    """A planar grid of quads: only its keys say how normals are weighed."""
+    """Makes a planar grid of quads, so that only keys depend on the weighting of normals."""
     return grid(draw, 0)
 
 
 def darts(draw):
-    """A grid of uneven quads, some of them concave: Blender cuts those along their other diagonal."""
+    """Makes a grid of uneven quads, some of them concave, which Blender cuts along their other diagonal."""
     o = grid(draw, 0.2)
     for vertex in o.data.vertices:
         vertex.co += Vector([draw.uniform(-size, size) for size in (0.1, 0.1, 0.02)])
@@ -251,7 +252,7 @@ def darts(draw):
 
 
 def authored(draw):
-    """Custom normals that lean away from those of the surface."""
+    """Makes a mesh with custom normals that lean away from the surface's own."""
     o = shade(ball(draw))
     lean = Vector([draw.uniform(-1, 1) for _ in range(3)])
     o.data.use_auto_smooth, o.data.auto_smooth_angle = True, math.pi
@@ -259,7 +260,7 @@ def authored(draw):
     return o
 
 
-# NAME: how it is made, its keys, and how its animation is written.
+# The models by NAME: the function that makes each, its keys, and the interpolation of its animation.
 LINEAR, CUBIC, SAMPLED = "LINEAR", "BEZIER", "every frame"
 MODELS = {
     "head": (head, (bend, bulge), LINEAR),
@@ -291,7 +292,7 @@ def add_keys(o, draw, deformations):
 
 
 def animate(o, keys, draw, how):
-    """Keyframes from the base to each key in turn, with shares of the others."""
+    """Adds keyframes from the base to each key in turn, with shares of the other keys."""
     for n, frame in enumerate(KEYFRAMES):
         for i, key in enumerate(keys):
             key.value = 0 if n == 0 else 1 if (n - 1) % len(keys) == i else draw.uniform(0, 0.7)
@@ -302,14 +303,14 @@ def animate(o, keys, draw, how):
         slopes = [(after - before) / 24 for before, after in zip(values[:1] + values, values[1:] + values[-1:])]
         for point, slope in zip(points, slopes):
             point.interpolation = CUBIC if how == CUBIC else LINEAR
-            # Handles at a third of the gap make the curve a cubic in time, which glTF has too.
+            # With handles at a third of the gap, the curve is a cubic in time, which glTF can represent.
             point.handle_left_type = point.handle_right_type = "FREE"
             point.handle_left = point.co - Vector((4, 4 * slope))
             point.handle_right = point.co + Vector((4, 4 * slope))
 
 
 def evaluated(o):
-    """Position and normal of each loop, as Blender shows them now, in the axes of glTF."""
+    """Returns the position and normal of each loop as Blender evaluates them now, in the axes of glTF."""
     bpy.context.view_layer.update()
     graph = bpy.context.evaluated_depsgraph_get()
     instance = o.evaluated_get(graph)
@@ -326,7 +327,7 @@ def evaluated(o):
 
 
 class Truth:
-    """What Blender shows of an object at instants, which are noted one by one."""
+    """Blender's evaluation of an object at instants, which are recorded one by one."""
 
     def __init__(self, o, keys):
         self.object, self.keys, self.instants, self.loops = o, keys, [], []
@@ -343,7 +344,8 @@ class Truth:
 
 
 def make(seed, name):
-    """Makes a model in an empty scene, and notes what Blender shows of it: (truth, how its animation is written)."""
+    """Makes a model in an empty scene, and records Blender's evaluation. Returns (truth, interpolation of the
+    animation)."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.fps, scene.frame_start, scene.frame_end = FRAMES_PER_SECOND, KEYFRAMES[0], KEYFRAMES[-1]

@@ -1,7 +1,7 @@
-// Compares `audit` and `bake` with the normals that Blender itself evaluates for models that it exports. Run by ctest
-// as `blender`, where Blender is installed.
+// Compares `audit` and `bake` with the normals that Blender evaluates for models that it exports. ctest runs this as
+// `blender` if Blender is installed.
 //
-//   CHRONORMAL_SEED  another seed for the models; the one that is used is printed
+//   CHRONORMAL_SEED  another seed for the models; the seed in use is printed
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -14,7 +14,8 @@ import { read } from './reader.mjs';
 
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 
-// The allowed degrees at the base and at each key alone, and on average and at worst at times of the animation.
+// The allowed errors in degrees: at the base and at each key alone, and on average and at worst at times of the
+// animation.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
@@ -22,7 +23,7 @@ const WORST = 1;
 const text = ({ stills, times }) =>
   [stills, times].map(({ mean, worst }) => `${mean.toFixed(4)} / ${worst.toFixed(3)}`).join(', at times ');
 
-// Bakes a file, and accepts exit code 4, with which the closest result exceeds the tolerance.
+// Bakes a file. Exit code 4 is accepted: the closest result exceeds the tolerance.
 function bake(...args) {
   try {
     chronormal('bake', ...args, '--no-audit', '--quiet');
@@ -40,7 +41,7 @@ function assertNoFaultAtKeys({ subjects, findings }) {
   for (const { name, worst_at_keys_degrees: worst } of targets) assert.ok(worst <= AT_KEYS, `${name}: ${worst}`);
 }
 
-// Checks the audit of the animation, which samples all times at which Blender evaluated it, and more.
+// Checks the audit of the animation, which samples all recorded times, and more.
 function assertSameBetween({ subjects }, { times }) {
   const { mean_degrees: mean, worst_degrees: worst } = subjects.find(({ kind }) => kind === 'track');
   const message = `audit ${mean} / ${worst} degrees, Blender ${times.mean} / ${times.worst}`;
@@ -58,7 +59,7 @@ describe("Blender's own normals", () => {
   });
   after(() => rmSync(folder, { recursive: true, force: true }));
 
-  // Runs check(model, context of its own) for each model.
+  // Runs check(model, context of the subtest) for each model.
   async function eachModel(context, check) {
     context.diagnostic(`CHRONORMAL_SEED=${SEED}`);
     for (const model of models) await context.test(model.name, (own) => check(model, own));
@@ -78,8 +79,8 @@ describe("Blender's own normals", () => {
       assertSameBetween(audited, errors(model.exported, model));
     }));
 
-  // The edges of `facets` become hard by their angle in a deformed pose, but the exporter has fixed before which
-  // vertices are one.
+  // The edges of `facets` become hard by their angle in a deformed pose, but the exporter has decided in the base which
+  // corners share a vertex.
   test('are shown at every time after a bake for a viewer that adds up deltas', (context) =>
     eachModel(context, async (model, own) => {
       const baked = `${model.path}.closest.glb`;

@@ -1,5 +1,5 @@
-// Runs headless Chromium with the page of page.mjs in it. The page can load only the files below; all other requests
-// are refused.
+// Runs headless Chromium with the page of page.mjs. The page can load only the files below; all other requests are
+// refused.
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { join } from 'node:path';
@@ -10,7 +10,7 @@ import puppeteer from 'puppeteer-core';
 const ADDRESS = 'http://chronormal.invalid/';
 const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 
-// Filament is a script that defines a global of that name, and asks for its program when it starts.
+// Filament is a script that defines a global variable of this name, and loads its program when it starts.
 const HTML = `<!doctype html><title>chronormal</title><link rel="icon" href="data:,">
 <script src="filament.js"></script><script src="page.js"></script>`;
 
@@ -51,7 +51,8 @@ async function listen(body) {
   return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
 }
 
-/** Serves a folder, whose index.html is its page. As some servers do, it may have a page for all paths where nothing is. */
+/** Serves a folder with index.html as its page. Like some servers, it can return `fallback` for all paths that do not
+ * exist. */
 export function serveFolder(folder, fallback) {
   return listen((path) => {
     const file = join(folder, path === '' ? 'index.html' : path);
@@ -59,7 +60,7 @@ export function serveFolder(folder, fallback) {
   });
 }
 
-// Opens a page on a server of this machine, which serves the files of folders by their names, and other given contents.
+// Opens a page on a local server, which serves the files of folders by their names, and other given contents.
 export async function openFolder(contents) {
   const { address, close: stop } = await listen((path) => {
     const [first, ...rest] = path.split('/'), found = contents[first];

@@ -1,7 +1,9 @@
-// Tests the npm package as its users bundle it: an application of a few lines, built from the packed package by Vite,
-// webpack, esbuild and rollup as js/README.md says, or not bundled, audits a GLB in Chromium, with a worker and without.
+// Tests the npm package as its users bundle it. An application of a few lines audits a GLB in Chromium, with and
+// without a worker. It is built from the packed package by Vite, webpack, esbuild and rollup, as js/README.md says, or
+// used without a bundler.
 //
-//   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test tests/viewers/bundlers.test.mjs
+//   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test
+//   tests/viewers/bundlers.test.mjs
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { cpSync, readFileSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
@@ -48,7 +50,7 @@ after(async () => {
   remove();
 });
 
-// Makes a folder for an application in which the package is installed.
+// Makes a folder for an application, and installs the package in it.
 function makeApp(name, files = {}) {
   const root = join(folder, name), modules = join(root, 'node_modules');
   cpSync(installed, join(modules, 'chronormal'), { recursive: true });
@@ -57,7 +59,7 @@ function makeApp(name, files = {}) {
   return root;
 }
 
-// Returns the results of the audits that the page at an address shows; whatever it requests comes from there.
+// Returns the results of the audits that the page at an address shows. The page may load files only from that server.
 async function saidAt(address) {
   const page = await browser.newPage(), faults = [];
   page.on('console', (message) => ['error', 'warn'].includes(message.type()) && faults.push(message.text()));
@@ -85,14 +87,14 @@ async function assertAuditsIn(served) {
   }
 }
 
-// Puts what a page needs besides scripts into the output folder of a bundler.
+// Adds the files that a page needs besides scripts to the output folder of a bundler.
 function complete(made) {
   writeFileSync(join(made, 'index.html'), HTML);
   writeFileSync(join(made, 'bumps.glb'), face);
   return made;
 }
 
-// Writes the settings that the README shows for a bundler into a folder, and returns them.
+// Writes the settings for a bundler from the README into a folder, and returns them.
 async function settings(root, name) {
   const code = [...readme.matchAll(/```js\n([^`]*)```/g)].map(([, text]) => text).find((text) => text.startsWith(`// ${name}\n`));
   assert.ok(code, `no ${name} in the README`);

@@ -1,5 +1,5 @@
-// Bakes a captured face of 57 targets in a worker, under Node.js and in a page. Tests whether memory is enough, whether
-// the page stays responsive, and how a call ends that is stopped or gets too little memory. Takes minutes.
+// Bakes a captured face of 57 targets in a worker, under Node.js and in a page. Tests that memory is enough, that the
+// page stays responsive, and that a call ends properly if it is stopped or gets too little memory. Takes minutes.
 //
 //   CHRONORMAL_DATA   the folder of the real data
 import assert from 'node:assert/strict';
@@ -19,12 +19,12 @@ const { audit, bake, ChronormalError } = await load('index.node.js');
 describe('a captured face', { skip: NO_DATA }, () => {
   const face = DATA && new Uint8Array(readFileSync(join(DATA, 'rigs/ict_capture.glb')));
   if (DATA) writeFileSync(join(folder, 'face.glb'), face);
-  // The file that the native program makes from the face.
+  // The file that the native program bakes from the face.
   let made;
   const expected = () => {
     if (!made) {
       const { status, stderr } = native(['bake', 'face.glb', '--for', 'three', '--max-targets', '112', '-o', 'made.glb']);
-      assert.ok(status === 0 || status === 4, stderr); // so few targets may miss the tolerance
+      assert.ok(status === 0 || status === 4, stderr); // with so few targets the tolerance may be missed
       made = readFileSync(join(folder, 'made.glb'));
     }
     return made;
@@ -66,7 +66,7 @@ describe('a captured face', { skip: NO_DATA }, () => {
     const { openFolder } = await import('./browser.mjs');
     const { page, close } = await openFolder({ chronormal: installed, 'face.glb': face, 'page.html': '<!doctype html><title>page</title>' });
     try {
-      // The bake is started and then polled: the page answers, and no single question takes minutes.
+      // The page starts the bake and is then polled, so that no single call takes minutes.
       await page.evaluate((options) => {
         window.state = { ticks: 0, heard: 0 };
         const start = performance.now(), clock = setInterval(() => ++state.ticks, 100);

@@ -1,10 +1,10 @@
-// Tests that the output of `chronormal bake` is closer to the truth than its input, in every viewer, by what they draw.
-// Run by ctest as `in_viewers`.
+// Tests by pixels that the output of `chronormal bake` is closer to the true normals than its input, in every viewer.
+// ctest runs this as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM  the program
-//   CHRONORMAL_DATA     a head by Blender and a test of morphs, where it is set
+//   CHRONORMAL_DATA     the folder with a head by Blender and a test of morphs, if set
 //   CHRONORMAL_FULL=1   every file in every viewer; otherwise one file in the viewers that viewers.test.mjs leaves out
-//   CHRONORMAL_UPDATE_DOCS=1  with it, writes docs/pictures/head.png, which is rendered here
+//   CHRONORMAL_UPDATE_DOCS=1  with CHRONORMAL_DATA, writes docs/pictures/head.png
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -28,7 +28,7 @@ const PICTURE = fileURLToPath(new URL('../../docs/pictures/head.png', import.met
 const PICTURE_TIME = 1.25;
 const VIEWERS = FULL ? ['three', 'babylon', 'playcanvas', 'filament'] : ['playcanvas', 'filament'];
 
-// Fewer degrees than this are no difference: PlayCanvas loses as much to half floats.
+// Smaller differences in degrees are ignored: PlayCanvas loses as much by half floats.
 const ROUNDING = 0.05;
 
 describe('what is baked is closer to the truth', () => {
@@ -44,7 +44,7 @@ describe('what is baked is closer to the truth', () => {
     assert.deepEqual(browser?.faults, []);
   });
 
-  // Calls f only once for the same arguments.
+  // Returns a function that calls f only once for the same arguments.
   function once(f) {
     const known = new Map();
     return (...all) => {
@@ -57,14 +57,14 @@ describe('what is baked is closer to the truth', () => {
   const bake = once((input, ...options) => {
     const name = [basename(input, extname(input)), 'baked', ...options].join('.');
     const output = join(folder, `${name}.glb`);
-    // The still meshes that give the truth have area-weighted normals, whatever normals the author chose.
+    // The still meshes with the true normals use area weights, whatever weighting the author chose.
     const how = options.includes('--encode') ? options : ['--encode', 'harmless', ...options];
     chronormal('bake', input, '-o', output, '--weighting', 'area', ...how);
     return output;
   });
 
-  // Returns {files, moments} of an animation of a file: the file before and after the bake (in full also by --encode
-  // exact, for the figures of docs/viewers.md), and the truth at some times.
+  // Returns {files, moments} for an animation of a file: the file before and after the bake, and the true normals at
+  // some times. In the full test, files also has a bake by --encode exact, for the figures of docs/viewers.md.
   const prepare = once(async (input, animation) => {
     const unbaked = Buffer.from(await newIO().writeBinary(await newIO().read(input)));
     const baked = [bake(input), ...(FULL ? [bake(input, '--encode', 'exact')] : [])];
@@ -90,11 +90,11 @@ describe('what is baked is closer to the truth', () => {
     assert.ok(rows.every(([{ mean }, then]) => then.mean < mean + ROUNDING), shown);
   }
 
-  // Draws the head of the README, and compares it with the picture in the documents.
+  // Draws the picture of the head for the README, and compares it with the picture in the documents.
   async function assertPicture() {
     const input = join(DATA, 'rigs', 'blender_suzanne_two_keys.glb');
     const output = join(folder, 'head.glb');
-    chronormal('bake', input, '-o', output);  // exactly the command of the caption
+    chronormal('bake', input, '-o', output);  // the command in the caption
     const items = [
       [['not baked', 'as Blender wrote it'], input],
       [['baked', 'chronormal bake face.glb'], output],

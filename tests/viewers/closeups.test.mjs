@@ -1,8 +1,8 @@
-// Draws, near to it, the place where a file as exported tears most, in three viewers: the file, the same file baked, and
-// a still file with the normals that Blender itself evaluates for that time. What is baked is held against the pixels of
-// the truth. Run by ctest as `blender`, where Blender is installed.
+// Draws in three viewers a close-up of the place where an exported file has the most torn edges: from the file, from
+// the baked file, and from a still file with Blender's own normals at that time. Compares the pixels of the baked file
+// with those of the still file. ctest runs this as `blender` if Blender is installed.
 //
-//   CHRONORMAL_SEED          another seed for the models; the one that is used is printed
+//   CHRONORMAL_SEED          another seed for the models; the seed in use is printed
 //   CHRONORMAL_UPDATE_DOCS=1 writes docs/pictures/closeups.jpg
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -21,26 +21,28 @@ import { newIO, nodeWeights, shownNormals, shownPositions } from './reader.mjs';
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 const SIZE = { width: 320, height: 320 };
 const PICTURE = fileURLToPath(new URL('../../docs/pictures/closeups.jpg', import.meta.url));
-const SHOWN = 'mirrored';  // the model of the picture
-const TORN = 10;         // degrees by which errors jump over an edge
-const NEAR = 0.35;       // how much of a model is seen, and how far around a vertex edges count as near
+const SHOWN = 'mirrored';  // the model in the documents' picture
+const TORN = 10;         // jump of the error over an edge, in degrees, that counts as torn
+// The visible part of a model, and the neighbourhood of a vertex in which edges count, in units of the model.
+const NEAR = 0.35;
 
-// The share that viewers which add up deltas keep of the error in these pixels, and what Filament does, which keeps unit normals.
-// `facets` becomes hard by angles in a pose: no file holds that.
+// The share of the error that may remain in these pixels: in viewers that add up deltas, and in Filament, which keeps
+// unit normals. `facets` is left out, since its edges become hard by angles in a pose, which no file can represent.
 const KEPT = { three: 1 / 8, babylon: 1 / 8, filament: 4 / 5 };
-const ROUNDING = 0.1;    // degrees that a viewer loses to eight bits of a texture, and to its own interpolation
+const ROUNDING = 0.1;    // degrees of error by the eight bits of a texture, and by the viewer's own interpolation
 const VIEWERS = Object.keys(KEPT);
 
 const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);
 const minus = (a, b) => a.map((x, c) => x - b[c]);
 const unit = (a) => a.map((x) => x / (length(a) || 1));
 
-// The instant, and the place on the surface, around which most edges are torn in a file as it was exported:
-// {time, at, from, radius}, `from` a direction.
+// Returns the instant and the place on the surface with the most torn edges around it, in a file as exported: {time,
+// at, from, radius}, where `from` is a direction.
 function mostTorn({ exported, truth, loops }) {
   let most = { count: -1 };
   truth.instants.forEach(({ time }, instant) => {
-    if (time === undefined || time >= exported.animations[0].end) return;  // there Filament begins again
+    // At the end Filament starts from the beginning.
+    if (time === undefined || time >= exported.animations[0].end) return;
     exported.meshes[0].primitives.forEach((primitive, p) => {
       const weights = nodeWeights(exported, 0, exported.animations[0], time);
       const [places, shown] = [shownPositions(primitive, weights), shownNormals(primitive, weights)];
@@ -61,17 +63,17 @@ function mostTorn({ exported, truth, loops }) {
   return most;
 }
 
-// A camera that looks at a place from the side to which its normal points.
+// Returns a camera that looks at a place from the side of its normal.
 function cameraAt({ at, from, radius }) {
   const degrees = 35, distance = (NEAR * radius) / Math.tan((degrees * Math.PI) / 360);
   const direction = unit(from.map((x, c) => x + [0.2, 0.3, 0.25][c]));
   return { eye: at.map((x, c) => x + distance * direction[c]), at, degrees, near: distance / 50, far: distance + 3 * radius };
 }
 
-// The model at an instant as a file that does not move, with Blender's normals.
+// Returns the model at an instant as a file that does not move, with Blender's normals.
 async function stillAt({ path, exported, truth, loops }, { time, instant }) {
   const io = newIO(), document = await io.read(`${path}.glb`), root = document.getRoot();
-  // Filament reads past its memory where targets are named that are not there.
+  // Filament reads beyond its memory if targets are named that do not exist.
   root.listMeshes()[0].setWeights([]).setExtras({}).listPrimitives().forEach((primitive, p) => {
     const described = exported.meshes[0].primitives[p];
     const weights = nodeWeights(exported, 0, exported.animations[0], time);

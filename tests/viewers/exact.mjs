@@ -1,6 +1,6 @@
-// Computes the right normals of the vertices of a mesh from nothing but positions, in double: sums of cross products
-// over the faces around a point, turned by the smallest rotation that takes the geometric base normal to the stored
-// one.
+// Computes the true normals of the vertices of a mesh from positions alone, in double: sums of cross products over the
+// faces around a point, turned by the smallest rotation that takes the geometry's normal of the base to the stored
+// normal.
 const SAME_NORMAL = Math.cos((0.1 * Math.PI) / 180);
 
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -9,13 +9,13 @@ export const length = (a) => Math.hypot(a[0], a[1], a[2]);
 const scaled = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 const vector = (array, i) => [array[3 * i], array[3 * i + 1], array[3 * i + 2]];
 
-// Returns the degrees between two vectors of any length.
+// Returns the degrees between two vectors.
 export function angle(a, b) {
   return (Math.atan2(length(cross(a, b)), dot(a, b)) * 180) / Math.PI;
 }
 
-// Turns v by the smallest rotation that takes the direction of `from` to that of `to`. Returns v if either is zero (or
-// if they are opposite: no rotation is the smallest).
+// Turns v by the smallest rotation that takes the direction of `from` to that of `to`. Returns v if either is zero, or
+// if they are opposite, since then no rotation is the smallest.
 function turned(v, from, to) {
   if (length(from) === 0 || length(to) === 0) return v;
   const a = scaled(from, 1 / length(from));
@@ -29,8 +29,8 @@ function turned(v, from, to) {
 }
 
 export class ExactNormals {
-  // Takes a mesh as reader.mjs describes it. Vertices at one place in the base and in every target are one point, also
-  // across primitives, and share a normal where their stored normals agree. Primitives without normals are flat:
+  // Takes a mesh as reader.mjs describes it. Vertices at the same place in the base and in every target are one point,
+  // also across primitives, and share a normal if their stored normals agree. Primitives without normals are flat:
   // viewers compute their normals.
   constructor(mesh) {
     this.primitives = mesh.primitives.filter((primitive) => primitive.triangles);
@@ -57,7 +57,7 @@ export class ExactNormals {
     return result;
   }
 
-  // Returns n(w) of every element, of any length.
+  // Returns n(w) of every element, not normalised.
   sums(weights) {
     const sums = new Float64Array(3 * this.elements);
     this.primitives.forEach((primitive, p) => {
@@ -73,9 +73,9 @@ export class ExactNormals {
     return sums;
   }
 
-  // Returns for each primitive null if it is flat, else {directions, lengths}: the right normal of each vertex, of any
-  // length, and the length of the sum of cross products there. Both are zero for vertices that no triangle of the
-  // primitive uses.
+  // Returns for each primitive null if it is flat, or else {directions, lengths}: the true normal of each vertex, not
+  // normalised, and the length of its sum of cross products. Both are zero for vertices in no triangle of the
+  // primitive.
   at(weights) {
     const sums = this.sums(weights);
     return this.primitives.map((primitive, p) => {

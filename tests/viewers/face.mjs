@@ -1,5 +1,5 @@
-// Extracts a face from a file in which nothing drives its targets: alone, without skins, and with a new animation in
-// which all targets are active at once.
+// Extracts a face from a file in which nothing drives its targets. The result has only the face, without skins, and a
+// new animation in which all targets are active at once.
 import { writeFileSync } from 'node:fs';
 import { moves } from './judge.mjs';
 import { describe, newIO } from './reader.mjs';
@@ -17,7 +17,7 @@ export async function writeMovingFace(input, output) {
   writeFileSync(output, await newIO().writeBinary(document));
 }
 
-// Adds an animation in which each target comes in after the one before it, which fades to a half.
+// Adds an animation in which the targets are activated one after the other, while the previous one fades to a half.
 function addAnimation(document, node) {
   const count = node.getMesh().listPrimitives()[0].listTargets().length;
   const rows = Array.from({ length: count + 1 }, (_, key) =>

@@ -1,4 +1,5 @@
-// Tests of the panel of a face: what it shows, held against `compare --face` of the program, and its pictures against what follows from these numbers.
+// Tests the panel of a face: compares its values with `compare --face` of the program, and its pictures with values
+// computed from these.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -6,7 +7,7 @@ import { join } from 'node:path';
 import { angle } from './exact.mjs';
 import { chronormal } from './program.mjs';
 
-/** The figure that the program makes of a face on its way. */
+/** Returns the figure that the program computes for a face on its path. */
 export function figureByProgram({ from, to }, schemes, samples) {
   const folder = mkdtempSync(join(tmpdir(), 'chronormal-figure-')), names = ['from.obj', 'to.obj'].map((name) => join(folder, name));
   [from, to].forEach((corners, end) => writeFileSync(names[end], `${corners.map((p) => `v ${p.join(' ')}`).join('\n')}\nf ${corners.map((_, i) => i + 1).join(' ')}\n`));
@@ -20,7 +21,7 @@ export function figureByProgram({ from, to }, schemes, samples) {
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const vector = (flat, i) => flat.slice(3 * i, 3 * i + 3);
 
-/** Whether two figures have the same numbers; ways that were rounded to float32 may differ in the last digits. */
+/** Fails unless two figures have the same numbers. Paths that were rounded to float32 may differ in the last digits. */
 export function assertSameFigure(found, expected) {
   assert.deepEqual(found.t, expected.t);
   found.schemes.forEach((one, k) => {
@@ -38,7 +39,8 @@ export function assertSameFigure(found, expected) {
 }
 
 /**
- * Holds what a panel shows against a figure: q in its table, where its marks are, and the colours of the pixels there in the file that it saves.
+ * Compares a panel with a figure: q in its table, the places of its marks, and the colours of the pixels there in the
+ * saved file.
  * @param page a page of puppeteer whose viewer has a figure
  */
 export async function assertShown(page, expected) {
@@ -73,7 +75,7 @@ export async function assertShown(page, expected) {
     const along = (axis) => 135 * zoom * (dot(normal, axis) - dot(middle, axis));
     assert.ok(Math.hypot(x - (170 + along(right)), y - (160 - along(up))) < 0.05 * zoom, `${name} is drawn elsewhere`);
   }
-  // The last thing drawn is on top: the mark of the exact normal.
+  // The exact normal's mark is drawn last and is therefore on top.
   const last = shown.marks.at(-1), wanted = [1, 3, 5].map((i) => parseInt(last.fill.slice(i, i + 2), 16));
   assert.equal(last.name, 'exact');
   last.pixel.forEach((value, c) => assert.ok(Math.abs(value - wanted[c]) < 12, `the pixel of the exact normal is ${last.pixel}, not ${wanted}`));

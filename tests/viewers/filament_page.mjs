@@ -1,14 +1,16 @@
-// Filament as a viewer, in the page: its loader, its animator, and the light of its glTF material, which shows normals
-// as colours. browser.mjs puts `Filament` itself into the page.
+// Filament as a viewer in the page: its loader, its animator, and a light that makes its glTF material show normals as
+// colours. browser.mjs loads `Filament` itself into the page.
 //
-// A light from all sides, whose irradiance is (n + 1) / 2 in three colours, makes a white and rough surface show k (n +
-// 1) / 2, where k depends on material and view; under a light of 1 the same surface shows k.
+// Under a light from all sides with the irradiance (n + 1) / 2 in three colours, a white and rough surface shows k (n +
+// 1) / 2, where k depends on the material and the view. Under a light of 1, the same surface shows k, so the quotient
+// gives n.
 
-const NORMALS = [0.5, 0.5, 0.5, 0, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0];  // spherical harmonics in RGB: 1, y, z, x
+// Spherical harmonics in RGB, in the order 1, y, z, x.
+const NORMALS = [0.5, 0.5, 0.5, 0, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0];
 const WHITE_MATERIAL = { metallicFactor: 0, roughnessFactor: 1 };
 const WHITE = [1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 const EXPOSURE = [16, 1 / 125, 100];  // aperture, shutter and sensitivity
-const INTENSITY = 38_400;  // this light shows white as 1 at that exposure
+const INTENSITY = 38_400;  // with this light and exposure, white is 1
 const JSON_AT = 20;
 
 let viewer;
@@ -31,7 +33,7 @@ function createViewer() {
   return { gl, camera, engine, lights, loader, renderer, scene, swapChain, view };
 }
 
-// Notes the framebuffer of the last drawing, since Filament has no function in JavaScript to read one.
+// Records the framebuffer of the last drawing, since Filament has no function in JavaScript to read pixels.
 function framebuffersNoted(gl) {
   const bind = gl.bindFramebuffer.bind(gl);
   gl.bindFramebuffer = (target, framebuffer) => {
@@ -71,7 +73,7 @@ function withMaterial(bytes, pbrMetallicRoughness) {
   return result;
 }
 
-// Sets every object to a time, by the animator, which starts again at the end.
+// Sets all objects to a time, by the animator, which starts again at the end.
 export function play({ animator }, animation, time) {
   if (animation !== null) animator.applyAnimation(animation, time);
 }
@@ -114,7 +116,7 @@ function lookFrom({ eye, at, degrees, near, far }, size) {
 async function render(light) {
   const { engine, renderer, scene, swapChain, view } = viewer;
   scene.setIndirectLight(light);
-  // A frame is refused until the browser has reported, in a task of its own, that an earlier one is done.
+  // Filament refuses a frame until the browser has reported, in a separate task, that an earlier frame is done.
   while (!renderer.beginFrame(swapChain)) {
     engine.execute();
     await new Promise((resolve) => setTimeout(resolve));
@@ -137,7 +139,7 @@ const BLUE_MATERIAL = { baseColorFactor: [0.03, 0.22, 0.47, 1], metallicFactor: 
 const SKY = [0.5, 0.55, 0.6, 0.25, 0.27, 0.3, 0.1, 0.1, 0.1, -0.1, -0.1, -0.1];
 
 // Returns a canvas with a file at a time of an animation, lit by a sun and a sky, on a transparent background. The next
-// picture overwrites it.
+// call overwrites the canvas.
 export async function drawLit(bytes, animation, time, viewed, size) {
   const model = await loadAs(bytes, BLUE_MATERIAL);
   const { Filament } = window;

@@ -1,5 +1,5 @@
-// Compares the filters of EXT_meshopt_compression, as the program decodes them, with npm meshoptimizer as it runs in
-// browsers, bit for bit where normals are. Each filter is tried on positions, which `chronormal convert` writes.
+// Compares the program's decoding of the filters of EXT_meshopt_compression with npm meshoptimizer, which runs in
+// browsers; for normals bit for bit. Each filter is applied to positions, since `chronormal convert` can write these.
 //
 //   CHRONORMAL_PROGRAM        the program
 import assert from 'node:assert/strict';
@@ -16,7 +16,7 @@ const SHORT = 5122;
 const FLOAT = 5126;
 
 // Returns every (x, y) of up to mostSteps steps along each side of the square, for each number of bits; with few bits
-// these are all values. tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
+// these are all possible values. tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
 function lattice(T, leastBits, mostBits, mostSteps) {
   const elements = [];
   for (let bits = leastBits; bits <= mostBits; ++bits) {
@@ -29,13 +29,14 @@ function lattice(T, leastBits, mostBits, mostSteps) {
   return T.from(elements);
 }
 
-// Draws 0 <= x < 1, the same numbers in every run.
+// Returns a generator of numbers 0 <= x < 1, the same in every run.
 function randomNumbers(seed) {
   let state = seed;
   return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
 }
 
-// Makes three components that leave a fourth as the largest; the two lowest bits of the last number name it.
+// Makes quaternions of three components, so that the omitted fourth is the largest; the two lowest bits of the last
+// number tell which one was omitted.
 function quaternions(count) {
   const random = randomNumbers(1);
   const elements = new Int16Array(4 * count);
@@ -62,7 +63,7 @@ const encoded = (elements, count) => {
   return MeshoptEncoder.encodeGltfBuffer(bytes, count, bytes.length / count, 'ATTRIBUTES', 0);
 };
 
-// Decodes compressed elements as a browser does.
+// Decodes compressed elements like a browser.
 function decoded(elements, count, filter) {
   const target = new Uint8Array(elements.byteLength);
   MeshoptDecoder.decodeGltfBuffer(target, count, target.length / count, encoded(elements, count), 'ATTRIBUTES', filter);
@@ -78,7 +79,7 @@ function chunk(type, bytes) {
   return Buffer.concat([head, bytes]);
 }
 
-// Makes a file whose positions are the first three numbers of compressed elements, with a target that moves nothing.
+// Makes a file whose positions are the first three numbers of compressed elements, with a target without effect.
 function glbOf(elements, count, componentType, filter) {
   const stream = encoded(elements, count);
   const compression = { buffer: 0, byteLength: stream.length, byteStride: elements.byteLength / count, count, filter };
@@ -144,7 +145,7 @@ describe('the program decodes as browsers do', () => {
     ['many floats with exponents', exponents(100_000), 3, FLOAT, 'EXPONENTIAL', 0],
   ]) {
     test(name, () => {
-      const count = Math.floor(elements.length / width / 3) * 3; // complete triangles
+      const count = Math.floor(elements.length / width / 3) * 3; // only complete triangles
       const some = elements.slice(0, count * width);
       const numbers = decoded(some, count, filter);
       const expected = filter === 'EXPONENTIAL' ? new Float32Array(numbers.buffer) : numbers;

@@ -1,9 +1,9 @@
-// Makes moving glTF files: a tube that twists, waves and swells, with properties that make a bake difficult.
+// Makes moving glTF files: a tube that twists, waves and swells, with various properties that make a bake difficult.
 import { Accessor, Document } from '@gltf-transform/core';
 import { ExactNormals } from './exact.mjs';
 import { newIO } from './reader.mjs';
 
-// Makes a tube around the y axis, closed around, open at its ends: rows x columns quads, each two triangles.
+// Makes a tube around the y axis, open at both ends: rows x columns quads of two triangles each.
 function tube(columns, rows) {
   const indices = [];
   for (let r = 0; r < rows; ++r) {
@@ -30,7 +30,7 @@ function twisted(turn) {
   return (a, y) => straight(a + turn * (y + 1) * 0.5, y);
 }
 
-// Makes ripples across and around.
+// Makes ripples around the axis and along it.
 function waved(a, y) {
   const radius = 0.55 + 0.22 * Math.sin(9 * y + 2 * a);
   return [radius * Math.cos(a), y, radius * Math.sin(a)];
@@ -52,7 +52,7 @@ function unitNormals(positions, indices) {
   return result;
 }
 
-// Makes a primitive as writeFile() takes it: base and targets with the right normal of each shape stored.
+// Makes a primitive for writeFile(): base and targets, with the true normals of each shape stored.
 function primitiveOf(grid, base, targets, { targetNormals = true } = {}) {
   const positions = placed(grid, base);
   const normals = unitNormals(positions, grid.indices);
@@ -70,7 +70,7 @@ function primitiveOf(grid, base, targets, { targetNormals = true } = {}) {
   };
 }
 
-// Keeps some triangles of a primitive, and all of its vertices.
+// Keeps some triangles of a primitive, but all of its vertices.
 function part(primitive, from, to) {
   return { ...primitive, indices: primitive.indices.slice(from, to) };
 }
@@ -130,7 +130,7 @@ const grid = tube(36, 48);
 const twist = () => primitiveOf(grid, straight, [twisted(2.4)]);
 const wave = () => primitiveOf(grid, straight, [waved]);
 
-// Maps a name to the function that writes the file. All files have one target active at a time, except `pair`.
+// Maps a name to the function that writes the file. In all files except `pair`, one target is active at a time.
 export const fixtures = {
   twist: (path) => writeFile(path, { primitives: [twist()], tracks: [linear([0, 1, 0.25])] }),
   wave: (path) => writeFile(path, { primitives: [wave()], tracks: [linear([0, 1])] }),
@@ -142,7 +142,7 @@ export const fixtures = {
   spline: (path) =>
     writeFile(path, {
       primitives: [wave()],
-      // The values are in-tangent, value and out-tangent of three keys: the weight exceeds 0.8, and leaves [0, 1].
+      // The values are in-tangent, value and out-tangent of three keys; the weight exceeds 0.8, and leaves [0, 1].
       tracks: [{ node: 0, interpolation: 'CUBICSPLINE', times: [0, 1, 2], values: [0, 0, 6, 0, 0.8, -3, 0.4, 0.2, 0] }],
     }),
   step: (path) =>
@@ -173,7 +173,7 @@ export const fixtures = {
       nodes: [{ at: [-1.3, 0, 0] }, { at: [0, 0, 0] }, { at: [1.3, 0, 0], weights: [0.5] }],
       tracks: [linear([0, 1, 0]), linear([1, 0.25], 1, [0, 1.5])],
     }),
-  // An author has bent these base normals away from the geometry's.
+  // An author has bent these base normals away from the geometry.
   authored: (path) => {
     const primitive = twist();
     for (let v = 0; v < primitive.normals.length; v += 3) {
@@ -183,7 +183,7 @@ export const fixtures = {
     primitive.targets[0].normals = null;
     return writeFile(path, { primitives: [primitive], tracks: [linear([0, 1])] });
   },
-  // The two targets follow each other, as an exporter writes a sequence of keyframes.
+  // The two targets follow each other, like an exported sequence of keyframes.
   keyframes: (path) =>
     writeFile(path, {
       primitives: [primitiveOf(grid, straight, [twisted(1.8), waved])],
@@ -216,8 +216,8 @@ export function sequenceFrames() {
   });
 }
 
-// Writes a vase that gets flutes and twists, for the picture, with or without target normals, which many exporters
-// omit.
+// Writes a vase that gets flutes and twists, for the picture; with or without target normals, since many exporters omit
+// them.
 export function writeVase(path, { targetNormals }) {
   const profile = (y) => 0.45 + 0.13 * Math.sin(2.4 * y + 2);
   const fluted = (a, y) => {

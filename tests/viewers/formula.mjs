@@ -1,13 +1,13 @@
-// Applies the formula in a page of JavaScript, as an oracle for bakes with one target, whose weight is w. With n(w) =
-// c0 + w c1 + w^2 c2, a viewer that shows N + w D + w (1 - w) E gets the direction of n(w) from N = c0 / |c0|, D = (c1
-// + c2) / |c0| and E = -c2 / |c0| on a correction target that moves nothing.
+// Bakes by the formula in a few lines of JavaScript, as an oracle for bakes with one target, whose weight is w. With
+// n(w) = c0 + w c1 + w^2 c2, a viewer that renders N + w D + w (1 - w) E shows the direction of n(w) if N = c0 / |c0|,
+// D = (c1 + c2) / |c0| and E = -c2 / |c0|, where E belongs to a correction target.
 import { Accessor } from '@gltf-transform/core';
 import { ExactNormals } from './exact.mjs';
 import { describe, newIO } from './reader.mjs';
 
 const withExtra = (w) => [w, w * (1 - w)];
 
-// Bakes a file whose animations are LINEAR and drive the only target of each mesh.
+// Bakes a file with LINEAR animations that drive the only target of each mesh.
 export async function bakeByFormula(inputPath, outputPath) {
   const io = newIO();
   const document = await io.read(inputPath);
@@ -47,7 +47,7 @@ export async function bakeByFormula(inputPath, outputPath) {
       w.forEach((weight, k) => {
         const before = k > 0 ? (weight - w[k - 1]) / (times[k] - times[k - 1]) : 0;
         const after = k + 1 < w.length ? (w[k + 1] - weight) / (times[k + 1] - times[k]) : 0;
-        const slope = 1 - 2 * weight;  // the slope of w (1 - w)
+        const slope = 1 - 2 * weight;  // the derivative of w (1 - w)
         values.push(before, slope * before, ...withExtra(weight), after, slope * after);
       });
       sampler.setInterpolation('CUBICSPLINE').setOutput(accessor(Accessor.Type.SCALAR, values));

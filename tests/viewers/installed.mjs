@@ -1,6 +1,6 @@
-// Installs the npm package as a user does: packed, and unpacked in a folder with nothing else but its peers.
+// Installs the npm package like a user: packs it, and unpacks it in a folder that contains only its peer dependencies.
 //
-//   CHRONORMAL_PROGRAM   the native program, which it is compared with
+//   CHRONORMAL_PROGRAM   the native program, to compare with
 //   CHRONORMAL_NPM       the folder of the package
 import { execFileSync, spawnSync } from 'node:child_process';
 import { cpSync, mkdirSync, mkdtempSync, rmSync, symlinkSync } from 'node:fs';
@@ -10,7 +10,8 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 
 export const program = resolve(process.env.CHRONORMAL_PROGRAM);
 
-/** Installs it. native(), wasm() and node() run the program, the package and Node.js there; load() imports a part of it. */
+/** Installs the package. native(), wasm() and node() run the program, the package and Node.js; load() imports a part of
+ * the package. */
 export function install() {
   const folder = mkdtempSync(join(tmpdir(), 'chronormal-npm-'));
   const installed = join(folder, 'node_modules/chronormal');

@@ -1,10 +1,10 @@
-// Compares the normals that a file makes a viewer show, at many times, with the exact normals of the file before the
+// Compares the normals that a viewer renders from a file, at many times, with the exact normals of the file before the
 // bake.
 import { drive } from '../../examples/drive.mjs';
 import { ExactNormals, angle, exactPositions, length } from './exact.mjs';
 import { nodeWeights, shownNormals, shownPositions } from './reader.mjs';
 
-// A sum of cross products shorter than this share of the longest one of the vertex has no reliable direction.
+// A sum of cross products that is shorter than this share of the vertex's longest sum has no reliable direction.
 const NO_DIRECTION = 1e-4;
 
 export function timesOf(animation, count) {
@@ -12,26 +12,26 @@ export function timesOf(animation, count) {
   return Array.from({ length: count }, (_, i) => start + ((end - start) * i) / (count - 1));
 }
 
-// Returns the middles of equal parts of an animation, at which all viewers agree that they are inside it.
+// Returns the midpoints of equal parts of an animation, which all viewers treat as inside of it.
 export function timesWithin({ start, end }, count) {
   return Array.from({ length: count }, (_, i) => start + ((end - start) * (i + 0.5)) / count);
 }
 
-// Tells whether any target of a mesh moves any vertex.
+// Tells whether some target of a mesh moves a vertex.
 export function moves(mesh) {
   const somewhere = (array) => array?.some((number) => number !== 0) ?? false;
   return mesh.primitives.some((primitive) => primitive.targets.some((target) => somewhere(target.positions)));
 }
 
 // Returns an empty result in degrees over samples of a vertex and a state: {mean, max, where, pairs, excluded, flat,
-// drift}. excluded counts samples without a direction or a triangle; flat counts primitives without normals, which
-// viewers shade by themselves; drift is the largest distance of a vertex of `shown` from its place in `source`,
-// relative to the size of its mesh.
+// drift}. `excluded` counts samples without a direction or a triangle; `flat` counts primitives without normals, which
+// viewers shade by themselves; `drift` is the largest distance between a vertex in `shown` and in `source`, relative to
+// the size of its mesh.
 function nothing() {
   return { mean: 0, max: 0, where: '', pairs: 0, excluded: 0, flat: 0, drift: 0 };
 }
 
-// Adds a mesh to a result whose mean is still a sum. A state is {name, weights, shownWeights}.
+// Adds a mesh to a result, whose mean is a sum until all are added. A state is {name, weights, shownWeights}.
 function addMesh(result, source, shown, states) {
   const exact = new ExactNormals(source);
   const shownPrimitives = shown.primitives.filter((primitive) => primitive.triangles);
@@ -73,7 +73,7 @@ function averaged(result) {
   return { ...result, mean: result.mean / Math.max(result.pairs, 1) };
 }
 
-// Compares all nodes at some times of an animation. Leaves out meshes that never move.
+// Compares all nodes at some times of an animation. Meshes that never move are left out.
 export function compareAnimation(source, shown, animation, times) {
   const result = nothing();
   source.nodes.forEach((node, n) => {
@@ -94,8 +94,8 @@ function stands({ times, values, interpolation }) {
   return interpolation !== 'CUBICSPLINE' && values.every((value, i) => value === values[i % width]);
 }
 
-// Compares meshes that no animation moves, in a viewer that drives every target alone, and all targets together. The
-// mesh itself says how correction targets are driven.
+// Compares meshes that no animation moves, in a viewer that sets every target alone, and all targets together. The
+// extras of the mesh tell how correction targets are driven.
 function compareUndriven(source, shown) {
   const moving = source.animations.flatMap(({ tracks }) => tracks.filter((track) => !stands(track)));
   const driven = new Set(moving.map(({ node }) => source.nodes[node].mesh));
@@ -118,8 +118,8 @@ function compareUndriven(source, shown) {
   return averaged(result);
 }
 
-// Returns one result for each animation that has weights, and one for the meshes that no animation moves. An animation
-// whose weights never change is sampled once.
+// Returns a result for each animation with weights, and one for the meshes that no animation moves. An animation with
+// constant weights is sampled once.
 export function compareFiles(source, shown, count = 101) {
   const results = source.animations.flatMap((animation, a) => {
     if (animation.tracks.length === 0) return [];

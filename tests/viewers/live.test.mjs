@@ -1,5 +1,5 @@
 // Tests when chronormal/three and chronormal/babylon set the weights of correction targets, on which meshes, and when
-// they stop. viewers.test.mjs tests by pixels what is drawn with these weights.
+// they stop. viewers.test.mjs tests the pixels that are drawn with these weights.
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { NullEngine } from '@babylonjs/core/Engines/nullEngine.js';
@@ -19,7 +19,8 @@ import * as babylon from '../../js/src/babylon.js';
 import { drive, formulasOf } from '../../js/src/drive.js';
 import * as three from '../../js/src/three.js';
 
-// The mesh has two targets of its own; targets 2 and 3 are w0 w1 and w0 (1 - w0); only animations drive target 4.
+// The mesh has two targets of its own. Targets 2 and 3 have the weights w0 w1 and w0 (1 - w0); only animations drive
+// target 4.
 const mark = () => ({
   chronormal: {
     version: 2,
@@ -44,7 +45,7 @@ test('extra weights are the sums of their terms, and other versions are left alo
 });
 
 describe('three.js', () => {
-  // Makes a mesh as the loader does; the mark may stand in the parent object.
+  // Makes a mesh like the loader; the mark may be in the parent object.
   function meshOf(userData) {
     const geometry = new THREE.BoxGeometry();
     geometry.morphTargetsRelative = true;
@@ -158,7 +159,7 @@ describe('three.js', () => {
       const track = new THREE.NumberKeyframeTrack('face.morphTargetInfluences', [0], weights);
       return new THREE.AnimationClip(name, 1, [track]);
     };
-    // Clips of a baked file look like this: the weights of correction targets are right in this clip alone, and one
+    // The clips of a baked file: the weights of correction targets are right only if this clip is played alone, and one
     // target is driven only by clips.
     const clips = [clip('a', [1, 0, 0, 0, 0.5]), clip('b', [0, 0.5, 0, 0, 0])];
     const mixer = new THREE.AnimationMixer(mesh);
@@ -167,7 +168,7 @@ describe('three.js', () => {
     mixer.update(0.1);
     draw(mesh);
     assert.deepEqual(weightsOf(mesh), [0.5, 0.25, 0.125, 0.25, 0.25]);
-    // Another mixer plays another copy.
+    // Another mixer plays a clone of the mesh.
     const copy = mesh.clone(), other = new THREE.AnimationMixer(copy);
     other.clipAction(clips[0]).play();
     three.attach(copy);
@@ -178,7 +179,7 @@ describe('three.js', () => {
   });
 
   test('a mesh that has other targets by now is left alone', () => {
-    for (const count of [2, 18]) { // fewer, or more, as VRMUtils.combineMorphs() of three-vrm leaves them
+    for (const count of [2, 18]) { // fewer or more targets, as after VRMUtils.combineMorphs() of three-vrm
       const geometry = new THREE.BoxGeometry();
       geometry.morphAttributes.position = Array.from({ length: count }, () => geometry.attributes.position.clone());
       const mesh = new THREE.Mesh(geometry);
@@ -197,7 +198,7 @@ describe('Babylon.js', () => {
     new FreeCamera('camera', new Vector3(0, 0, -5), scene);
     return scene;
   }
-  // Makes a mesh as the loader does, below a node with the extras.
+  // Makes a mesh like the loader, below a node with the extras.
   function meshOf(scene, extras = mark()) {
     const mesh = CreateBox('face', {}, scene), manager = new MorphTargetManager(scene);
     for (let k = 0; k < TARGETS; ++k) manager.addTarget(MorphTarget.FromMesh(mesh, `target ${k}`, 0));

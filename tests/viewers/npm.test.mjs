@@ -20,7 +20,7 @@ after(remove);
 const { bake, audit, inspect, compare, sample, ChronormalError } = await load('index.node.js');
 const readme = readFileSync(join(installed, 'README.md'), 'utf8');
 
-// The face has two targets and an animation: convert makes it from the built-in bumps, and it is not baked yet.
+// The face has two targets and an animation. convert makes it from the built-in morph bumps, not baked yet.
 const made = native(['convert', '--sample', 'bumps', '-o', 'bumps.glb']);
 assert.equal(made.status, 0, made.stderr);
 const face = new Uint8Array(readFileSync(join(folder, 'bumps.glb')));
@@ -137,14 +137,14 @@ test('wrong input is refused in the words of the program, and the next call work
   assert.equal((await inspect(face)).report.command, 'inspect');
 });
 
-// Returns the report of a call, or the code and the message of its refusal.
+// Returns the report of a call, or the code and the message of its error.
 const outcomeOf = (call) => call.then(({ report }) => report, ({ name, code, message }) => ({ name, code, message }));
 
 test('a file of any name is read under it, or refused with it, in a worker and in this thread', async () => {
   const json = '{"asset": {"version": "2.0"}}   ', tiny = Buffer.alloc(20 + json.length);
   [0x46546c67, 2, tiny.length, json.length, 0x4e4f534a].forEach((word, i) => tiny.writeUInt32LE(word, 4 * i));
   tiny.write(json, 20);
-  const expected = (await inspect(tiny)).report, random = randomNumbers(49); // the seed of all that follows
+  const expected = (await inspect(tiny)).report, random = randomNumbers(49); // seeds everything that follows
   const below = (count) => Math.floor(count * random());
   const parts = ['', '.', '..', 'out', 'work', '-', '--', '-o', '--json', '-x.glb', 'a.glb', '%d', '*', '[a]', '?', ' ', 'é', '\n', '\0', '\ud800', '\ufeff',
                  '__proto__', 'dev', 'stdin', 'stdout', 'proc', 'x'.repeat(300)];
@@ -162,7 +162,7 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   }
   assert.ok(read > 30, `${read}`);
   const { bytes: baked } = await bake(face, { encode: 'endpoint' });
-  // The program sees its files in a folder /work of its own (js/src/task.js), and its outputs in out/ there.
+  // The program finds its files in its own folder /work (js/src/task.js), and its outputs in /work/out.
   for (const name of ['out', 'out/a.glb', '-x.glb', '../work/out/b.glb']) {
     assert.deepEqual((await bake(face, { name, encode: 'endpoint', worker: false })).bytes, baked, name);
   }
@@ -216,7 +216,7 @@ test('where memory runs out, that is said, and the next call works', async () =>
 
 test('progress is said while it goes on, up to its end', async () => {
   const heard = [];
-  // The first 0.3 s report no progress, so the audit takes enough samples for some seconds.
+  // No progress is reported in the first 0.3 s, so the audit has enough samples to take some seconds.
   await audit(face, { samples: 6001, onProgress: (progress) => heard.push(progress) });
   assert.ok(heard.length > 2, JSON.stringify(heard));
   for (const { label, percent } of heard) assert.ok(typeof label === 'string' && percent >= 0 && percent <= 100);
@@ -301,7 +301,7 @@ Use import { bake } from 'chronormal' in a module, or const { bake } = await imp
 
 test('where WebAssembly has no vectors, a sentence says so', (t) => {
   const script = "import('chronormal').then(({ inspect }) => inspect(new Uint8Array(9))).catch(({ message }) => console.log(message));";
-  const without = ['--no-enable-sse4-1']; // on x86 V8 then has no vectors
+  const without = ['--no-enable-sse4-1']; // this disables vectors of V8 on x86
   const { stdout, status } = node([...without, '-e', script]);
   if (status !== 0 || /glTF/.test(stdout)) return t.skip('this processor has vectors whatever V8 is told');
   assert.match(stdout, /^WebAssembly with vectors \(SIMD\) .*Safari 16\.4, Node\.js 18/s);

@@ -1,4 +1,5 @@
-// The page's entry: all viewers behind the same functions, and the comparison, so that pixels stay in the page.
+// The entry point of the page: all viewers behind the same functions, and the comparison, so that pixels need not leave
+// the page.
 import * as babylon from './babylon_page.mjs';
 import * as filament from './filament_page.mjs';
 import { differenceOfPictures, drawPicture } from './picture.mjs';
@@ -11,9 +12,9 @@ const viewers = { three, babylon, playcanvas, filament };
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
 const loaded = (viewer, base64) => viewers[viewer].load(bytesOf(base64));
 
-// For each moment {time, truth, view}, compares what the viewer draws of each file at that time of an animation with
-// the still file `truth`. Files are GLB in base64. Returns, for each moment, the result of compareNormals() for each
-// file.
+// For each moment {time, truth, view}, compares the viewer's drawing of each file at that time of an animation with its
+// drawing of the still file `truth`. Files are GLB in base64. Returns the result of compareNormals() for each file at
+// each moment.
 window.compareInViewer = async (viewer, files, animation, moments, size) => {
   const { play, drawNormals, dispose } = viewers[viewer];
   const models = [];
@@ -35,8 +36,9 @@ window.compareInViewer = async (viewer, files, animation, moments, size) => {
   return results;
 };
 
-// Holds what a viewer draws of each file at a time of an animation, held against the still file `truth`: {compared, picture},
-// what compareNormals() says of each, and all of them beside the truth, lit alike, as a PNG in a data URL.
+// Compares a viewer's drawing of each file at a time of an animation with its drawing of the still file `truth`.
+// Returns {compared, picture}: the results of compareNormals(), and all drawings beside the true one, lit alike, as a
+// PNG in a data URL.
 window.closeUpInViewer = async (viewer, files, animation, { time, truth, view }, size) => {
   const { play, drawNormals, dispose, normalsAreOfView = false } = viewers[viewer];
   const draw = async (file, animated) => {
@@ -59,7 +61,8 @@ const urlOf = async (canvas, type) => {
   return `data:${type};base64,${btoa(bytes.reduce((text, byte) => text + String.fromCharCode(byte), ''))}`;
 };
 
-// The pictures of closeUpInViewer() of several viewers, one below the other, with words above each, as a JPEG in a data URL.
+// Returns the pictures of closeUpInViewer() of several viewers, one below the other with a title above each, as a JPEG
+// in a data URL.
 window.sheetOfCloseUps = async (pictures, { width, height }) => {
   const HEAD = 30, sheet = new OffscreenCanvas(3 * width, pictures.length * (height + HEAD)), ink = sheet.getContext('2d');
   ink.fillStyle = '#f8fafc';
@@ -75,7 +78,8 @@ window.sheetOfCloseUps = async (pictures, { width, height }) => {
   return urlOf(sheet, 'image/jpeg');
 };
 
-// Returns what a function makes of each picture of normals that a viewer draws of a file, at times of its first animation.
+// Returns the results of a function for each picture of normals that a viewer draws of a file, at times of its first
+// animation.
 async function ofPictures(viewer, file, times, view, size, made) {
   const { play, drawNormals, dispose } = viewers[viewer];
   const model = await loaded(viewer, file);
@@ -88,7 +92,7 @@ async function ofPictures(viewer, file, times, view, size, made) {
   return results;
 }
 
-// Returns the normals at the pixels [x, y] of each picture; null where nothing is drawn.
+// Returns the normals at the pixels [x, y] of each picture; null if nothing is drawn there.
 window.normalsInViewer = (viewer, file, times, view, size, pixels) =>
   ofPictures(viewer, file, times, view, size, (picture) => pixels.map(([x, y]) => normalAt(picture, size, x, y)));
 
@@ -97,8 +101,8 @@ window.middlesInViewer = (viewer, file, times, view, size) =>
   ofPictures(viewer, file, times, view, size, (picture) => middleOf(picture, size));
 
 // Compares the viewer's picture of a file with the still file of the moment four times: after a program has set the
-// weights of the file's own targets, while our package drives the correction targets, after it has stopped, and after
-// the program has driven them itself.
+// weights of the file's own targets, while our package drives the correction targets, after the package has stopped,
+// and after the program has driven them itself.
 window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, setWeights, drive, attach, detach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];
@@ -114,7 +118,8 @@ window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
   return results;
 };
 
-// Does the same while clips are blended, whose sum gives the weights; in three.js the mixer of a clone plays them.
+// Compares in the same way while several clips are blended, whose sum gives the weights. In three.js the mixer of a
+// clone plays them.
 window.compareBlended = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, blend, attach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];

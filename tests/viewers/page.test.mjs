@@ -1,11 +1,11 @@
-// Tests the page with the engine inside: dropped files show the numbers of the program, its bakes have the program's
-// bytes, unreadable files get a helpful message, and it makes no requests.
+// Tests the page with the engine inside: dropped files show the same numbers as the program, bakes have the same bytes,
+// unreadable files get a helpful message, and the page makes no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_PAGE           the page: build/web/chronormal.html, by ./run page or ./test --full npm
-//   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place
-//   CHRONORMAL_DATA           moving files by other people, where it is set
-//   CHRONORMAL_FULL=1         all of these
+//   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place
+//   CHRONORMAL_DATA           a folder of moving files by other people, if set
+//   CHRONORMAL_FULL=1         tests all of these files
 import assert from 'node:assert/strict';
 import { closeSync, existsSync, ftruncateSync, mkdtempSync, openSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -20,8 +20,8 @@ import { newIO, read } from './reader.mjs';
 import { clickWorst, openPages } from './web_page.mjs';
 
 const FULL = process.env.CHRONORMAL_FULL === '1', DATA = process.env.CHRONORMAL_DATA;
-const NEAR = 1e-3; // degrees, which the page may be off
-const SHOWN = 5e-4; // degrees: places that are off by less are not listed
+const NEAR = 1e-3; // largest error of the page's numbers in degrees
+const SHOWN = 5e-4; // degrees; places with smaller errors are not listed
 const WAIT = { timeout: 600_000 };
 
 let folder, pages, page;
@@ -62,8 +62,8 @@ async function downloaded(name) {
   }
 }
 
-// Returns the file that the program writes, or its message if it writes none. A file that misses the tolerance is
-// written too.
+// Returns the file that the program bakes, or its message if it writes none. A file that misses the tolerance is
+// written, too.
 function bakedByProgram(file) {
   const target = path('expected.glb');
   rmSync(target, { force: true });
@@ -78,7 +78,7 @@ function bakedByProgram(file) {
 async function bakeAndDownload(file) {
   const name = basename(file).replace(/\.glb$/, '.right.glb'), { bytes, words } = bakedByProgram(file);
   await press('button.bake');
-  // A bake may take longer than a single question to the browser.
+  // A bake may take longer than a single call to the browser may take.
   while (await page.$('.busy:not([hidden])')) await new Promise((resolve) => setTimeout(resolve, 200));
   if (words) {
     await page.waitForSelector('.busy[hidden]', WAIT);
@@ -99,7 +99,7 @@ test('a dropped file shows the number of the audit, a plan, and is baked to the 
   await bakeAndDownload(path('bumps.glb'));
 });
 
-// Sets the sliders of the weights, as a hand does.
+// Sets the sliders of the weights like a person.
 const setSliders = (weights) => page.evaluate((values) => {
   const rows = document.querySelectorAll('.weights input');
   values.forEach((value, k) => {
@@ -108,7 +108,7 @@ const setSliders = (weights) => page.evaluate((values) => {
   });
 }, weights);
 
-// Draws one half of the picture as normals by a given camera, or by the page's; returns {camera, pixels}.
+// Draws one half of the picture as normals, with a given camera or with the page's. Returns {camera, pixels}.
 const half = (side, camera) => page.evaluate((right, given) => {
   const { view, setMode } = globalThis.chronormal, { canvas } = view;
   setMode('normals');
@@ -126,7 +126,7 @@ const half = (side, camera) => page.evaluate((right, given) => {
   };
 }, side === 'right', camera);
 
-// Writes the mesh of a file at some weights with the exact normals there as a file, with a target that is not shown.
+// Writes a file with the mesh of a file at some weights, with the exact normals there, and with an unused target.
 async function writeFrozen(target, source, weights) {
   const io = newIO(), document = await io.read(source), root = document.getRoot();
   const described = (await read(source)).meshes[0], truth = new ExactNormals(described).at(weights);
@@ -158,7 +158,7 @@ test('a face that is clicked has the figures of the program, and they follow its
   writeFileSync(path('k0.obj'), 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 4 0 0\nv 5 0 1\nv 4 1 0\nf 1 2 3\nf 4 5 6\n');
   writeFileSync(path('k1.obj'), 'v 0 0 0\nv 0 1 0\nv 0 0 1\nv 4 0 0\nv 5 2 1\nv 4 1 3\nf 1 2 3\nf 4 5 6\n');
   await drop(path('k0.obj'), path('k1.obj'));
-  // The program has answered for the way that the panel shows.
+  // Waits until the program has computed the figure of the path that the panel shows.
   const settled = async () => {
     await page.waitForSelector('.face[data-state=done]', WAIT);
     const way = await page.evaluate(() => globalThis.chronormal.faces.way());
@@ -208,10 +208,11 @@ test('a face that is clicked has the figures of the program, and they follow its
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than a phone');
   await page.setViewport({ width: 1280, height: 800 });
 
-  // A click in the picture takes the face that is there.
+  // A click in the picture selects the face at that place.
   const spot = await page.evaluate(async () => {
     scrollTo(0, 0);
-    for (let i = 0; i < 3; ++i) await new Promise((resolve) => requestAnimationFrame(resolve)); // the stage gets its size
+    // Waits until the stage has its size.
+    for (let i = 0; i < 3; ++i) await new Promise((resolve) => requestAnimationFrame(resolve));
     const { view, player } = globalThis.chronormal, box = view.canvas.getBoundingClientRect(), { positions } = player.surface;
     view.frame(true);
     view.draw();

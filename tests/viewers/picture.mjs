@@ -1,4 +1,4 @@
-// Draws pictures of wrong beside right in the page: files side by side at the same moment, lit by a viewer.
+// Draws pictures of wrong beside true normals in the page: files side by side at the same moment, lit by a viewer.
 import * as THREE from 'three';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import * as filament from './filament_page.mjs';
@@ -8,7 +8,7 @@ const BACKGROUND = '#f8fafc';
 const INK = ['#1e293b', '#64748b'];
 const FAMILY = '"DejaVu Sans", "Liberation Sans", sans-serif';
 const FONTS = [`600 17px ${FAMILY}`, `14px ${FAMILY}`];
-const SAMPLES = 2;  // rendered that much larger, each way
+const SAMPLES = 2;  // factor of a larger rendering, in each direction
 
 // Draws `items`, each {bytes, caption} with a caption of two lines. Returns a PNG as a data URL.
 export async function drawPicture(viewer, items, animation, time, view, size) {
@@ -56,7 +56,8 @@ async function drawLitByThree(bytes, animation, time, view, size) {
   return renderer.domElement;
 }
 
-// Returns the difference of two PNGs: the average of |a - b| over all channels, of 255. Infinity if their sizes differ.
+// Returns the difference of two PNGs: the average of |a - b| over all channels, on a scale of 0 to 255; Infinity if
+// their sizes differ.
 export async function differenceOfPictures(bytes, others) {
   const [a, b] = await Promise.all([bytes, others].map((png) => createImageBitmap(new Blob([png]))));
   if (a.width !== b.width || a.height !== b.height) return Infinity;

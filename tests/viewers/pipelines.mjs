@@ -1,4 +1,4 @@
-// Runs other people's tools that rewrite glTF files, as a person runs them, and audits the results.
+// Runs other people's tools that rewrite glTF files, with the commands that people use, and audits the results.
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, mkdirSync, symlinkSync } from 'node:fs';
 import { delimiter, join, resolve } from 'node:path';
@@ -16,7 +16,7 @@ export function makeWorkshop(folder) {
   return folder;
 }
 
-// Runs a shell line there, with the gltf-transform and gltfpack of package-lock.json.
+// Runs a shell line in that folder, with gltf-transform and gltfpack of the versions in package-lock.json.
 export function runLine(line, folder) {
   const path = [TOOLS, join(folder, 'bin'), process.env.PATH].join(delimiter);
   const options = { cwd: folder, encoding: 'utf8', env: { ...process.env, PATH: path }, maxBuffer: 1 << 28 };
@@ -33,14 +33,14 @@ export function webOf(line, head, result, folder) {
   return result;
 }
 
-// Returns the errors in degrees against the positions in the file itself: {mean, worst}. `how` are further options of
-// audit.
+// Returns the errors in degrees against the true normals of the file's own positions: {mean, worst}. `how` has further
+// options of audit.
 export function audited(path, ...how) {
   const report = JSON.parse(chronormal('audit', path, ...how, '--json', '--quiet'));
   return { mean: report.mean_degrees, worst: report.worst_degrees };
 }
 
-// Returns the largest component of a normal delta, of any target.
+// Returns the largest component of any normal delta of a file.
 export function largestDelta(file) {
   let largest = 0;
   for (const { primitives } of file.meshes)
@@ -49,7 +49,7 @@ export function largestDelta(file) {
   return largest;
 }
 
-// Writes the file of a careful exporter: every target has the unit normals of its shape, and nothing else is added.
+// Writes a file like a careful exporter: every target has the unit normals of its shape, and nothing else is added.
 export async function writePlainEndPoints(input, output) {
   const io = newIO();
   const document = await io.read(input);

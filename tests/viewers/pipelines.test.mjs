@@ -1,10 +1,10 @@
-// Tests what is left of a bake after other people's tools: gltf-transform and gltfpack, as people run them. Run by ctest as
-// `pipelines`; docs/web.md has the tables, whose lines and figures are checked here.
+// Tests how much of a bake survives other people's tools, gltf-transform and gltfpack, with the commands that people
+// use. ctest runs this as `pipelines`. Also checks the commands and figures in the tables of docs/web.md.
 //
 //   CHRONORMAL_PROGRAM        the program
-//   CHRONORMAL_DATA           moving files by other people, where it is set
-//   CHRONORMAL_FULL=1         every tool, on every file; else one file, with the tools that do the most
-//   CHRONORMAL_UPDATE_DOCS=1  writes the figures of docs/web.md, with the two above
+//   CHRONORMAL_DATA           a folder of moving files by other people, if set
+//   CHRONORMAL_FULL=1         every tool on every file; otherwise one file, with the tools that change the most
+//   CHRONORMAL_UPDATE_DOCS=1  with the two above, writes the figures of docs/web.md
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -24,7 +24,8 @@ const DATA = process.env.CHRONORMAL_DATA;
 const NO_DATA = !FULL || !DATA ? 'set CHRONORMAL_FULL=1, and CHRONORMAL_DATA to the folder of the real data' : false;
 const PAGE = fileURLToPath(new URL('../../docs/web.md', import.meta.url));
 
-// The tools, and the degrees by which a baked file may be worse after them than a file with plain end-point deltas.
+// The tools, and for each the degrees by which a baked file may be worse afterwards than a file with plain end-point
+// deltas.
 const PACK_12 = '-vn 12 -vtf -af 0';
 const LINES = [
   ['gltf-transform quantize head.glb web.glb', 1],
@@ -52,7 +53,7 @@ let folder;
 before(() => (folder = makeWorkshop(mkdtempSync(join(tmpdir(), 'chronormal_pipelines_')))));
 after(() => rmSync(folder, { recursive: true, force: true }));
 
-// Returns the variants of a file that are sent through tools, by name.
+// Returns the variants of a file that are processed by tools, by name.
 const inputs = new Map();
 async function inputsOf(name) {
   if (!inputs.has(name)) {
@@ -66,7 +67,7 @@ async function inputsOf(name) {
   return inputs.get(name);
 }
 
-// Returns the errors after a tool on one of these inputs, in degrees.
+// Returns the errors in degrees of a variant after a tool.
 const measured = new Map();
 async function measure(line, name, kind) {
   const key = [line, name, kind].join('\n');
@@ -81,22 +82,21 @@ async function measure(line, name, kind) {
 async function assertKept(context, name, lines) {
   const { exported, baked } = await inputsOf(name);
   const faults = [];
-  // Tools clamp components beyond 1. A vertex may keep such a delta of its author.
+  // Tools clamp components beyond 1. A vertex may keep such a delta from its author.
   const [authored, largest] = [largestDelta(await read(exported)), largestDelta(await read(baked))];
   if (!(largest <= Math.max(1, authored))) faults.push(`a component of ${largest}, where ${authored} was the largest`);
   for (const [line, allowed] of lines) {
     const plain = await measure(line, name, 'plain');
     const kept = await measure(line, name, 'baked');
-    // A vertex that keeps the delta of its author keeps the error of the original file. A bake may add keys, and audit
-    // samples each interval between two keys equally often, so a file with few keys is sampled more often before it is
-    // called better.
+    // A vertex that keeps its author's delta keeps the error of the original file. A bake may add keys, and audit takes
+    // equally many samples between any two keys, so a file with few keys is sampled more often to find the same errors.
     const exported = await measure(line, name, 'exported');
     let worst = Math.max(plain.worst, exported.worst);
     if (kept.worst > worst + allowed) worst = Math.max(worst, audited(exported.path, '--samples', '81').worst);
     const text = (degrees) => `${degrees.mean.toFixed(3)} / ${degrees.worst.toFixed(2)}`;
     const outcome = `${line}: plain ${text(plain)}, baked ${text(kept)}`;
     context.diagnostic(outcome);
-    // A surface gets better as a whole, while a single normal may get a little worse.
+    // The surface must improve as a whole; a single normal may become slightly worse.
     if (!(kept.worst <= 1.05 * worst + allowed && kept.mean <= plain.mean + allowed)) faults.push(outcome);
   }
   assert.deepEqual(faults, []);
@@ -109,12 +109,12 @@ describe('a baked file is no worse than one with plain end-point deltas, after t
     test(name, { skip: NO_DATA }, (context) => assertKept(context, name, LINES));
 });
 
-// Checks that a bake after the tools is right, whatever they did to positions, base normals and tracks.
+// Checks that a bake after the tools is right, whatever the tools did to positions, base normals and tracks.
 async function assertExactLast(name, lines) {
   for (const [line] of lines) {
     const { path } = await measure(line, name, 'exported');
     const output = join(folder, 'exact_last.glb');
-    const how = ['--encode', 'exact', '--weighting', 'area'];  // other weightings fit n(w)
+    const how = ['--encode', 'exact', '--weighting', 'area'];  // with other weightings n(w) is only fitted
     chronormal('bake', path, '-o', output, ...how, '--force', '--no-audit', '--quiet');
     assert.deepEqual(await newComplaints(output, path), []);
     const { worst } = audited(output, '--weighting', 'area');
@@ -156,7 +156,8 @@ test('gltfpack -ke leaves what drives extra targets where audit and three.js fin
   weights.forEach((weight, i) => assert.ok(Math.abs(shown[i] - weight) < 1e-6, String(shown)));
 });
 
-// docs/web.md: tables under a line <!-- measured: NAME -->, whose rows begin with a line in backticks.
+// Reads the tables of docs/web.md: each is below a line <!-- measured: NAME -->, and its rows begin with a command in
+// backticks.
 const lines = readFileSync(PAGE, 'utf8').split('\n');
 
 function blocksOfPage() {
@@ -167,7 +168,7 @@ function blocksOfPage() {
   return blocks;
 }
 
-// Returns the tables about a file: their columns, and {index, line} of their rows.
+// Returns the tables about a file: their columns, and the {index, line} of each row.
 function tablesOfPage(name) {
   const tables = [];
   lines.forEach((line, begin) => {

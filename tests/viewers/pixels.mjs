@@ -1,7 +1,8 @@
-// Pictures of normals: RGBA in float32, (n + 1) / 2, with alpha 0 where nothing was drawn, and the lowest row first.
+// Pictures of normals: RGBA in float32, with (n + 1) / 2 as colour, alpha 0 where nothing was drawn, and the lowest row
+// first.
 import { angle } from './exact.mjs';
 
-// Returns the normal of a pixel, or null where nothing is drawn.
+// Returns the normal of a pixel, or null if nothing is drawn there.
 export function normalAt(picture, { width }, x, y) {
   const i = 4 * (y * width + x);
   return picture[i + 3] > 0 ? normalIn(picture, i) : null;
@@ -24,8 +25,8 @@ export function middleOf(picture, { width, height }) {
   return count > 0 ? sum.map((c) => c / count) : null;
 }
 
-// A picture as a glossy surface under one lamp, as pixels of a canvas: a tear is seen there as the eye sees it in a
-// viewer, by the same light in all of them. Normals are of the world where a view is given, and else of the camera.
+// Draws a picture of normals as a glossy surface under one lamp, as pixels of a canvas: tears look like in a viewer,
+// with the same light for all viewers. Normals are in world space if `view` is given, and otherwise in camera space.
 export function lit(picture, view, { width, height }) {
   const LAMP = unit([-0.45, 0.6, 0.66]), HALF = unit([LAMP[0], LAMP[1], LAMP[2] + 1]), BASE = [47, 127, 181], BACK = [248, 250, 252];
   const axes = view ? cameraAxes(view) : null, image = new ImageData(width, height);
@@ -46,14 +47,14 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => a.map((x) => x / (Math.hypot(...a) || 1));
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-// Right, up and backwards of a camera.
+// Returns the directions right, up and backwards of a camera.
 function cameraAxes({ eye, at }) {
   const back = unit(eye.map((x, c) => x - at[c])), right = unit(cross([0, 1, 0], back));
   return [right, cross(back, right), back];
 }
 
-// Compares two pictures pixel by pixel. A pixel counts where it and its eight neighbours are covered in both, so that
-// silhouettes are left out. Degrees: {pixels, mean, p99, max}.
+// Compares two pictures pixel by pixel. A pixel counts only if it and its eight neighbours are covered in both
+// pictures, which leaves out silhouettes. Returns {pixels, mean, p99, max} in degrees.
 export function compareNormals(shown, truth, { width, height }) {
   const covered = (x, y) => {
     const alpha = 4 * (y * width + x) + 3;

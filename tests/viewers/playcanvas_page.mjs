@@ -1,5 +1,5 @@
-// PlayCanvas as a viewer, in the page: its loader, its animation component, and the normals that its own glTF material
-// computes, which it shows instead of colours when asked to.
+// PlayCanvas as a viewer in the page: its loader, its animation component, and its glTF material, which can show its
+// normals as colours.
 import {
   ADDRESS_CLAMP_TO_EDGE, AnimClipHandler, AnimComponentSystem, AppBase, AppOptions, Asset, CameraComponentSystem, Color,
   ContainerHandler, Entity, FILTER_NEAREST, MaterialHandler, PIXELFORMAT_RGBA32F, RenderComponentSystem, RenderHandler,
@@ -9,7 +9,7 @@ import {
 import * as live from '../../js/src/playcanvas.js';
 
 let app;
-let loaded = 0;  // whatever has the same name is loaded once only
+let loaded = 0;  // makes names unique, since files with the same name are loaded only once
 
 async function createApp() {
   const canvas = document.createElement('canvas');
@@ -34,12 +34,12 @@ export async function load(bytes) {
     app.assets.load(asset);
   });
   const entity = asset.resource.instantiateRenderEntity();
-  entity.enabled = false;  // whatever is enabled is drawn
+  entity.enabled = false;  // entities are drawn while they are enabled
   app.root.addChild(entity);
   return { asset, entity };
 }
 
-// Sets every object to a time, by the animation component.
+// Sets all objects to a time, by the animation component.
 export function play({ asset, entity }, animation, time) {
   if (animation === null) return;
   entity.removeComponent('anim');

@@ -1,4 +1,4 @@
-// Runs the program as a user does. CHRONORMAL_PROGRAM says where it is.
+// Runs the program like a user. CHRONORMAL_PROGRAM is its path.
 import { spawnSync } from 'node:child_process';
 
 export function chronormal(...args) {

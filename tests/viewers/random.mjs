@@ -1,4 +1,4 @@
-// Draws random numbers and directions, the same everywhere for the same seed.
+// Draws random numbers and directions, which are the same everywhere for the same seed.
 import { length } from './exact.mjs';
 
 // Draws numbers from 0 to 1 by mulberry32.

@@ -1,5 +1,5 @@
-// Reads a glTF file as plain arrays, and computes what every viewer must show at a time: the formulas of glTF 2.0 are
-// repeated here, in float32 where viewers add in float32. It knows nothing about correction targets.
+// Reads a glTF file as plain arrays, and computes the result that every viewer must show at a time, by the formulas of
+// glTF 2.0, in float32 wherever viewers use float32. Correction targets get no special treatment.
 import { Logger, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 
@@ -11,8 +11,7 @@ export function newIO() {
   return new NodeIO().setLogger(errorsOnly).registerExtensions(ALL_EXTENSIONS);
 }
 
-// Returns all numbers of an accessor: floats as they are stored, normalised integers as the numbers that they stand
-// for.
+// Returns all numbers of an accessor: floats as stored, and the values of normalised integers.
 function numbers(accessor) {
   const width = accessor.getElementSize();
   const result = new Float32Array(accessor.getCount() * width);
@@ -83,13 +82,13 @@ export async function read(path) {
   return describe(await newIO().read(path));
 }
 
-// Returns the weights that a track gives at a time (glTF 2.0, appendix C), rounded to float32 as viewers keep them.
+// Returns the weights of a track at a time (glTF 2.0, appendix C), rounded to float32 like in viewers.
 export function weightsAt(track, time) {
   const { times, values, interpolation } = track;
   const spline = interpolation === 'CUBICSPLINE';
   const last = times.length - 1;
   const count = values.length / times.length / (spline ? 3 : 1);
-  // Part 0, 1 or 2 of key k of a spline is its in-tangents, values or out-tangents; other keys have only values.
+  // Parts 0, 1 and 2 of a spline's key are its in-tangents, values and out-tangents; other keys have only values.
   const at = (k, part, i) => values[spline ? (3 * k + part) * count + i : k * count + i];
   const weights = (weight) => Float32Array.from({ length: count }, (_, i) => weight(i));
   if (time <= times[0]) return weights((i) => at(0, 1, i));
@@ -109,14 +108,15 @@ export function weightsAt(track, time) {
   );
 }
 
-// Returns the weights of a node at a time of an animation: from its track, else its own, else those of its mesh.
+// Returns the weights of a node at a time of an animation: from its track, or else from the node, or else from its
+// mesh.
 export function nodeWeights(file, node, animation, time) {
   const track = animation?.tracks.find((candidate) => candidate.node === node);
   if (track) return weightsAt(track, time);
   return file.nodes[node].weights ?? file.meshes[file.nodes[node].mesh].weights;
 }
 
-// Computes base + sum_i w_i delta_i in float32, one product and one sum after the other.
+// Computes base + sum_i w_i delta_i in float32, rounding after each product and each sum.
 export function morphed(base, deltas, weights) {
   const result = Float32Array.from(base);
   deltas.forEach((delta, i) => {

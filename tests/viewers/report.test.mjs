@@ -1,10 +1,10 @@
-// Tests the page of `chronormal report`: its numbers equal the program's, its right half is right, and it requests
-// nothing.
+// Tests the page of `chronormal report`: its numbers equal the program's, its right half shows the true normals, and it
+// makes no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
-//   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place
-//   CHRONORMAL_DATA           moving files by other people, where it is set
-//   CHRONORMAL_FULL=1         all of these
+//   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place
+//   CHRONORMAL_DATA           a folder of moving files by other people, if set
+//   CHRONORMAL_FULL=1         tests all of these files
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -25,8 +25,8 @@ import { randomNumbers } from './random.mjs';
 import { clickWorst, openPages, worstNow } from './web_page.mjs';
 
 const FULL = process.env.CHRONORMAL_FULL === '1', DATA = process.env.CHRONORMAL_DATA;
-const NEAR = 1e-3; // degrees, which the page may be off
-const SHOWN = 5e-4; // degrees: places that are off by less are not listed
+const NEAR = 1e-3; // largest error of the page's numbers in degrees
+const SHOWN = 5e-4; // degrees; places with smaller errors are not listed
 const SEED = 49;
 
 let folder, template;
@@ -144,7 +144,7 @@ test('weights that are set by hand drive the extra targets of a baked file', () 
 
 const DAMAGED = /^the data of this page (are damaged|end too early|are no report|have version)/;
 
-// Returns the places of the floating-point arrays of a container: {begin, size, count}, in bytes.
+// Returns the {begin, size, count} of the floating-point arrays of a container, in bytes.
 function arraysOf(bytes) {
   const size = bytes.readUInt32LE(12), first = Math.ceil((16 + size) / 8) * 8, found = [];
   const look = (value) => {
@@ -168,7 +168,7 @@ test(`data with a number that is not finite, at a place of the seed ${SEED}, are
   }
 });
 
-// Changes or cuts off some characters of the base64 data in a page.
+// Changes or removes some characters of the base64 data in a page.
 function damage(page, random) {
   const [, before, data, after] = page.match(/^(.*id="chronormal-data">)([^<]*)(<.*)$/s);
   const from = Math.floor(data.length * random()), kind = Math.floor(4 * random());
@@ -227,7 +227,7 @@ describe('in Chromium', () => {
     await page.select('.figures select', 'decasteljau:4');
     assert.equal(await page.$$eval('.figures [data-level]', (points) => points.length), 10, 'four nodes, three points, two and one');
     await assertShown(page, figures[0]);
-    // A face without a figure says where there is one.
+    // For a face without a figure, the panel names a face that has one.
     const input = await page.$('.number-field input');
     await input.click({ count: 3 });
     await input.type('7');

@@ -1,7 +1,7 @@
-// Tests how real viewers make a normal from stored numbers, and a weight from a track: compares their pictures with
-// rules that are written down here in double. docs/viewers.md has the findings. Run by ctest as `in_viewers`.
+// Tests how real viewers compute a normal from stored numbers, and a weight from a track: compares their pictures with
+// rules in double. docs/viewers.md has the findings. ctest runs this as `in_viewers`.
 //
-//   CHRONORMAL_FULL=1  all viewers, and all that they do; otherwise the normals of Filament and PlayCanvas
+//   CHRONORMAL_FULL=1  all viewers and rules; otherwise only the normals of Filament and PlayCanvas
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -24,17 +24,18 @@ const scaled = (a, s) => a.map((c) => s * c);
 const unit = (a) => scaled(a, 1 / length(a));
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-// The rules give a normal of any length from a normal N and deltas D_k that a file stores.
+// The rules: each computes a normal, not normalised, from the stored normal N and deltas D_k.
 const rules = {
   // glTF specifies N + sum of w_k D_k.
   sum: ({ normal, deltas }, w) => deltas.reduce((n, delta, k) => plus(n, delta, w[k]), normal),
-  // Some viewers show N + sum of w_k (u_k - N), with a direction u_k kept for each target: that of N + D_k.
+  // Some viewers render N + sum of w_k (u_k - N), where u_k is the direction of N + D_k, which they store for each
+  // target.
   unit: ({ normal, deltas }, w) =>
     deltas.reduce((n, delta, k) => plus(n, minus(unit(plus(normal, delta)), normal), w[k]), normal),
 };
 
-// The rule of each viewer, and its allowed error in degrees: PlayCanvas keeps deltas and their sum as half floats, and
-// Filament directions as quaternions of 16 bits.
+// The rule of each viewer, and its allowed error in degrees: PlayCanvas stores deltas and their sum as half floats, and
+// Filament stores directions as quaternions of 16 bits.
 const viewers = {
   three: { rule: 'sum', degrees: 0.001, splines: true },
   babylon: { rule: 'sum', degrees: 0.001, splines: true },
@@ -46,8 +47,8 @@ const anyWeights = (random) => [0, 1, 2].map(() => 3.5 * random() - 1.5);
 const targetsOfLength = (lengthOf) => (normal, random) =>
   [0, 1, 2].map(() => minus(scaled(randomDirection(random, 0.35), lengthOf(random)), normal));
 
-// The deltas of one square, from its normal, and the weights at a key of the track. `free` is the least error of
-// Filament in degrees if N + D_k is not of length 1: it treats a frame as orthonormal that is not.
+// The deltas of a square, computed from its normal, and the weights at a key of the track. `free` is the smallest error
+// of Filament in degrees if N + D_k does not have length 1: Filament then treats a frame as orthonormal that is not.
 const boards = {
   'targets whose normals are unit': { deltas: targetsOfLength(() => 1), weights: anyWeights },
   'targets whose normals are a hundredth too long': {
@@ -60,8 +61,8 @@ const boards = {
     weights: anyWeights,
     free: 90,
   },
-  // A target with a unit normal, and any vector D up to a length of 1.95 as two unit normals h + D/2 and h - D/2, with
-  // h perpendicular to it, whose weights are s and -s.
+  // A target with a unit normal, and any vector D up to a length of 1.95 as two unit normals h + D/2 and h - D/2 with
+  // the weights s and -s, where h is perpendicular to D.
   'a pair of targets for any delta': {
     deltas: (normal, random) => {
       const any = scaled(randomDirection(random), 1.95 * random());
@@ -78,8 +79,8 @@ const boards = {
 
 const TIMES = [0.25, 0.8, 1.5, 2.3, 2.9];
 
-// Returns {rows, weights, patches}: the weights at the keys 0, 1, 2, 3 and at TIMES, and squares whose normal no rule
-// makes short at any of them.
+// Returns {rows, weights, patches}: the weights at the keys 0, 1, 2, 3 and at TIMES, and squares whose normal is never
+// short by any rule.
 function boardOf({ deltas, weights: weightsOf }) {
   const random = randomNumbers(SEED);
   const rows = Array.from({ length: 4 }, () => weightsOf(random));
@@ -94,8 +95,8 @@ function boardOf({ deltas, weights: weightsOf }) {
   return { rows, weights, patches };
 }
 
-// Returns the weight that Filament makes of a spline: it multiplies the tangents by the elapsed share of the key
-// interval, and not by the length of the interval.
+// Returns the weight that Filament computes from a spline: it multiplies the tangents by the elapsed share of the key
+// interval instead of its length.
 function splineInFilament({ times, values }, time) {
   let k = 0;
   while (k + 2 < times.length && times[k + 1] <= time) ++k;
@@ -119,7 +120,7 @@ describe('a real viewer', () => {
     assert.deepEqual(browser?.faults, []);
   });
 
-  // Returns the largest angle over all squares and times between the normals of a viewer and of each rule.
+  // Returns for each rule the largest angle between its normals and the viewer's, over all squares and times.
   async function worstByRule(viewer, { rows, weights, patches }) {
     const path = join(folder, 'board.glb');
     await writeBoard(path, patches, rows);
@@ -143,8 +144,8 @@ describe('a real viewer', () => {
   }
   if (!FULL) return;
 
-  // If only some targets have normals, three.js takes the base normal for the missing ones, Babylon.js shows the base
-  // normal alone if the first target has none, and PlayCanvas counts only targets with normals.
+  // If only some targets have normals, three.js uses the base normal for the missing ones, Babylon.js renders only the
+  // base normal if the first target has none, and PlayCanvas uses only targets with normals.
   for (const viewer of Object.keys(viewers)) {
     const right = viewer === 'filament';
     test(`shows ${right ? 'right' : 'wrong'} normals where a target has none and the next has: ${viewer}`, async () => {
@@ -191,14 +192,15 @@ describe('a real viewer', () => {
         if (viewer === 'filament') {
           assert.ok(farthest(shown, MOMENTS.map((time) => splineInFilament(tracks.CUBICSPLINE, time))) < NEAR);
         } else {
-          // PlayCanvas splits the numbers of each key into one more track for each tangent, and then looks for tangents
-          // in each of these: after the first key there are none, and the target stays away.
+          // PlayCanvas splits each key into additional tracks for its tangents, and then looks for tangents in each of
+          // these tracks: after the first key there are none, and the target is no longer moved.
           const late = shown.filter((_, i) => MOMENTS[i] > tracks.CUBICSPLINE.times[1]);
           assert.ok(farthest(late, late.map(() => 0)) < NEAR);
         }
       });
 
-    // PlayCanvas looks for a target by its name, if it has one: of targets with the same name only the last is found.
+    // PlayCanvas finds a target by its name, if it has one: of several targets with the same name, only the last is
+    // found.
     const mixes = viewer === 'playcanvas';
     test(`${mixes ? 'mixes up' : 'tells apart'} targets of the same name: ${viewer}`, async () => {
       const track = { interpolation: 'STEP', times: [0, 1], values: [0.75, 0.25, 0.75, 0.25], targets: 2, moving: 0 };

@@ -1,7 +1,5 @@
-// Checks that the package and the native program make the same bytes and print the same about every file of the real
-// data: a few in ./test --full npm, all with CHRONORMAL_FULL=1.
-//
-//   CHRONORMAL_DATA   the folder of the real data
+// Checks that the package and the native program write the same bytes and print the same text for every file of the
+// real data: for a few files in ./test --full npm, for all with CHRONORMAL_FULL=1.
 import assert from 'node:assert/strict';
 import { mkdirSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { basename, extname, join, relative } from 'node:path';
@@ -22,7 +20,7 @@ const filesOf = (root) =>
     .map((entry) => relative(root, join(entry.parentPath ?? entry.path, entry.name)))
     .sort();
 
-// Runs a command with both programs, each in a folder of its own that has a folder `out`.
+// Runs a command with both programs, each in a separate folder that contains a folder `out`.
 function both(args) {
   const [expected, found] = [['native', native], ['wasm', wasm]].map(([name, run]) => {
     const cwd = join(folder, name);
@@ -34,7 +32,7 @@ function both(args) {
   return { expected, found };
 }
 
-// Checks that both have the same outcome, and returns the number of files.
+// Checks that both have the same results. Returns the number of written files.
 function assertSame(args) {
   const { expected, found } = both(args), what = args.join(' ');
   assert.equal(found.status, expected.status, `${what}\n${found.stderr}`);
@@ -51,7 +49,7 @@ function assertSame(args) {
 const found = DATA
   ? ['gltf', 'rigs', 'attack'].flatMap((part) => filesOf(join(DATA, part)).map((path) => join(DATA, part, path)))
   : [];
-// captured_face.test.mjs tests the captured face, which takes minutes.
+// Leaves out the captured face, which takes minutes; captured_face.test.mjs tests it.
 const models = found.filter((path) => /^\.(gltf|glb|vrm)$/.test(extname(path)) && basename(path) !== 'ict_capture.glb');
 const quick = ['AnimatedMorphCube.gltf', '01_cs_morph.gltf', 'wild_times.in.glb'];
 const dance = DATA ? join(DATA, 'sequences/rumba_13') : '';

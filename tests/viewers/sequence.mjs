@@ -1,4 +1,4 @@
-// Describes a sequence of OBJ files in the form of reader.mjs, to compare it with a baked sequence.
+// Describes a sequence of OBJ files in the form of reader.mjs, to compare the sequence with its bake.
 import { ExactNormals, length } from './exact.mjs';
 
 function parse(text) {
@@ -44,7 +44,7 @@ export function describeSequence(texts, framesPerSecond) {
   };
 }
 
-// Returns `baked` with its vertices in the order of the sequence, by their place in the first frame.
+// Returns `baked` with its vertices in the order of the sequence, matched by their positions in the first frame.
 export function inOrderOf(sequence, baked) {
   const [wanted] = sequence.meshes[0].primitives;
   const [primitive] = baked.meshes[0].primitives;

@@ -1,5 +1,5 @@
-// Makes a file that does not move from a moving file at one time: it has the positions and the exact normals of the
-// mesh then. A viewer's picture of it is the truth for the viewer's picture of the moving file.
+// Makes a file that does not move from a moving file at one time, with the positions and the exact normals of the mesh
+// then. A viewer's picture of it is the expected picture of the moving file.
 import { Accessor, getBounds } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { ExactNormals, exactPositions, length } from './exact.mjs';
@@ -9,7 +9,7 @@ import { describe, newIO, nodeWeights } from './reader.mjs';
 const VIEW_DEGREES = 35;
 const VIEW_FROM = [0.5, 0.45, 1];
 
-// Returns for each time {time, truth, view}: a GLB in base64, and a camera that sees all of it.
+// Returns {time, truth, view} for each time: a GLB in base64, and a camera that sees the whole mesh.
 export async function stillMoments(path, animation, times) {
   const io = newIO();
   const source = await io.read(path);
@@ -27,7 +27,7 @@ export async function stillMoments(path, animation, times) {
       node.setMesh(frozen(document, meshes[m], file.meshes[m], exact[m], weights)).setWeights([]);
     });
     root.listAnimations().forEach((moving) => moving.dispose());
-    // Filament aborts at targets of a mesh that no node shows.
+    // Filament aborts if a mesh with targets is used by no node.
     const shown = new Set(root.listNodes().map((node) => node.getMesh()));
     for (const mesh of meshes) if (!shown.has(mesh)) mesh.dispose();
     moments.push({

@@ -1,9 +1,9 @@
-// Tests morphs that are lit through a normal map, whose tangents `chronormal bake` recomputes, in Babylon.js, which
-// adds up tangents of targets. Compares with a mesh that stands still, whose tangents follow from the formula of its
-// surface. Run by ctest as `viewers`.
+// Tests morphs with a normal map, whose tangents `chronormal bake` recomputes, in Babylon.js, which adds up tangents of
+// targets. Compares with a still mesh whose tangents follow from the formula of its surface. ctest runs this as
+// `viewers`.
 //
 //   CHRONORMAL_PROGRAM   the program
-//   CHRONORMAL_CHROMIUM  the browser, where it is not in its usual place
+//   CHRONORMAL_CHROMIUM  the browser, if it is not in its usual place
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -23,7 +23,7 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => a.map((c) => c / Math.hypot(...a));
 
-// A square sheet that bends around an axis and shears: its places, and the directions of x and y there.
+// A square sheet that bends around an axis and shears: its positions, and the directions of x and y there.
 const bent = (x, y) => [Math.sin(BEND * x) / BEND + SHEAR * y, y, (1 - Math.cos(BEND * x)) / BEND];
 const alongX = (x) => [Math.cos(BEND * x), 0, Math.sin(BEND * x)];
 const alongY = () => [SHEAR, 1, 0];
@@ -32,7 +32,7 @@ const alongY = () => [SHEAR, 1, 0];
 const places = Array.from({ length: (CELLS + 1) ** 2 }, (_, i) =>
   [i % (CELLS + 1), Math.floor(i / (CELLS + 1))].map((c) => c / CELLS - 0.5));
 
-// Makes a picture of one pixel: a normal that leans along both directions of the texture.
+// Makes a picture of one pixel: a normal that leans along both axes of the texture.
 function normalMap() {
   const chunk = (type, data) => {
     const body = Buffer.concat([Buffer.from(type), data]), word = Buffer.alloc(8);
@@ -46,7 +46,7 @@ function normalMap() {
     chunk('IDAT', deflateSync(Buffer.from([0, ...pixel]))), chunk('IEND', Buffer.alloc(0))]);
 }
 
-// Returns the CRC-32 of a chunk, which Node.js 18 does not offer.
+// Returns the CRC-32 of a chunk, for which Node.js 18 has no function.
 function checksum(bytes) {
   let rest = 0xffffffff;
   for (const byte of bytes) {
@@ -56,7 +56,7 @@ function checksum(bytes) {
   return (rest ^ 0xffffffff) >>> 0;
 }
 
-// Writes the sheet with a target that bends it, whose normals are right at weight 1 and which has no tangents.
+// Writes the sheet with a target that bends it. The target's normals are right at weight 1, and it has no tangents.
 async function writeSheet(path) {
   const document = new Document(), buffer = document.createBuffer();
   const accessor = (type, numbers, Numbers = Float32Array) =>
@@ -91,7 +91,7 @@ async function writeSheet(path) {
   await newIO().write(path, document);
 }
 
-// Gives the still mesh tangents along x, perpendicular to its normals, which come from the moving mesh.
+// Gives the still mesh tangents along x, perpendicular to its normals. The normals come from the moving mesh.
 async function withRightTangents(glb) {
   const document = await newIO().readBinary(Buffer.from(glb, 'base64'));
   const primitive = document.getRoot().listMeshes()[0].listPrimitives()[0];

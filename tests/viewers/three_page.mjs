@@ -1,4 +1,4 @@
-// three.js as a viewer, in the page: its loader, its animation mixer, its normal material.
+// three.js as a viewer in the page: its loader, its animation mixer, and its normal material.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { driveThree } from '../../examples/drive.mjs';
@@ -21,7 +21,7 @@ export async function load(bytes) {
   return { scene, mixer, clips: gltf.animations };
 }
 
-// Sets every object to a time, by the mixer.
+// Sets all objects to a time, by the mixer.
 export function play(model, animation, time) {
   model.mixer.stopAllAction();
   if (animation === null) return;
@@ -71,7 +71,7 @@ export function cameraOf({ eye, at, degrees, near, far }, size) {
 
 export const normalsAreOfView = true;
 
-// View-space normals of all pixels, RGBA in float32: (n + 1) / 2, and alpha 0 where nothing is.
+// Draws the view-space normals of all pixels, RGBA in float32: (n + 1) / 2, with alpha 0 where nothing is drawn.
 export async function drawNormals(model, view, size) {
   model.scene.traverse((object) => {
     if (!object.isMesh || object.material.isMeshNormalMaterial) return;

@@ -1,6 +1,7 @@
 // Tests the types of the npm package: they match the arguments of its functions and the contents of reports.
 //
-//   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test tests/viewers/types.test.mjs
+//   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test
+//   tests/viewers/types.test.mjs
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -16,7 +17,7 @@ const { flagsOf } = await load('options.js');
 const COMMANDS = ['audit', 'bake', 'compare', 'inspect', 'sample'];
 const REPORTS = { audit: 'AuditReport', bake: 'BakeReport', compare: 'CompareReport', inspect: 'InspectReport' };
 
-// The options that only a call has, and the options of the program that serve people and files of a system.
+// Options that only a call has, and options of the program that only make sense for people or for files of a system.
 const CALL = ['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit'];
 const FOR_PEOPLE = ['help', 'json', 'csv', 'output', 'force', 'quiet', 'sample', 'each', 'errors', 'drivers', 'shard', 'resume', 'table', 'format'];
 
@@ -24,7 +25,7 @@ const listed = (name) => readFileSync(new URL(`../cli/${name}`, import.meta.url)
 const optionsOf = (command) => listed('stable_options.txt').filter(([of, option]) => of === command && !FOR_PEOPLE.includes(option.slice(2)))
   .map(([, option]) => option.slice(2).replace(/-([a-z])/g, (_, letter) => letter.toUpperCase()));
 
-// Compiles a text as a program of TypeScript, and returns its faulty lines.
+// Compiles a text as TypeScript, and returns the lines with errors.
 function checked(text) {
   const path = join(folder, 'user.mts');
   writeFileSync(path, text);
@@ -101,7 +102,7 @@ test('every function takes the options of its command, by its types and when it 
 });
 
 test('what compilers refuse is refused when it runs, and nothing else', () => {
-  const random = randomNumbers(50); // the seed of all that follows
+  const random = randomNumbers(50); // seeds everything that follows
   const pick = (list) => list[Math.floor(list.length * random())];
   const names = [...new Set(COMMANDS.flatMap(optionsOf)), ...CALL.filter((name) => name !== 'signal'), 'tolernace', 'viewers', 'toString', 'json', 'output'];
   const words = ['three', 'all', 'gltf', 'slerp', 'lerp', 'flat', 'area', 'area-angle', 'exact', 'keys', 'smallest', 'linear', 'hermite', 'catmull-rom', 'faces',
@@ -114,7 +115,7 @@ test('what compilers refuse is refused when it runs, and nothing else', () => {
   const lines = drawn.map(({ command, name, value }) => `${command}(null! as Uint8Array, { ${name}: ${JSON.stringify(value)} });`);
   const { faults } = checked([`import { ${COMMANDS.join(', ')} } from 'chronormal';`, ...lines].join('\n'));
   const refusedByTypes = new Set(faults.map(({ line }) => line - 1)), known = new Map();
-  // Tells whether the program knows the words of an option, whatever it makes of them on some file.
+  // Tells whether the program knows the words of an option, even if it then refuses a particular file.
   const knows = (command, flags) => {
     const key = [command, ...flags].join('\0');
     if (!known.has(key)) {
@@ -162,7 +163,7 @@ test('reports have the types of theirs, and every key that may be in one', () =>
   assert.deepEqual(faults.map(({ line, said }) => `${reports[line - 6]?.run}: ${said}`), []);
 
   const checker = program.getTypeChecker(), exported = checker.getExportsOfModule(checker.getSymbolAtLocation(source));
-  // Some keys belong to several inputs, which a call does not have.
+  // Some keys occur only with several inputs, which a call cannot have.
   const elsewhere = (path) => /^(audit (error|files)|compare inputs)/.test(path);
   const parts = (type) => (type.isUnion() ? type.types.flatMap(parts) : [type]);
   for (const [command, path] of listed('stable_json.txt').filter(([command, path]) => command in REPORTS && !elsewhere(`${command} ${path}`))) {

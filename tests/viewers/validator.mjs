@@ -1,4 +1,4 @@
-// Returns the complaints of the Khronos validator about a file, errors and warnings only.
+// Returns the errors and warnings of the Khronos validator about a file.
 import { readFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import validator from 'gltf-validator';
@@ -18,7 +18,7 @@ export async function complaints(path) {
     .map((issue) => `${issue.code} at ${issue.pointer ?? issue.offset}: ${issue.message}`);
 }
 
-// Returns the complaints that the source file did not have, since bake does not mend its input.
+// Returns the complaints that the source file did not have, since bake does not repair its input.
 export async function newComplaints(path, sourcePath) {
   const before = new Set(await complaints(sourcePath));
   return (await complaints(path)).filter((complaint) => !before.has(complaint));

@@ -1,11 +1,11 @@
 // Compares the output of `chronormal bake` with other people's glTF: the validator of Khronos, a reader that adds up
-// targets in float32, three.js and Babylon.js in Chromium, and glTF Transform. Run by ctest as `in_viewers`.
+// targets in float32, three.js and Babylon.js in Chromium, and glTF Transform. ctest runs this as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM        the program
-//   CHRONORMAL_CHROMIUM       the browser, where it is not in its usual place
-//   CHRONORMAL_DATA           moving files by other people, where it is set
+//   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place
+//   CHRONORMAL_DATA           a folder of moving files by other people, if set
 //   CHRONORMAL_FULL=1         every file in every viewer
-//   CHRONORMAL_UPDATE_DOCS=1  writes docs/pictures/shading.png, which is rendered here
+//   CHRONORMAL_UPDATE_DOCS=1  writes docs/pictures/shading.png
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -41,7 +41,7 @@ function bake(input, ...options) {
   const key = [input, ...options].join(' ');
   if (!bakedBefore.has(key)) {
     const output = join(folder, `${basename(input, extname(input))}.${bakedBefore.size}.glb`);
-    // The truth is area-weighted, whatever normals the authors chose.
+    // The true normals are area-weighted, whatever weighting the authors chose.
     chronormal('bake', input, '-o', output, '--weighting', 'area', ...options);
     bakedBefore.set(key, output);
   }
@@ -127,7 +127,7 @@ async function assertSequence(paths, output) {
 }
 
 describe('a fault is found where', () => {
-  // Each function spoils a description of twist.baked.
+  // Each function introduces a fault into a description of twist.baked.
   const faults = {
     'the extra target has no weight': ({ track: { values } }) => values.forEach((_, i) => i % 2 && (values[i] = 0)),
     'the tangents of a key are swapped': ({ track }) => {
@@ -170,7 +170,7 @@ describe('glTF Transform keeps normals exact', () => {
 });
 
 // Compares pictures of a file before and after the bake with exact normals at some times. Errors must exceed `wrong`
-// degrees before the bake in at least 7 of them, and be below 1 in every one after it.
+// degrees before the bake at 7 or more of these times, and must be below 1 degree after the bake at all of them.
 async function assertDrawn(page, viewer, input, { wrong = 5, count = 15 } = {}) {
   const output = bake(input, '--encode', 'exact');
   const times = timesOf((await read(input)).animations[0], count);
@@ -186,8 +186,8 @@ async function assertDrawn(page, viewer, input, { wrong = 5, count = 15 } = {}) 
 // The weights that a program sets for two targets.
 const WEIGHTS = [0.8, 0.6];
 
-// Tests a mesh of some primitives that no animation moves: a program sets weights, and then the weights of the
-// correction targets by the formulas in the file (examples/drive.mjs). Without the latter the normals are wrong.
+// Tests a mesh of several primitives that no animation moves: a program sets weights, and then sets the weights of the
+// correction targets by the formulas in the file (examples/drive.mjs). Without the second step, the normals are wrong.
 async function assertDriven(page, viewer, parts) {
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.${parts}.${viewer}.glb`));
   await writeStill(still, { parts });
@@ -195,7 +195,7 @@ async function assertDriven(page, viewer, parts) {
   await assertDrivenLike(page, viewer, still, moved, WEIGHTS);
 }
 
-// Does the same for a file whose mesh stands still at some weights.
+// Tests in the same way a file whose mesh rests at some weights.
 async function assertDrivenLike(page, viewer, still, moved, weights) {
   const [moment] = await stillMoments(moved, 0, [0]);
   const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
@@ -204,10 +204,10 @@ async function assertDrivenLike(page, viewer, still, moved, weights) {
   assert.ok(before.p99 > 5, JSON.stringify(before));
   assert.ok(attached.pixels > 2000 && attached.p99 < 1, JSON.stringify(attached));
   assert.deepEqual(detached, before);
-  if (viewer !== 'playcanvas') assert.deepEqual(after, attached); // examples/drive.mjs has the other two
+  if (viewer !== 'playcanvas') assert.deepEqual(after, attached); // examples/drive.mjs supports the other two viewers
 }
 
-// Tests the head of Blender's monkey with two shape keys that overlap, at weights drawn from a fixed seed, without its
+// Tests the head of Blender's monkey with two overlapping shape keys, at weights drawn from a fixed seed, without its
 // animation.
 async function assertSuzanneDriven(page, viewer) {
   const random = randomNumbers(21), weights = [random(), random()];
@@ -221,7 +221,7 @@ async function assertSuzanneDriven(page, viewer) {
   await assertDrivenLike(page, viewer, still, moved, weights);
 }
 
-// Does the same while clips are blended, each of which knows nothing of the others.
+// Tests in the same way while several independent clips are blended.
 async function assertBlended(page, viewer) {
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.blended.${viewer}.glb`));
   await writeStill(still, { parts: 2 });
@@ -234,7 +234,8 @@ async function assertBlended(page, viewer) {
   assert.ok(attached.pixels > 2000 && attached.p99 < 1, JSON.stringify(attached));
 }
 
-// Draws wrong beside right, at one moment of a vase, and compares it with the picture in the documents.
+// Draws a vase at one moment with wrong beside true normals, and compares the drawing with the picture in the
+// documents.
 async function assertPicture(page) {
   const TIME = 0.4;
   const [bare, stored] = ['bare', 'stored'].map((name) => join(folder, `vase.${name}.glb`));
@@ -284,8 +285,8 @@ describe('Chromium', () => {
       test(`shows right normals of ${name} in ${viewer}`, async () =>
         assertDrawn(browser.page, viewer, original(name)));
     }
-    // The largest error of the cube is 4.02 degrees, and for most of the time it stands still. The stress test has 2.69
-    // degrees, on few vertices.
+    // The largest error of the cube is 4.02 degrees, and the cube rests most of the time. The stress test has errors of
+    // 2.69 degrees at few vertices.
     for (const [name, how] of [
       ['AnimatedMorphSphere', {}],
       ['AnimatedMorphCube', { wrong: 2, count: 41 }],

@@ -1,6 +1,6 @@
-// Avatars of docs/viewers.md, from the file to the line of code: one is baked and loaded by three-vrm, whose expressions set
-// the weights of targets; and a tracker of faces sets them by name. Run in Node.js; what is drawn with such weights is tested
-// by pixels in viewers.test.mjs.
+// Tests the avatars of docs/viewers.md with the code shown there: an avatar is baked and loaded by three-vrm, whose
+// expressions set the weights of targets; and a face tracker sets weights by name. This runs in Node.js;
+// viewers.test.mjs tests the pixels that are drawn with such weights.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -60,7 +60,7 @@ await writeAvatar(avatar);
 chronormal('bake', avatar, baked, '--poses', 'random', '--weighting', 'area', '--for', 'three');
 
 async function load(path) {
-  globalThis.self ??= globalThis; // the loader asks for it
+  globalThis.self ??= globalThis; // the loader needs this variable
   const loader = new GLTFLoader();
   loader.register((parser) => new VRMLoaderPlugin(parser));
   const { buffer, byteOffset, byteLength } = readFileSync(path);

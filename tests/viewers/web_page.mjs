@@ -1,11 +1,12 @@
-// Opens a page of web/ from its file in headless Chromium, refuses and records every other request, and records its
-// errors.
+// Opens a page of web/ as a file in headless Chromium. Refuses and records every other request, and records errors of
+// the page.
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
 
 const DESKTOP = { width: 1280, height: 800 };
 
-/** {page, faults, show(path), close()}: faults has what pages asked for, and their errors; show opens one in their place. */
+/** Returns {page, faults, show(path), close()}: `faults` has the requests and errors of pages, and show() opens another
+ * page instead. */
 export async function openPages() {
   const browser = await launch(), page = await browser.newPage(), faults = [];
   let address;
@@ -28,13 +29,13 @@ export async function openPages() {
   return { page, faults, show, close: () => browser.close() };
 }
 
-/** What the page says is the worst at the moment that it shows: degrees and vertex. */
+/** Returns the worst error at the moment that the page shows: degrees and vertex. */
 export const worstNow = (page) => page.evaluate(() => {
   const { degrees, vertex } = document.querySelector('.now').dataset;
   return { degrees: Number(degrees), vertex: Number(vertex) };
 });
 
-/** Goes to the first of the worst places by a click on it. */
+/** Goes to the first of the worst places by clicking on it. */
 export async function clickWorst(page) {
   await page.evaluate(() => document.querySelector('.places button').click());
   return worstNow(page);

@@ -1,5 +1,6 @@
-// Processes that share a task, here as threads. Samples are one output with the bytes of one process, which nobody sees
-// before all are done; audits have the bytes of one process, though each looks at its own segments alone.
+// Tests processes that share a task, as threads. Their samples are one output with the bytes of a single process, which
+// appears only when all are done. Their audits have the bytes of a single process, though each processes only its own
+// segments.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,8 +28,8 @@ namespace {
 
 using test::TemporaryFolder;
 
-// Lets several threads exchange texts: each call returns a list of texts, which is complete once all threads have made
-// that call.
+// Lets several threads exchange texts: each call adds a text to a list, and returns the list when all threads have
+// called.
 class Meeting {
  public:
   explicit Meeting(std::size_t count) : count_(count), calls_(count) {}
@@ -83,7 +84,7 @@ Result<SampleSummary> write_share(const Motion& motion, const SampleOptions& opt
   return write_share(stream, options, moments, output, shard, peers);
 }
 
-// Every peer writes its share in a thread; returns what each of them found.
+// Lets every peer write its share in a thread. Returns the result of each.
 std::vector<SampleSummary> write_together(const Motion& motion, const SampleOptions& options, const Moments& moments,
                                           const SampleOutput& output, std::size_t count) {
   Meeting meeting(count);
@@ -147,7 +148,7 @@ TEST(SamplesOfPeers, normals_without_a_direction_are_counted_over_all) {
   EXPECT_EQ(found[0].normals, found[0].zeros);
 }
 
-// The test plays the first of two peers and talks to the second.
+// The test acts as the first of two peers and communicates with the second.
 TEST(SamplesOfPeers, no_name_is_given_before_all_are_done) {
   for (const SampleFormat format : {SampleFormat::kNpy, SampleFormat::kNpz, SampleFormat::kObj}) {
     const TemporaryFolder folder;
@@ -215,8 +216,8 @@ TEST(SamplesOfPeers, a_file_that_a_peer_cannot_see_and_a_stream_are_refused) {
   EXPECT_EQ(stream.error().code, ErrorCode::kUsage);
 }
 
-// Makes a sheet whose first half moves in the first segment alone and gets large there, and whose second half moves in
-// the last.
+// Makes a sheet whose first half moves only in the first segment, where it becomes large, and whose second half moves
+// in the last one.
 Motion moving_by_turns() {
   Motion motion = fixtures::smooth_morph(6);
   motion.keyframes.resize(1);
@@ -238,7 +239,8 @@ Motion moving_by_turns() {
 
 TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
   const Motion motion = moving_by_turns();
-  for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {  // in blocks, and not
+  // These rules are computed in blocks, and vertex by vertex.
+  for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {
     AuditOptions options;
     options.rule = rule;
     options.samples = 5;
@@ -270,7 +272,7 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
       }
       for (std::thread& thread : threads) thread.join();
       EXPECT_EQ(merge_parts(parts).value().json, whole) << count;
-      // The last shard reads the first keyframe, and otherwise only keyframes of its own segments.
+      // The last shard reads the first keyframe, and otherwise only the keyframes of its own segments.
       EXPECT_EQ(was_read.back()[2], count < 3) << count;
     }
   }

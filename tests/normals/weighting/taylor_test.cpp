@@ -1,4 +1,4 @@
-// Tests intervals and the Taylor coefficients in them, which promise to contain the truth.
+// Tests intervals and their Taylor coefficients, which must contain the true values.
 
 #include "normals/weighting/taylor.h"
 
@@ -57,7 +57,7 @@ TEST(Interval, what_is_not_defined_everywhere_is_the_whole_line) {
   EXPECT_FALSE((Interval::whole() - Interval::whole()).finite());
 }
 
-// p(t) = 1 + a t + b t^2, with coefficients so small that it stays positive over [-1, 1].
+// p(t) = 1 + a t + b t^2, with coefficients so small that p stays positive over [-1, 1].
 struct Quadratic {
   double a, b;
 
@@ -87,7 +87,7 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
       value = value + at_centre[0];
       const Real truth = std::pow(p(Real(centre) + Real(s)), Real(exponent));
       RC_ASSERT(Real(value.low) <= truth + 1e-18L && truth <= Real(value.high) + 1e-18L);
-      // Every coefficient about another point of the interval lies in the coefficient about all points.
+      // Every coefficient about another point of the interval is within the coefficient about all points.
       const Series<3> there = p.about(centre + s);
       const Interval root = exponent == -1 ? there[0] : square_root(there[0]);
       const Series<6> other = power<6>(there, exponent, exponent == 0.5 ? root : reciprocal(root));
@@ -99,7 +99,7 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
 }
 
 RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
-  // A wider enclosure would hide a missing remainder.
+  // If the enclosure were wider, the test would not notice a missing remainder.
   fixtures::Random random(*rc::gen::arbitrary<std::uint64_t>());
   const Quadratic p{random.uniform(0.3, 0.6), random.uniform(-0.3, 0.3)};
   const Series<6> taylor = power<6>(p.about(0), -0.5, reciprocal(square_root(p.about(0)[0])));
@@ -125,7 +125,8 @@ struct PieceOfRoot {
   }
 };
 
-// The pieces are so long that the polynomial alone has errors of percents: only the remainder makes these bounds hold.
+// The pieces are so long that the polynomial alone has errors of several percent: the bounds hold only because of the
+// remainder.
 TEST(SeriesBounds, hold_at_all_times_of_a_piece_and_would_not_without_the_remainder) {
   fixtures::Random random(83);
   std::size_t above_polynomial = 0, longer_than_polynomial = 0;

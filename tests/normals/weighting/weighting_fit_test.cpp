@@ -1,4 +1,4 @@
-// Tests the quadratics that stand for weighted normals: their bounds are never below the error, and not far above it.
+// Tests the quadratics that replace weighted normals: their bounds are never below the error, and not far above.
 
 #include "chronormal/normals/weighting.h"
 
@@ -25,8 +25,8 @@ namespace {
 using fixtures::Point;
 using reference::Real;
 
-// Makes a closed fan of `count` triangles around vertex 0, which moves by up to `distance`, so that its normals span
-// any angle.
+// Makes a closed fan of `count` triangles around vertex 0, which moves by up to `distance`, so that normals span any
+// angle.
 Motion fan(std::size_t count, double distance, fixtures::Random& random) {
   std::vector<Point> from = {random.in_cube(0.3)}, to;
   std::vector<std::uint32_t> corners;
@@ -49,7 +49,7 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// Returns the largest angle between fit and definition over equidistant samples.
+// Returns the largest angle between the fit and the definition over equidistant samples.
 double sampled_error(const reference::Mesh& mesh, const std::vector<reference::Corner>& corners,
                      const std::string& weighting, const ControlNormals& fit, std::size_t samples) {
   double worst = 0;
@@ -80,7 +80,7 @@ Summary check_bounds(const Motion& motion, Weighting weighting, std::size_t samp
   for (std::size_t e = 0; e < std::min(elements, groups.size()); ++e) {
     const double error =
         sampled_error(mesh, corners[e], std::string(weighting_name(weighting)), fit.normals[e], samples);
-    // A single triangle has its exact direction and the bound 0, which ignores the last bits.
+    // A single triangle gets its exact direction and the bound 0, which ignores rounding in the last bits.
     const double rounding = fit.bounds[e] == 0 ? 1e-12 : 0;
     EXPECT_LE(error, fit.bounds[e] + rounding) << weighting_name(weighting) << ", element " << e;
     EXPECT_LE(fit.bounds[e], std::numbers::pi);
@@ -128,7 +128,7 @@ RC_GTEST_PROP(WeightingFit, the_bound_is_never_below_the_error_of_polygons, ()) 
 }
 
 TEST(WeightingFit, the_bound_is_never_below_the_error_where_faces_nearly_collapse) {
-  // Two triangles have an edge in common, and the first of them passes close by a line.
+  // Two triangles share an edge, and the first of them nearly collapses.
   fixtures::Random random(77);
   for (const double gap : {1e-1, 1e-3, 1e-6}) {
     const Motion lone = fixtures::collapsing_soup(gap, 40, 5);
@@ -176,8 +176,7 @@ TEST(WeightingFit, meets_the_weighted_direction_and_the_area_at_both_ends_and_in
         EXPECT_LT(angle_between(normal_at(fit.normals[e], t), truth[e]), 1e-12);
     }
   }
-  // A vertex of one face has no choice of directions, and so no choice of lengths: all weightings equal the area
-  // weighting.
+  // The normal of a vertex with a single face has the same direction and length by every weighting, namely by area.
   const Motion lone = fixtures::moderate_soup(50);
   const auto exact = all_group_control_normals(lone.segment(0), vertices_of(lone));
   for (const Weighting weighting : kFitted) {
@@ -246,7 +245,7 @@ TEST(WeightingFit, shuffled_faces_give_the_same_bits) {
 // ---- elements without a bound --------------------------------------------------------------------------------------
 
 TEST(WeightingFit, the_bound_is_pi_where_a_face_turns_inside_out) {
-  // The first of the two faces of vertex 0 turns over, through zero area.
+  // The first of the two faces of vertex 0 turns over and has no area in between.
   const Motion motion = fixtures::make_motion(fixtures::make_triangles(5, {0, 1, 2, 0, 3, 4}),
                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 1}, {0, -1, 1}},
                                               {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {-1, 0, 1}, {0, -1, 1}});
@@ -269,7 +268,7 @@ TEST(WeightingFit, a_single_triangle_has_its_own_direction_by_every_weighting) {
 }
 
 TEST(WeightingFit, the_bound_is_pi_where_a_face_begins_without_area) {
-  // Vertex 0 has a second face, which opens from a line.
+  // Vertex 0 has a second face, which begins as a line.
   const Motion motion = fixtures::make_motion(fixtures::make_triangles(5, {0, 1, 2, 0, 3, 4}),
                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 2, 0}},
                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 2, 1}});
@@ -281,7 +280,7 @@ TEST(WeightingFit, the_bound_is_pi_where_a_face_begins_without_area) {
 }
 
 TEST(WeightingFit, straight_corners_are_bounded_by_all_weightings) {
-  // Vertex 1 lies on an edge of the quad throughout; a second face gives it a choice.
+  // Vertex 1 stays on an edge of the quad; a second face makes its normal depend on the weighting.
   const Motion motion = fixtures::make_motion(fixtures::make_polygons(5, {0, 4, 7}, {0, 1, 2, 3, 1, 0, 4}),
                                               {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}, {0.5, -1, 0.1}},
                                               {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0.3}, {0.5, -1, 0.2}});
@@ -293,7 +292,7 @@ TEST(WeightingFit, straight_corners_are_bounded_by_all_weightings) {
 }
 
 TEST(WeightingFit, nearly_straight_corners_are_bounded_more_loosely) {
-  // The vertices on the edges of random quads are displaced by rounding to float32, and by more.
+  // The vertices on the edges of random quads are displaced by rounding to float32, or by more.
   fixtures::Random random(31);
   for (const double off : {1e-7, 1e-3}) {
     for (int round = 0; round < 50; ++round) {
@@ -314,7 +313,7 @@ TEST(WeightingFit, nearly_straight_corners_are_bounded_more_loosely) {
 }
 
 TEST(WeightingFit, by_area_and_angle_a_face_may_lose_its_area_on_the_way) {
-  // Face 0 shrinks to a line at the end, and face 1 does not.
+  // Face 0 shrinks to a line at the end; face 1 does not.
   const Motion motion = fixtures::make_motion(fixtures::make_triangles(4, {0, 1, 2, 2, 1, 3}),
                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5}},
                                               {{0.5, 0.5, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5}});

@@ -62,10 +62,11 @@ TEST(Weighting, names_lead_there_and_back) {
 // ---- definitions ---------------------------------------------------------------------------------------------------
 
 TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
-  // Quads of 2 x 1, 1 x 3 and 3 x 2 have their corner at the origin: x, y and z edges of 2, 1, 3, normals outwards.
+  // Quads of 2 x 1, 1 x 3 and 3 x 2 meet in a corner at the origin: the edges along x, y and z have the lengths 2, 1
+  // and 3, and normals point outwards.
   const Motion corner = test::still(fixtures::make_polygons(7, {0, 4, 8, 12}, {0, 2, 4, 1, 0, 3, 5, 2, 0, 1, 6, 3}),
                                     {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 3}, {2, 1, 0}, {0, 1, 3}, {2, 0, 3}});
-  const double xy = 2, yz = 3, zx = 6;  // areas; the face across z has the area xy
+  const double xy = 2, yz = 3, zx = 6;  // areas; the face perpendicular to z has the area xy
   expect_near(weighted(corner, Weighting::kArea)[0], {-2 * yz, -2 * zx, -2 * xy});
   expect_near(weighted(corner, Weighting::kUniform)[0], {-1, -1, -1});
   expect_near(weighted(corner, Weighting::kAngle)[0], {-kQuarter, -kQuarter, -kQuarter});
@@ -76,7 +77,7 @@ TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
 }
 
 TEST(Weighting, max_is_exact_on_a_sphere) {
-  // Max's theorem holds for any fan of triangles around a point of a sphere, however irregular.
+  // Max's theorem holds for every fan of triangles around a point on a sphere, also an irregular one.
   fixtures::Random random(5);
   for (int round = 0; round < 100; ++round) {
     std::vector<Point> points = {{0, 0, 1}};
@@ -129,7 +130,8 @@ RC_GTEST_PROP(Weighting, shuffled_faces_give_the_same_bits, ()) {
     RC_ASSERT(weighted(shuffled, info.weighting, 0.3) == weighted(motion, info.weighting, 0.3));
 }
 
-// The test whether double is enough has no unit, so that it decides the same face in the same way at any size.
+// The test whether double is precise enough is independent of units, so the same face is treated in the same way at any
+// size.
 TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   constexpr std::uint64_t kSeed = 20261126;
   fixtures::Random random(kSeed);
@@ -137,7 +139,7 @@ TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   for (int i = 0; i < 1000; ++i) {
     Motion motion{Topology::triangles(3, {0, 1, 2}).value(), std::vector<Motion::Keyframe>(2), {}};
     for (std::size_t k = 0; k < 2; ++k) {
-      // The three corners lie on a line but for the last digits of the third.
+      // The three corners are on a line except for the last digits of the third.
       std::array<float, 3> a{}, b{};
       for (auto* const point : {&a, &b})
         for (float& x : *point) x = static_cast<float>(random.uniform(-1, 1));
@@ -168,7 +170,7 @@ double angle_to(const Vec3d& u, const std::array<double, 3>& n) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// Integers resolve faces that double has lost.
+// Integers give a direction to faces whose normals are only rounding error in double.
 TEST(Weighting, normals_of_hard_faces_are_those_of_whole_numbers) {
   constexpr std::uint64_t kSeed = 49100;
   constexpr double kMost = 0x1p-29;
@@ -197,7 +199,7 @@ TEST(Weighting, normals_of_hard_faces_are_those_of_whole_numbers) {
   }
 }
 
-// Integers are twenty times as slow as double, and are used only for faces that need them.
+// Integers are twenty times slower than double, and are used only for faces that need them.
 TEST(Weighting, ordinary_faces_cost_a_fifth_of_what_faces_on_lines_cost) {
   constexpr std::size_t kFaces = 20000;
   const Motion ordinary = fixtures::moderate_soup(kFaces),
@@ -212,7 +214,7 @@ TEST(Weighting, ordinary_faces_cost_a_fifth_of_what_faces_on_lines_cost) {
 }
 
 TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
-  // On a cube of quads all weightings are symmetric at its corners; on its triangles they are not.
+  // At the corners of a cube of quads all weightings are symmetric; with triangles they are not.
   const fixtures::ClosedMesh cube = fixtures::box_grid(1);
   const Motion motion = test::still(cube.topology, cube.points);
   for (const WeightingInfo& info : kAllWeightings) {
@@ -229,8 +231,7 @@ TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
 TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
   const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 0}, {0.7, 0, 0}, {0.1, 0.3, 0.9}};
   const Motion plain = test::still(fixtures::make_triangles(6, {0, 1, 2}), points);
-  // The further faces are on a line, have the same vertex twice, are a point, or are nearly on a line at these
-  // coordinates.
+  // The additional faces are on a line, repeat a vertex, are a point, or are nearly on a line at these coordinates.
   const Motion more = test::still(fixtures::make_triangles(6, {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 0, 0, 1, 3, 2}), points);
   for (const WeightingInfo& info : kAllWeightings) {
     const auto expected = weighted(plain, info.weighting), found = weighted(more, info.weighting);
@@ -240,7 +241,7 @@ TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
 }
 
 TEST(Weighting, a_corner_at_an_edge_without_length_adds_nothing_by_angle) {
-  // A quad has two vertices at one place.
+  // A quad has two vertices at the same place.
   const Motion motion =
       test::still(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}), {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   for (const Weighting weighting : {Weighting::kAngle, Weighting::kAreaAngle, Weighting::kMax, Weighting::kInverseEdges,
@@ -252,7 +253,8 @@ TEST(Weighting, a_corner_at_an_edge_without_length_adds_nothing_by_angle) {
 }
 
 TEST(Weighting, a_corner_at_an_edge_without_length_takes_nothing_from_the_faces_around_it) {
-  // The edge of the quad from 1 to 2 has no length; it is the second edge of corner 1, and the first of corner 2.
+  // The edge of the quad from 1 to 2 has length zero; it is the second edge of corner 1, and the first edge of corner
+  // 2.
   const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 3, 2}};
   const Motion alone = test::still(fixtures::make_triangles(5, {1, 4, 3, 2, 4, 0}), points);
   const Motion both = test::still(fixtures::make_polygons(5, {0, 3, 6, 10}, {1, 4, 3, 2, 4, 0, 0, 1, 2, 3}), points);
@@ -290,7 +292,7 @@ TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
   }
 }
 
-// In eq. 19 of docs/theory.md, two triangles have an edge in common, and one of them stands still.
+// Eq. 19 of docs/theory.md is about two triangles with a common edge, one of which rests.
 TEST(Weighting, is_along_what_the_theory_says_of_two_triangles) {
   Motion motion{Topology::triangles(4, {0, 1, 2, 1, 0, 3}).value(), std::vector<Motion::Keyframe>(2), {}};
   motion.keyframes[0] = {{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0}, 0, {}};

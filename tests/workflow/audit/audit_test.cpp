@@ -1,4 +1,4 @@
-// Checks that audits find the errors that a file was made with, and report whatever they cannot judge.
+// Checks that audits find the errors that a file was made with, and report everything that they cannot judge.
 #include "chronormal/workflow/audit.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ std::vector<Kind> kinds_of(const Audit& audit) {
   return kinds;
 }
 
-// Makes a target that moves every vertex by a function of its place.
+// Makes a target that moves every vertex by a function of its position.
 ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(const Vector&)>& delta) {
   ShadedMesh::Target target;
   for (std::size_t v = 0; v < mesh.vertices(); ++v)
@@ -50,7 +50,8 @@ ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(
 // ---- by hand
 
 TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
-  // Vertex 0 has the face that stays; 1 and 2 have the sum of a face up and one sideways; 3 has the face that folds.
+  // Vertex 0 has only the resting face; 1 and 2 have the sum of an upward and a sideways normal; 3 has only the folding
+  // face.
   const Audit result = audit_of(hinge().file(), {.samples = 2});
   ASSERT_EQ(result.subjects.size(), 1U);
   const AuditSubject& subject = result.subjects[0];
@@ -63,7 +64,8 @@ TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
   EXPECT_EQ(subject.error.worst_at.vertex, 3U);
   EXPECT_EQ(subject.error.worst_at.at, 1);
   EXPECT_EQ(subject.error.histogram[0], 3U);
-  EXPECT_EQ(subject.error.histogram[8] + subject.error.histogram[7], 2U);  // 45 lies on an edge
+  // 45 degrees is the boundary between two bins.
+  EXPECT_EQ(subject.error.histogram[8] + subject.error.histogram[7], 2U);
   EXPECT_EQ(subject.error.histogram[9] + subject.error.histogram[8], 3U - subject.error.histogram[7]);
   EXPECT_EQ(result.worst, 0U);
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals}));
@@ -88,12 +90,12 @@ TEST(Audit, percentiles_are_known_to_a_thousandth_of_a_degree_or_a_percent) {
 }
 
 TEST(Audit, halfway_is_where_the_drawing_has_it) {
-  // At weight 1/2 the folding face has the corner (1, 0, 1), so its normal is (-1, 0, 1), as long as in the drawing.
+  // At weight 1/2 the folding face has the corner (1, 0, 1), so its normal is parallel to (-1, 0, 1).
   const Audit result = audit_of(hinge().file(), {.samples = 3});
   EXPECT_NEAR(result.error.mean(), (45 + 45 + 90 + 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi) / 9, 1e-12);
 }
 
-// Adds an expression of an avatar that sets the only target of a file to a weight.
+// Adds an avatar's expression that sets the only target of a file to a weight.
 GltfBuilder with_expression(GltfBuilder builder, double weight, bool is_first_version) {
   if (is_first_version) {
     const Json binds = {{{"mesh", 0}, {"index", 0}, {"weight", 100 * weight}}};
@@ -116,8 +118,7 @@ TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_stre
     EXPECT_EQ(subject.mesh, 0U);
     EXPECT_EQ(subject.samples, 1U);
     EXPECT_EQ(subject.vertices, 3U);
-    // Half-way, as in the drawing, the error of the vertex of the folding face is 45 degrees; the errors at the edge
-    // are smaller.
+    // Halfway, the error of the vertex of the folding face is 45 degrees; the errors at the edge are smaller.
     EXPECT_EQ(subject.error.judged, 3U);
     EXPECT_NEAR(subject.error.worst, 45, 1e-12);
     EXPECT_NEAR(subject.error.sum, 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi, 1e-12);
@@ -128,12 +129,12 @@ TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_stre
 }
 
 TEST(Audit, an_expression_is_a_fault_where_it_is_farther_off_than_its_targets_alone) {
-  // The target goes to weight 1, and the expression goes beyond.
+  // The target reaches weight 1, and the expression exceeds it.
   const Audit result = audit_of(with_expression(hinge().file(), 3, false), {.samples = 2});
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals, Kind::kWrongTogether}));
   EXPECT_EQ(result.findings[1].expression, 0U);
   EXPECT_FALSE(result.findings[1].target || result.findings[1].animation);
-  // The corner is then (1 - 3, 0, 3), so the face has turned by pi - atan(3 / 2).
+  // The corner is then at (1 - 3, 0, 3), so the face has turned by pi - atan(3 / 2).
   EXPECT_NEAR(result.findings[1].degrees, 180 - std::atan(1.5) * 180 / std::numbers::pi, 1e-12);
   EXPECT_EQ(result.worst, 1U);
 }
@@ -151,9 +152,9 @@ TEST(Audit, an_expression_that_moves_nothing_is_no_subject_and_one_animation_alo
 }
 
 TEST(Audit, flat_rule_shows_faces) {
-  // At weight 1 the edge vertices show a face at 45 degrees from their sum, on both sides; the others are right.
+  // At weight 1, each face at the edge is at 45 degrees from the vertices' sum; the other vertices are right.
   const Audit result = audit_of(hinge().file(), {.rule = AuditRule::kFlat, .samples = 2});
-  EXPECT_EQ(result.error.judged, 10U);  // corners: vertices 1 and 2 twice, 3 once
+  EXPECT_EQ(result.error.judged, 10U);  // corners: vertices 1 and 2 occur twice, vertex 3 once
   EXPECT_NEAR(result.error.sum, 4 * 45, 1e-12);
 }
 
@@ -191,7 +192,8 @@ TEST(Audit, error_does_not_depend_on_the_tilt_of_the_author_under_translation_bu
 }
 
 TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats) {
-  // N = c0, D = c1 and C = c2 over |c0| for each vertex, as a bake writes them, here from three normals of the oracle.
+  // N = c0, D = c1 and C = c2, divided by |c0| at each vertex, as a bake would write them, computed here from three
+  // normals of the oracle.
   ShadedMesh mesh = random_sheet(4, 5, 1, 0);
   ShadedMesh::Target extra;
   extra.positions.assign(mesh.positions.size(), 0);
@@ -210,7 +212,7 @@ TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats
   builder.json["meshes"][0]["extras"]["chronormal"] = {
       {"version", 1}, {"encode", "exact"}, {"sequence", false}, {"extras", {{{"target", 1}, {"factors", {0, 0}}}}}};
   const Audit result = audit_of(builder);
-  ASSERT_EQ(result.subjects.size(), 1U);  // an extra target is no subject
+  ASSERT_EQ(result.subjects.size(), 1U);  // a correction target is not a subject by itself
   EXPECT_LT(result.error.worst, 1e-3);
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kBaked}));
   EXPECT_EQ(result.findings[0].count, 1U);
@@ -227,7 +229,7 @@ void expect_same(const MotionError& error, const std::vector<Real>& expected) {
     worst = std::max(worst, e);
   }
   const auto count = static_cast<Real>(expected.size());
-  constexpr double kFloat = 2e-4;  // shown normals are summed in float32
+  constexpr double kFloat = 2e-4;  // rendered normals are summed in float32
   EXPECT_NEAR(error.mean(), static_cast<double>(sum / count), kFloat);
   EXPECT_NEAR(error.rms(), static_cast<double>(std::sqrt(squares / count)), kFloat);
   EXPECT_NEAR(error.worst, static_cast<double>(worst), kFloat);
@@ -317,13 +319,14 @@ TEST(Audit, animations_of_every_interpolation_have_the_errors_of_an_oracle) {
   }
 }
 
-// If many targets are active, an audit finds positions between two keys from the positions at both.
+// If many targets are active, an audit interpolates positions between the positions at two keys.
 TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
   constexpr std::size_t kTargets = 12;
   const ShadedMesh mesh = random_sheet(21, 4, kTargets, 0.1);
   fixtures::Random random(21);
   const std::vector<float> times = {0, 1, 1.5F, 4};
-  // Each key has a tangent in, the weights, and a tangent out. At one key fewer targets are active than count as many.
+  // Each key has in-tangents, weights, and out-tangents. At one key, so few targets are active that the audit does not
+  // interpolate.
   std::vector<float> cubic, weights;
   for (std::size_t key = 0; key < times.size(); ++key) {
     for (std::size_t row = 0; row < 3; ++row) {
@@ -363,7 +366,7 @@ TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
 }
 
 TEST(Audit, angle_weighting_judges_by_angles) {
-  // A wide face and a narrow one meet in vertex 0; the target lifts the far corner of the narrow one.
+  // A wide face and a narrow face meet in vertex 0; the target lifts the far corner of the narrow one.
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2, 0, 2, 3};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 4, 0};
@@ -387,7 +390,7 @@ TEST(Audit, angle_weighting_judges_by_angles) {
 
 TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
   ShadedMesh mesh = random_sheet(5, 6, 1, 0);
-  // Every face around a vertex counts alike.
+  // The faces around a vertex have equal weights.
   for (std::size_t v = 0; v < mesh.vertices(); ++v) {
     Vector sum = {0, 0, 0};
     for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
@@ -411,7 +414,7 @@ TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
 }
 
 TEST(Audit, authored_offset_names_area_where_all_weightings_come_equally_close) {
-  // Two triangles in a plane have one normal by every weighting, and the authored normals are turned away from it.
+  // Two coplanar triangles have the same normal by every weighting, and the author's normals are turned away from it.
   ShadedMesh mesh = hinge();
   for (std::size_t v = 0; v < 4; ++v) mesh.normals[3 * v] = 0.6F, mesh.normals[3 * v + 2] = 0.8F;
   const Audit result = audit_of(mesh.file());
@@ -422,7 +425,7 @@ TEST(Audit, authored_offset_names_area_where_all_weightings_come_equally_close) 
 }
 
 TEST(Audit, takes_from_2_to_1000001_samples) {
-  // For larger numbers the file is not even read.
+  // For an invalid number of samples the file is not even read.
   for (const std::size_t samples : {std::size_t{0}, std::size_t{1}, std::size_t{1000002}, ~std::size_t{0}}) {
     const test::GltfFixture file(hinge().file());
     const Result<Audit> result = audit(*file, {.samples = samples});
@@ -439,15 +442,16 @@ TEST(Audit, takes_from_2_to_1000001_samples) {
 // ---- samples that are not judged
 
 TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
-  // The face of vertex 3 has no area at weight 1/2, where vertex 3 crosses the edge, and points down after it.
+  // The face of vertex 3 has no area at weight 1/2, where vertex 3 crosses the edge; after that it faces down.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
   const Audit result = audit_of(mesh.file(), {.samples = 3});
-  // At weight 1 the two faces around the edge cancel, so that vertices 1 and 2 have no normal there either.
+  // At weight 1 the two faces at the edge cancel, so the vertices 1 and 2 have no normal either.
   EXPECT_EQ(result.error.no_normal, 3U);
   EXPECT_EQ(result.error.judged, 6U);
   EXPECT_NEAR(result.error.sum, 180, 1e-9);
-  // Vertices 1 and 2 have faces with an area, and no gate passes; the face of vertex 3 is not drawn.
+  // Faces at vertices 1 and 2 have an area although their sum is zero, which no tolerance allows; the face of vertex 3
+  // is not drawn.
   EXPECT_EQ(result.error.cancelled, 2U);
   EXPECT_EQ(result.error.cancelled_at.vertex, 1U);
   EXPECT_EQ(result.error.cancelled_at.at, 1);
@@ -456,7 +460,7 @@ TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   EXPECT_FALSE(result.is_within(180));
 }
 
-// Two strips of triangles with a hinge between them, which lie upon each other at t = 1/2 where they are equally wide.
+// Two strips of triangles with a hinge between them. At t = 1/2 they coincide where they are equally wide.
 struct Hinges {
   std::vector<std::array<int, 3>> from, to;
   std::vector<std::uint32_t> corners;
@@ -477,14 +481,14 @@ struct Hinges {
     }
   }
 
-  // Returns the positions at t = half / 2, which are whole numbers.
+  // Returns the positions at t = half / 2, which are integers.
   [[nodiscard]] std::vector<std::array<int, 3>> at(int half) const {
     std::vector<std::array<int, 3>> result = from;
     for (std::size_t v = 0; v < result.size(); ++v)
       for (std::size_t c = 0; c < 3; ++c) result[v][c] += half * (to[v][c] - from[v][c]) / 2;
     return result;
   }
-  // Counts the vertex normals that vanish there although faces around the vertex have an area.
+  // Counts the vertex normals that are zero at t = half / 2 although faces around the vertex have an area.
   [[nodiscard]] std::size_t count_cancelled(int half) const {
     const std::vector<std::array<int, 3>> places = at(half);
     std::vector<std::array<int, 3>> sums(places.size());
@@ -524,14 +528,14 @@ TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_
     for (std::size_t v = 0; v < mesh.vertices(); ++v) mesh.normals.insert(mesh.normals.end(), {0.6F, 0, 0.8F});
     mesh.targets.push_back({hinges.floats(true), {}, {}});
     const Audit of_file = audit_of(mesh.file(), {.samples = 3, .viewers = {kViewers[0]}});
-    // As a sequence, the mesh is measured in blocks if it has no normals, and output by output with a slerp.
+    // A sequence is measured in blocks if the mesh has no stored normals, and output by output with slerp.
     std::vector<float> moved = mesh.positions;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += mesh.targets[0].positions[i];
     Motion motion;
     motion.topology = Topology::triangles(mesh.vertices(), mesh.corners).value();
     motion.keyframes = {{mesh.positions, 0, ""}, {moved, 1, ""}};
     motion.connect_as_sequence();
-    // A viewer shows nothing where the normals at both ends are opposite.
+    // A viewer renders black if the normals at both ends are opposite, since their average is zero.
     for (const Audit& found : {of_file, audit(motion, {}, {.samples = 3}).value(),
                                audit(motion, {}, {.rule = AuditRule::kSlerp, .samples = 3}).value()}) {
       EXPECT_EQ(found.error.cancelled + found.error.unlit, right) << draw;
@@ -570,7 +574,7 @@ TEST(Audit, stored_normals_that_add_up_to_zero_cannot_be_lit_and_are_off_by_180_
 }
 
 TEST(Audit, infinite_normals_and_those_that_are_no_number_cannot_be_lit) {
-  // Weights of 3e38 turn deltas of 2 into infinities, and two infinities of opposite signs into NaN.
+  // Weights of 3e38 turn deltas of 2 into infinity, and infinities of opposite signs sum to NaN.
   for (const bool has_opposite : {false, true}) {
     ShadedMesh mesh = hinge();
     mesh.targets[0].normals.assign(12, 2);
@@ -593,11 +597,11 @@ TEST(Audit, infinite_normals_and_those_that_are_no_number_cannot_be_lit) {
 }
 
 TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_only_where_nothing_is_drawn) {
-  // The face of vertex 3 has no area at weight 1/2. At weight 1 it lies on the other face: their normals cancel at the
-  // vertices 1 and 2, but they are drawn.
+  // The face of vertex 3 has no area at weight 1/2. At weight 1 it coincides with the other face: their normals cancel
+  // at the vertices 1 and 2, but both faces are drawn.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
-  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};  // vertex 3: zero at 1/2, down at 1
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};  // vertex 3: zero at 1/2, downwards at 1
   MotionError error = audit_of(mesh.file(), {.samples = 3}).error;
   EXPECT_EQ(error.no_normal, 3U);
   EXPECT_EQ(error.unlit, 0U);
@@ -607,7 +611,7 @@ TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_onl
   EXPECT_EQ(error.no_normal, 2U);
   EXPECT_EQ(error.unlit, 1U);
   EXPECT_EQ(error.unlit_at.vertex, 1U);
-  // Infinity cannot be lit even there.
+  // An infinite normal cannot be lit even there.
   mesh.normals[11] = 3e38F;
   mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3e38F};
   error = audit_of(mesh.file(), {.samples = 3}).error;
@@ -642,7 +646,7 @@ TEST(Audit, nothing_that_moves_is_nothing_to_judge) {
   EXPECT_EQ(result.still, 1U);
   EXPECT_FALSE(result.worst.has_value());
   mesh = hinge();
-  mesh.normals.clear();  // flat
+  mesh.normals.clear();  // no normals, so viewers shade the mesh flat
   result = audit_of(mesh.file());
   EXPECT_TRUE(result.subjects.empty());
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kFlat}));
@@ -654,7 +658,8 @@ TEST(Audit, nothing_that_moves_is_nothing_to_judge) {
 // ---- faults
 
 TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
-  // At weight 1 the sum of both faces is (-4, 0, 4), so N + D is its unit vector; the free vertex goes from z to -x.
+  // At weight 1 the sum of both faces is (-4, 0, 4), and N + D is its unit vector; the normal of the free vertex goes
+  // from z to -x.
   ShadedMesh mesh = hinge();
   const float h = std::sqrt(0.5F);
   mesh.targets[0].normals = {0, 0, 0, -h, 0, h - 1, -h, 0, h - 1, -1, 0, -1};
@@ -662,20 +667,22 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-4);
   EXPECT_GT(result.error.worst, 1);
-  mesh.targets[0].normals[11] = 0;                                             // vertex 3 shows (-1, 0, 1) at weight 1
-  const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});  // ignores the author
+  // Vertex 3 renders (-1, 0, 1) at weight 1.
+  mesh.targets[0].normals[11] = 0;
+  // A weighting that differs from the author's.
+  const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});
   ASSERT_EQ(kinds_of(wrong), (std::vector<Kind>{Kind::kWrongAtKeys}));
   EXPECT_NEAR(wrong.findings[0].degrees, 45, 1e-4);
   EXPECT_EQ(wrong.findings[0].worst_at->vertex, 3U);
 }
 
 TEST(Audit, targets_that_are_right_alone_can_be_wrong_together) {
-  // The targets stretch along x and y: alone, neither turns the plane x + z = 0, but shears of both together do.
+  // The targets stretch along x and y: separately they do not turn the plane x + z = 0, but shears by both together do.
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1};
-  // n(w) = (1, 0, w0) x (0, 1, w1) = (-w0, -w1, 1) is linear. Deltas of e and f along x and z give a term w0 w1.
+  // n(w) = (1, 0, w0) x (0, 1, w1) = (-w0, -w1, 1) is linear. Changing e and f along x and z gives a term w0 w1.
   mesh.targets = {{{0, 0, 0, 0, 0, 1, 0, 0, 0}, {-1, 0, 0, -1, 0, 0, -1, 0, 0}, {}},
                   {{0, 0, 0, 0, 0, 0, 1, 0, 0}, {}, {}}};
   // n = (1, 0, w0) x (w1, 1, 0) = (-w0, w0 w1, 1).
@@ -687,7 +694,7 @@ TEST(Audit, targets_that_are_right_alone_can_be_wrong_together) {
   EXPECT_LT(result.subjects[1].error.worst, 1e-4);
   EXPECT_NEAR(result.error.worst, std::atan(1 / std::sqrt(2)) * 180 / std::numbers::pi, 1e-4);
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongTogether, Kind::kMissingNormals}));
-  EXPECT_FALSE(result.findings[1].is_fault());  // target 1 turns nothing
+  EXPECT_FALSE(result.findings[1].is_fault());  // target 1 turns no normal
 }
 
 TEST(Audit, stale_tangents_are_those_that_lean_on_the_right_normal) {
@@ -698,10 +705,10 @@ TEST(Audit, stale_tangents_are_those_that_lean_on_the_right_normal) {
   EXPECT_EQ(result.findings[1].count, 3U);
   EXPECT_NEAR(result.findings[1].degrees, 90, 1e-9);
   EXPECT_EQ(result.findings[1].worst_at->vertex, 3U);
-  // Right tangents run along the folded face, and half-way up at the edge.
+  // True tangents follow the folded face, and at the edge they are halfway up.
   mesh.targets[0].tangents = {0, 0, 0, 0, 0, 1, 0, 0, 1, -1, 0, 1};
   EXPECT_EQ(kinds_of(audit_of(mesh.file())), (std::vector<Kind>{Kind::kMissingNormals}));
-  // Tangents along the hinge do not lean.
+  // Tangents along the hinge do not change.
   mesh.targets[0].tangents.clear();
   mesh.tangents.clear();
   for (int v = 0; v < 4; ++v) mesh.tangents.insert(mesh.tangents.end(), {0, 1, 0, 1});
@@ -715,7 +722,7 @@ TEST(Audit, skins_and_baked_sequences_are_notes) {
   builder = hinge().file();
   builder.json["meshes"][0]["extras"]["chronormal"] = {{"version", 1}, {"encode", "exact"}, {"sequence", true}};
   Audit result = audit_of(builder);
-  EXPECT_TRUE(result.subjects.empty());  // its targets mean nothing alone
+  EXPECT_TRUE(result.subjects.empty());  // its targets have no meaning alone
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kBaked, Kind::kSequenceTargets}));
   builder.add_track(builder.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   result = audit_of(builder);
@@ -787,7 +794,7 @@ TEST(Audit, one_animation_can_be_asked_for) {
 }
 
 TEST(Audit, other_rules_join_the_normals_of_the_keys) {
-  // In one triangle, vertex 2 goes from y to z, so that n(t) = (0, -t, 1 - t). The stored normals at the keys are (0,
+  // In a single triangle, vertex 2 moves from y to z, so n(t) = (0, -t, 1 - t). The stored normals at the keys are (0,
   // 0, 1) and (0, -3, 0).
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};
@@ -801,7 +808,7 @@ TEST(Audit, other_rules_join_the_normals_of_the_keys) {
     const double t = i / 4.0, right = angle(t, 1 - t);
     lerp_sum += std::fabs(angle(3 * t, 1 - t) - right);
     slerp_sum += std::fabs(90 * t - right);
-    step_sum += i < 4 ? right : 0;  // a step shows the next keyframe when it is reached
+    step_sum += i < 4 ? right : 0;  // with steps, the next keyframe is shown from its time on
   }
   EXPECT_NEAR(sum(AuditRule::kGltf), lerp_sum, 1e-4);
   EXPECT_NEAR(sum(AuditRule::kLerp), lerp_sum, 1e-4);
@@ -840,7 +847,7 @@ TEST(Audit, bad_options_are_refused) {
 
 // ---- sequences
 
-// Makes a triangle whose vertex 2 goes from y over z to -y: n = (0, 0, 1), (0, -1, 0), (0, 0, -1) at the keyframes.
+// Makes a triangle whose vertex 2 moves from y through z to -y: n = (0, 0, 1), (0, -1, 0), (0, 0, -1) at the keyframes.
 Motion turning() {
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
@@ -871,7 +878,7 @@ TEST(Audit, player_that_computes_normals_at_keyframes_errs_between_them) {
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-5);
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
   EXPECT_TRUE(result.offsets.empty());
-  // Linear interpolation of unit normals is right here.
+  // Linear interpolation of unit normals is exact here.
   EXPECT_LT(audit_of(turning(), {}).error.worst, 1e-4);
 }
 
@@ -893,7 +900,7 @@ TEST(Audit, offset_that_an_author_carries_along_is_none) {
   ASSERT_EQ(result.offsets.size(), 1U);
   EXPECT_NEAR(result.offsets[0].worst, 45, 1e-9);
   EXPECT_EQ(result.offsets[0].vertices, 3U);
-  // Any growth of the offset is an error: here it is 60 degrees instead of 45.
+  // Every growth of the offset is an error; here it grows from 45 to 60 degrees.
   StoredNormals growing = tilted;
   const float t = std::tan(60 * std::numbers::pi_v<float> / 180);
   growing.of_keyframes[1] = thrice(t, -1, 0);
@@ -901,7 +908,8 @@ TEST(Audit, offset_that_an_author_carries_along_is_none) {
 }
 
 TEST(Audit, normals_of_keyframe_0_alone_say_which_edges_are_hard) {
-  // The hinge becomes a sequence. With a hard edge each face has its own normal, which a straight line gets right.
+  // The hinge becomes a sequence. With a hard edge each face has its own normal, which linear interpolation renders
+  // exactly.
   const ShadedMesh mesh = hinge();
   Motion motion;
   motion.topology = Topology::triangles(4, mesh.corners).value();
@@ -914,7 +922,7 @@ TEST(Audit, normals_of_keyframe_0_alone_say_which_edges_are_hard) {
   const StoredNormals hard{{{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 1, 0, 0, 1, 0}}};
   const Audit result = audit_of(motion, hard);
   EXPECT_FALSE(result.stored);
-  EXPECT_EQ(result.subjects[0].vertices, 3U);  // only vertices of the folding face
+  EXPECT_EQ(result.subjects[0].vertices, 3U);  // only the vertices of the folding face
   const Audit flat = audit_of(motion, hard, {.rule = AuditRule::kFlat});
   EXPECT_LT(flat.error.worst, 1e-9);
 }
@@ -928,7 +936,7 @@ TEST(Audit, targets_of_a_base_are_subjects_of_their_own) {
   ASSERT_EQ(result.value().subjects.size(), 2U);
   EXPECT_EQ(result.value().subjects[0].name, "up");
   EXPECT_EQ(result.value().subjects[1].target, 1U);
-  EXPECT_EQ(result.value().subjects[1].error.no_normal, 3U);  // flat at t = 1/2
+  EXPECT_EQ(result.value().subjects[1].error.no_normal, 3U);  // the face has no area at t = 1/2
 }
 
 TEST(Audit, sequences_refuse_what_does_not_fit) {

@@ -1,5 +1,5 @@
 // Compares the errors that an audit finds in each viewer with plain loops: weights as the viewer plays them, positions
-// and right normals at these weights, and the normals that the viewer shows.
+// and true normals at these weights, and the viewer's rendered normals.
 
 #include <gtest/gtest.h>
 
@@ -34,12 +34,12 @@ Triple triple(const Vector& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-// Holds the errors that an oracle finds.
+// The errors that an oracle finds.
 struct Expected {
   std::vector<Real> errors;
   Real displaced = 0;
 
-  // Adds all vertices at the weights that a viewer plays and the different weights that the specification asks for.
+  // Adds all vertices, at the weights that a viewer plays and at the different weights that the specification demands.
   void add(const ShadedMesh& mesh, std::string_view viewer, const std::vector<double>& played,
            const std::vector<double>& specified) {
     const std::vector<double> none(played.size());
@@ -65,7 +65,7 @@ void expect_same(const ViewerAudit& viewer, Expected expected, const std::string
   Real sum = 0;
   for (const Real e : expected.errors) sum += e;
   std::sort(expected.errors.begin(), expected.errors.end());
-  // A number half-way between two representable ones may be rounded either way.
+  // Numbers halfway between two representable ones may be rounded either way.
   constexpr double kMean = 0.002, kWorst = 0.1;
   EXPECT_NEAR(viewer.error.mean(), static_cast<double>(sum) / static_cast<double>(expected.errors.size()), kMean);
   EXPECT_NEAR(viewer.error.worst, static_cast<double>(expected.errors.back()), kWorst);
@@ -125,7 +125,7 @@ TEST(AuditViewers, animations_of_every_interpolation_have_the_errors_of_an_oracl
       for (std::size_t s = 0; s + 1 < times.size(); ++s) {
         for (int i = 0; i < 4; ++i) {
           double time = (1 - i / 3.0) * static_cast<double>(times[s]) + i / 3.0 * static_cast<double>(times[s + 1]);
-          if (i == 3) time = std::nextafter(static_cast<double>(times[s + 1]), 0);  // the left side of a jump
+          if (i == 3) time = std::nextafter(static_cast<double>(times[s + 1]), 0);  // just before the jump
           std::vector<double> played =
               test::played_by(viewer.viewer.name, c.interpolation, times, c.values, 2, 0.5, 3, time);
           for (double& w : played)
@@ -173,7 +173,7 @@ TEST(AuditViewers, targets_beyond_the_limit_are_ignored_and_noted) {
   EXPECT_EQ(result.viewers[0].displaced, 0);
   EXPECT_TRUE(result.viewers[0].is_within(180));
   EXPECT_EQ(result.viewers[1].beyond, 2U);
-  EXPECT_FALSE(result.viewers[1].is_within(180));  // it shows nothing
+  EXPECT_FALSE(result.viewers[1].is_within(180));  // the viewer renders zero normals
   const auto note = std::find_if(result.findings.begin(), result.findings.end(),
                                  [](const AuditFinding& f) { return f.kind == AuditFinding::Kind::kBeyondViewer; });
   ASSERT_NE(note, result.findings.end());
@@ -185,7 +185,8 @@ TEST(AuditViewers, targets_beyond_the_limit_are_ignored_and_noted) {
 }
 
 TEST(AuditViewers, a_normal_that_a_viewer_cannot_light_is_counted_for_that_viewer) {
-  // N + D is (0, 0, 0.003) by the specification. Eight bits keep nothing of it, but all of its direction.
+  // N + D is (0, 0, 0.003) by the specification. Eight bits per component round it to zero, but a direction is kept
+  // exactly.
   ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals.assign(12, 0);
   mesh.targets[0].normals[11] = -1 + 0.003F;

@@ -1,5 +1,5 @@
-// Checks that audits block by block have the same figures as audits vertex by vertex, which are used when every single
-// error is kept.
+// Checks that audits block by block give the same figures as audits vertex by vertex, which are used if single errors
+// are kept.
 #include "workflow/audit/measure_blocks.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ void expect_same(const MotionError& a, const MotionError& b) {
   if (a.unlit > 0) expect_same(a.unlit_at, b.unlit_at);
 }
 
-// Compares both kinds of audit, and returns how many samples were judged.
+// Compares both kinds of audit. Returns the number of judged samples.
 std::size_t expect_same_audits(const Motion& motion, AuditOptions options) {
   const Result<Audit> blocks = audit(motion, {}, options);
   options.keep_errors = true;

@@ -1,5 +1,5 @@
-// Checks that sums of stored normals at several sets of weights equal, bit for bit, the sums that a viewer makes vertex
-// by vertex.
+// Checks that sums of stored normals for several sets of weights equal, bit for bit, the sums that a viewer computes
+// vertex by vertex.
 #include "workflow/audit/stored_sums.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ struct Fixture {
   std::vector<JudgedOutput> outputs;
 };
 
-// Every third vertex shows nothing. Target 0 turns all vertices, 1 none, 2 the last one, 3 some in the middle, 4 stores
-// no normals, and 5 turns every second vertex.
+// Every third vertex has a zero normal. Target 0 turns all vertices, 1 none, 2 the last one, 3 some in the middle, 4
+// has no normals, and 5 turns every second vertex.
 Fixture make_fixture(std::size_t vertices, std::mt19937& random) {
   std::uniform_real_distribution<float> number(-1, 1);
   Fixture result;

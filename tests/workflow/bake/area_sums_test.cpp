@@ -26,13 +26,13 @@ using Vector = std::array<double, 3>;
 PointRows rows_of(const Motion::Keyframe& keyframe) {
   PointRows rows(keyframe.positions.size() / 3 * 4);
   for (std::size_t i = 0; i < keyframe.positions.size(); ++i)
-    rows[i / 3 * 4 + i % 3] = double{keyframe.positions[i]} * 1.1;  // with digits that float32 has not
+    rows[i / 3 * 4 + i % 3] = double{keyframe.positions[i]} * 1.1;  // with digits beyond float32
   for (std::size_t v = 0; v < rows.size() / 4; ++v) rows[4 * v + 3] = std::nan("");
   return rows;
 }
 
-// A sum of some terms with the sum of their absolute values. It counts as 0 if it is below the rounding error of that
-// many terms.
+// A sum of some terms, and the sum of their absolute values. The sum counts as 0 if it is below the rounding error of
+// that many terms.
 struct Sum {
   Vector value{}, magnitude{};
   double terms = 0;

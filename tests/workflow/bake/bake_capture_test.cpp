@@ -1,6 +1,6 @@
-// Checks the errors that the smallest candidate leaves on the captured face between the keys, at instants that nothing
-// was fitted to or judged by. The environment variable CHRONORMAL_DATA says where the face is; CHRONORMAL_FULL asks for
-// all of its keys instead of the first few.
+// Checks the errors that the smallest candidate leaves on the captured face between the keys, at instants that were
+// used neither for fitting nor for judging. The environment variable CHRONORMAL_DATA names the folder of the face;
+// CHRONORMAL_FULL tests all of its keys instead of the first few.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ constexpr std::size_t kTargets = 57, kMostTargets = 112, kMostTargetsAlone = 80,
 constexpr unsigned kSeed = 20;
 constexpr Real kLeastLength = 1e-3L;
 
-// Replaces the output of the only sampler, and keeps the requested number of keys.
+// Replaces the output of the only sampler, and keeps the given number of keys.
 std::string with_track(const GltfPlayer& player, const std::string& glb, const std::vector<std::size_t>& from,
                        std::size_t keys) {
   auto json = player.json;
@@ -82,8 +82,8 @@ struct Errors {
   }
 };
 
-// Returns the errors of all vertices in some poses, which are given for the file before and after. Normals that are
-// shorter than a thousandth of the normals of the base are excused.
+// Returns the errors of all vertices in some poses, given as weights before and after the bake. Normals shorter than a
+// thousandth of the base's are left out.
 Errors errors_in(const Baked& baked, const std::vector<std::pair<std::vector<double>, std::vector<float>>>& poses) {
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<Vector> base = truth.normals_at(std::vector<double>(kTargets, 0.0));
@@ -136,7 +136,7 @@ class BakeCapture : public testing::Test {
     is_full_ = std::getenv("CHRONORMAL_FULL") != nullptr;
   }
 
-  // Bakes the face with the track of target from[i] on target i.
+  // Bakes the face so that target i has the track of target from[i].
   [[nodiscard]] Baked baked(const std::vector<std::size_t>& from, const BakeOptions& options) const {
     const GltfPlayer player(glb_);
     const std::size_t keys = player.accessor(player.json["animations"][0]["samplers"][0]["input"]).size();

@@ -1,4 +1,4 @@
-// Tests deltas that viewers of every kind show alike, and the promise that a bake makes nothing worse.
+// Tests deltas that all kinds of viewers render alike, and the guarantee that a bake makes nothing worse.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ Vector unit_of(const Vector& v) {
   return size == 0 ? v : Vector{v[0] / size, v[1] / size, v[2] / size};
 }
 
-// Computes the normal that a viewer shows at a vertex: the sum of the values that it keeps of the base normal and of
+// Computes the normal that a viewer renders at a vertex: the weighted sum of its stored values for the base normal and
 // each delta.
 Vector shown(const test::GltfPlayer& player, const Json& primitive, std::size_t v, const std::vector<double>& weights,
              Rule rule) {
@@ -57,7 +57,7 @@ struct Weights {
 
 std::vector<double> doubles(const std::vector<float>& values) { return {values.begin(), values.end()}; }
 
-// Samples the track of a file at instants that no key or fraction of a gap meets.
+// Samples the track of a file at instants that are neither keys nor simple fractions between keys.
 std::vector<Weights> on_track(const Baked& baked, std::size_t instants = 137) {
   const Json& sampler = baked.before->json["animations"][0]["samplers"][0];
   const std::vector<float> times = baked.before->accessor(sampler["input"].get<std::size_t>());
@@ -70,7 +70,7 @@ std::vector<Weights> on_track(const Baked& baked, std::size_t instants = 137) {
   return result;
 }
 
-// Each target alone, with what docs/formats.md says of the others.
+// Returns each target alone, with the weights of correction targets by the rule of docs/formats.md.
 std::vector<Weights> alone(const Baked& baked) {
   std::vector<Weights> result;
   const Json& mesh = baked.mesh();
@@ -96,7 +96,7 @@ std::vector<Weights> alone(const Baked& baked) {
 }
 
 struct Change {
-  double before = 0, after = 0;  // sums of errors, degrees
+  double before = 0, after = 0;  // sums of errors in degrees
   double worst_before = 0, worst = 0;
   std::size_t judged = 0;
 
@@ -126,7 +126,7 @@ Change change(const Baked& baked, const std::vector<Weights>& poses, Rule rule) 
   return result;
 }
 
-// Makes hills with two or three targets that go up one after the other and meet.
+// Makes hills with two or three targets that are activated one after the other and overlap.
 GltfBuilder moving(std::size_t targets, unsigned seed, double size = 0.4, const char* interpolation = "LINEAR") {
   GltfBuilder builder;
   test::Hills hills(seed);
@@ -181,7 +181,7 @@ TEST(BakeHarmless, is_as_near_in_viewers_of_unit_normals_as_in_those_that_add_up
 }
 
 TEST(BakeHarmless, every_target_has_unit_normals_and_no_component_beyond_1) {
-  GltfBuilder turning;  // a sheet that is turned by 100 degrees
+  GltfBuilder turning;  // a sheet that turns by 100 degrees
   test::Hills hills(3);
   std::vector<float> over = hills.positions;
   for (std::size_t i = 0; i < over.size(); i += 3) {
@@ -249,7 +249,7 @@ TEST(BakeHarmless, steps_and_splines_keep_their_keys) {
   }
 }
 
-// Gives the targets of the hills the normal deltas of a bake with noise on top.
+// Gives the targets of the hills the normal deltas of a bake, with noise added.
 GltfBuilder with_deltas(GltfBuilder builder, BakeEncoding encoding, unsigned seed, double noise) {
   BakeOptions options;
   options.encoding = encoding;
@@ -263,8 +263,8 @@ GltfBuilder with_deltas(GltfBuilder builder, BakeEncoding encoding, unsigned see
   return builder;
 }
 
-// Over a whole surface neither the average nor the worst error may grow beyond the tolerance, whatever single normals
-// do.
+// Over a whole surface, neither the average nor the worst error may grow beyond the tolerance, even if single normals
+// become worse.
 TEST(BakeHarmless, no_surface_is_worse_than_before_whatever_normals_the_author_gave) {
   std::size_t changed = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -274,7 +274,7 @@ TEST(BakeHarmless, no_surface_is_worse_than_before_whatever_normals_the_author_g
         GltfBuilder builder = test::hills_document(2, seed);
         builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, std::vector<float>{0, 0, 1, 0.25F, 0.5F, 1, 0, 0.5F});
         builder = with_deltas(std::move(builder), BakeEncoding::kEndpoint, seed, noise);
-        BakeOptions geometric;  // the right normals are those of the oracle, and not the author's
+        BakeOptions geometric;  // the true normals are the oracle's, not the author's
         geometric.weighting = Weighting::kArea;
         geometric.encoding = encoding;
         const Baked result = baked(builder, geometric);
@@ -303,7 +303,7 @@ TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_viewers) {
   EXPECT_EQ(three.report.meshes[0].left_out, 0U);
 }
 
-// Where viewers that keep unit normals are no worse off, correction targets are short and weights are long.
+// Correction targets are short and weights are long unless viewers that keep unit normals become worse by that.
 TEST(BakeHarmless, a_plain_bake_is_nearly_right_where_deltas_add_up_and_no_worse_where_they_do_not) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     BakeOptions plain;
@@ -336,7 +336,7 @@ TEST(BakeHarmless, the_report_says_what_each_viewer_shows) {
 }
 
 TEST(BakeHarmless, the_mean_of_the_report_is_over_all_vertices) {
-  // All vertices are about equally wrong, so that the average is no small part of the worst error.
+  // All vertices have similar errors, so the average is not much smaller than the worst error.
   const Baked result = test::bake_document(test::with_misleading_normals(test::still_hills_document(2)));
   ASSERT_EQ(result.error, "");
   const ViewerChange& viewer = result.report.meshes[0].viewers.at(0);
@@ -360,7 +360,7 @@ TEST(BakeHarmless, exact_is_right_at_weight_1_without_its_extra_targets) {
   }
 }
 
-// A correction of a single target belongs half-way, where it weighs most.
+// The correction of a single target must be right halfway, where its weight is largest.
 TEST(BakeHarmless, what_a_target_corrects_of_itself_makes_it_right_half_way) {
   for (const Lengths lengths : {Lengths::kUnit, Lengths::kShort, Lengths::kFree}) {
     GltfBuilder builder = test::hills_document(1, 5);

@@ -1,4 +1,4 @@
-// Checks the fewest keys of a sequence against the input motion, as shown by a viewer that interpolates linearly.
+// Checks that bakes with the fewest keys of a sequence follow the input motion in a viewer that interpolates linearly.
 
 #include <gtest/gtest.h>
 
@@ -51,8 +51,8 @@ std::vector<VectorD> positions_at(const Motion& motion, double time) {
   return result;
 }
 
-// The largest angle, in degrees, between the normals of the file and the vertex normals of the motion, and the largest
-// distance of a vertex, relative to a size of about 1.
+// The largest angle in degrees between the normals of the file and the vertex normals of the motion, and the largest
+// distance of a vertex; the mesh has a size of about 1.
 struct Off {
   double degrees = 0, distance = 0;
 };
@@ -79,7 +79,7 @@ Off off(const Motion& motion, const ShownGlb& glb, int times) {
   return worst;
 }
 
-// Samples a motion of one segment, as another program would.
+// Samples a motion of one segment at equal steps, like a program that exports frames.
 Motion sampled(const Motion& motion, std::size_t frames) {
   Motion result = motion;
   result.keyframes.clear();
@@ -144,7 +144,7 @@ TEST(BakeKeys, keyframes_that_lie_on_lines_are_left_out) {
   const Off worst = off(motion, ShownGlb(keys.glb), 200);
   EXPECT_LE(worst.degrees, 1 + 1e-3);
   EXPECT_LT(worst.distance, 1e-5);
-  // A keyframe off the line stays.
+  // A keyframe beside the line must be kept.
   Motion bumped = frames;
   bumped.keyframes[7].positions[30] += 0.01F;
   const ShownGlb glb(keys_of(bumped, 1).glb);
@@ -157,7 +157,7 @@ TEST(BakeKeys, no_key_could_be_spared) {
   const double tolerance = 0.5;
   const Keys keys = keys_of(motion, tolerance);
   ShownGlb glb(keys.glb);
-  // Whichever key is taken away, a line over the two gaps leaves some normal beyond the tolerance.
+  // If any key is removed, a line over the two intervals has an error beyond the tolerance at some normal.
   const std::vector<float> times = glb.times;
   ASSERT_GT(times.size(), 3U);
   for (std::size_t k = 1; k + 2 < times.size(); ++k) {

@@ -1,4 +1,4 @@
-// Tests endpoint deltas of targets that are active together.
+// Tests endpoint deltas of targets that are active at the same time.
 
 #include <gtest/gtest.h>
 
@@ -22,12 +22,12 @@ BakeOptions endpoint(Weighting weighting = Weighting::kArea) {
   return options;
 }
 
-// Bakes a file whose normals are so misleading that the bake keeps none of them.
+// Bakes a file with such misleading normals that the bake replaces all of them.
 Baked bake_misled(const GltfBuilder& builder, const BakeOptions& options) {
   return test::bake_document(test::with_misleading_normals(builder), options);
 }
 
-// Plays three targets one after the other, then together.
+// Adds an animation of three targets, first one after the other, then together.
 void add_dance(GltfBuilder& builder) {
   builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3, 4},
                     std::vector<float>{0, 0, 0, 1, 0, 0.5F, 1, 1, 0, 0.3F, 1, 1, 0, 0, 0.7F});
@@ -42,7 +42,7 @@ void expect_same_deltas(const Baked& a, const Baked& b) {
     EXPECT_EQ(deltas_of(a, k), deltas_of(b, k));
 }
 
-// Plays one of three targets alone, from 0 to 1.
+// Returns poses with one of three targets alone, from 0 to 1.
 std::vector<test::Pose> poses_alone(std::size_t target) {
   std::vector<test::Pose> poses;
   for (int i = 0; i <= 20; ++i) {
@@ -55,7 +55,7 @@ std::vector<test::Pose> poses_alone(std::size_t target) {
   return poses;
 }
 
-// Returns the error of deltas over the track of a file that has the same targets.
+// Returns the error of deltas over the track of another file with the same targets.
 ShownError error_on_track(const Baked& track, const Baked& deltas, bool uniform = false) {
   test::GltfTruth truth(*track.before, 0);
   truth.uniform = uniform;
@@ -72,15 +72,15 @@ TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alon
     add_dance(builder);
     const Baked fitted = bake_misled(builder, endpoint());
     ASSERT_EQ(fitted.error, "");
-    if (!alone.report.changed || !fitted.report.changed) continue;  // a normal that turns over is farther off then
+    if (!alone.report.changed || !fitted.report.changed) continue;  // a normal that turns over gets a larger error
     ++seeds;
     EXPECT_EQ(fitted.report.added_targets, 0U);
     EXPECT_GE(fitted.report.meshes[0].fitted_elements, 24U);
     EXPECT_EQ(alone.report.meshes[0].fitted_elements, 0U);
     const ShownError error = error_on_track(fitted, fitted), of_alone = error_on_track(fitted, alone);
     EXPECT_LT(error.mean(), of_alone.mean());
-    EXPECT_LE(error.worst, of_alone.worst + 0.1);  // at other instants than those that were fitted to
-    // The bake states the error over more instants than the poses here.
+    EXPECT_LE(error.worst, of_alone.worst + 0.1);  // at other instants than those used for fitting
+    // The bake measures its error at more instants than these poses.
     EXPECT_LE(error.worst, 1.02 * fitted.report.meshes[0].largest_error);
     EXPECT_GE(error.worst, 0.9 * fitted.report.meshes[0].largest_error);
     fitted_mean += error.mean();
@@ -90,7 +90,7 @@ TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alon
   RecordProperty("alone", std::to_string(alone_mean / static_cast<double>(seeds)));
   EXPECT_GE(seeds, 7U);
   EXPECT_LT(fitted_mean, 0.6 * alone_mean);
-  // Both averages stand in docs/theory.md.
+  // Both averages are in docs/theory.md.
   EXPECT_NEAR(alone_mean / static_cast<double>(seeds), 4.42, 0.01);
   EXPECT_NEAR(fitted_mean / static_cast<double>(seeds), 1.14, 0.01);
 }
@@ -104,7 +104,7 @@ TEST(BakeLines, no_small_change_of_a_delta_is_better) {
   const test::GltfTruth truth(*baked.before, 0);
   std::vector<std::vector<float>> deltas;
   for (const auto& target : baked.mesh()["primitives"][0]["targets"]) deltas.push_back(baked.numbers(target["NORMAL"]));
-  // The fit minimises the part of the shown normal across the right one.
+  // The fit minimises the component of the rendered normal that is perpendicular to the true one.
   const auto across = [&](std::size_t vertex) {
     double sum = 0;
     for (const test::Pose& pose : poses) {
@@ -129,7 +129,7 @@ TEST(BakeLines, no_small_change_of_a_delta_is_better) {
           float& number = deltas[k][3 * vertex + c];
           const float kept = number;
           number += change;
-          // The samples of the fit lie elsewhere than these poses, so a little may be gained.
+          // The fit uses other samples than these poses, so a slightly better fit may exist.
           EXPECT_GT(across(vertex), 0.99 * best);
           number = kept;
         }
@@ -156,7 +156,7 @@ TEST(BakeLines, the_error_of_weights_beyond_0_and_1_is_stated) {
     builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{-0.5F, 1, 1.5F});
     const Baked baked = bake_misled(builder, endpoint());
     ASSERT_EQ(baked.error, "");
-    if (!baked.report.changed) continue;  // a normal that turns over is farther off then
+    if (!baked.report.changed) continue;  // a normal that turns over gets a larger error
     ++seeds;
     const double worst = error_on_track(baked, baked).worst, stated = baked.report.meshes[0].largest_error;
     EXPECT_LE(worst, stated + 1e-3);
@@ -186,7 +186,7 @@ TEST(BakeLines, without_area_in_the_base_are_right_where_targets_are_active) {
 }
 
 TEST(BakeLines, other_weightings_are_fitted_to_their_own_normals) {
-  for (const float scale : {1.0F, 400.0F, 0.01F}) {  // lengths do not count
+  for (const float scale : {1.0F, 400.0F, 0.01F}) {  // the lengths of normals do not matter
     SCOPED_TRACE(scale);
     test::Hills hills(2);
     std::vector<std::vector<float>> deltas = {hills.deltas(), hills.deltas(), hills.deltas()};
@@ -217,7 +217,8 @@ TEST(BakeLines, without_an_animation_each_target_is_for_itself) {
 }
 
 TEST(BakeLines, weights_that_tell_nothing_leave_each_target_for_itself) {
-  // One file has weights of a billionth; in the other, two targets go together but for a ten-thousandth.
+  // One file has weights of a billionth; in the other, two targets have almost the same weights, up to a
+  // ten-thousandth.
   GltfBuilder tiny = test::hills_document(3, 6), alike = test::hills_document(3, 6);
   tiny.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{1e-9F, 2e-9F, 0, 0, 1e-9F, 1e-9F});
   alike.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{0, 0, 0, 0.5F, 0.5001F, 0, 0.9F, 0.8999F, 0});
@@ -228,13 +229,13 @@ TEST(BakeLines, weights_that_tell_nothing_leave_each_target_for_itself) {
                              with_alike = deltas_of(of_alike, k);
     for (std::size_t i = 0; i < deltas.size(); ++i) {
       EXPECT_NEAR(with_tiny[i], deltas[i], 1e-3);
-      EXPECT_NEAR(with_alike[i], deltas[i], 1.5);  // half of what both together lack
+      EXPECT_NEAR(with_alike[i], deltas[i], 1.5);  // half of the difference that both together must correct
     }
   }
 }
 
 TEST(BakeLines, long_animations_are_judged_where_they_were_not_fitted) {
-  // The animation has more samples than are fitted to: 16 for each of 300 pieces.
+  // The animation has more samples than the fit uses: 16 for each of 300 pieces.
   GltfBuilder builder = test::hills_document(3, 8);
   test::Hills random(9);
   std::vector<float> times, values;
@@ -251,7 +252,7 @@ TEST(BakeLines, long_animations_are_judged_where_they_were_not_fitted) {
 }
 
 TEST(BakeLines, what_is_right_already_is_not_fitted_to_rounding) {
-  // Heights over a grid have nothing but linear terms.
+  // Targets that only change heights over a grid have only linear terms.
   test::Hills hills(7);
   std::vector<std::vector<float>> deltas = {hills.deltas(), hills.deltas()};
   for (std::vector<float>& of_target : deltas) {
@@ -284,7 +285,7 @@ TEST(BakeLines, a_wink_in_a_long_animation_counts) {
   std::vector<float> times, values;
   for (int key = 0; key < 8000; ++key) {
     times.push_back(static_cast<float>(key));
-    const bool wink = key == 4323;  // none of the 2,000 that are fitted to
+    const bool wink = key == 4323;  // not one of the 2,000 samples of the fit
     values.push_back(wink ? 1.0F : 0.01F);
     values.push_back(wink ? 1.0F : 0.01F);
   }
@@ -299,7 +300,7 @@ TEST(BakeLines, a_wink_in_a_long_animation_counts) {
 
 TEST(BakeLines, a_target_that_is_never_active_keeps_what_it_has_alone_and_its_error_is_stated) {
   GltfBuilder builder = test::hills_document(3, 5);
-  // The third target moves so little that it bears the largest error.
+  // The third target moves so little that it may have the largest error.
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 0, 0.01F, 0.01F, 0});
   const Baked baked = bake_misled(builder, endpoint());
   const Baked alone = bake_misled(test::still_hills_document(3, 5), endpoint());

@@ -1,4 +1,4 @@
-// Tests animated GLB files of sequences, as shown by a reader that knows nothing of how they were made.
+// Tests animated GLB files that were baked from sequences, with an independent reader.
 
 #include <gtest/gtest.h>
 
@@ -39,15 +39,15 @@ using reference::VectorD;
 using test::ShownGlb;
 
 constexpr double kDegree = std::numbers::pi / 180;
-const std::vector<Viewer> kAddingUp = {kViewers[0]};  // a bake warns of other viewers
+const std::vector<Viewer> kAddingUp = {kViewers[0]};  // without this option, a bake warns about other viewers
 
-// The vertices of each face of a file, and for each vertex the group that shows the same normal.
+// The vertices of each face of a file, and for each vertex the group that shares its normal.
 struct Surface {
   std::vector<std::vector<std::uint32_t>> faces;
   std::vector<std::size_t> group;
 };
 
-// Treats all edges as smooth: takes the faces of the motion, and one normal wherever vertices lie together in all
+// Treats all edges as smooth: takes the faces of the motion, and one normal for vertices that coincide in all
 // keyframes.
 Surface smooth_surface(const Motion& motion) {
   Surface surface;
@@ -92,7 +92,7 @@ std::vector<VectorD> exact_normals(const ShownGlb& glb, const Surface& surface, 
 
 struct Judged {
   double mean = 0, max = 0;           // degrees
-  std::size_t count = 0, nearly = 0;  // samples; if n is nearly zero, they are not judged
+  std::size_t count = 0, nearly = 0;  // number of samples, and of samples that are not judged because n is nearly zero
 };
 
 Judged judge(const ShownGlb& glb, const Surface& surface, int times = 101) {
@@ -142,7 +142,7 @@ std::string bake(const Motion& motion, const BakeOptions& options, SequenceBake*
   return glb;
 }
 
-// Makes a closed mesh each vertex of which goes its own way, at uneven times.
+// Makes a closed mesh whose vertices move independently, with keys at uneven times.
 Motion wandering(const fixtures::ClosedMesh& mesh, std::size_t keys, double distance, std::uint64_t seed) {
   Motion motion;
   motion.topology = mesh.topology;
@@ -203,7 +203,7 @@ TEST(BakeSequence, weights_are_hats_and_bubbles_between_the_times_in_the_file) {
   }
 }
 
-// Returns the sum of a viewer that keeps only the direction of N + D: N + sum w (unit(N + D) - N).
+// Returns the normal of a viewer that keeps only the direction of N + D: N + sum w (unit(N + D) - N).
 VectorD unit_rule(const ShownGlb& glb, std::size_t v, const std::vector<double>& weights) {
   VectorD base{}, sum{};
   for (std::size_t c = 0; c < 3; ++c) base[c] = sum[c] = glb.normals[3 * v + c];
@@ -321,7 +321,7 @@ TEST(BakeSequence, normals_are_those_of_polygons_and_not_of_their_triangles) {
     EXPECT_TRUE(std::equal(fan.begin(), fan.end(), glb.corners.begin() + static_cast<std::ptrdiff_t>(6 * f)));
   }
   expect_exact(glb, smooth_surface(motion));
-  EXPECT_GT(judge(glb, split_surface(glb)).max, 1);  // the fans alone have other normals
+  EXPECT_GT(judge(glb, split_surface(glb)).max, 1);  // the normals of the triangles alone are different
 }
 
 TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
@@ -340,7 +340,7 @@ TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
 }
 
 TEST(BakeSequence, coinciding_vertices_show_one_normal) {
-  // The two halves of a roof have the ridge twice: 0 1 2 3 and 2' 3' 4 5.
+  // The two halves of a roof both have the ridge: 0 1 2 3 and 2' 3' 4 5.
   Motion motion;
   motion.topology = fixtures::make_polygons(8, {0, 4, 8}, {0, 1, 2, 3, 4, 5, 6, 7});
   Random random(6);
@@ -357,7 +357,7 @@ TEST(BakeSequence, coinciding_vertices_show_one_normal) {
   const Surface surface = smooth_surface(motion);
   EXPECT_EQ(surface.group[3], surface.group[4]);
   expect_exact(glb, surface);
-  // They part again at the crease without further vertices, since there are two already.
+  // With a hard edge they separate at the crease without additional vertices, since each half has its own already.
   const std::string hard_file = bake(motion, {.crease_angle = 20});
   const ShownGlb hard(hard_file);
   EXPECT_EQ(hard.vertices(), 8U);
@@ -369,10 +369,10 @@ TEST(BakeSequence, hard_edges_double_vertices_but_no_more_than_needed) {
   SequenceBake baked;
   const std::string file = bake(motion, {.crease_angle = 45}, &baked);
   const ShownGlb glb(file);
-  // A cube of 4 x 4 quads a side has 6 x 25 vertices if every side has its own.
+  // A cube with 4 x 4 quads per side has 6 x 25 vertices if each side has its own.
   EXPECT_EQ(glb.vertices(), 150U);
   EXPECT_EQ(baked.vertices, 150U);
-  // The positions of the motion come first.
+  // The vertices of the motion come first.
   for (std::size_t i = 0; i < motion.keyframes[0].positions.size(); ++i)
     EXPECT_EQ(glb.positions[i], motion.keyframes[0].positions[i]);
   Surface surface = split_surface(glb);
@@ -382,7 +382,7 @@ TEST(BakeSequence, hard_edges_double_vertices_but_no_more_than_needed) {
   expect_exact(glb, surface);
 }
 
-// Makes a sheet that is a point, or a line, in its first keyframe.
+// Makes a sheet that is a point or a line in its first keyframe.
 Motion unfolding(bool keep_half) {
   Motion motion = fixtures::smooth_morph(6);
   motion.keyframes.push_back(motion.keyframes[1]);
@@ -419,17 +419,18 @@ TEST(BakeSequence, a_first_keyframe_without_area_gets_a_target_of_its_own) {
 TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
   Motion motion = wandering(fixtures::icosphere(1), 4, 0.2, 8);
   for (std::size_t k = 1; k < 3; ++k) {
-    for (float& c : motion.keyframes[k + 1].positions) c *= 0x1p-12F;  // areas by 2^-24
+    for (float& c : motion.keyframes[k + 1].positions) c *= 0x1p-12F;  // reduces areas by a factor of 2^-24
   }
   SequenceBake baked;
   const std::string file = bake(motion, {.viewers = kAddingUp}, &baked);
   const ShownGlb glb(file);
   EXPECT_EQ(baked.warnings.size(), 1U);
-  // Positions are base + delta, and half a millionth of the sphere is left: their rounding is part of the surface.
+  // Positions are base + delta, and the sphere has shrunk to half a millionth, so the rounding of positions is part of
+  // the surface.
   expect_exact(glb, smooth_surface(motion));
 }
 
-// The first segment tells nothing about the elements in the last keyframe.
+// The last keyframe has elements that the first segment gives no information about.
 TEST(BakeSequence, elements_that_shrink_or_appear_at_the_end_are_right_from_the_start) {
   const test::TemporaryFolder folder;
   for (const bool appears : {false, true}) {
@@ -474,7 +475,7 @@ TEST(BakeSequence, elements_without_area_show_something_and_are_counted) {
   SequenceBake baked;
   const std::string file = bake(motion, {}, &baked);
   const ShownGlb glb(file);
-  EXPECT_EQ(baked.without_normals, 1U);  // all vertices are one point
+  EXPECT_EQ(baked.without_normals, 1U);  // all vertices coincide
   EXPECT_EQ(baked.extra_targets, 0U);
   for (std::size_t v = 0; v < glb.vertices(); ++v)
     EXPECT_EQ(glb.normal(v, glb.weights(0.5)), (ShownGlb::Point{0, 0, 1}));
@@ -508,7 +509,7 @@ TEST(BakeSequence, endpoint_states_its_true_error_and_is_right_at_the_keys) {
     for (std::size_t v = 0; v < glb.vertices(); ++v)
       EXPECT_LT(reference::angle(glb.normal(v, glb.weights(time)), exact[surface.group[v]]) / kDegree, 0.01);
   }
-  // The error is smaller than with unit normals at the keys.
+  // The error must be smaller than with unit normals at the keys.
   ShownGlb plain = glb;
   for (std::size_t k = 1; k < glb.times.size(); ++k) {
     const auto exact = exact_normals(glb, surface, glb.times[k]);
@@ -531,7 +532,7 @@ TEST(BakeSequence, other_weightings_are_fitted_and_their_error_is_stated) {
     const ShownGlb glb(file);
     EXPECT_GT(baked.largest_error, 0);
     EXPECT_LT(baked.largest_error, 5);
-    // At the keys the normals follow the weighting: sums of angles times unit normals.
+    // At the keys the normals follow the weighting: sums of unit normals times angles.
     for (std::size_t k = 0; k < 3; ++k) {
       std::vector<VectorD> expected(glb.vertices(), VectorD{});
       const auto position = [&](std::uint32_t v) { return glb.position(v, glb.weights(glb.times[k])); };
@@ -692,7 +693,7 @@ TEST(BakeSequence, progress_ends_with_everything_done) {
   EXPECT_GT(whole, 0U);
 }
 
-// Formats a figure as the documents do, which call a number that rounds to zero "below" the last digit.
+// Formats a figure like the documents, which print "below" the last digit if a number rounds to zero.
 std::string at_least(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
@@ -709,15 +710,15 @@ TEST(BakeSequence, real_sequences_are_exact) {
       {(folder / "sequences/md2_faerie/faerie.md2").string()},
       {(folder / "caches/max_cache_box/max_cache_box_44.obj").string(),
        (folder / "caches/max_cache_box/max_cache_box.pc2").string()}};
-  // Every segment is sampled at several times, including both ends. Section 15 of docs/theory.md has the results of 16
-  // times.
+  // Every segment is sampled at several times, including both ends. The results in section 15 of docs/theory.md are for
+  // 16 times.
   const bool is_full = std::getenv("CHRONORMAL_FULL") != nullptr;
   const int times = is_full ? 16 : 5;
   const std::string theory = test::read_whole(std::string(kSourceFolder) + "/docs/theory.md");
   for (const auto& input : inputs) {
     InputOptions options = test::files(input, 24);
     constexpr std::size_t kLastOfFirstClip = 39;
-    if (input[0].ends_with(".md2")) options.to = kLastOfFirstClip;  // between clips nothing moves
+    if (input[0].ends_with(".md2")) options.to = kLastOfFirstClip;  // between clips the mesh rests
     const Result<Motion> motion = test::read_motion(options);
     ASSERT_TRUE(motion.ok()) << motion.error().text();
     SequenceBake baked;

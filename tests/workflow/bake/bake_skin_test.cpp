@@ -1,5 +1,6 @@
-// Checks that smallest judges the normals behind the skin: the tolerance holds behind joints that squash, and in
-// viewers that carry normals in ways of their own; joints that turn and scale evenly change nothing.
+// Checks that the smallest candidate is judged by the normals behind the skin: the tolerance holds with joints that
+// squash, and in viewers with different rules for skinned normals. Joints that rotate and scale uniformly change
+// nothing.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ using Json = GltfBuilder::Json;
 
 constexpr std::size_t kSide = 5, kVertices = kSide * kSide, kTargets = 2;
 constexpr double kTolerance = 1;
-// Three.js carries normals through the blended matrix, Bevy through its inverse transpose.
+// Three.js transforms normals by the blended matrix, Bevy by its inverse transpose.
 const Viewer kThree = find_viewers("three").value()[0], kBevy = find_viewers("bevy").value()[0];
 
 BakeOptions smallest(double tolerance = kTolerance, std::vector<Viewer> viewers = {kThree}) {
@@ -46,7 +47,7 @@ const BakedCandidate& chosen(const Baked& baked) {
   return baked.report.meshes.at(0).candidates.at(0);
 }
 
-// Makes hills whose targets all play the same weights, a second from each to the next.
+// Makes hills whose targets all have the same weights, one second after each other.
 GltfBuilder played_hills(unsigned seed, const std::vector<float>& weights, const char* interpolation = "LINEAR") {
   GltfBuilder builder = test::hills_document(kTargets, seed);
   std::vector<float> times, values;
@@ -58,7 +59,7 @@ GltfBuilder played_hills(unsigned seed, const std::vector<float>& weights, const
   return builder;
 }
 
-// Makes a skin in which all vertices follow joint 0, or with `bent` follow joint 1 the more the larger their x is.
+// Makes a skin in which all vertices follow joint 0; if `bent`, vertices with larger x follow joint 1 more.
 Skin skin_of(bool bent) {
   Skin skin;
   skin.joints.emplace_back();
@@ -78,7 +79,7 @@ void add_skin(GltfBuilder& builder, const Skin& skin, const Trs& one, const Trs&
   skin.add_to(builder, {1, 2});
 }
 
-// Adds a channel that turns joint 1.
+// Adds a channel that rotates joint 1.
 void add_turns(GltfBuilder& builder, const std::vector<float>& times, const std::vector<float>& turns,
                const char* interpolation = "LINEAR") {
   const std::size_t input = builder.add_accessor("SCALAR", times), output = builder.add_accessor("VEC4", turns);
@@ -100,7 +101,7 @@ World standing(const Trs& one, const Trs& two = {}) {
   return [one, two](double) { return std::vector<Rows>{one.rows(), two.rows()}; };
 }
 
-// Returns the error behind the skin while the track of node 0 is played, at 101 times.
+// Returns the error behind the skin at 101 times of the track of node 0.
 test::ShownError seen_error(const Baked& baked, const Skin& skin, const World& world, Carry rule = Carry::kBlended) {
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<test::Pose> poses = test::poses_of(*baked.before, *baked.after, 0, 0);
@@ -127,8 +128,8 @@ TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
     float weight;
     double tolerance, height;
   };
-  std::size_t would_not_do = 0;  // choices without a skin that miss the tolerance
-  // In the last four cases, no candidate that meets the tolerance before skinning meets it behind the joint.
+  std::size_t would_not_do = 0;  // number of choices without the skin that miss the tolerance
+  // In the last four cases, no candidate within the tolerance before skinning is within it behind the joint.
   for (const Case& c : {Case{2, 0.2F, 1, 0.25},
                         {3, 0.2F, 1, 0.25},
                         {5, 0.2F, 1, 0.25},
@@ -155,7 +156,7 @@ TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
 }
 
 TEST(BakeSkin, tolerance_holds_where_the_joints_bend_while_the_weights_rest) {
-  // Joint 1 turns about y by 165 degrees within 40 milliseconds, and back.
+  // Joint 1 rotates about y by 165 degrees and back within 40 milliseconds.
   constexpr double kMost = 165 / 180.0 * std::numbers::pi;
   const auto turned = [](double angle) {
     Trs place;
@@ -266,7 +267,7 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
 }
 
 TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
-  // A joint that flattens normals for one viewer raises them for the other.
+  // A joint flattens normals for viewers of one kind, and stretches them for viewers of the other.
   const Trs high = scaled(1, 1, 4);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), high);
@@ -278,7 +279,7 @@ TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
 }
 
 TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
-  // The inverse transpose of a matrix that lowers is one that raises.
+  // If a matrix lowers the mesh, its inverse transpose raises it.
   const auto viewers_of = [](Real height, const std::vector<Viewer>& viewers) {
     GltfBuilder builder = played_hills(3, {0, 0.4F});
     add_skin(builder, skin_of(false), scaled(1, 1, height));
@@ -289,7 +290,7 @@ TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
   const std::vector<ViewerChange> both = viewers_of(0.25, {kThree, kBevy});
   const ViewerChange raised = viewers_of(4, {kThree}).at(0), even = viewers_of(1, {kThree}).at(0);
   ASSERT_EQ(both.size(), 2U);
-  for (std::size_t kind = 0; kind < 2; ++kind) {  // deltas of the file, and random ones
+  for (std::size_t kind = 0; kind < 2; ++kind) {  // deltas of the file, or random ones
     const ShownErrors &lowered = both[0].poses[kind].before, &bevy = both[1].poses[kind].before;
     EXPECT_GT(even.poses[kind].before.judged, 0U);
     EXPECT_GT(lowered.mean, 1.2 * even.poses[kind].before.mean);
@@ -299,7 +300,7 @@ TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
   }
 }
 
-// Describes the candidates that were considered, and the deltas of the result.
+// Returns text with the candidates that were considered, and the deltas of the result.
 std::string choices_of(const Baked& baked) {
   std::string text;
   for (const BakedCandidate& c : baked.report.meshes.at(0).candidates)
@@ -318,13 +319,13 @@ TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
   even.translation = {1, 2, 3};
   even.rotation = {0.6, 0, 0, 0.8};
   even.scale = {0.01, 0.01, 0.01};
-  Skin two = skin_of(false);  // rows of vertices that follow one joint or the other
+  Skin two = skin_of(false);  // rows of vertices follow one of the two joints
   for (std::size_t v = 0; v < kVertices; ++v) two.joints[0][4 * v] = static_cast<std::uint8_t>(v / kSide % 2);
   GltfBuilder builder = played_hills(2, {0, 0.4F});
   add_skin(builder, two, even);
   add_turns(builder, {0, 0.3F, 1}, {0, 0, 0, 1, 1, 0, 0, 0, 0.6F, 0, 0.8F, 0});
   EXPECT_EQ(choices_of(test::bake_document(builder, smallest())), choices_of(without));
-  // A skin that cannot be read changes nothing either.
+  // A skin that cannot be read also changes nothing.
   builder.json["nodes"][1]["scale"] = {1, 1, 0.1};
   EXPECT_NE(choices_of(test::bake_document(builder, smallest())), choices_of(without));
   builder.json["skins"][0]["joints"] = {1, 17};
@@ -332,7 +333,7 @@ TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
 }
 
 TEST(BakeSkin, each_node_that_a_track_drives_is_seen_through_its_own_skin) {
-  // Node 0 has no skin, and node 3 has one that flattens: both keep the tolerance.
+  // Node 0 has no skin, and node 3 has a skin that flattens: the tolerance holds for both.
   const Trs flat = scaled(1, 1, 0.25);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), flat);
@@ -346,7 +347,7 @@ TEST(BakeSkin, each_node_that_a_track_drives_is_seen_through_its_own_skin) {
   EXPECT_LT(seen_error(baked, skin_of(false), standing(flat)).worst, 1.02 * kTolerance);
   EXPECT_LT(seen_error(baked, skin_of(false), standing({})).worst, 1.02 * kTolerance);
   EXPECT_TRUE(chosen(baked).within);
-  // If the joint raises, errors on the node without a skin are larger than behind it.
+  // If the joint stretches, errors on the node without a skin are larger than on the skinned one.
   builder.json["nodes"][1]["scale"] = {1, 1, 8};
   const Baked raised = test::bake_document(builder, smallest());
   EXPECT_LT(seen_error(raised, skin_of(false), standing({})).worst, 1.02 * kTolerance);
@@ -378,8 +379,8 @@ TEST(BakeSkin, targets_without_an_animation_are_seen_in_the_pose_of_the_file) {
 }
 
 TEST(BakeSkin, no_surface_gets_worse_behind_the_skin) {
-  // The deltas of the file are right but for noise, so that some vertices have a better delta before skinning that is
-  // worse after it.
+  // The deltas of the file are exact plus noise, so for some vertices a delta that is better before skinning is worse
+  // after it.
   const Trs flat = scaled(1, 1, 0.1);
   for (const BakeEncoding encoding : {BakeEncoding::kEndpoint, BakeEncoding::kHarmless, BakeEncoding::kSmallest}) {
     for (unsigned seed = 1; seed <= 4; ++seed) {

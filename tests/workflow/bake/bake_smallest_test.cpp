@@ -1,6 +1,6 @@
 // Tests the smallest candidate of a bake: correction targets that only the animations of the file drive, within a
-// tolerance and a limit; and its promises for files that are long, that were baked before, or whose primitives share
-// their arrays.
+// tolerance and a limit; and its guarantees for long files, for files that were baked before, and for primitives that
+// share arrays.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ BakeOptions smallest(double tolerance) {
   return options;
 }
 
-// Draws weights of all targets at the given number of keys; cubic splines have tangents too.
+// Draws weights of all targets at the given number of keys; for cubic splines also tangents.
 std::vector<float> random_weights(std::size_t numbers, unsigned seed) {
   test::Hills random(seed);
   std::vector<float> weights;
@@ -124,7 +124,7 @@ TEST(BakeSmallest, leaves_a_file_alone_that_is_within_the_tolerance) {
   EXPECT_EQ(chosen(baked).name, "as it is");
 }
 
-// Moves two targets only between two of very many keys.
+// Moves two targets only once, between two of very many keys.
 std::vector<float> wink(std::size_t keys, std::size_t at) {
   std::vector<float> weights(2 * keys, 0.0F);
   weights[2 * at] = weights[2 * at + 1] = 1;
@@ -189,10 +189,10 @@ TEST(BakeSmallest, the_tracks_that_tell_most_are_those_where_weights_and_product
     track.keys.times = {0, 1, 2};
     track.keys.values = {0, 0.001 * static_cast<double>(t % 7), 0.001 * static_cast<double>(t % 11), 0, 0, 0};
   }
-  tracks[77].keys.values[2] = 0.3;   // one weight, the largest
-  tracks[78].keys.values[5] = -0.2;  // the other one
-  // In the middle of one track both targets move at once, though neither is at its largest. In another they move one
-  // after the other, so that their product is never as large as the product of their peaks.
+  tracks[77].keys.values[2] = 0.3;   // a single weight, the largest one
+  tracks[78].keys.values[5] = -0.2;  // the other weight
+  // In the middle of one track both targets move at once, but neither is at its maximum. In another track they move one
+  // after the other, so their product never reaches the product of their maxima.
   tracks[311].keys.values[2] = tracks[311].keys.values[3] = 0.1;
   tracks[402].keys.values = {0.15, 0, 0, 0, 0, 0.15};
   EXPECT_EQ(telling_tracks(tracks, 500).size(), 500U);
@@ -220,7 +220,7 @@ TEST(BakeSmallest, is_not_beaten_by_exact_in_bytes_and_error_at_once_whatever_th
       exact.encoding = BakeEncoding::kExact;
       const Baked ours = test::bake_document(builder, smallest(0.5)), theirs = test::bake_document(builder, exact);
       ASSERT_TRUE(ours.ok() && theirs.ok()) << ours.error << theirs.error;
-      constexpr std::size_t kNames = 8;  // "smallest" is longer than "exact" in two places
+      constexpr std::size_t kNames = 8;  // number of places where the name "smallest" is longer than "exact"
       const bool is_smaller = theirs.bytes.size() + kNames < ours.bytes.size();
       const double error = test::track_error(ours).worst, of_exact = test::track_error(theirs).worst;
       EXPECT_FALSE(is_smaller && 1.01 * of_exact < error)
@@ -367,7 +367,7 @@ TEST(BakeSmallest, a_result_is_not_worse_because_fewer_normals_are_judged) {
   EXPECT_FALSE(is_worse(after, before));
   after.sum = 52;
   EXPECT_TRUE(is_worse(after, before));
-  after.judged = 4000;  // the track got more keys
+  after.judged = 4000;  // the track has more keys after the bake
   after.sum = 200;
   EXPECT_FALSE(is_worse(after, before));
 }

@@ -1,5 +1,6 @@
-// Tests tangents of normal-mapped morphs: perpendicular to the right normal where a target has the weight 1, of length
-// 1, and along the texture, for viewers that add them up. The oracle moves texture coordinates along in long double.
+// Tests tangents of normal-mapped morphs for viewers that add them up: where a target has weight 1, a tangent must have
+// length 1, be perpendicular to the true normal, and follow the texture. The oracle transports texture coordinates in
+// long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,8 +36,8 @@ Vector tangent_of(const ShadedMesh& mesh, std::size_t v) {
   return {mesh.tangents[4 * v], mesh.tangents[4 * v + 1], mesh.tangents[4 * v + 2]};
 }
 
-// Returns the right normal of a vertex at weight 1: the normal of the geometry, turned in the same way as the stored
-// normal is in the base.
+// Returns the true normal of a vertex at weight 1: the geometry's normal, turned by the rotation of the stored normal
+// in the base.
 Vector right_normal(const ShadedMesh& mesh, std::size_t v, std::size_t target) {
   std::vector<double> none(mesh.targets.size()), one = none;
   one[target] = 1;
@@ -70,7 +71,7 @@ TEST(BakeTangents, are_unit_and_perpendicular_to_the_right_normal_at_weight_1) {
             << "seed " << seed << ", vertex " << v;
       }
     }
-    // An audit computes its own normals, and finds no errors.
+    // An audit, which computes normals independently, finds no errors.
     const test::GltfFixture after(baked.bytes);
     const Result<Audit> audit = chronormal::audit(*after, {});
     ASSERT_TRUE(audit.ok());
@@ -79,7 +80,7 @@ TEST(BakeTangents, are_unit_and_perpendicular_to_the_right_normal_at_weight_1) {
   }
 }
 
-// An affine map of a flat sheet takes the texture with it, so that the map also gives the tangent.
+// An affine map of a flat sheet also maps the texture, so its matrix gives the tangent.
 TEST(BakeTangents, follow_the_texture_through_shears_and_turns) {
   ShadedMesh mesh = sheet(3, 0);
   const auto map = [](const Vector& p) {
@@ -137,12 +138,12 @@ TEST(BakeTangents, count_against_a_limit_of_bytes_and_stay_where_it_has_no_room)
   }
 }
 
-// If the normals are right already, only tangents may have to be written.
+// If the normals are already right, it may be enough to write tangents.
 TEST(BakeTangents, are_written_alone_where_the_normals_are_right) {
   ShadedMesh mesh = test::hinge();
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
   mesh.tangents = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
-  // The target turns the square about y by 90 degrees, and its normal deltas follow at the ends and half way.
+  // The target turns the square about y by 90 degrees, and its normal deltas are exact at the ends and halfway.
   mesh.targets = {{{0, 0, 0, -1, 0, -1, 0, 0, 0, -1, 0, -1}, {1, 0, -1, 1, 0, -1, 1, 0, -1, 1, 0, -1}, {}}};
   BakeOptions options = by_area();
   options.tolerance = 180;

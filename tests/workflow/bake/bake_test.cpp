@@ -38,7 +38,7 @@ std::vector<Pose> poses_of_target(const Baked& baked, std::size_t mesh, std::siz
     pose.before[target] = i / 100.0;
     pose.after.assign(after["primitives"][0]["targets"].size(), 0.0F);
     pose.after[target] = static_cast<float>(i / 100.0);
-    if (!after.contains("extras") || !after["extras"].contains("chronormal")) {  // stays flat
+    if (!after.contains("extras") || !after["extras"].contains("chronormal")) {  // the mesh stays flat
       poses.push_back(std::move(pose));
       continue;
     }
@@ -59,8 +59,8 @@ ShownError target_error(const Baked& baked, std::size_t target, std::size_t mesh
                            poses_of_target(baked, mesh, target));
 }
 
-// Makes a random document: one to four targets of random extent, and a track of some interpolation with weights in [-1,
-// 2].
+// Makes a random document: one to four targets that move random parts, and a track with random interpolation and
+// weights in [-1, 2].
 GltfBuilder random_document(unsigned seed) {
   GltfBuilder builder;
   test::Hills hills(seed);
@@ -94,7 +94,7 @@ TEST(Bake, exact_is_exact_for_random_targets_and_tracks) {
 }
 
 TEST(Bake, what_is_not_baked_is_wrong) {
-  // This tests the measure itself: the same file has errors without correction targets.
+  // Tests the measurement itself: without correction targets, the same file must have errors.
   GltfBuilder builder = test::hills_document(1);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   Baked baked = test::bake_document(builder);
@@ -197,7 +197,7 @@ TEST(Bake, normals_of_extreme_length_are_brought_to_length_1_and_then_right) {
       if (encoding == BakeEncoding::kExact) test::expect_exact(test::track_error(baked));
     }
   }
-  // Other files keep their bits.
+  // Bakes of other files do not change.
   const Baked usual = test::bake_document(test::still_hills_document(1));
   EXPECT_EQ(usual.report.meshes[0].rescaled, 0U);
   EXPECT_EQ(usual.mesh()["primitives"][0]["attributes"],
@@ -248,7 +248,7 @@ TEST(Bake, targets_that_nothing_drives_get_the_best_single_delta) {
 
 TEST(Bake, a_baked_file_is_left_as_it_is) {
   for (const auto& [encoding, name] : kBakeEncodings) {
-    if (encoding == BakeEncoding::kKeys) continue;  // only for sequences
+    if (encoding == BakeEncoding::kKeys) continue;  // this encoding is only for sequences
     SCOPED_TRACE(name);
     GltfBuilder builder = test::hills_document(2);
     builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
@@ -263,7 +263,8 @@ TEST(Bake, a_baked_file_is_left_as_it_is) {
   }
 }
 
-// Blender 3.4 exports an imported file like this: with its own normals for each target, and numbers for true and false.
+// Blender 3.4 exports an imported file in this form: with its own normals for each target, and numbers instead of
+// booleans.
 TEST(Bake, extra_targets_that_another_program_emptied_are_left_and_new_ones_written_beside_them) {
   GltfBuilder builder = test::still_hills_document(1);
   Json& mesh = builder.json["meshes"][0];
@@ -313,11 +314,11 @@ TEST(Bake, base_without_area_is_right_but_near_weight_0) {
   GltfBuilder builder;
   test::Hills hills(5);
   const std::vector<float> spread = hills.positions;
-  hills.positions.assign(spread.size(), 0);  // all in one point
+  hills.positions.assign(spread.size(), 0);  // all vertices coincide
   builder.add_node(builder.add_mesh(hills.primitive(builder, {spread})));
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0.01F, 1});
-  // With split normals each vertex is an element, and none has an area in the base.
+  // With split normals each vertex is a separate element, and no element has an area in the base.
   const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   ASSERT_EQ(baked.error, "");
   EXPECT_EQ(baked.report.meshes[0].without_base, 25U);
@@ -338,7 +339,7 @@ TEST(Bake, smooth_gives_normals_to_flat_primitives) {
   EXPECT_EQ(flat.bytes, builder.glb());
   Baked smooth = test::bake_document(builder, {.encoding = BakeEncoding::kExact, .smooth = true});
   ASSERT_EQ(smooth.error, "");
-  // The truth reads base normals from the file, so it needs the new ones.
+  // The oracle reads base normals from the file, so it needs those of the bake.
   smooth.before = std::make_unique<test::GltfPlayer>(smooth.bytes);
   const test::GltfTruth truth(*smooth.before, 0);
   std::vector<Pose> poses;
@@ -388,7 +389,7 @@ TEST(Bake, pairs_below_the_tolerance_are_left_out_and_stated) {
 }
 
 TEST(Bake, pairs_of_a_long_animation_are_left_out_until_their_sum_is_the_tolerance) {
-  // There are more keys than measured poses, so that the loss of omitted terms is bounded by a sum.
+  // There are more keys than poses that are measured, so the loss of omitted terms is bounded by a sum.
   GltfBuilder builder;
   test::Hills hills(9);
   std::vector<std::vector<float>> deltas;
@@ -417,7 +418,7 @@ TEST(Bake, pairs_of_a_long_animation_are_left_out_until_their_sum_is_the_toleran
 TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
   GltfBuilder builder;
   test::Hills hills(8);
-  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.positions})));  // twice as large
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.positions})));  // the target doubles the size
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
@@ -426,8 +427,8 @@ TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
 }
 
 TEST(Bake, terms_along_the_normal_are_not_left_out_where_together_they_turn_it_over) {
-  // n = (1 + w0 + w1 + w2)^2 n(0) is 0.16 n(0) at weights of -0.2. No single square or pair is as long, but all
-  // together are.
+  // n = (1 + w0 + w1 + w2)^2 n(0) is 0.16 n(0) at weights of -0.2. No single square or product changes the length as
+  // much as all together.
   GltfBuilder builder;
   test::Hills hills(8);
   const std::vector<float>& grow = hills.positions;
@@ -489,8 +490,8 @@ TEST(Bake, fitted_weightings_are_right_where_one_or_two_targets_have_weight_1) {
   for (const std::vector<double>& weights :
        {std::vector<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}})
     EXPECT_LT(error_at(uniform, weights), 0.01);
-  // In between, and where three targets are active at once, it is a fit, which is closer than the area-weighted
-  // normals.
+  // In between, and when three targets are active, the result is a fit, which is closer to the requested weighting than
+  // area-weighted normals are.
   double of_uniform = 0, of_area = 0;
   for (const double w : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     for (const std::vector<double>& weights : {std::vector<double>{w, w, w}, {w, w, 0}, {w, 1 - w, 0}, {w, 0, 1 - w}}) {
@@ -526,7 +527,7 @@ TEST(Bake, errors_say_what_and_where) {
 }
 
 TEST(Bake, more_pairs_of_targets_than_a_file_can_carry_are_refused) {
-  constexpr std::size_t kTargets = 141;  // this gives 10,011 pairs
+  constexpr std::size_t kTargets = 141;  // this gives 10,011 products
   GltfBuilder builder = test::hills_document(kTargets);
   std::vector<float> weights(2 * kTargets);
   for (std::size_t k = 0; k < kTargets; ++k) weights[kTargets + k] = 1;
@@ -553,7 +554,7 @@ TEST(Bake, tiny_and_huge_meshes_are_as_exact) {
   }
 }
 
-// Bakes every moving glTF of the data: along its animations, and each target alone.
+// Bakes every moving glTF of the real data, and tests its animations, and each target alone.
 TEST(BakeRealData, exact_is_exact_in_every_file) {
   const char* data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
@@ -567,7 +568,7 @@ TEST(BakeRealData, exact_is_exact_in_every_file) {
     const Result<std::string> glb = GltfEdit(document.value()).bytes("a.glb");
     ASSERT_TRUE(glb.ok()) << glb.error().text();
     BakeOptions options = with(BakeEncoding::kExact);
-    options.weighting = Weighting::kArea;  // others are fitted
+    options.weighting = Weighting::kArea;  // with other weightings normals are only fitted
     const Baked baked = test::bake_bytes(glb.value(), options);
     ASSERT_EQ(baked.error, "");
     if (baked.report.meshes.empty()) continue;
@@ -594,7 +595,7 @@ TEST(BakeRealData, exact_is_exact_in_every_file) {
   EXPECT_GE(files, 9U);
 }
 
-// The choice of a candidate takes a long part of a bake, during which progress must go on.
+// Choosing a candidate takes a large part of the time of a bake, and progress must be reported during it.
 TEST(Bake, progress_goes_forward_while_a_form_is_chosen_and_ends_with_everything_done) {
   GltfBuilder builder = test::hills_document(3);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1, 0.5F, 1, 0, 1});

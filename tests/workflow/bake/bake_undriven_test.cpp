@@ -1,5 +1,5 @@
-// Tests rigs that nothing drives, whose correction targets have weights that are quadratics of the weights. Compares
-// the file with cross products in poses that are drawn here, and evaluates its formulas here too.
+// Tests rigs that nothing drives. Their correction targets have weights that are quadratics of the other weights.
+// Compares the file with cross products in random poses, and evaluates its formulas independently.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ GltfBuilder rig(unsigned seed, std::size_t targets = kTargets) {
   return test::with_misleading_normals(test::still_hills_document(targets, seed));
 }
 
-// Returns the weights of all targets, and takes the formulas of correction targets from the file.
+// Returns the weights of all targets, with correction targets by the formulas in the file.
 std::vector<float> driven(const Baked& baked, const std::vector<double>& own) {
   std::vector<float> all(own.begin(), own.end());
   const auto& extras = baked.mesh()["extras"]["chronormal"]["extras"];
@@ -94,7 +94,7 @@ TEST(BakeUndriven, shows_the_deltas_of_its_own_targets_alone_where_nobody_drives
 
 TEST(BakeUndriven, quadratics_of_many_terms_bring_a_rig_of_many_pairs_nearer) {
   BakeOptions options = smallest();
-  options.most_targets = 10 + 32;  // 32 out of 55 products
+  options.most_targets = 10 + 32;  // room for 32 of 55 products
   const Baked baked = test::bake_document(rig(5, 10), options), without = without_extras(5, 10);
   ASSERT_TRUE(baked.ok() && without.ok()) << baked.error << without.error;
   ASSERT_GT(baked.report.added_targets, 0U);
@@ -132,7 +132,7 @@ TEST(BakeUndriven, a_plan_says_what_more_and_more_extra_targets_gain) {
 }
 
 TEST(BakeUndriven, poses_that_are_given_decide_what_is_corrected) {
-  // Only targets 0 and 1 are ever up together.
+  // The targets 0 and 1 are the only ones that are active together.
   const auto poses = parse_poses("[[1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [1, 1, 0, 0, 0, 0]]", "poses.json");
   ASSERT_TRUE(poses.ok());
   BakeOptions options = smallest();
@@ -171,7 +171,7 @@ TEST(BakeUndriven, an_animation_that_moves_nothing_keeps_extra_targets_at_rest) 
   }
 }
 
-// The warning about a mesh that nothing drives is about this bake: correction targets that were written, or that gained
+// The warning about a mesh that nothing drives must fit this bake: correction targets were written, or would gain
 // nothing.
 TEST(BakeUndriven, says_that_nothing_drives_extra_targets_only_where_there_are_none) {
   const auto said = [](const Baked& baked) {

@@ -1,4 +1,4 @@
-// Compares the average, the worst and the quantile of a spread of errors with a list of all errors.
+// Compares the average, the worst and the quantile of a distribution of errors with a list of all errors.
 #include "workflow/bake/judge/error_spread.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kVertices = 400, kPoses = 50, kBatch = 20;
 
-// Draws (kVertices, kPoses) errors from 1e-4 to 100 degrees; some are not known.
+// Draws (kVertices, kPoses) errors from 1e-4 to 100 degrees; some are unknown.
 std::vector<float> errors_of_all(unsigned seed) {
   fixtures::Random random(seed);
   std::vector<float> errors;

@@ -1,5 +1,5 @@
-// Compares the findings of the judge of a bake with a list of all errors: the average, the worst, the 99.9 % quantile
-// and the torn edges. Also checks that a target alone is judged at its end.
+// Compares the results of a bake's judge with a list of all errors: the average, the worst, the 99.9 % quantile and the
+// torn edges. Also checks that a target alone is judged at its end.
 #include "workflow/bake/judge/judge.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-// Returns the edges of triangles, and chains of vertices that share a normal.
+// Returns the edges of triangles, and of chains of vertices that share a normal.
 std::set<Edge> edges_of(const GltfShading& shading) {
   std::set<Edge> edges;
   const Topology& topology = shading.set.topology;

@@ -1,4 +1,4 @@
-// Compares the search for the largest angle, which looks at few elements and poses, with a look at all of them.
+// Compares the search for the largest angle, which evaluates few elements and poses, with an evaluation of all of them.
 #include "workflow/bake/deltas/pair_turns.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kTargets = 4;
 
-// A morphing field of hills with everything that a meter refers to.
+// A morphing field of hills with all objects that a PairMeter refers to.
 class Field {
  public:
   explicit Field(unsigned seed)
@@ -41,8 +41,8 @@ class Field {
   [[nodiscard]] std::vector<Vec3d> normals(const std::vector<double>& pose) const {
     return normals_from_positions(shading_, pose);
   }
-  // Returns what both targets together add to their separate effects, from normals at weights 0 and 1. For one target
-  // with itself, this is the quadratic part of its weight.
+  // Returns the difference between both targets together and the sum of their separate effects, from normals at weights
+  // 0 and 1. For a target with itself, this is the quadratic part in its weight.
   [[nodiscard]] std::vector<Vec3d> term(std::size_t i, std::size_t j) const {
     std::vector<double> none(kTargets, 0.0), a = none, b = none, both = none;
     a[i] += 1;
@@ -67,7 +67,7 @@ class Field {
   std::vector<PairMeter::Pair> pairs_;
 };
 
-// The correction target of one target with itself takes away w (1 - w) of the term, the excess of the target alone.
+// The correction target of a target with itself has the weight w (1 - w).
 double weight_of(const PairMeter::Pair& pair, const std::vector<double>& pose) {
   const auto [i, j] = pair;
   return i == j ? pose[i] * (pose[i] - 1) : pose[i] * pose[j];

@@ -36,8 +36,8 @@ const SchemeComparison& row(const Comparison& comparison, const std::string& sch
 }
 
 TEST(Compare, one_face_by_hand) {
-  // The normal goes from +z to +x by a quarter turn of the frame. Halfway, at t = 1/2, linear is compared with the
-  // exact cross product.
+  // The normal turns from +z to +x by 90 degrees. Halfway, at t = 1/2, linear interpolation is compared with the exact
+  // cross product.
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
   motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, ""}, {{0, 0, 0, 0, 1, 0, 0, 0, 1}, 1, ""}};
@@ -55,7 +55,7 @@ TEST(Compare, one_face_by_hand) {
 }
 
 TEST(Compare, vertices_may_be_more_than_faces) {
-  // Schemes that search must not take a vertex for the face of the same number either: here are 4 vertices and 1 face.
+  // There are 4 vertices and 1 face: schemes that search must not confuse a vertex with the face of the same number.
   const Motion motion = fixtures::make_motion(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}),
                                               {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                                               {{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0.5}});
@@ -73,7 +73,7 @@ TEST(Compare, vertices_may_be_more_than_faces) {
   }
 }
 
-// Compares the whole table with an implementation that shares no code with it: average angles over faces and samples.
+// Compares the whole table with an independent implementation: average angles over faces and samples.
 TEST(Compare, agrees_with_the_oracle_to_the_printed_digits) {
   constexpr const char* kSchemes[] = {
       "recompute",         "polynomial",      "rational",         "linear",
@@ -194,7 +194,7 @@ TEST(Compare, refuses_what_makes_no_table) {
             "a shard keeps sums, and so does a run that goes on: the rest is of a whole motion");
 }
 
-// The elements of the oracle: the corners of each, and the first vertex or corner that shows it.
+// The elements of the oracle: the corners of each, and the first vertex or corner that belongs to it.
 struct OracleElements {
   reference::Mesh mesh;
   std::vector<std::vector<reference::Corner>> corners;
@@ -220,7 +220,7 @@ OracleElements oracle_elements(const Motion& motion, const ElementOptions& optio
   return elements;
 }
 
-// Evaluates a scheme for an element at t, from exact unit normals at the times that it asks for.
+// Evaluates a scheme for an element at t, from exact unit normals at the times that the scheme requests.
 std::optional<reference::Vector> oracle_normal(const std::string& scheme,
                                                const std::function<reference::Vector(reference::Real)>& exact,
                                                reference::Real t) {
@@ -235,7 +235,7 @@ std::optional<reference::Vector> oracle_normal(const std::string& scheme,
   if (scheme == "slerp") return reference::slerp(exact(0), exact(1), t);
   if (scheme == "decasteljau:4") return reference::spherical_de_casteljau(nodes(4), t);
   if (scheme == "linear") return add(scaled(1 - t, exact(0)), scaled(t, exact(1)));
-  const auto n = nodes(3);  // quadratic: Lagrange through three
+  const auto n = nodes(3);  // quadratic: the Lagrange polynomial through three normals
   return add(scaled((1 - t) * (1 - 2 * t), n[0]), add(scaled(4 * t * (1 - t), n[1]), scaled(t * (2 * t - 1), n[2])));
 }
 
@@ -276,7 +276,7 @@ TEST(Compare, vertices_and_corners_agree_with_the_oracle) {
       EXPECT_NEAR(static_cast<double>(quality.sum / static_cast<double>(quality.count)),
                   static_cast<double>(sum) / static_cast<double>(quality.count), 1e-7)
           << scheme;
-      if (scheme == "polynomial") continue;  // errs by rounding alone
+      if (scheme == "polynomial") continue;  // its error is only rounding
       EXPECT_NEAR(quality.sum, static_cast<double>(sum), 1e-6 * static_cast<double>(sum)) << scheme;
       EXPECT_EQ(quality.max_at.element, oracle.first_output[worst_element]) << scheme << ": a vertex, or a corner";
       EXPECT_NEAR(quality.max_at.t, static_cast<double>(worst_sample) / (kSamples - 1), 1e-12) << scheme;
@@ -284,7 +284,7 @@ TEST(Compare, vertices_and_corners_agree_with_the_oracle) {
   }
 }
 
-// Tests schemes between weighted normals; only area-weighted normals are quadratics.
+// Tests schemes with weighted normals; only area-weighted normals are exact quadratics.
 TEST(Compare, every_weighting_agrees_with_the_oracle) {
   fixtures::Random random(20261127);
   const Motion motion = fixtures::shaken(fixtures::box_grid(2), 0.3, random.below(1000));
@@ -304,8 +304,8 @@ TEST(Compare, every_weighting_agrees_with_the_oracle) {
         for (std::size_t i = 0; i < kSamples; ++i) {
           const Real t = static_cast<Real>(i) / (kSamples - 1);
           const auto exact = reference::exact_unit_normal(element, t);
-          // The scheme polynomial is defined as the quadratic through three normals, whose lengths only the library
-          // knows.
+          // For other weightings, the scheme polynomial is the quadratic through three normals, whose lengths only the
+          // library knows.
           const auto found = scheme == "polynomial" ? exact : reference::unit_normal(scheme, element, t);
           sum += reference::angle(exact.value(), found.value());
         }
@@ -337,9 +337,9 @@ TEST(Compare, weightings_are_of_vertices_and_have_no_certificates) {
 }
 
 TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
-  // The elements are 240 corners in 42 points, but the vertex with the largest error keeps its own number.
+  // The elements are 240 corners in 42 points, but the largest error is reported for its own vertex.
   Motion motion = test::torn(fixtures::shaken(fixtures::icosphere(1), 0.01, 22));
-  for (std::size_t v = 0; v < 240; ++v) {  // the point of vertex 239 alone goes far
+  for (std::size_t v = 0; v < 240; ++v) {  // only the point of vertex 239 moves far
     bool same = true;
     for (std::size_t k = 0; k < 3; ++k)
       same = same && motion.keyframes[0].positions[3 * v + k] == motion.keyframes[0].positions[3 * 239 + k];
@@ -351,7 +351,7 @@ TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
   const std::size_t apart = compare(motion, options).value().schemes[0].quality.max_at.element;
   EXPECT_LT(welded, 240U);
   EXPECT_LT(apart, 240U);
-  // With welding it is the first of its copies: no earlier vertex lies at its place.
+  // With welding, the reported vertex is the first of its copies.
   for (std::size_t v = 0; v < welded; ++v) {
     EXPECT_FALSE(std::equal(motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
                             motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3),
@@ -401,7 +401,7 @@ TEST(CompareCertified, no_sample_exceeds_the_bound_of_any_element) {
   }
 }
 
-// Normals of faces that cancel are judged where they exist; whole numbers tell where they do not.
+// Normals of faces that cancel are judged if they exist; integers tell where they do not.
 TEST(CompareCertified, vertices_whose_faces_cancel_are_seen) {
   fixtures::Random random(4917);
   constexpr std::size_t kSamples = 5;
@@ -491,7 +491,7 @@ TEST(BuiltinMorphs, are_there_by_name_and_have_the_faces_that_they_say) {
 }
 
 TEST(BuiltinMorphs, eversion_turns_inside_out) {
-  // The volume by the divergence theorem changes its sign.
+  // The volume, by the divergence theorem, changes its sign.
   const Motion motion = make_builtin_morph("eversion").value();
   const auto volume = [&motion](VectorView<const float> p) {
     double sum = 0;
@@ -524,8 +524,8 @@ Motion polygon(std::uint32_t corners) {
   return motion;
 }
 
-// The normal of a vertex is the normal of its polygon, for polygons small enough to be computed at each corner and for
-// larger ones.
+// The normal of a vertex equals the normal of its only polygon, both for small polygons, which are computed at each
+// corner, and for larger ones.
 TEST(Compare, vertices_of_a_polygon_have_the_errors_of_its_face) {
   for (const std::uint32_t corners : {3U, 5U, 32U, 33U, 34U, 200U}) {
     for (const std::size_t samples : {std::size_t{2}, std::size_t{5}, std::size_t{1000}}) {

@@ -1,4 +1,4 @@
-// The figures of one face, held against the textbook definitions of tests/support/reference.h.
+// Compares the figures of one face with the textbook definitions of tests/support/reference.h.
 #include "workflow/compare/face_figure.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 using reference::Real;
 using reference::Vector;
 
-constexpr Real kNear = 1e-6L;  // radians, and shares of a length
+constexpr Real kNear = 1e-6L;  // radians, or shares of a length
 
 Vector real(const Vec3d& v) { return {Real(v.x), Real(v.y), Real(v.z)}; }
 
@@ -36,7 +36,7 @@ reference::Triangle triangle_of(const FaceFigure& figure) {
   return triangle;
 }
 
-// The vector of a Lagrange scheme before it is normalised, by products of differences.
+// Returns the length of the vector of a Lagrange scheme before it is normalised, by products of differences.
 std::optional<Real> lagrange_length(const reference::Triangle& triangle, std::size_t degree, Real t) {
   const auto nodes = reference::exact_nodes(triangle, degree + 1);
   if (!nodes) return std::nullopt;
@@ -55,7 +55,7 @@ void expect_near(const Vec3d& found, const Vector& expected, const std::string& 
   EXPECT_LT(reference::length(reference::subtract(real(found), expected)), kNear) << what;
 }
 
-// Every point on its arc, by the literal recursion.
+// Checks that every point of de Casteljau's levels is on its arc, by the literal recursion.
 void expect_levels(const SchemeFigure& scheme, const reference::Triangle& triangle, std::size_t sample, Real t) {
   const auto nodes = reference::exact_nodes(triangle, scheme.nodes.size());
   if (!nodes) return;
@@ -86,7 +86,7 @@ void expect_tangents(const SchemeFigure& scheme, const reference::Triangle& tria
   if (!frames || scheme.scheme == "quaternion:optimal") return;
   const auto q0 = reference::to_quaternion(reference::to_matrix(frames->first));
   auto q1 = reference::to_quaternion(reference::to_matrix(frames->second));
-  if (std::fabs(reference::dot(q0, q1)) < 1e-4L) return;  // which way round is a matter of rounding
+  if (std::fabs(reference::dot(q0, q1)) < 1e-4L) return;  // rounding decides the direction of rotation
   if (reference::dot(q0, q1) < 0) q1 = reference::scaled(Real(-1), q1);
   const auto r = reference::to_matrix(*reference::slerp(q0, q1, t));
   expect_near(scheme.tangents[sample], {r[0][0], r[1][0], r[2][0]}, scheme.scheme + ", tangent");
@@ -108,7 +108,7 @@ void expect_matrix(const FaceFigure& figure, const reference::Triangle& triangle
 TEST(FaceFigure, paths_lengths_arcs_and_frames_are_those_of_the_textbook) {
   constexpr std::uint64_t kSeed = 55;
   std::cout << "seed " << kSeed << '\n';
-  std::map<std::string, std::size_t> held;  // samples of each scheme
+  std::map<std::string, std::size_t> held;  // number of compared samples of each scheme
   for (const double moves : {0.3, 3.0}) {
     const Motion motion = fixtures::soup({.face_count = 40, .seed = kSeed, .motion = moves});
     for (std::size_t face = 0; face < 40; ++face) {
@@ -129,10 +129,11 @@ TEST(FaceFigure, paths_lengths_arcs_and_frames_are_those_of_the_textbook) {
           const auto expected =
               reference::unit_normal(scheme.scheme, triangle, t, {face, 0}, real(scheme.normals[middle]));
           const auto name = reference::parse_scheme(scheme.scheme);
-          const bool is_tiny = !scheme.lengths.empty() && scheme.lengths[i] < 0.05;  // float32 is short of digits there
+          const bool is_tiny = !scheme.lengths.empty() && scheme.lengths[i] < 0.05;  // float32 has too few digits there
           if (!expected || is_tiny || name->kind == "quaternion:optimal") continue;
           const Vector normal = real(scheme.normals[i]);
-          if (reference::angle(normal, *expected) > 5 * kNear) continue;  // another branch: oracle_test.cpp holds those
+          // A choice between branches, which oracle_test.cpp tests.
+          if (reference::angle(normal, *expected) > 5 * kNear) continue;
           ++held[scheme.scheme];
           EXPECT_NEAR(scheme.angles[i], double(reference::angle(normal, *exact)), 1e-6) << scheme.scheme;
           const std::map<std::string_view, std::size_t> degrees = {{"linear", 1}, {"quadratic", 2}, {"cubic", 3}};
@@ -183,7 +184,7 @@ TEST(FaceFigure, q_is_that_of_the_comparison) {
 TEST(FaceFigure, a_face_that_collapses_or_has_more_corners_is_shown_as_far_as_it_is_one) {
   const Motion collapsing =
       fixtures::make_motion(fixtures::make_triangles(3, {0, 1, 2}), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                            {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}});  // no area at t = 1/2, then the other side
+                            {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}});  // no area at t = 1/2, then the other side up
   const FaceFigure figure = face_figure(collapsing, {0, 0, {"linear", "quaternion:matrix"}, 3}).value();
   EXPECT_EQ(figure.lengths[1], 0);
   EXPECT_TRUE(std::isnan(figure.schemes[0].angles[1]));

@@ -1,5 +1,5 @@
-// Normals between keyframes against keyframes that were left out: motions whose truth is known, figures computed here
-// from positions alone, and what is refused.
+// Compares normals between keyframes with keyframes that were left out, for motions whose true normals are known.
+// Figures are computed here from positions alone. Also tests refused requests.
 #include "chronormal/workflow/compare.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// Makes a round body at some times, with bumps so that no two normals are alike, and with more than one block of
-// elements.
+// Makes a round body at some times. Bumps make all normals different, and there is more than one block of elements.
 Motion body_at(const std::vector<double>& times, const std::function<Vec3d(const Vec3d&, double)>& moved) {
   constexpr std::size_t kAround = 48, kUp = 24;
   std::vector<Vec3d> places;
@@ -79,8 +78,8 @@ const Quality& row(const TruthComparison& comparison, const std::string& scheme)
   return comparison.rows.front().quality;
 }
 
-// Repeats the rule for faces: compares nlerp of the ends, and the cross product of the blended positions, with the face
-// of the frame that was left out.
+// The rule for faces, computed independently: nlerp of the ends, and the cross product of the blended positions,
+// compared with the face of the frame that was left out.
 struct Means {
   double linear = 0, polynomial = 0;
 };

@@ -1,4 +1,4 @@
-// Tests the single errors of an audit or a comparison, which add up to its sums, and their files.
+// Tests the single errors of an audit or a comparison, whose sums must equal the totals, and their files.
 
 #include "chronormal/workflow/errors.h"
 
@@ -41,7 +41,7 @@ Input twist() {
   return open_input(options).value();
 }
 
-// Audits a fold of two triangles, as a target and as an animation of two seconds.
+// Audits two triangles that fold, by a target and by an animation of two seconds.
 Audit hinge_audit(bool keep_errors) {
   test::GltfBuilder builder = test::hinge().file();
   builder.add_track(builder.add_animation("swing"), 0, std::vector<float>{0, 2}, std::vector<float>{0, 1});
@@ -106,7 +106,8 @@ TEST(ErrorTables, of_a_comparison_add_up_to_its_sums_for_every_kind_of_element) 
       const Sums sums = sums_of(table.degrees);
       const Quality& quality = found.schemes[s].quality;
       EXPECT_FLOAT_EQ(static_cast<float>(sums.worst), static_cast<float>(quality.max * kDegreesPerRadian));
-      if (kind == ElementKind::kCorners) continue;  // as many corners as faces around a vertex show one normal
+      // A vertex normal belongs to as many corners as there are faces around the vertex.
+      if (kind == ElementKind::kCorners) continue;
       EXPECT_EQ(sums.judged, quality.count);
       EXPECT_NEAR(sums.sum, quality.sum * kDegreesPerRadian, 1e-5 * sums.sum);
     }

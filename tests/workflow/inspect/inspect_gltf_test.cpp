@@ -40,7 +40,8 @@ TEST(InspectGltf, targets_with_and_without_normals_are_counted) {
 }
 
 TEST(InspectGltf, normals_that_differ_at_one_place_are_split_and_wrong_lengths_are_counted) {
-  // Vertex 2 is at the place of 0 with the same normal, 3 has another normal, and 4 one that differs by rounding only.
+  // Vertex 2 is at the position of 0 with the same normal, 3 has another normal, and 4 one that differs only by
+  // rounding.
   GltfBuilder builder;
   const std::vector<float> places = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, -0.0F, 0, 0, 1, 0};
   const std::vector<float> normals = {0, 0, 1, 0, 0, 1.2F, 0, 0, 1, 0, 1, 0, 0, 1e-4F, 1, 0, 0, 0};
@@ -60,7 +61,7 @@ TEST(InspectGltf, tracks_tell_their_time_and_their_weights) {
   const std::size_t animation = builder.add_animation("a");
   builder.add_track(animation, 0, {0.5F, 2}, std::vector<float>{0, 0.25F, 1.5F, -0.5F});
   const std::size_t spline = builder.add_animation("b");
-  // The tangents before the first key and after the last are not weights, and lead nowhere.
+  // The tangents before the first key and after the last one are not used.
   builder.add_track(spline, 0, {1, 3}, std::vector<float>{9, 9, 0, 1, 0, 0, 0, 0, 0.5F, 0.75F, 9, 9}, "CUBICSPLINE");
   const GltfInspection found = inspect_document(builder);
   ASSERT_EQ(found.tracks.size(), 2U);
@@ -86,8 +87,8 @@ TEST(InspectGltf, range_of_a_spline_is_what_it_reaches_between_its_keys) {
 }
 
 TEST(InspectGltf, split_normals_of_a_motion_are_at_vertices_that_stay_together) {
-  // Vertices 3 and 4 are at the places of 0 and 1 with other normals; 3 parts from 0. The second primitive lies on the
-  // first.
+  // Vertices 3 and 4 are at the positions of 0 and 1 with other normals; 3 separates from 0. The second primitive
+  // coincides with the first.
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -1, 0});
   const std::size_t target = builder.add_positions({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
@@ -106,7 +107,7 @@ TEST(InspectGltf, split_normals_of_a_motion_are_at_vertices_that_stay_together) 
   EXPECT_EQ(split_of(builder), 1U);
   builder.add_primitive(mesh, with_normals({1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 0}));
   EXPECT_EQ(split_of(builder), 2U);
-  // A third primitive lies elsewhere, so that it shares its normals with nobody.
+  // A third primitive is elsewhere, so it shares no normals.
   const std::size_t elsewhere = builder.add_positions({5, 0, 0, 6, 0, 0, 5, 1, 0, 5, 0, 1, 6, 0, 1, 5, -1, 0});
   auto third = with_normals({0, 0, -1, 0, 0, -1, 0, 0, -1, 0, -1, 0, 0, -1, 0, 0, -1, 0});
   third["attributes"]["POSITION"] = elsewhere;

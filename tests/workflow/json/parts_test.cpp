@@ -1,4 +1,4 @@
-// Parts of comparisons and audits are merged into the text of one run, and parts that do not fit are refused.
+// Parts of comparisons and audits are merged into the text of a single run, and parts that do not fit are refused.
 #include "workflow/json/parts.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ Motion bending() {
 }
 
 std::string merged(std::vector<Part> parts) {
-  std::reverse(parts.begin(), parts.end());  // any order
+  std::reverse(parts.begin(), parts.end());  // in any order
   const Result<MergedParts> all = merge_parts(parts);
   return all ? all.value().json : all.error().text();
 }
@@ -90,7 +90,7 @@ std::vector<Part> audit_parts(const Motion& motion, const StoredNormals& normals
   return parts;
 }
 
-// Writes a share of the moments.
+// Writes the samples of one shard.
 Result<SampleSummary> write_share(MotionStream& stream, const SampleOptions& options, const Moments& moments,
                                   const SampleOutput& output, const Shard& shard) {
   SegmentRun run;
@@ -104,7 +104,7 @@ Result<SampleSummary> write_share(const Motion& motion, const SampleOptions& opt
   return write_share(stream, options, moments, output, shard);
 }
 
-// The text of a part in which something else stands, with the checksum that it has then.
+// Returns the text of a part with a replacement, and with a checksum that fits.
 std::string edited(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -145,7 +145,7 @@ TEST(MergeParts, shards_of_a_comparison_give_the_bytes_of_one_run) {
 
 TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   const Motion motion = bending();
-  StoredNormals normals;  // the normals of every keyframe point up, which is wrong from the first one on
+  StoredNormals normals;  // the stored normals of every keyframe point up, which is wrong from the first keyframe on
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     normals.of_keyframes.emplace_back();
     for (std::size_t c = 0; c < motion.topology.corner_count(); ++c)
@@ -163,7 +163,7 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   }
 }
 
-// Ends a run after some segments, and hands its results to another run.
+// Ends a run after some segments, and passes its results to another run.
 TEST(KnownSegments, a_comparison_that_goes_on_gives_the_bytes_of_one_run) {
   const Motion motion = bending();
   MotionStream stream(motion);
@@ -348,7 +348,7 @@ TEST(MergeArrays, shards_of_samples_give_the_bytes_of_one_run) {
       parts.push_back(folder / ("part_" + std::to_string(i) + ".npy"));
       ASSERT_TRUE(write_share(motion, options, moments, {parts.back(), SampleFormat::kNpy, true}, {i, count}).ok());
     }
-    std::reverse(parts.begin(), parts.end());  // any order
+    std::reverse(parts.begin(), parts.end());  // in any order
     ASSERT_TRUE(merge_arrays(parts, folder / "merged.npy", true).ok());
     EXPECT_TRUE(test::read_whole(folder / "merged.npy") == test::read_whole(folder / "all.npy")) << count;
   }
@@ -461,7 +461,7 @@ std::vector<Task> tasks(const std::string& merged_path) {
            }}};
 }
 
-// Writes the part of a shard of a motion that is in memory, or of a stream that keeps nothing.
+// Writes the part of a shard, of a motion in memory or of a stream that keeps nothing.
 void write_part(const Task& task, const Motion& motion, bool is_kept, const Shard& shard, const std::string& path) {
   MotionStream whole(motion);
   if (is_kept) return task.write(whole, shard, path);
@@ -489,7 +489,7 @@ TEST(Parts, no_damage_gives_other_bytes) {
       const Result<std::string> merged = task.merge(paths);
       EXPECT_FALSE(merged.ok()) << what;
     };
-    // Damages every byte near the ends of the file, which describe the part, and some of the others.
+    // Changes every byte near the ends of the file, which describe the part, and some other bytes.
     for (std::size_t at = 0; at < part.size(); at += at < 128 || at + 128 > part.size() ? 1 : 1 + random() % 97) {
       std::string damaged = part;
       damaged[at] = static_cast<char>(random());
@@ -507,8 +507,8 @@ TEST(Parts, no_damage_gives_other_bytes) {
   }
 }
 
-// A keyframe changes between the shards, drawn at random together with the number of shards. If a motion is kept, every
-// shard looks at all of it; otherwise, keyframes that two shards read must be the same.
+// A random keyframe changes between shards, whose number is random, too. If the motion is in memory, every shard sees
+// all of it; otherwise, only keyframes that two shards read are compared.
 TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together) {
   constexpr unsigned kSeed = 20261126;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -520,11 +520,11 @@ TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together
       const std::size_t count = 2 + random() % 3, later = 1 + random() % (count - 1);
       const Motion before = bending();
       Motion after = before;
-      // If streams keep nothing, the keyframe is the first of the later shard, or 0, or the last one.
+      // If streams keep nothing, the changed keyframe is the first of the later shard, or 0, or the last one.
       const std::size_t boundary = Shard{later, count}.of(8).first;
       const std::size_t changed = is_kept ? random() % 9 : std::vector<std::size_t>{0, boundary, 8}[random() % 3];
       std::vector<float>& positions = after.keyframes[changed].positions;
-      float& coordinate = positions[6 + random() % (positions.size() - 6)];  // the first two vertices stand still
+      float& coordinate = positions[6 + random() % (positions.size() - 6)];  // the first two vertices rest
       coordinate = std::nextafter(coordinate, 2.0F);
       std::vector<std::string> paths;
       for (std::size_t i = 0; i < count; ++i) {
@@ -565,7 +565,7 @@ TEST(Parts, of_two_sequences_with_the_same_faces_and_times_do_not_belong_togethe
   }
 }
 
-// One pass of an audit reads a keyframe again after it has changed.
+// An audit reads a keyframe in one pass, and again in another pass after it has changed.
 TEST(Parts, are_not_written_of_a_keyframe_that_changes_while_it_is_read) {
   const Motion motion = bending();
   std::vector<int> reads(9);

@@ -1,5 +1,5 @@
-// Checks that answers whose rows have to be found keep the limit of expansion of their file while they grow, and not
-// only when all rows are in memory.
+// Checks that query results of unknown size respect the limit on expansion while they grow, and not only when all rows
+// are in memory.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using fixtures::Point;
 
 constexpr std::size_t kSegments = 400;
 
-// Makes a motion that goes to and fro between two shapes, over and over.
+// Makes a motion that alternates between two shapes many times.
 Motion to_and_fro(Topology topology, const std::vector<Point>& from, const std::vector<Point>& to) {
   Motion motion = fixtures::make_motion(std::move(topology), from, to);
   for (std::size_t k = 2; k <= kSegments; ++k) {
@@ -31,8 +31,8 @@ Motion to_and_fro(Topology topology, const std::vector<Point>& from, const std::
   return motion;
 }
 
-// Makes a strip of random triangles in a plane, each of which passes through a line while it turns over: a collapse and
-// a change of side in every segment.
+// Makes a strip of random triangles in a plane, each of which turns over and collapses to a line in between: a collapse
+// and a change of side in every segment.
 Motion turning_triangles() {
   constexpr std::size_t kFaces = 4'000;
   fixtures::Random random(20261125);
@@ -47,7 +47,7 @@ Motion turning_triangles() {
   return to_and_fro(fixtures::make_triangles(from.size(), std::move(corners)), from, to);
 }
 
-// Makes a tetrahedron that sweeps over the unit cube.
+// Makes a tetrahedron that moves across the unit cube.
 Motion sweeping_tetrahedron() {
   const std::vector<Point> from{{-2, -9, -9}, {-2, 20, -9}, {-2, -9, 20}, {-1, 0.5, 0.5}};
   std::vector<Point> to = from;
@@ -55,8 +55,8 @@ Motion sweeping_tetrahedron() {
   return to_and_fro(fixtures::make_triangles(4, {0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0}), from, to);
 }
 
-// Asks ask(span, progress) with the usual bounds and without any. The bounded question must end with the error of
-// Expansion long before the last segment, and the other one must find more than is allowed.
+// Calls ask(span, progress) with the usual limit and without. With the limit, the query must end with the error of
+// Expansion long before the last segment; without, it must find more rows than the limit allows.
 template <class Ask>
 void expect_bounded(const Ask& ask) {
   QuerySpan span;
@@ -72,7 +72,7 @@ void expect_bounded(const Ask& ask) {
   EXPECT_GT(last, 0);
   EXPECT_LT(last, kSegments / 2);
 
-  // The segments that were answered before the limit fit into it, so nothing is refused too early.
+  // The results of the segments before the limit fit, so nothing is refused too early.
   span.to = static_cast<double>(last);
   const Result<QueryAnswer> within = ask(span, {});
   ASSERT_TRUE(within) << within.error().text();

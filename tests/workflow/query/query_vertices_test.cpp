@@ -1,4 +1,4 @@
-// Questions about the normals of vertices and corners, against whole numbers of any size and against dense sums.
+// Compares queries about the normals of vertices and corners with integers of any size and with dense sums.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,10 +23,10 @@ using test::WholePolynomial;
 using test::WholeVector;
 
 constexpr std::uint64_t kSeed = 20261127;
-constexpr std::uint32_t kSide = 4;  // vertices
+constexpr std::uint32_t kSide = 4;  // vertices per side
 
-// A sheet of quads and triangles at three keyframes. Small whole coordinates meet every exact coincidence: sums of
-// faces that cancel, normals that are seen edge-on at a keyframe, vertices at the eye. Two vertices are at one point.
+// A sheet of quads and triangles with three keyframes. Small integer coordinates cause all exact coincidences: sums of
+// faces that cancel, normals that are seen edge-on at a keyframe, vertices at the eye. Two vertices coincide.
 Motion small_sheet(fixtures::Random& random, int reach) {
   Motion motion;
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -44,7 +44,7 @@ Motion small_sheet(fixtures::Random& random, int reach) {
       }
     }
   }
-  motion.topology = Topology::polygons(kSide * kSide + 1, offsets, corners).value();  // the last is in no face
+  motion.topology = Topology::polygons(kSide * kSide + 1, offsets, corners).value();  // the last vertex is in no face
   for (int k = 0; k < 3; ++k) {
     Motion::Keyframe keyframe;
     keyframe.time = k;
@@ -78,8 +78,8 @@ std::vector<double> numbers(const QueryTable& table, const std::string& name) {
   return {};
 }
 
-// Lists the faces that a normal is the sum of, by coordinates alone: those with a vertex at this point throughout. Two
-// fans of corners that touch in a point stay apart, so corners are of their vertex alone.
+// Lists the faces whose sum is a normal, by coordinates alone: faces with a vertex at the same point in all keyframes.
+// Two fans of corners that only touch in a point must stay separate, so corners use their own vertex alone.
 struct Output {
   std::uint32_t vertex = 0;
   std::vector<std::uint32_t> faces;
@@ -106,7 +106,8 @@ std::vector<Output> outputs_of(const Motion& motion, ElementKind kind) {
   return outputs;
 }
 
-// n . w of a vertex in a segment, times a positive number; the eye is at whole places and moves over both segments.
+// Returns n . w of a vertex in a segment, times a positive number; the eye is at integer positions and moves over both
+// segments.
 WholePolynomial facing_polynomial(const Segment& segment, const Output& output, const View& view) {
   std::array<Whole, 4> values;
   for (long t = -1; t <= 2; ++t) {
@@ -177,7 +178,7 @@ TEST(QueryVertices, sides_are_those_of_whole_numbers_at_every_instant) {
             EXPECT_LE(high - low, kWidestBracket);
             if (low > 0) instants.push_back(std::nextafter(low, 0));
             if (high < 1) instants.push_back(std::nextafter(high, 1));
-            const bool is_inside = 0 < high && low < 1;  // and no end of the segment
+            const bool is_inside = 0 < high && low < 1;  // and not an end of the segment
             if (is_inside && low < high) {
               EXPECT_GE(f.count_roots(low, high), 1U);
             }
@@ -207,7 +208,7 @@ TEST(QueryVertices, sides_are_those_of_whole_numbers_at_every_instant) {
   EXPECT_GT(touching, 100U);
 }
 
-// n(t) of an output in long double, from positions.
+// Returns n(t) of an output in long double, from positions.
 std::array<long double, 3> normal_at(const Segment& segment, const Output& output, long double t) {
   std::array<long double, 3> sum{};
   for (const std::uint32_t face : output.faces) {
@@ -249,7 +250,8 @@ TEST(QueryVertices, means_over_a_shutter_are_those_of_dense_sums) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       EXPECT_EQ(segments[r], 0);
       const Output& output = outputs[std::size_t(rows[r])];
-      // Simpson's rule, which is exact for the mean; the mean of the unit normal wants n(t) away from zero.
+      // Uses Simpson's rule, which is exact for the mean of n; the mean of the unit normal requires that n(t) stays
+      // away from zero.
       constexpr int kParts = 4000;
       std::array<long double, 3> sum{}, unit_sum{};
       long double shortest = 1e30L, longest = 0;

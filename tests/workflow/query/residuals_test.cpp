@@ -1,5 +1,5 @@
-// Compares a mesh beside the origin with the same mesh so far away that float32 cannot hold its coordinates and
-// keyframes keep residuals: every answer must be the same for both.
+// Compares a mesh near the origin with the same mesh so far away that float32 cannot represent its coordinates and
+// keyframes have residuals. All results must be equal.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,9 +34,9 @@ using fixtures::Random;
 constexpr std::uint64_t kSeed = 4902;
 constexpr int kMeshes = 16;
 constexpr Vec3d kAway{1.25, -1.5, 1.75};
-constexpr double kUnit = 0x1p-42, kSize = 0x1p-20;  // coordinates near the origin: 22 bits each
+constexpr double kUnit = 0x1p-42, kSize = 0x1p-20;  // unit and size of coordinates near the origin, which have 22 bits
 
-// Two meshes of one segment, from a closed surface or a soup that has collapses, slivers and planes.
+// The same mesh at two places, in one segment: a closed surface, or a soup with collapses, slivers and planes.
 struct Twins {
   Motion near, far;
 };
@@ -48,8 +48,8 @@ Twins random_twins(Random& random, bool is_soup) {
   const bool is_lattice = random.below(3) == 0;
   for (Motion::Keyframe& keyframe : twins.near.keyframes) {
     for (float& x : keyframe.positions) {
-      // A coarse lattice has many faces without area and corners on one line.
-      constexpr double kOdd = 349525;  // no point of the lattice is a float far away
+      // A coarse lattice causes many faces without area and corners on a line.
+      constexpr double kOdd = 349525;  // far away, no point of the lattice is a float
       const double units = is_lattice ? kOdd * std::round(2 * double{x}) : std::round(double{x} / 4 * (kSize / kUnit));
       x = static_cast<float>(kUnit * units);
     }
@@ -165,7 +165,7 @@ TEST_F(Residuals, leave_the_answers_of_queries_as_they_are_at_the_origin) {
   for_twins([](const Twins&, const Segment& near, const Segment& far, Random& random) {
     const std::size_t faces = near.topology->face_count();
     const fixtures::Point to = random.in_cube(1), first = random.in_cube(2 * kSize), last = random.in_cube(2 * kSize);
-    // The place of the eye must be a double beside the far mesh, too.
+    // The position of the eye must be a double near the far mesh, too.
     const auto eye = [](const fixtures::Point& p, const Vec3d& away) {
       const auto whole = [](double x) { return kUnit * std::round(x / kUnit); };
       return Vec3d{whole(p[0]), whole(p[1]), whole(p[2])} + away;
@@ -213,7 +213,7 @@ TEST_F(Residuals, leave_points_inside_or_outside_as_they_are_at_the_origin) {
     const Result<Containment> in_near = make(twins.near), in_far = make(twins.far);
     ASSERT_TRUE(in_near.ok()) << in_near.error().text();
     ASSERT_TRUE(in_far.ok());
-    // The points are multiples of 2^-23, which are representable in both places.
+    // The points are multiples of 2^-23, which are representable at both places.
     constexpr double kGrid = 0x1p-23;
     std::vector<float> from, to, far_from, far_to;
     for (int i = 0; i < 3 * 300; ++i) {
@@ -247,7 +247,7 @@ TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin
   std::cout << "seed " << kSeed << '\n';
   for (int i = 0; i < kMeshes; ++i) {
     Random random(kSeed + static_cast<std::uint64_t>(i));
-    // The surfaces have ordinary faces, since faces that collapse are judged by the size of the coordinates.
+    // The surfaces have only ordinary faces, since collapsing faces are judged relative to the size of the coordinates.
     Twins twins;
     for (const int k : {0, 1, 2}) {
       const Motion shaken = fixtures::shaken(fixtures::icosphere(1), 0.3, 100 * static_cast<std::uint64_t>(i) + 7);
@@ -268,7 +268,8 @@ TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin
     twins.far.topology = twins.near.topology;
     twins.near.connect_as_sequence();
     twins.far.connect_as_sequence();
-    for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle}) {  // in blocks, and not
+    // These weightings are computed in blocks, and vertex by vertex.
+    for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle}) {
       AuditOptions options;
       options.weighting = weighting;
       options.weld = false;

@@ -1,4 +1,4 @@
-// Tests the content of a report as a page reads it: tests/support/report_file.h computes the number of each worst place
+// Tests the content of a report as a page reads it: tests/support/report_file.h computes the error at each worst place
 // from the container alone.
 
 #include "workflow/report/report.h"
@@ -33,7 +33,7 @@ using test::ReportFile;
 
 constexpr double kAgree = 1e-3;  // degrees
 
-// Makes the report of an input, and keeps alive what it needs.
+// Makes the report of an input.
 Result<Report> report_of(InputOptions input, const ReportOptions& options = {}) {
   input.shading = KeepShading::kAll;
   Result<Input> opened = open_input(input);
@@ -41,7 +41,7 @@ Result<Report> report_of(InputOptions input, const ReportOptions& options = {}) 
   return report(opened.value(), options);
 }
 
-// Makes an input of bytes, which must outlive it.
+// Makes an input from bytes, which must outlive it.
 InputOptions input_of_glb(const std::string& glb) {
   InputOptions input;
   input.files = {"a.glb"};
@@ -59,8 +59,8 @@ ReportOptions without_plan() {
   return options;
 }
 
-// Checks that the numbers of the worst places follow from the container, and that the first is the worst error of the
-// audit.
+// Checks that the errors at the worst places follow from the container, and that the first one is the worst error of
+// the audit.
 ReportFile expect_numbers(const Report& found, std::size_t most_places = kMostWorstPlaces) {
   ReportFile file(found.container);
   EXPECT_FALSE(file.json.is_null());
@@ -78,7 +78,7 @@ ReportFile expect_numbers(const Report& found, std::size_t most_places = kMostWo
   return file;
 }
 
-// Makes a file of a mesh with three targets, which an animation plays together.
+// Makes a file of a mesh with three targets and an animation that plays them together.
 test::GltfBuilder talking(const test::ShadedMesh& mesh) {
   test::GltfBuilder builder = mesh.file();
   const std::size_t animation = builder.add_animation("talk");
@@ -89,8 +89,8 @@ test::GltfBuilder talking(const test::ShadedMesh& mesh) {
 
 test::GltfBuilder sheet_file(std::uint64_t seed, double tilt) { return talking(test::random_sheet(seed, 9, 3, tilt)); }
 
-// Makes a box whose six sides are quads with their own normals, so that each vertex has three. Its upper side turns,
-// and one corner of it rises, so that no two vertices do the same.
+// Makes a box whose six sides are quads with their own normals, so that each point has three vertices. Its upper side
+// turns, and one of its corners rises, so that all vertices move differently.
 std::string box(double twist, bool with_normals) {
   std::string text;
   for (int i = 0; i < 8; ++i) {
@@ -192,7 +192,7 @@ TEST(Report, numbers_of_a_file_with_an_author_follow_from_the_report_alone) {
     EXPECT_TRUE(part["faces"].is_null());
     ASSERT_TRUE(part.contains("truth"));
     const nlohmann::json &truth = part["truth"], &offsets = truth["offsets"];
-    std::map<std::size_t, std::size_t> polygons;  // keyed by their corners
+    std::map<std::size_t, std::size_t> polygons;  // keyed by their first corner
     const std::vector<std::uint32_t> first = file.numbers<std::uint32_t>(truth["polygons"]["first"]);
     for (std::size_t p = 0; p + 1 < first.size(); ++p) ++polygons[first[p + 1] - first[p]];
     EXPECT_EQ(polygons.size(), 2U);
@@ -233,7 +233,7 @@ TEST(Report, numbers_of_a_baked_file_follow_from_its_extra_targets) {
   how.encoding = BakeEncoding::kExact;
   const test::Baked baked = test::bake_bytes(sheet_file(13, 0.2).glb(), how);
   ASSERT_TRUE(baked.ok()) << baked.error;
-  // The weighting that it was baked for leaves no error.
+  // With the weighting of the bake, there is no error.
   ReportOptions by_angle = without_plan();
   by_angle.weighting = Weighting::kAngle;
   const Result<Report> found = report_of_glb(baked.bytes, by_angle);
@@ -311,7 +311,7 @@ TEST(Report, what_viewers_show_is_what_they_keep) {
   EXPECT_EQ(shown[1]["viewers"], nlohmann::json({"godot"}));
   EXPECT_EQ(shown[1]["least_weight"], 1e-4);
   EXPECT_EQ(shown[2]["viewers"], nlohmann::json({"gltfpack"}));
-  // With 8 bits, every component is a whole number of 127ths.
+  // With 8 bits, every component is an integer multiple of 1/127.
   for (const float component : file.numbers<float>(shown[2]["targets"][0]["deltas"]))
     EXPECT_NEAR(component * 127, std::round(component * 127), 1e-4);
   ASSERT_EQ(weights.size(), 2U);
@@ -319,7 +319,7 @@ TEST(Report, what_viewers_show_is_what_they_keep) {
   EXPECT_NE(file.numbers<float>(weights[1]["values"]), file.numbers<float>(weights[0]["values"]));
 }
 
-// Each target is a motion in which the others rest.
+// Each target is a motion in which the other targets rest.
 TEST(Report, bytes_are_linear_in_targets) {
   const auto peak = [](std::size_t targets) {
     test::GltfBuilder builder;
@@ -380,7 +380,7 @@ TEST(Report, plan_is_that_of_bake_or_says_why_there_is_none) {
   EXPECT_EQ(file.json["plan"]["command"], "bake");
   EXPECT_TRUE(file.json["plan_message"].is_null());
 
-  // A bake cannot be recorded if extras is not an object.
+  // If extras is not an object, a bake cannot be recorded.
   test::GltfBuilder builder = sheet_file(15, 0);
   builder.json["meshes"][0]["extras"] = "mine";
   const Result<Report> refused = report_of_glb(builder.glb());
@@ -434,7 +434,7 @@ TEST(Report, names_in_files_cannot_leave_the_script_element) {
   EXPECT_EQ(page.value().find("</script>"), page.value().rfind("</script>"));
 }
 
-// Checks the page of a mesh that is too large for it. Returns the report.
+// Checks the page of a mesh that exceeds the limit. Returns the report.
 Report expect_thinned(const InputOptions& input, ReportOptions options) {
   options.plan = false;
   const Result<Report> found = report_of(input, options);
@@ -448,8 +448,7 @@ Report expect_thinned(const InputOptions& input, ReportOptions options) {
   return found.value();
 }
 
-// Returns two reports of a file that is too large for a page of most_bytes: one within the limit, and one of the whole
-// file.
+// Returns two reports of a file that exceeds most_bytes: one within the limit, and one of the whole file.
 std::pair<Report, Report> thinned_and_whole(const std::string& glb, std::size_t most_bytes) {
   ReportOptions options;
   options.template_bytes = kTemplate.size();
@@ -463,7 +462,7 @@ std::pair<Report, Report> thinned_and_whole(const std::string& glb, std::size_t 
   return {thinned, whole.value()};
 }
 
-// Counts the judged triangles that meet in each vertex of part 0.
+// Counts the judged triangles around each vertex of part 0.
 std::vector<std::size_t> corners_of_vertices(const ReportFile& file) {
   std::vector<std::size_t> result(file.part(0)["vertices"].get<std::size_t>());
   for (const std::uint32_t v : file.numbers<std::uint32_t>(file.part(0)["triangles"])) ++result[v];
@@ -478,15 +477,15 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   const nlohmann::json& part = file.part(0);
   EXPECT_GT(part["coarse"]["count"], 0);
   EXPECT_LT(part["vertices"], 80 * 80);
-  // Labels still name the vertex of the file.
+  // Labels still name the vertex in the file.
   for (std::size_t i = 0; i < found.worst.size(); ++i)
     EXPECT_EQ("mesh 0, primitive 0, vertex " + std::to_string(file.label(part, found.worst[i].vertex)),
               found.worst[i].label);
-  // A whole report of the same file has the same places with the same numbers.
+  // A complete report of the same file has the same places with the same errors.
   EXPECT_TRUE(whole.thinned.empty());
   ASSERT_EQ(whole.worst.size(), found.worst.size());
   for (std::size_t i = 0; i < found.worst.size(); ++i) EXPECT_EQ(whole.worst[i].label, found.worst[i].label);
-  // Every vertex that is still judged has all of its triangles. (Each vertex of the sheet is an element of its own.)
+  // Every vertex that is still judged has all of its triangles. (Each vertex of the sheet is a separate element.)
   const ReportFile all(whole.container);
   const std::vector<std::size_t> had = corners_of_vertices(all), has = corners_of_vertices(file);
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]);
@@ -500,8 +499,8 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   EXPECT_GT(judged, 200U);
 }
 
-// Returns the vertices that the truth of each judged vertex of part 0 depends on, by their numbers in the file: the
-// vertices around its polygons, and the ends of its edges. Throws if one of them is missing.
+// Returns the vertices on which the true normal of each judged vertex of part 0 depends, by their numbers in the file:
+// the vertices of the polygons around it, and the ends of its edges. Throws if one of them is missing.
 std::map<std::size_t, std::vector<std::size_t>> seen_by_truths(const ReportFile& file) {
   const nlohmann::json &part = file.part(0), &truth = part["truth"], &offsets = truth["offsets"];
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]),
@@ -567,13 +566,13 @@ TEST(Report, worst_segments_of_a_long_sequence_stay_with_their_neighbours) {
   const std::vector<std::size_t> numbers = keys["numbers"];
   const std::vector<std::uint32_t> segments = file.numbers<std::uint32_t>(keys["segments"]),
                                    of_sample = file.numbers<std::uint32_t>(track["segment"]);
-  std::set<std::size_t> known;  // segments of the file
+  std::set<std::size_t> known;  // the segments that the file contains
   for (std::size_t s = 0; 2 * s < segments.size(); ++s) {
     EXPECT_EQ(numbers[segments[2 * s]] + 1, numbers[segments[2 * s + 1]]);
     known.insert(numbers[segments[2 * s]]);
   }
   EXPECT_LT(known.size(), 199U);
-  EXPECT_EQ(of_sample.size(), 199U * 5);  // the errors of all are plotted
+  EXPECT_EQ(of_sample.size(), 199U * 5);  // the plot has the errors of all samples
   for (const ReportPlace& place : found.worst) {
     const std::size_t segment = place.sample / 5;
     for (const std::size_t s : {segment == 0 ? 0 : segment - 1, segment, std::min<std::size_t>(segment + 1, 198)})

@@ -1,5 +1,5 @@
 // Tests samples that continue after the rows of an earlier run; tests/cli/resume_cli_test.cpp and
-// tests/faults/killed_test.cpp test the whole way.
+// tests/faults/killed_test.cpp test the program as a whole.
 #include "workflow/sample/continued_samples.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kRun = "a run";
 const Moments kMoments{{0, 0.25, 0.5, 1}, {}};
 
-// Writes `most` samples and then gives up.
+// Writes at most `most` samples and then stops.
 Result<SampleSummary> sampled(const test::TemporaryFolder& folder, std::size_t most, SampleOutput output) {
   const Motion motion = make_builtin_morph("twist").value();
   MotionStream stream(motion);
@@ -43,7 +43,7 @@ TEST(ContinuedSamples, count_the_normals_of_all_rows) {
   EXPECT_EQ(all.value().normals, whole.normals);
   EXPECT_EQ(all.value().zeros, whole.zeros);
   EXPECT_TRUE(test::read_whole(folder / "out.npy") == test::read_whole(folder / "whole.npy"));
-  // The output is whole, and only its journal was not yet removed.
+  // The output is complete, and only its journal still exists.
   const Result<SampleSummary> again = sampled(folder, 1, output);
   ASSERT_TRUE(again.ok()) << again.error().text();
   EXPECT_EQ(again.value().normals, whole.normals);
@@ -60,7 +60,7 @@ TEST(ContinuedSamples, refuse_what_cannot_be_continued) {
     ASSERT_FALSE(refused.ok()) << path;
     EXPECT_EQ(refused.error().code, code) << refused.error().text();
   }
-  EXPECT_EQ(folder.entry_count(), 1U);  // the journal
+  EXPECT_EQ(folder.entry_count(), 1U);  // only the journal
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Compares normals of glTF files with rational numbers made from the numbers in the file: base, deltas, weights and
+// Compares normals of glTF files with rational numbers computed from the numbers in the file: base, deltas, weights and
 // times.
 #include <gtest/gtest.h>
 
@@ -37,16 +37,16 @@ constexpr double kMillionth = 1e-6;
 
 double decade(Random& random, double low, double high) { return std::pow(10, random.uniform(low, high)); }
 
-// The numbers of a file with one animated mesh on each of some nodes.
+// The numbers of a file with animated meshes, each on one of several nodes.
 struct File {
   struct Track {
-    std::vector<float> times, values;  // LINEAR; a row of weights for each time
+    std::vector<float> times, values;  // LINEAR keys; a row of weights for each time
   };
   std::vector<float> base;
   std::vector<std::uint32_t> corners;
   std::vector<std::vector<float>> targets;
   std::vector<Track> tracks;                     // one for each node
-  std::vector<std::array<double, 16>> matrices;  // one for each node, column after column
+  std::vector<std::array<double, 16>> matrices;  // one for each node, column by column
 
   [[nodiscard]] std::size_t vertices() const { return base.size() / 3; }
 
@@ -62,7 +62,7 @@ struct File {
     return builder;
   }
 
-  // Returns the weights of the mesh on a node at a time, linear between keys.
+  // Returns the weights of the mesh of a node at a time, linear between keys.
   [[nodiscard]] std::vector<Rational> weights_at(std::size_t node, const Rational& time) const {
     const auto& [times, values] = tracks[node];
     std::vector<Rational> weights(targets.size());
@@ -107,8 +107,8 @@ struct File {
   }
 };
 
-// Makes fans of triangles with edges down to a thousandth, and slivers, all over the unit cube. Targets move each as a
-// whole, and its vertices a little against each other; vertices of a sliver move along its line.
+// Makes fans of triangles with edges down to a thousandth, and slivers, all over the unit cube. Targets move each fan
+// as a whole and its vertices slightly against each other; vertices of a sliver move along its line.
 File random_file(Random& random, std::size_t nodes) {
   File file;
   std::vector<std::size_t> fan_of_vertex;
@@ -127,7 +127,7 @@ File random_file(Random& random, std::size_t nodes) {
       const double angle = 6.283 * static_cast<double>(i) / 5;
       const fixtures::Point off = random.in_cube(0.2 * sizes.back());
       const fixtures::Point flat = {sizes.back() * std::cos(angle), sizes.back() * std::sin(angle), 0};
-      // Only rounding keeps the corners of a sliver from lying on one line.
+      // Without rounding, the corners of a sliver would be on a line.
       const double way = random.uniform(0.2, 1) * static_cast<double>(i);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double from_centre = is_sliver ? way * along[axis] : i == 0 ? off[axis] : flat[axis] + off[axis];
@@ -177,7 +177,7 @@ GltfMotion motion_of(const File& file, const std::string& animation, bool world)
   return std::move(motion).value();
 }
 
-// Compares unit normals of faces or of vertices with the exact ones, and keeps the largest error.
+// Compares unit normals of faces or vertices with the exact ones, and keeps the largest error.
 class Judge {
  public:
   void add(const std::string& way, std::span<const float> found, std::span<const exact::Vector> exact,

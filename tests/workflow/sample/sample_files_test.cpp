@@ -1,4 +1,4 @@
-// Tests files of samples: their names, their bytes, and the requests that are refused before the first file is written.
+// Tests files of samples: their names, their bytes, and requests that are refused before the first file is written.
 #include "chronormal/workflow/sample.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ SampleOptions options_of(ElementKind kind, double crease_angle = 180) {
   return options;
 }
 
-// Returns the normals that files must have at a time, as one of `evaluations` times in a segment.
+// Returns the expected normals of the files at a time, which is one of `evaluations` times in a segment.
 std::vector<float> normals_at(const Motion& motion, const SampleOptions& options, double time, double evaluations = 1) {
   NormalSampler sampler = NormalSampler::make(motion, options).value();
   return sampler.normals_of_outputs(sampler.at_time(time, evaluations).value());
@@ -161,7 +161,7 @@ TEST(WriteSamples, ply_has_normals_of_vertices_or_of_faces) {
     ASSERT_NE(at, std::string::npos);
     EXPECT_EQ(at > list, faces) << "after the properties of its element";
     EXPECT_EQ(bytes.find(properties, at + 1), std::string::npos);
-    // x y z of a vertex are 12 bytes; a quad is a byte and four indices of 4 bytes.
+    // The x, y and z of a vertex are 12 bytes; a quad is one byte and four indices of 4 bytes.
     const std::size_t first = end + 11 + (faces ? 8 * 12 + 17 : 12), stride = faces ? 17 + 12 : 24;
     const auto expected = normals_at(motion, options_of(kind), 0.5);
     for (std::size_t i = 0; i < expected.size(); ++i) {

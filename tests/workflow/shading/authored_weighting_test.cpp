@@ -1,5 +1,5 @@
-// Checks that the weighting of an author is found in the stored normals, against an oracle for each weighting that
-// shares no code with src/, and that none is found where there is nothing to find.
+// Checks that the weighting of an author is recognised in the stored normals, against an independent oracle for each
+// weighting, and that none is found if the normals do not tell.
 #include "workflow/shading/authored_weighting.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ void store(const std::string& weighting, const std::vector<std::vector<std::size
   }
 }
 
-// Makes a bumpy sheet whose normals follow a weighting, with one target that lifts a corner of it.
+// Makes a bumpy sheet whose normals follow a weighting, with one target that lifts a corner.
 ShadedMesh sheet(const std::string& weighting, std::uint64_t seed = 1, std::size_t side = 8) {
   ShadedMesh mesh = test::random_sheet(seed, side, 0, 0);
   store(weighting, triangles_of(mesh), mesh);
@@ -88,7 +88,7 @@ void quantise(int bits, ShadedMesh& mesh) {
   for (float& c : mesh.normals) c = std::round(c * most) / most;
 }
 
-// Turns each normal with this probability, by some 20 degrees.
+// Turns a share of the normals by some 20 degrees.
 void bend(double share, ShadedMesh& mesh) {
   fixtures::Random random(7);
   for (std::size_t v = 0; v < mesh.vertices(); ++v) {
@@ -139,7 +139,7 @@ TEST(AuthoredWeighting, survives_eight_bits_and_normals_that_an_author_bent) {
 
 TEST(AuthoredWeighting, of_quads_is_found_after_they_were_cut_into_triangles) {
   for (const std::string weighting : {"area", "angle"}) {
-    // A wave runs along columns that grow in width, so that large quads stand beside small ones; all are nearly flat.
+    // A wave crosses columns of growing width, so that large quads are beside small ones; all are nearly flat.
     ShadedMesh mesh = sheet(weighting);
     for (std::size_t v = 0; v < mesh.vertices(); ++v) {
       float* const p = mesh.positions.data() + 3 * v;
@@ -153,7 +153,7 @@ TEST(AuthoredWeighting, of_quads_is_found_after_they_were_cut_into_triangles) {
 }
 
 TEST(AuthoredWeighting, is_area_where_all_agree_or_none_comes_close) {
-  // A plane has one normal, whatever the weighting.
+  // A plane has the same normal by every weighting.
   ShadedMesh plane = sheet("max");
   for (std::size_t v = 0; v < plane.vertices(); ++v) plane.positions[3 * v + 2] = 0;
   store("max", triangles_of(plane), plane);
@@ -161,7 +161,7 @@ TEST(AuthoredWeighting, is_area_where_all_agree_or_none_comes_close) {
   quantise(6, plane);
   bend(1, plane);
   EXPECT_EQ(detected_in(plane), "area");
-  // With hard edges, each face has normals of its own.
+  // With hard edges, each face has its own normals.
   ShadedMesh flat = sheet("angle"), apart;
   for (const std::uint32_t v : flat.corners) {
     for (std::size_t c = 0; c < 3; ++c) apart.positions.push_back(flat.positions[3 * v + c]);
@@ -172,7 +172,7 @@ TEST(AuthoredWeighting, is_area_where_all_agree_or_none_comes_close) {
   apart.targets.emplace_back().positions.resize(apart.positions.size());
   apart.targets[0].positions.back() = 1;
   EXPECT_EQ(detected_in(apart), "area");
-  // The sheet has the normals of a sphere far below, though it is none.
+  // The sheet has the normals of a sphere far below, which do not fit its faces.
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     ShadedMesh bent = sheet("angle", seed);
     for (std::size_t v = 0; v < bent.vertices(); ++v) {

@@ -1,4 +1,4 @@
-// Compares the author's truth with sums over polygons in long double, on random meshes.
+// Compares the author's intended normals with sums over polygons in long double, on random meshes.
 #include "workflow/truth/author_truth.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ struct Authored {
     result.to = result.from;
     return result;
   }
-  // Returns the weighted sums around all vertices.
+  // Returns the weighted sums of all vertices.
   [[nodiscard]] std::vector<Vector> sums(const std::string& weighting, const std::vector<double>& weights) const {
     const reference::Mesh at = mesh(weights);
     std::vector<Vector> result(file.vertices(), Vector{});
@@ -69,7 +69,7 @@ struct Authored {
     for (Vector& sum : result) sum = reference::normalised(sum);
     return result;
   }
-  // Stores the normals of the base, and the deltas of the targets.
+  // Stores the normals of the base and the deltas of the targets in the file.
   void store(const std::vector<Vector>& base, const std::vector<std::vector<Vector>>& keys) {
     file.normals.clear();
     for (const Vector& n : base)
@@ -196,7 +196,7 @@ TEST(AuthorTruth, a_mesh_of_plain_triangles_keeps_its_triangles) {
 TEST(AuthorTruth, larger_polygons_are_found_in_whatever_order_their_triangles_are) {
   std::mt19937 random(kSeed + 2);
   for (int draw = 0; draw < 6; ++draw) {
-    // A cylinder of quads has a cap of n corners, which is cut into triangles from one of them, at random.
+    // A cylinder of quads has a cap of n corners, which is cut into triangles from a random corner.
     const std::size_t n = 5 + random() % 6;
     Authored mesh;
     std::uniform_real_distribution<float> hill(-0.15F, 0.15F);
@@ -305,7 +305,7 @@ TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
     Authored mesh = quads(random);
     std::array<std::vector<Vector>, 3> stored = {mesh.sums("angle", {0, 0}), mesh.sums("angle", {1, 0}),
                                                  mesh.sums("angle", {0, 1})};
-    // A third of the normals are bent, differently in each key.
+    // A third of the normals are edited, differently in each key.
     for (std::size_t v = 0; v < stored[0].size(); v += 3)
       for (std::vector<Vector>& of_key : stored) of_key[v] = bent(of_key[v], random, 0.3);
     mesh.store(stored[0], {stored[1], stored[2]});
@@ -317,14 +317,14 @@ TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
       EXPECT_LT(degrees_between(truth.at(v, mesh, {1, 0}), stored[1][v]), 0.02) << v;
       EXPECT_LT(degrees_between(truth.at(v, mesh, {0, 1}), stored[2][v]), 0.02) << v;
     }
-    // Where nothing was bent, the truth is the rule at all weights.
+    // If no normal was edited, the intended normals follow the rule at all weights.
     const std::vector<Vector> right = mesh.sums("angle", {0.6, 0.7});
     for (std::size_t v = 1; v < right.size(); v += 3)
       EXPECT_LT(degrees_between(truth.at(v, mesh, {0.6, 0.7}), right[v]), 0.02) << v;
   }
 }
 
-// Returns the offset that the author adds to a sum: perpendicular to it, and as long as the angle between them.
+// Returns the offset that the author adds to a sum: a vector perpendicular to the sum whose length is the angle.
 Vector added_to(const Vector& sum, const Vector& stored) {
   using namespace reference;
   const Vector across = normalised(add(stored, scaled(-dot(sum, stored), sum)));
@@ -337,8 +337,8 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
   RecordProperty("seed", static_cast<int>(kSeed + 8));
   constexpr std::size_t kSide = 9;
   for (int draw = 0; draw < 4; ++draw) {
-    // Both targets only scale five rows up, so that their sums stay as they are, whatever edge azimuths are measured
-    // from.
+    // Both targets only scale five rows, so the directions of their sums do not change, whatever edge azimuths are
+    // measured from.
     Authored mesh = quads(random, kSide);
     for (auto& target : mesh.file.targets)
       for (std::size_t i = 0; i < 3 * 5 * kSide; ++i) target.positions[i] = mesh.file.positions[i];
@@ -347,7 +347,7 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
     for (std::size_t v = 0; v < 4 * kSide; ++v) {
       for (std::vector<Vector>& of_key : stored) {
         if (v % 3 == 0) of_key[v] = bent(of_key[v], random, 0.2);
-        if (v % 4 == 0) of_key[v] = scaled(Real(-1), of_key[v]);  // the other side
+        if (v % 4 == 0) of_key[v] = scaled(Real(-1), of_key[v]);  // points to the other side
       }
     }
     mesh.store(stored[0], {stored[1], stored[2]});
@@ -377,7 +377,7 @@ TEST(AuthorTruth, azimuths_are_measured_from_the_edge_with_which_offsets_change_
   std::mt19937 random(kSeed + 13);
   constexpr std::size_t kSide = 9, kBent = 2 * kSide + 4;
   Authored mesh = quads(random, kSide);
-  // Five rows are flat, and only a neighbour of the bent vertex moves there, within the plane.
+  // Five rows are flat, and only a neighbour of the edited vertex moves there, within the plane.
   for (std::size_t v = 0; v < 5 * kSide; ++v) {
     mesh.file.positions[3 * v] = static_cast<float>(v % kSide);
     mesh.file.positions[3 * v + 1] = static_cast<float>(v / kSide);
@@ -408,7 +408,7 @@ TEST(AuthorTruth, smooth_normals_beside_faces_that_are_shaded_flat_add_up_these_
     const std::array<reference::Mesh, 3> keys = {mesh.mesh({0, 0}), mesh.mesh({1, 0}), mesh.mesh({0, 1})};
     for (std::size_t q = 0; q < mesh.polygons.size(); ++q) {
       if (random() % 5 != 0) continue;
-      // The flat face gets vertices of its own, while its corners still count for the vertices around it.
+      // The flat face gets its own vertices, while its corners still contribute to the vertices around it.
       const std::vector<std::size_t>& corners = mesh.polygons[q];
       for (const std::size_t corner : corners) {
         const auto copy = static_cast<std::uint32_t>(mesh.file.vertices());
@@ -491,7 +491,7 @@ TEST(AuthorTruth, a_key_that_does_not_turn_as_the_surface_does_is_stale_and_the_
   for (const bool is_noise : {false, true}) {
     Authored mesh = quads(random);
     const std::vector<Vector> base = mesh.sums("angle", {0, 0});
-    std::vector<Vector> second = base;  // it turns nothing but a little, so that an exporter keeps it
+    std::vector<Vector> second = base;  // a small change of normals, so that an exporter keeps the target
     for (Vector& n : second) n = bent(n, random, is_noise ? 0.6 : 1e-3);
     mesh.store(base, {mesh.sums("angle", {1, 0}), second});
     const Truth truth(mesh.file);
@@ -504,12 +504,12 @@ TEST(AuthorTruth, a_key_that_does_not_turn_as_the_surface_does_is_stale_and_the_
 }
 
 TEST(AuthorTruth, an_edge_that_is_hard_in_a_key_alone_stays_hard) {
-  // The two halves of a sheet have vertices of their own where they meet, with one normal there: a box that was flat.
+  // The two halves of a sheet have separate vertices with the same normal where they meet, like a flattened box.
   ShadedMesh mesh;
   mesh.positions = {-1, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   mesh.corners = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
   for (int v = 0; v < 8; ++v) mesh.normals.insert(mesh.normals.end(), {0, 0, 1});
-  // The right half folds down by a right angle, and shows its own normal.
+  // The right half folds down by 90 degrees, and renders its own normal.
   mesh.targets.push_back({{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, -1, -1, 0, -1, 0, 0, 0},
                           {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, -1, 1, 0, -1, 1, 0, -1},
                           {}});
@@ -564,7 +564,7 @@ TEST(AuthorTruth, normals_that_a_bake_spread_over_its_targets_are_still_those_of
 TEST(AuthorTruth, keys_of_a_bake_that_no_author_made_tell_nothing) {
   std::mt19937 random(kSeed + 7);
   Authored mesh = quads(random);
-  // The file follows area weights and its own triangles, so that the bake has nothing to learn from the author.
+  // The file follows area weights and its own triangles, so nothing can be learned from the author.
   mesh.polygons.clear();
   for (std::size_t c = 0; c < mesh.file.corners.size(); c += 3)
     mesh.polygons.push_back({mesh.file.corners[c], mesh.file.corners[c + 1], mesh.file.corners[c + 2]});

@@ -1,4 +1,4 @@
-// Compares how viewers play tracks of weights with plain loops that repeat their sources.
+// Compares the weights that viewers play from tracks with plain loops that follow their sources.
 #include "workflow/viewers/played_track.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(PlayedTrack, every_viewer_plays_what_its_source_says) {
                                             GltfInterpolation::kCubicSpline};
       const Track track = random_track(kAll[round % 3], random);
       const double first = track.times.front(), last = track.times.back();
-      // Another track of the animation may begin before and end after.
+      // Another track of the animation may begin earlier and end later.
       const TimeRange range{round % 2 == 0 ? first : first / 2, round % 4 < 2 ? last : last + 0.1};
       for (int i = 0; i < 20; ++i) {
         const double time = std::uniform_real_distribution<double>(0, last + 0.2)(random);
@@ -82,8 +82,8 @@ TEST(PlayedTrack, says_whether_it_is_as_specified) {
 }
 
 TEST(PlayedTrack, filament_multiplies_tangents_by_the_part_that_has_gone_by) {
-  // The weight goes from 0 to 0 in an eighth of a second and leaves at 3 a second. At the middle it is an eighth of the
-  // tangent times the time between the keys, and times a half in Filament.
+  // The weight goes from 0 to 0 within an eighth of a second with a slope of 3 per second. In the middle it is an
+  // eighth of the slope times the interval, but in Filament an eighth of the slope times a half.
   const Track track{GltfInterpolation::kCubicSpline, {0, 0.125F}, {0, 0, 0, 0, 3, 3, 0, 0, 0, 0, 0, 0}};
   EXPECT_NEAR(played(viewer_named("three"), track, {0, 0.125}, 0.0625)[0], 3 * 0.125 / 8, 1e-12);
   EXPECT_NEAR(played(viewer_named("filament"), track, {0, 0.125}, 0.0625)[0], 3.0 / 8 / 2, 1e-12);

@@ -1,4 +1,4 @@
-// Compares the normals that viewers keep and show with plain loops over the formulas of their sources.
+// Compares the normals that viewers store and render with plain loops over the formulas of their sources.
 #include "chronormal/workflow/viewers.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Viewer viewer_named(std::string_view name) { return find_viewers(name).value().a
 
 Vec3f to_vec(const Triple& v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])}; }
 
-// Draws numbers as a file holds them.
+// Draws numbers that are float32, like in a file.
 Triple random_vector(std::mt19937& random, double size) {
   std::uniform_real_distribution<double> number(-size, size);
   const auto draw = [&] { return static_cast<double>(static_cast<float>(number(random))); };
@@ -72,7 +72,7 @@ TEST(Viewers, lists_are_in_the_order_asked_for_each_viewer_once) {
   EXPECT_EQ(viewers.value()[0].title, "Godot 4");
   EXPECT_EQ(viewers.value()[1].title, "three.js");
   ASSERT_TRUE(find_viewers("all"));
-  // "all" lists the viewers that show a file unchanged; compressors have to be named.
+  // "all" selects the viewers that render a file unchanged; compressors must be named.
   EXPECT_EQ(find_viewers("all").value().size(), 6U);
   const Result<std::vector<Viewer>> and_others = find_viewers("all,three,gltfpack,quantize,meshopt");
   ASSERT_TRUE(and_others);
@@ -108,14 +108,14 @@ TEST(Viewers, each_shows_what_the_formulas_of_its_source_say) {
         weights.push_back(std::uniform_real_distribution<double>(-0.5, 1.5)(random));
       }
       const Triple expected = test::shown_by(viewer.name, normal, deltas, weights);
-      // If the terms of a sum nearly cancel, its direction is rounding.
+      // If the terms of a sum nearly cancel, its direction is only rounding error.
       Triple plain = normal;
       for (std::size_t k = 0; k < deltas.size(); ++k)
         for (std::size_t c = 0; c < 3; ++c) plain[c] += weights[k] * deltas[k][c];
       if (std::fabs(plain[0]) + std::fabs(plain[1]) + std::fabs(plain[2]) < 0.05) continue;
       worst = std::max(worst, degrees_between(shown_of(viewer, normal, deltas, weights), expected));
     }
-    // A component half-way between two representable ones may go either way in float32, but few are so close.
+    // A component halfway between two representable ones may be rounded either way in float32, but this is rare.
     EXPECT_LT(worst, viewer.keeps_halves() ? 0.2 : 0.02) << viewer.name << ", seed " << kSeed;
   }
 }
@@ -132,24 +132,25 @@ TEST(Viewers, targets_of_unit_length_look_alike_everywhere) {
     for (std::size_t c = 0; c < 3; ++c) sum[c] = normal[c] + weight * delta[c];
     const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
     for (const Viewer& viewer : kViewers) {
-      const double step = viewer.normals == NormalRule::kClamped ? 1.2 : 0.07;  // degrees, of its rounding
+      const double step = viewer.normals == NormalRule::kClamped ? 1.2 : 0.07;  // degrees, by the viewer's rounding
       EXPECT_LT(degrees_between(shown_of(viewer, normal, {delta}, {weight}), sum), step / length) << viewer.name;
     }
   }
 }
 
 TEST(Viewers, a_long_delta_turns_by_its_direction_alone_where_unit_normals_are_kept) {
-  // N + D is (3, 0, 3). Half the way there is (0.35, 0, 0.85) for unit normals, and (1.5, 0, 2) by the specification.
+  // N + D is (3, 0, 3). Halfway there, the result is (0.35, 0, 0.85) with unit normals, and (1.5, 0, 2) by the
+  // specification.
   const Triple normal = {0, 0, 1}, delta = {3, 0, 2};
   EXPECT_NEAR(degrees_between(shown_of(viewer_named("godot"), normal, {delta}, {0.5}), normal), 22.5, 1e-2);
   EXPECT_NEAR(degrees_between(shown_of(viewer_named("three"), normal, {delta}, {0.5}), normal), 36.8699, 1e-4);
-  // With N + D clamped to (1, 0, 1) it is (0.5, 0, 1.5).
+  // With N + D clamped to (1, 0, 1), the result is (0.5, 0, 1.5).
   EXPECT_NEAR(degrees_between(shown_of(viewer_named("gltfpack"), normal, {delta}, {0.5}), normal), 18.4349, 1e-4);
 }
 
 TEST(Viewers, filament_does_not_keep_the_direction_of_a_long_normal) {
-  // Filament 1.53.4 renders this within its eight bits: N + D = (0, 0, 3) has the frame (0, -3, -8), (24, 0, 0), and no
-  // rotation has that.
+  // Filament 1.53.4 renders this up to its eight bits: N + D = (0, 0, 3) gets the frame (0, -3, -8), (24, 0, 0), which
+  // is no rotation.
   const Vec3f along = kept_normal(viewer_named("filament"), {0, 0, 1});
   EXPECT_NEAR(along.z, 1, 1e-6);
   const Vec3f longer = kept_normal(viewer_named("filament"), {0.6F, 0, 2.4F});
