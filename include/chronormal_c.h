@@ -1,4 +1,4 @@
-/* chronormal for C, and for every language that can call C: exact normals of meshes that deform.
+/* chronormal for C and every language that can call C: exact normals of meshes that deform.
  *
  *     chronormal_mesh mesh = {vertex_count, face_count, corners, NULL};
  *     chronormal_curves* curves = NULL;
@@ -9,14 +9,15 @@
  *
  * Shapes     Vectors are three float32, one after the other; a stride in bytes leads from one vector to the next, and 0
  *            stands for 12. Strides are multiples of 4, and 12 or more.
- * Times      t is a fraction of a segment, 0 to 1. The functions that end in _write refuse any other; the older ones move
- *            it to the nearer end, and write zeros where it is NaN.
- * Ownership  All arrays belong to the caller and are read or written during the call alone. What a function creates is
- *            destroyed by the function whose name ends in _destroy, which takes NULL as well.
- * Errors     A function that can fail returns a chronormal_status and changes nothing when it fails. The message for a
- *            person, with the place, is chronormal_last_message(), of the calling thread. Nothing throws.
- * Threads    Different objects may be used at the same time; one object by one thread at a time. But the functions that
- *            take a const object may run on any number of threads on one object.
+ * Times      t is a fraction of a segment, 0 to 1. Functions whose names end in _write refuse any other t; the older
+ *            functions move t to the nearer end, and write zeros if t is NaN.
+ * Ownership  All arrays belong to the caller and are only read or written during the call. An object is destroyed by
+ *            the function whose name ends in _destroy, which also accepts NULL.
+ * Errors     A function that can fail returns a chronormal_status and changes nothing when it fails.
+ *            chronormal_last_message() returns the message for people, with the place, for the calling thread. Nothing
+ *            throws.
+ * Threads    Different objects may be used at the same time, and each by one thread at a time. Functions that take a
+ *            const object may run on any number of threads for the same object.
  * Growth     Structures of options begin with their size, so that a program that was compiled with an older header
  *            keeps working: call the _init function, or set the size and every field. A library that is older than the
  *            header refuses fields that it does not know, unless their bytes are 0.
@@ -45,14 +46,14 @@ typedef enum chronormal_status {
   CHRONORMAL_INVALID_INPUT = 3 /* the data are wrong */
 } chronormal_status;
 
-/* Returns the version of the library that runs, MAJOR.MINOR.PATCH, as in "0.2.0". */
+/* Returns the version of the library at run time, MAJOR.MINOR.PATCH, as in "0.2.0". */
 CHRONORMAL_API const char* chronormal_version(void);
-/* Returns one sentence about the last call on this thread that failed; it stays until the next call that fails. ""
- * before that. */
+/* Returns a sentence about the last call on this thread that failed, or "" if none has failed. The text stays valid
+ * until the next call that fails. */
 CHRONORMAL_API const char* chronormal_last_message(void);
 
-/* Polygons over vertices. With offsets, face f has the corners offsets[f] to offsets[f + 1] - 1, and there are
- * face_count + 1 offsets, the first of which is 0; with NULL every face is a triangle. */
+/* Polygons over vertices. With `offsets`, face f has the corners offsets[f] to offsets[f + 1] - 1, and there are
+ * face_count + 1 offsets, the first of which is 0; if it is NULL, every face is a triangle. */
 typedef struct chronormal_mesh {
   size_t vertex_count;
   size_t face_count;
@@ -88,7 +89,7 @@ typedef struct chronormal_options {
 
 CHRONORMAL_API void chronormal_options_init(chronormal_options* options);
 
-/* How a normal lies in memory. */
+/* The format of a normal in memory. */
 typedef enum chronormal_format {
   CHRONORMAL_FLOAT32 = 0,    /* three float32 */
   CHRONORMAL_OCTAHEDRAL = 1, /* 4 bytes: two int16, the octahedral encoding as snorm; (0, 0, 0) becomes (0, 0, 1) */
@@ -97,7 +98,7 @@ typedef enum chronormal_format {
 
 #define CHRONORMAL_ALL ((size_t)-1)
 
-/* Where normals are written, and which of them: normal i lies at data + i * stride, whatever the range is. */
+/* The destination and the range of normals to write: normal i is at data + i * stride, for every range. */
 typedef struct chronormal_output {
   size_t size;         /* sizeof(chronormal_output) */
   void* data;          /* of normal 0 */
@@ -111,33 +112,35 @@ CHRONORMAL_API void chronormal_output_init(chronormal_output* output, void* data
 /* Normals between two arrays of positions, exact for every t in [0, 1]. */
 typedef struct chronormal_curves chronormal_curves;
 
-/* Prepares a segment. Options may be NULL. There is one position at each end for each vertex. */
+/* Prepares a segment. Options may be NULL. `from` and `to` must have a position for each vertex. */
 CHRONORMAL_API chronormal_status chronormal_curves_create(const chronormal_mesh* mesh, chronormal_vectors from,
                                                           chronormal_vectors to, const chronormal_options* options,
                                                           chronormal_curves** result);
-/* Prepares the next segment of the same mesh, in the memory of the one before. The vertices that share a normal stay
- * the same. */
+/* Prepares the next segment of the same mesh, reusing the memory of the previous one. The vertices that share a normal
+ * stay the same. */
 CHRONORMAL_API chronormal_status chronormal_curves_next(chronormal_curves* curves, chronormal_vectors from,
                                                         chronormal_vectors to);
 /* Returns the number of normals: faces, vertices or corners. */
 CHRONORMAL_API size_t chronormal_curves_size(const chronormal_curves* curves);
-/* Returns the bytes that the curves keep. */
+/* Returns the memory of the curves in bytes. */
 CHRONORMAL_API size_t chronormal_curves_bytes(const chronormal_curves* curves);
-/* Writes the unit normals at t, (0, 0, 0) for elements without one; zeros, if it is not NULL, gets the number of (0,
- * 0, 0). */
+/* Writes the unit normals at t, with (0, 0, 0) for elements without a normal; `zeros`, if it is not NULL, gets the
+ * number of these. */
 CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t,
                                                                 chronormal_result normals, size_t* zeros);
-/* Writes the unit normals at many t, each to an output of its own; zeros, if it is not NULL, gets the number of (0, 0, 0)
- * among all. On the calling thread, without taking memory: jobs of an engine write ranges of one output. */
+/* Writes the unit normals at many t, each to its own output; `zeros`, if it is not NULL, gets the total number of (0,
+ * 0, 0). Runs on the calling thread without allocating memory, so that jobs of an engine can write ranges of one
+ * output. */
 CHRONORMAL_API chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
                                                          const chronormal_output* outputs, size_t count, size_t* zeros);
-/* Writes the angle in degrees, float32, between each normal that is given (of any length) and the exact one at t: how
- * wrong an interpolation is. 180 where one of the two has no direction and the other has. */
+/* Writes the angle in degrees, float32, between each given normal, which need not be a unit vector, and the exact one
+ * at t: the error of an interpolation. The angle is 180 if only one of the two has a direction. */
 CHRONORMAL_API chronormal_status chronormal_curves_errors(chronormal_curves* curves, double t,
                                                           chronormal_vectors normals, float* degrees);
 CHRONORMAL_API void chronormal_curves_destroy(chronormal_curves* curves);
 
-/* One morph target: the deltas that it adds to the vertices that it names, which ascend; with NULL, to every vertex. */
+/* A morph target: its deltas, and the vertices to which they are added, in ascending order; if these are NULL, every
+ * vertex has a delta. */
 typedef struct chronormal_target {
   size_t count;             /* of deltas */
   const uint32_t* vertices; /* count of them, or NULL */
@@ -147,35 +150,34 @@ typedef struct chronormal_target {
 /* Normals of blend shapes, exact at any weights. */
 typedef struct chronormal_blend chronormal_blend;
 
-/* Prepares blend shapes. In the options, tolerance must be 1e-6 and the weighting area. */
+/* Prepares blend shapes. The tolerance in the options must be 1e-6, and the weighting area. */
 CHRONORMAL_API chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronormal_vectors base,
                                                          const chronormal_target* targets, size_t target_count,
                                                          const chronormal_options* options, chronormal_blend** result);
 CHRONORMAL_API size_t chronormal_blend_size(const chronormal_blend* blend);
-/* Writes the unit normals at some weights, one weight for each target. */
+/* Writes the unit normals at some weights, with a weight for each target. */
 CHRONORMAL_API chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const double* weights,
                                                                chronormal_result normals, size_t* zeros);
-/* Moves the shapes to these weights, once for a frame; then ranges of the normals there are written by any threads. */
+/* Sets the weights and moves the shapes, once per frame. Afterwards any threads may write ranges of the normals. */
 CHRONORMAL_API chronormal_status chronormal_blend_set_weights(chronormal_blend* blend, const double* weights);
 CHRONORMAL_API chronormal_status chronormal_blend_write(const chronormal_blend* blend, const chronormal_output* output,
                                                         size_t* zeros);
 CHRONORMAL_API void chronormal_blend_destroy(chronormal_blend* blend);
 
-/* A motion in files, of every format that the program reads. */
+/* A motion from files, in every format that the program reads. */
 typedef struct chronormal_motion chronormal_motion;
 
-/* Reads files as on the command line of `chronormal sample`; the tolerance of the options does not count. */
+/* Reads files like the command line of `chronormal sample`; the tolerance of the options is not used. */
 CHRONORMAL_API chronormal_status chronormal_motion_read(const char* const* files, size_t file_count,
                                                         const chronormal_options* options, chronormal_motion** result);
-/* Sets how vertices of a sequence move from now on, as `chronormal sample --path` does: "linear" (at first),
- * "catmull-rom", on curves through the keyframes, or "hermite", with the velocities of the file. Curves are cut into
- * straight pieces, whose normals are within 0.01 degrees (or the tolerance in "catmull-rom:0.1") of those of the
- * curve, plus what the rounding of positions to float adds. Errors: CHRONORMAL_USAGE if the motion has no such
- * paths. */
+/* Sets the path of the vertices of a sequence, like `chronormal sample --path`: "linear" (at first), "catmull-rom", on
+ * curves through the keyframes, or "hermite", with the velocities of the file. Curves are cut into straight pieces,
+ * whose normals are within 0.01 degrees (or the tolerance in "catmull-rom:0.1") of the curve's normals, plus the effect
+ * of rounding positions to float. Errors: CHRONORMAL_USAGE if the motion cannot have such paths. */
 CHRONORMAL_API chronormal_status chronormal_motion_follow(chronormal_motion* motion, const char* path);
 /* Returns the number of normals: faces, vertices or corners. */
 CHRONORMAL_API size_t chronormal_motion_size(const chronormal_motion* motion);
-/* Gives the first and the last time, in seconds; 0 and 0 for targets. */
+/* Returns the first and the last time in seconds; 0 and 0 for targets. */
 CHRONORMAL_API void chronormal_motion_times(const chronormal_motion* motion, double* first, double* last);
 CHRONORMAL_API chronormal_status chronormal_motion_unit_normals(chronormal_motion* motion, double time,
                                                                 chronormal_result normals);

@@ -1,14 +1,14 @@
-/// Measures the errors of interpolated normals against exact ones, as the paper's Table 1 does.
+/// Measures the errors of interpolated normals against exact ones, like Table 1 of the paper.
 ///
-/// For one element, the angles to the exact normal at N equidistant t = i / (N - 1) of a segment are summed; for a
-/// mesh, so are those sums over elements and segments. A (element, sample) pair whose exact normal is zero is
-/// counted as degenerate and left out; one for which only the scheme has no direction is counted as missing.
+/// The angles to the exact normal at N equidistant t = i / (N - 1) of a segment are summed, over all elements and
+/// segments of a mesh. A pair (element, t) whose exact normal is zero is counted as degenerate and left out; a pair for
+/// which only the scheme has no direction is counted as missing.
 ///
-/// The exact normals that every scheme is held against are computed as the paper writes them, by the cross product
-/// (eq. 1) of vertices interpolated at t, in double and from nothing but positions: no control normals and no scheme,
-/// so that an error of those cannot hide here.
+/// The exact normals that schemes are compared with are computed as in the paper, by the cross product (eq. 1) of
+/// vertices interpolated at t, in double and from positions alone. They use neither control normals nor schemes, so an
+/// error in either cannot stay hidden.
 ///
-/// Units      radians inside; what is shown to people is in degrees.
+/// Units      radians; only output for people is in degrees.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_H_
 
@@ -22,18 +22,17 @@
 
 namespace chronormal {
 
-/// Writes n(t) of a range of faces. Where double cannot tell it from rounding (below 1e-10 of the products that it is
-/// the sum of), it is computed in integers; it is (0, 0, 0) where it is zero, and where it passes a zero so near that a
-/// rounding of t would turn it. Threads: pure.
-/// result must have faces.count elements; t in [0, 1]
+/// Writes n(t) of a range of faces. If n(t) is below 1e-10 of the products whose sum it is, so that double cannot
+/// separate it from rounding, it is computed in integers. It is (0, 0, 0) if it is zero, or so close to a zero that
+/// rounding t would turn it. Threads: pure. result must have faces.count elements; t in [0, 1]
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept;
 
-/// Returns n(t) of a vertex or corner in the same way: the sum of the normals of its faces, however far they cancel.
+/// Returns n(t) of a vertex or corner in the same way: the sum of the normals of its faces, even if they nearly cancel.
 /// Threads: pure. t in [0, 1]
 [[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept;
 
-/// The normal n(t) of a face in double, and the size of the products that it is the sum of, by which its rounding is
-/// judged.
+/// The normal n(t) of a face in double, and the size of the products whose sum it is, which determines its rounding
+/// error.
 struct ReferenceArea {
   Vec3d n;
   double products = 0;
@@ -48,22 +47,22 @@ struct ErrorPlace {
 };
 
 struct Quality {
-  double sum = 0;              ///< of the angles, radians: q and Q of the paper
+  double sum = 0;              ///< sum of the angles in radians: q and Q of the paper
   double sum_of_squares = 0;   ///< radians squared
   double max = 0;              ///< radians
-  ErrorPlace max_at;           ///< the first place of the largest angle
+  ErrorPlace max_at;           ///< the first place with the largest angle
   std::size_t count = 0;       ///< pairs that were summed
   std::size_t degenerate = 0;  ///< pairs without an exact normal, left out
   std::size_t missing = 0;     ///< pairs without a normal of the scheme, left out
 
-  [[nodiscard]] double mean() const noexcept;  ///< radians; 0 where nothing was summed
+  [[nodiscard]] double mean() const noexcept;  ///< radians; 0 if nothing was summed
   [[nodiscard]] double rms() const noexcept;   ///< radians
 
-  /// Adds the errors of one batch: the angles between exact[i] (any length) and normals[i], for the elements
-  /// first_element + i of one segment at one t.
+  /// Adds the errors of a batch: the angles between exact[i], which need not be unit vectors, and normals[i], for the
+  /// elements first_element + i of one segment at one t.
   void add(std::span<const Vec3d> exact, VectorView<const float> normals, const ErrorPlace& first);
 
-  /// Adds what was measured elsewhere. Adding the same parts in the same order gives the same bits.
+  /// Adds the sums of another object. Adding the same parts in the same order gives the same bits.
   void add(const Quality& other);
 };
 

@@ -1,16 +1,16 @@
-/// Describes a mesh apart from its motion: doubled vertices, edges, pieces, faces that lie on each other.
+/// Describes a mesh independently of its motion: doubled vertices, edges, pieces, and faces that coincide.
 ///
-/// Files double vertices, for texture seams or hard edges, and a surface that is whole then looks torn. So everything
-/// here counts points (normals/normal_groups.h) and not vertices. An edge has two of them, and is
+/// Files double vertices for texture seams or hard edges, so that a whole surface seems torn. Therefore everything here
+/// counts points (normals/normal_groups.h) instead of vertices. An edge joins two points, and is
 ///
 ///     open           if one face has it, once or twice: the border of the surface
 ///     non-manifold   if more than two faces have it
-///     turned         if two faces have it and go along it the same way: one of them is wound the wrong way round
-///     seam           if two faces have it, but not by the same vertices: the file keeps it apart
+///     turned         if two faces have it in the same direction: one of them has the wrong winding
+///     seam           if two faces have it by different vertices: the file separates them
 ///
-/// The last two are asked where both faces have the edge once. Two faces lie on each other if they have the same
-/// outline: the same points in the same cyclic order, or in the reversed one. The same points in another order are
-/// another face, as are both halves of a quad that is crossed. A face that has a point twice lies on no other one.
+/// "Turned" and "seam" are only decided if both faces have the edge once. Two faces coincide if they have the same
+/// outline: the same points in the same cyclic order, or in reversed order. The same points in another order, as in a
+/// self-crossing quad, are a different face. A face that has a point twice coincides with no other face.
 ///
 /// Threads    pure.
 /// Cost       sorting within the edges and faces of each point: near linear.
@@ -24,10 +24,10 @@
 
 namespace chronormal {
 
-/// A count of things that were found, and the lowest index among them.
+/// A number of things that were found, and the lowest index among them.
 struct Found {
   std::size_t count = 0;
-  std::size_t first = 0;  ///< 0 where there are none
+  std::size_t first = 0;  ///< 0 if there are none
 
   void add(std::size_t index, std::size_t how_many = 1) noexcept {
     first = count == 0 || index < first ? index : first;
@@ -36,23 +36,23 @@ struct Found {
   friend bool operator==(const Found&, const Found&) = default;
 };
 
-/// Finds the vertices that are copies: vertices at the point of a lower one.
+/// Finds copies: vertices at the point of a vertex with a lower index.
 [[nodiscard]] Found find_copies(const Points& points);
 
-/// The counts that the text above explains. The first of an edge, or of a pair, is the lowest face that has one.
+/// The counts that the text above explains. `first` of edges or pairs is the lowest face that has one.
 struct Surface {
   std::size_t edges = 0;
   Found open_edges, non_manifold_edges, turned_edges, seam_edges;
   std::size_t pieces = 0;  ///< parts without a common point
-  Found unreferenced;      ///< vertices that no face has
-  Found repeating_faces;   ///< faces that have a point twice: a triangle has no area then
-  Found doubled_faces;     ///< faces with the outline of a lower one, wound the same way
-  Found back_to_back;      ///< pairs of faces with the same outline, wound against each other
+  Found unreferenced;      ///< vertices in no face
+  Found repeating_faces;   ///< faces that have a point twice, for example triangles without area
+  Found doubled_faces;     ///< faces with the outline and winding of a lower face
+  Found back_to_back;      ///< pairs of faces with the same outline but opposite windings
   std::size_t triangles = 0;
-  std::size_t most_corners = 0;  ///< of one face
+  std::size_t most_corners = 0;  ///< of any face
 };
 
-/// Surveys a mesh; points says which of its vertices are one.
+/// Counts all of these for a mesh; `points` tells which of its vertices are one point.
 [[nodiscard]] Surface survey(const Topology& topology, const Points& points);
 
 }  // namespace chronormal

@@ -1,4 +1,4 @@
-/// One loop over independent pieces of work, on all cores.
+/// A parallel loop over independent pieces of work, on all cores.
 #ifndef CHRONORMAL_CORE_PARALLEL_H_
 #define CHRONORMAL_CORE_PARALLEL_H_
 
@@ -11,22 +11,22 @@
 
 namespace chronormal {
 
-// A computation can be ended in the middle by its caller.
+// The caller of a computation can end it in the middle.
 
-/// Is thrown through a computation that was asked to end. Files and the caller's memory are left half written, and
-/// objects that are not const may only be destroyed.
+/// The exception that ends a computation on request. Files and the caller's memory are then half written, and objects
+/// that are not const may only be destroyed.
 class Interrupted : public std::exception {
  public:
   [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
 };
 
-/// While it lives, the computations that this thread starts ask it whether to end: between the pieces of every
-/// parallel_for, while this thread waits for other threads, and wherever check_interruption() stands. Computations that
-/// other threads start do not.
+/// Lets a callback end the computations that this thread starts during the object's lifetime. The callback is called
+/// between the pieces of every parallel_for, while this thread waits for other threads, and in check_interruption().
+/// Computations that other threads start are not affected.
 ///
-/// Threads    the thread that made this calls `ask`, with no lock held, at most every 50 ms. Where `ask` returns true,
-///            all threads of the computation throw Interrupted, and so does the function that was called.
-/// Limits     may be nested; the innermost counts.
+/// Threads    the thread that made this object calls `ask`, without holding a lock, at most every 50 ms. When `ask`
+///            returns true, all threads of the computation throw Interrupted, and so does the function that was called.
+/// Limits     may be nested; only the innermost is used.
 class Interruption {
  public:
   explicit Interruption(std::function<bool()> ask);
@@ -44,29 +44,30 @@ class Interruption {
   Interruption* before_;
 };
 
-/// Throws Interrupted where the computation that this thread works for is to end; does nothing without an Interruption.
+/// Throws Interrupted if the computation that this thread works for shall end; does nothing without an Interruption.
 void check_interruption();
 
 /// Calls body(i) once for every i in [0, count), in any order and from several threads at once; returns when all are
-/// done. The first exception that body throws is thrown here. All threads round as this one does.
+/// done. The first exception that body throws is thrown again by parallel_for(). All threads use this thread's rounding
+/// mode.
 ///
-/// Threads    those of one pool, which are made when they are first asked for; where the system grants fewer, the loop
-///            runs on these. A body may call parallel_for, whose loop shares the threads of the outer one. A child of
-///            fork() has one thread, and a loop that was under way on several ends with Interrupted there. In wasm
-///            there is one thread.
-/// Order      a result must not depend on it: write to slot i, and combine the slots in order afterwards.
+/// Threads    the threads of one pool, which are created when first needed; if the system grants fewer, the loop uses
+///            these. A body may call parallel_for, whose loop shares the threads of the outer one. A child of fork()
+///            has one thread, and a loop that was running on several threads ends with Interrupted in the child. In
+///            wasm there is one thread.
+/// Order      a result must not depend on the order: write to slot i, and combine the slots in order afterwards.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Selects the thread that calls a function, or all cores where there is enough to do.
+/// Selects the calling thread, or all cores if there is enough work.
 enum class Threads { kOne, kAll };
 
 /// Returns the number of threads that parallel_for may use.
 [[nodiscard]] std::size_t thread_count() noexcept;
 
-/// Sets the number of threads of parallel_for on this thread while it lives; it may be more than there are cores (64 at
-/// most). It serves tests, benchmarks, and programs that want some cores for themselves. Loops inside its loops share
-/// these threads. Limits may be nested; the innermost counts. If the system grants no threads, there is one whatever
-/// the limit.
+/// Sets the number of threads of parallel_for on this thread during the object's lifetime; the number may exceed the
+/// number of cores (64 at most). Tests, benchmarks, and programs that reserve some cores use it. Nested loops share
+/// these threads. Limits may be nested; only the innermost is used. If the system grants no threads, loops run on the
+/// calling thread.
 class ThreadLimit {
  public:
   explicit ThreadLimit(std::size_t threads);

@@ -25,7 +25,7 @@ struct Power {
   std::array<T, N + 1> a;
 };
 
-/// Returns C(n, k) for small n.
+/// Returns the binomial coefficient C(n, k) for small n.
 [[nodiscard]] constexpr double binomial(std::size_t n, std::size_t k) noexcept {
   double result = 1;
   for (std::size_t i = 0; i < k; ++i) result = result * static_cast<double>(n - i) / static_cast<double>(i + 1);
@@ -78,7 +78,7 @@ template <class P, std::size_t M, class Q, std::size_t N, class Product = std::m
   return result;
 }
 
-/// Converts a polynomial to power form. Cancels near t = 1: evaluate the Bernstein form where digits matter.
+/// Converts a polynomial to power form, which cancels near t = 1: evaluate the Bernstein form if digits matter.
 template <class T, std::size_t M>
 [[nodiscard]] constexpr Power<T, M - 1> to_power(const std::array<T, M>& p) {
   Power<T, M - 1> power;
@@ -120,7 +120,7 @@ struct Roots {
 namespace detail {
 
 /// Finds the only root of p, where p changes its sign, by false position with the Illinois rule (Dowell, Jarratt 1971),
-/// and by bisection wherever that gains too little.
+/// and by bisection if false position gains too little.
 template <std::size_t M>
 [[nodiscard]] double only_root(const std::array<double, M>& p) {
   double a = 0, b = 1, fa = p[0], fb = p[M - 1];
@@ -143,7 +143,7 @@ template <std::size_t M>
   return a + (b - a) / 2;
 }
 
-/// Isolates the roots by the variation of signs (Descartes), subdividing until there is one or an interval is as wide
+/// Isolates the roots by the variation of signs (Descartes): subdivides until an interval has one root or is as narrow
 /// as rounding.
 template <std::size_t M>
 void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 1>& roots) {
@@ -153,7 +153,8 @@ void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 
     if (b != 0 && last != 0 && (b < 0) != (last < 0)) ++variations;
     if (b != 0) last = b;
   }
-  // A zero at either end is a root that sign variations do not show; neighbours share it, so take it once.
+  // Sign variations do not show a zero at either end. Neighbouring intervals share such a root, so it is added only
+  // once.
   const auto add = [&roots](double t) {
     if (roots.count < M - 1 && (roots.count == 0 || roots.t[roots.count - 1] + 1e-14 < t)) roots.t[roots.count++] = t;
   };
@@ -175,9 +176,9 @@ void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 
 
 }  // namespace detail
 
-/// Finds the roots of p in [0, 1], ends included: a simple one to 1e-15 times its condition, one of multiplicity k to
-/// about the k-th root of that. A double root that rounding has lifted off the axis may be missed, or found as two: a
-/// decision that hangs on it needs exact arithmetic.
+/// Finds the roots of p in [0, 1], including the ends: simple roots within 1e-15 times their condition number, and
+/// roots of multiplicity k within about the k-th root of that error. A double root that rounding has moved off the axis
+/// may be missed, or found as two roots; decisions that depend on double roots need exact arithmetic.
 template <std::size_t M>
 [[nodiscard]] Roots<M - 1> roots_in_unit_interval(const std::array<double, M>& p) {
   Roots<M - 1> roots;

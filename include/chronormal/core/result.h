@@ -1,8 +1,8 @@
-/// Errors as values, which every function that meets data from outside returns.
+/// Errors as values, which every function that handles data from outside returns.
 ///
-/// An Error has a code (the exit code of the program follows from it), a place and a message. The place says where
-/// to look ("walk_3.obj, line 17" or "frame 2, vertex 5"); the message says what is wrong and, where it helps, what
-/// to do. Together they read as one line:
+/// An Error has a code (which determines the exit code of the program), a place and a message. The place says where to
+/// look ("walk_3.obj, line 17" or "frame 2, vertex 5"); the message says what is wrong and, if useful, what to do.
+/// Together they read as one line:
 ///
 ///     walk_3.obj, line 17: the face names vertex 9, but the file has 8 vertices
 ///
@@ -29,7 +29,7 @@ struct Error {
   std::string place;    ///< file and line, byte, frame, index; may be empty
   std::string message;  ///< one sentence without a full stop
 
-  /// Returns "place: message", or the message alone where there is no place.
+  /// Returns "place: message", or only the message if there is no place.
   [[nodiscard]] std::string text() const { return place.empty() ? message : place + ": " + message; }
 };
 
@@ -38,7 +38,7 @@ struct Error {
   return Error{ErrorCode::kInvalidInput, std::move(place), std::move(message)};
 }
 
-/// Either a value or the Error that prevented it. Test it before you take either.
+/// Either a value or the Error that prevented it. Call ok() before taking either.
 template <class T>
 class [[nodiscard]] Result {
  public:

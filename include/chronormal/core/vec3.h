@@ -1,11 +1,11 @@
 /// Three-component vectors over any scalar.
 ///
-/// Vec3f holds data (positions, results), Vec3d holds what must be right (control normals while they are made,
-/// angles). The scalar is a template parameter so that the very code which runs can also be instantiated with a
-/// scalar that counts its operations (schemes/scheme.h reports them).
+/// Vec3f holds data (positions, results), and Vec3d holds values that need precision (control normals while they are
+/// computed, angles). The scalar is a template parameter, so that the same code can also be instantiated with a scalar
+/// that counts operations (schemes/scheme.h reports the counts).
 ///
-/// Everything is spelt out as single additions and multiplications, in a fixed order, so that every compiler gives
-/// the same bits (with -ffp-contract=off, which the build sets).
+/// Everything is written as single additions and multiplications in a fixed order, so that every compiler gives the
+/// same bits (with -ffp-contract=off, which the build sets).
 #ifndef CHRONORMAL_CORE_VEC3_H_
 #define CHRONORMAL_CORE_VEC3_H_
 
@@ -51,17 +51,17 @@ template <class S>
 /// Returns the larger of two numbers, or the number if the other is NaN. This is std::fmax in two instructions instead
 /// of a call.
 [[nodiscard]] inline double maximum_number(double a, double b) noexcept {
-  const double larger = b > a ? b : a;  // a where one is NaN
+  const double larger = b > a ? b : a;  // a if one is NaN
   if (larger == larger) [[likely]]
     return larger;
   return b;
 }
 
-/// Returns the largest absolute component: a length that neither overflows nor underflows.
+/// Returns the largest absolute component, a measure of length that neither overflows nor underflows.
 [[nodiscard]] inline double max_abs(const Vec3d& a) noexcept {
   const double x = std::fabs(a.x), y = std::fabs(a.y), z = std::fabs(a.z);
   const double of_two = y > x ? y : x;
-  const double largest = z > of_two ? z : of_two;  // x where it is NaN
+  const double largest = z > of_two ? z : of_two;  // x if it is NaN
   if (largest == largest) [[likely]]
     return largest;
   return maximum_number(y, z);
@@ -72,7 +72,7 @@ template <class S>
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// Returns the length of a, without overflow or underflow in between.
+/// Returns the length of a. Intermediate results neither overflow nor underflow.
 [[nodiscard]] inline double length(const Vec3d& a) noexcept {
   const double scale = max_abs(a);
   if (scale == 0) return 0;
@@ -81,7 +81,7 @@ template <class S>
 }
 
 /// Scales a to length 1; returns (0, 0, 0) for the zero vector. Divides by the largest component first, so that vectors
-/// of any finite length are scaled right.
+/// of any finite length are scaled correctly.
 [[nodiscard]] inline Vec3d unit(const Vec3d& a) noexcept {
   const double scale = max_abs(a);
   if (scale == 0) return {};
@@ -89,7 +89,7 @@ template <class S>
   return (1 / std::sqrt(dot(b, b))) * b;
 }
 
-/// Returns a unit vector perpendicular to the unit vector u: a fixed choice, the same for the same u.
+/// Returns a unit vector perpendicular to the unit vector u, always the same for the same u.
 [[nodiscard]] inline Vec3d any_perpendicular(const Vec3d& u) noexcept {
   const double x = std::fabs(u.x), y = std::fabs(u.y), z = std::fabs(u.z);
   if (x <= y && x <= z) return unit(cross(u, Vec3d{1, 0, 0}));
@@ -97,11 +97,11 @@ template <class S>
   return unit(cross(u, Vec3d{0, 0, 1}));
 }
 
-/// Angles are in radians; what is shown to people is in degrees.
+/// Degrees per radian. Angles are in radians; only output for people is in degrees.
 inline constexpr double kDegreesPerRadian = 57.295779513082320877;
 
-/// Returns the angle between two vectors in radians, in [0, pi]; 0 if one of them is zero. Uses atan2 and not acos,
-/// which loses all angles below 1e-8 in double and below 3e-4 in float. The bits are the same on every machine.
+/// Returns the angle between two vectors in radians, in [0, pi]; 0 if one of them is zero. Uses atan2, since acos loses
+/// all angles below 1e-8 in double and below 3e-4 in float. The bits are the same on every machine.
 [[nodiscard]] double angle_between(const Vec3d& a, const Vec3d& b) noexcept;
 
 }  // namespace chronormal

@@ -5,8 +5,8 @@
 ///     planes   x0 x1 x2 ...   y0 y1 y2 ...   z0 z1 z2 ...      three arrays, stride 1
 ///     packed   x0 y0 z0  x1 y1 z1  x2 y2 z2 ...                one array of shape (n, 3), stride 3
 ///
-/// Vector i has the components x[i * stride], y[i * stride], z[i * stride]. A view is pointer + count + stride, is
-/// passed by value, and is never kept by the function that it is passed to unless that function says so.
+/// Vector i has the components x[i * stride], y[i * stride], z[i * stride]. A view consists of pointers, a count and a
+/// stride, and is passed by value. A function does not keep a view unless its comment says so.
 #ifndef CHRONORMAL_CORE_VIEWS_H_
 #define CHRONORMAL_CORE_VIEWS_H_
 
@@ -20,7 +20,7 @@
 
 namespace chronormal {
 
-/// Returns so many bytes, or all that the machine can address if that is less: its addresses may have 32 bits.
+/// Returns so many bytes, or the largest addressable size if that is less, since addresses may have 32 bits.
 [[nodiscard]] constexpr std::size_t addressable(std::uint64_t bytes) noexcept {
   return bytes < static_cast<std::size_t>(-1) ? static_cast<std::size_t>(bytes) : static_cast<std::size_t>(-1);
 }
@@ -42,21 +42,21 @@ struct VectorView {
   T* y = nullptr;
   T* z = nullptr;
   std::size_t count = 0;
-  std::size_t stride = 1;  ///< in scalars, from one vector to the next
+  std::size_t stride = 1;  ///< number of scalars from one vector to the next
 
   [[nodiscard]] static VectorView planes(T* x, T* y, T* z, std::size_t count) noexcept { return {x, y, z, count, 1}; }
   [[nodiscard]] static VectorView packed(T* xyz, std::size_t count) noexcept {
     if (count == 0) return {};
     return {xyz, xyz + 1, xyz + 2, count, 3};
   }
-  /// Names all vectors of an array or std::vector that has three scalars for each.
+  /// Makes a view of all vectors of an array or std::vector with three scalars for each.
   [[nodiscard]] static VectorView packed(std::span<T> xyz) noexcept {
     assert(xyz.size() % 3 == 0);
     return packed(xyz.data(), xyz.size() / 3);
   }
 
-  /// Names vectors in records of `bytes` bytes each, as in a vertex buffer: xyz is the first component of the first.
-  /// bytes must be a multiple of the size of a scalar, and at least three of them
+  /// Makes a view of vectors in records of `bytes` bytes each, as in a vertex buffer; `xyz` is the first component of
+  /// the first vector. `bytes` must be a multiple of the size of a scalar, and at least three times that size
   [[nodiscard]] static VectorView strided(T* xyz, std::size_t count, std::size_t bytes) noexcept {
     if (count == 0) return {};
     assert(bytes % sizeof(T) == 0 && bytes >= 3 * sizeof(T));

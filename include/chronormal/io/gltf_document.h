@@ -1,19 +1,19 @@
-/// glTF 2.0 files (.gltf, .glb, .vrm): what is in them, and their morphing meshes as arrays.
+/// glTF 2.0 files (.gltf, .glb, .vrm): their contents, and their morphing meshes as arrays.
 ///
-/// Opening a document maps the file and reads its JSON, nothing else; geometry and tracks are read when they are asked
-/// for, so that nobody pays for the rest. All of the format that concerns normals over time is understood: external
+/// Opening a document maps the file and reads only its JSON. Geometry and tracks are read on request, so callers only
+/// pay for the parts that they need. All parts of the format that concern normals over time are supported: external
 /// buffers, data URIs, sparse accessors, byteStride, normalised integers, accessors without a bufferView, primitives
 /// without indices, strips and fans, KHR_mesh_quantization, EXT_meshopt_compression, KHR_draco_mesh_compression and
-/// KHR_animation_pointer. What is read is checked, strictly by the specification; materials, textures and the bounds of
-/// accessors are not read and not checked. Skins, and animations of nodes, are read only by callers that look through
-/// skins, and only these see errors in them.
+/// KHR_animation_pointer. Everything that is read is checked strictly by the specification; materials, textures and the
+/// bounds of accessors are neither read nor checked. Skins and animations of nodes are read only by callers that need
+/// skins, and only these callers get errors about them.
 ///
 /// A file that requires another extension is refused, and the message names the extension. Extensions of materials,
 /// textures and lights are allowed, since they do not touch geometry.
 ///
 /// Errors     kInvalidInput with the file and a JSON pointer as the place ("walk.gltf, /accessors/3/count"), or a byte
-///            for what is no JSON.
-/// Threads    one document belongs to one thread at a time: decompressed pieces are kept.
+///            offset if the file is not JSON.
+/// Threads    a document belongs to one thread at a time, since it keeps decompressed pieces.
 #ifndef CHRONORMAL_IO_GLTF_DOCUMENT_H_
 #define CHRONORMAL_IO_GLTF_DOCUMENT_H_
 
@@ -34,26 +34,26 @@
 namespace chronormal {
 
 inline namespace internal {
-class Expansion;  // how much a file may make us hold or write
+class Expansion;  // limits the memory and output that a file may cause
 }
 
-// The mark of a bake in a glTF file: how normals are encoded, and what drives the targets that it added
+// The mark of a bake in a glTF file: the encoding of the normals, and the formulas of correction targets
 // (docs/formats.md).
 //
-// Threads    values
+// Threads    plain values
 
-/// A target that a bake added. It moves no vertex, and its weight follows from those of the mesh's own targets
-/// (docs/formats.md):
+/// A correction target, which a bake has added. It moves no vertex, and its weight follows from the weights of the
+/// mesh's own targets (docs/formats.md):
 ///
 ///     weight = sum of a w_i + sum of q w_i w_j
 struct GltfExtraTarget {
   struct LinearTerm {
-    std::size_t i = 0;  ///< a target of the mesh's own
+    std::size_t i = 0;  ///< one of the mesh's own targets
     double a = 1;
     friend bool operator==(const LinearTerm&, const LinearTerm&) = default;
   };
   struct QuadraticTerm {
-    std::size_t i = 0, j = 0;  ///< targets of the mesh's own
+    std::size_t i = 0, j = 0;  ///< two of the mesh's own targets, or the same twice
     double q = 1;
     friend bool operator==(const QuadraticTerm&, const QuadraticTerm&) = default;
   };
@@ -64,14 +64,14 @@ struct GltfExtraTarget {
 
   /// Returns the weight for given weights of the mesh's own targets; weights has one for each target.
   [[nodiscard]] double weight(std::span<const double> weights) const noexcept;
-  /// Returns true if the weight is other than zero where w_i alone is.
+  /// Returns true if the weight is not zero when only w_i is nonzero.
   [[nodiscard]] bool follows(std::size_t i) const noexcept;
 
   friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
 };
 
-/// Selects how a bake encodes the normals of targets (workflow/bake.h). kKeys is for sequences; its results are marked
-/// as harmless.
+/// Selects how a bake encodes the normals of targets (workflow/bake.h). kKeys is for sequences; its results have the
+/// mark of kHarmless.
 enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest, kKeys };
 
 /// The encodings by name, for the command line, for JSON and for the mark in a file.
@@ -93,10 +93,11 @@ inline constexpr std::array<BakeEncodingName, 5> kBakeEncodings = {{{BakeEncodin
 ///      "extras": [{"target": 2, "linear": [], "quadratic": [[0, 1, 1.0]]}]}
 struct GltfBakeMark {
   BakeEncoding encoding = BakeEncoding::kExact;
-  bool sequence = false;                ///< the targets are keyframes: alone, from the base, they mean nothing
-  std::vector<GltfExtraTarget> extras;  ///< ascending targets; the file need not list any
-  bool animations_only = false;         ///< deltas are fitted to the animations of the file, and mean nothing alone
-  bool author = false;  ///< normals of each target at weight 1 are what the author of the input would see
+  bool sequence = false;                ///< the targets are keyframes, which have no meaning alone
+  std::vector<GltfExtraTarget> extras;  ///< in the order of targets; the file need not list any
+  /// Deltas are fitted to the animations of the file, and have no meaning otherwise.
+  bool animations_only = false;
+  bool author = false;  ///< normals of each target at weight 1 follow the author's intention for the input
 };
 
 inline namespace internal {
@@ -104,17 +105,17 @@ class FileBytes;
 class GltfSkin;
 }
 
-/// Finds the bytes of a file by its name, in place of the file system. The bytes must stay as long as what was opened
-/// with them. Errors: whatever the caller is to be told.
+/// Finds the bytes of a file by its name, in place of the file system. The bytes must outlive everything that was
+/// opened with them. Errors: any error that the caller should get.
 using FileResolver = std::function<Result<std::string_view>(const std::string& name)>;
 
-/// Selects how weights go from one key to the next.
+/// Selects the interpolation of weights between two keys.
 enum class GltfInterpolation { kLinear, kStep, kCubicSpline };
 
 struct GltfPrimitive {
   int mode = 4;                   ///< 4 triangles, 5 strip, 6 fan; others (points, lines) have no faces
-  std::size_t vertex_count = 0;   ///< 0 where there is no POSITION
-  std::size_t element_count = 0;  ///< indices, or vertices where there are none
+  std::size_t vertex_count = 0;   ///< 0 if there is no POSITION
+  std::size_t element_count = 0;  ///< number of indices, or of vertices if there are no indices
   bool has_normals = false, has_tangents = false, has_draco = false;
   /// The attributes that each target moves.
   struct Target {
@@ -125,50 +126,50 @@ struct GltfPrimitive {
   [[nodiscard]] bool has_faces() const noexcept { return mode >= 4 && mode <= 6 && vertex_count > 0; }
 };
 
-/// The weights that an expression of a VRM avatar (version 0 or 1) gives the targets of a mesh at its full strength.
+/// The weights that a VRM avatar's expression (version 0 or 1) at full strength gives the targets of a mesh.
 struct GltfExpression {
-  std::string name;             ///< as the file has it; may be empty
-  std::vector<double> weights;  ///< target_count of them
+  std::string name;             ///< as in the file; may be empty
+  std::vector<double> weights;  ///< target_count weights
   friend bool operator==(const GltfExpression&, const GltfExpression&) = default;
 };
 
 struct GltfMesh {
   std::string name;
   std::vector<GltfPrimitive> primitives;
-  std::size_t target_count = 0;             ///< the same in all primitives
-  std::vector<std::string> target_names;    ///< extras.targetNames, where it has target_count names; else empty
-  std::vector<double> weights;              ///< the default ones; target_count of them, 0 where the file has none
-  std::vector<GltfExpression> expressions;  ///< of a VRM avatar: those that have a bind to this mesh
-  std::optional<GltfBakeMark> mark;         ///< where a bake left one that can be understood
-  std::optional<Error> mark_fault;          ///< why there is a mark that cannot: for those who have to understand it
+  std::size_t target_count = 0;             ///< equal in all primitives
+  std::vector<std::string> target_names;    ///< extras.targetNames if it has target_count names, else empty
+  std::vector<double> weights;              ///< the default weights; target_count of them, 0 if the file has none
+  std::vector<GltfExpression> expressions;  ///< expressions of a VRM avatar that have a bind to this mesh
+  std::optional<GltfBakeMark> mark;         ///< the mark that a bake left, if it can be understood
+  std::optional<Error> mark_fault;          ///< the error of a mark that cannot be understood, for callers that need it
 };
 
 struct GltfNode {
   std::string name;
   std::optional<std::uint32_t> mesh, parent;
   bool has_skin = false;
-  std::optional<std::uint32_t> skin;  ///< as the file numbers it, if that is a number
-  std::vector<double> weights;        ///< its own, or empty: those of the mesh
+  std::optional<std::uint32_t> skin;  ///< its number in the file, if that is a valid number
+  std::vector<double> weights;        ///< the node's own weights; if empty, those of the mesh
 };
 
-/// The animation of the weights of one node. It comes from a channel for the node, or from one of KHR_animation_pointer
-/// for all weights of the node or of its mesh; in the latter case each node without weights of its own has such a
-/// track.
+/// The animation of the weights of one node. It comes from a channel for the node, or from a channel of
+/// KHR_animation_pointer for all weights of the node or of its mesh. In the last case, each node of the mesh without
+/// its own weights has such a track.
 struct GltfTrack {
   std::size_t node = 0, channel = 0;
-  /// The first track of the animation that gives the same weights: the same keys, interpolation and number of targets.
+  /// The first track of the animation with the same weights: the same keys, interpolation and number of targets.
   std::size_t same_keys_as = 0;
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::size_t key_count = 0;
-  /// True if KHR_animation_pointer gives every weight a channel of its own: these are put together here, and channel is
-  /// the first of them. The track has the keys of all of them, and is cubic if one of them is; files in which some of
-  /// them step and others do not are refused.
+  /// True if the track was assembled from a channel of KHR_animation_pointer for each weight; `channel` is the first of
+  /// these. The track has the keys of all channels, and is cubic if one of them is. Files in which only some channels
+  /// are STEP are refused.
   bool is_assembled = false;
 };
 
 struct GltfAnimation {
   std::string name;
-  std::size_t channel_count = 0;  ///< of all kinds
+  std::size_t channel_count = 0;  ///< number of channels of all kinds
   std::vector<GltfTrack> tracks;  ///< of weights
 };
 
@@ -181,7 +182,7 @@ struct GltfKeys {
 
 /// The arrays of a primitive, decoded.
 struct GltfGeometry {
-  std::vector<std::uint32_t> corners;  ///< (F, 3): strips and fans are taken apart
+  std::vector<std::uint32_t> corners;  ///< (F, 3); strips and fans become triangles
   std::vector<float> positions;        ///< (V, 3)
   std::vector<float> normals;          ///< (V, 3), or empty
   std::vector<float> tangents;         ///< (V, 4), or empty
@@ -192,21 +193,21 @@ struct GltfGeometry {
   std::vector<Target> targets;
 };
 
-/// Tells for one primitive where its vertices and faces in a motion or a mesh came from.
+/// The origin of the vertices and faces of a motion or a mesh, for one primitive.
 struct GltfPart {
-  std::optional<std::size_t> node;  ///< the node that carries the mesh; nothing if nodes do not matter
+  std::optional<std::size_t> node;  ///< the node with the mesh; nothing if nodes do not matter
   std::size_t mesh = 0, primitive = 0;
   std::size_t first_vertex = 0, vertex_count = 0;
   std::size_t first_face = 0, face_count = 0;
 };
 
 struct GltfOptions {
-  bool allow_external = false;  ///< read buffers from files outside the folder of the asset
-  /// The most memory that the arrays of one primitive may take: a small file can ask for much.
+  bool allow_external = false;  ///< buffers may be in files outside of the asset's folder
+  /// The largest memory for the arrays of one primitive, since a small file can demand much.
   std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
   std::size_t max_expansion = 100;  ///< as in InputOptions
-  bool strict = false;              ///< refuse what GltfDocument::notes() would tell
-  /// Finds buffers and images by their path below the folder of the asset; empty: the file system does.
+  bool strict = false;              ///< refuse files for which GltfDocument::notes() would not be empty
+  /// Finds buffers and images by their paths below the asset's folder; if empty, the file system does.
   FileResolver resolve = {};
 };
 
@@ -216,7 +217,8 @@ class GltfDocument {
   /// of the format.
   [[nodiscard]] static Result<GltfDocument> open(const std::string& path, const GltfOptions& options = {});
 
-  /// Reads a document from bytes that outlive it. name is for messages; folder is where its files are, if it has any.
+  /// Reads a document from bytes, which must outlive it. `name` is for messages; `folder` has the files that the
+  /// document refers to, if there is one.
   [[nodiscard]] static Result<GltfDocument> read(std::string_view bytes, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
@@ -238,34 +240,34 @@ class GltfDocument {
   [[nodiscard]] const std::vector<GltfMesh>& meshes() const noexcept;
   [[nodiscard]] const std::vector<GltfNode>& nodes() const noexcept;
   [[nodiscard]] const std::vector<GltfAnimation>& animations() const noexcept;
-  /// Returns where a node puts its mesh: its matrix, or its scale, rotation and translation, joined with its ancestors'
-  /// as the file has them. O(ancestors).
+  /// Returns the transform by which a node moves its mesh: its matrix, or its scale, rotation and translation, combined
+  /// with those of its ancestors. O(ancestors).
   [[nodiscard]] AffineTransform world_transform(std::size_t node) const noexcept;
-  /// Lists the extensions that the file uses, as it names them.
+  /// Lists the extensions that the file uses, by their names.
   [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
-  /// Lists faults in parts of the file that the other parts do not need, in the order of the file; such parts are
-  /// passed over. Also lists required extensions that change nothing of a mesh but where it is shown.
+  /// Lists faults in parts of the file that no other part needs, in the order of the file; such parts are skipped. Also
+  /// lists required extensions that only change where a mesh is shown.
   [[nodiscard]] const std::vector<Error>& notes() const noexcept;
-  /// Returns the limit of what the document may ask for, by its size and the sizes of the files that hold its buffers.
+  /// Returns the limit of memory and output, which depends on the sizes of the document and of the files with its
+  /// buffers.
   [[nodiscard]] Expansion expansion() const;
 
-  /// The part of a geometry that is wanted beside faces and positions.
+  /// The parts of a geometry to read besides faces and positions.
   struct Wanted {
     bool shading = false;  ///< normals and tangents, of the base and of the targets
     bool targets = true;
   };
-  /// Reads a primitive. Memory: that of the result; compressed pieces are kept decompressed as long as the document.
-  /// Precondition: the primitive has_faces()
+  /// Reads a primitive. Memory: that of the result; pieces that were decompressed are kept until the document is
+  /// destroyed. Precondition: the primitive has_faces()
   [[nodiscard]] Result<GltfGeometry> geometry(std::size_t mesh, std::size_t primitive, const Wanted& wanted) const;
-  /// Reads one target of a primitive, as geometry() reads all of them.
+  /// Reads one target of a primitive, like geometry() reads all of them.
   [[nodiscard]] Result<GltfGeometry::Target> target(std::size_t mesh, std::size_t primitive, std::size_t index,
                                                     bool shading) const;
 
   /// Reads the keys of a track.
   [[nodiscard]] Result<GltfKeys> keys(std::size_t animation, std::size_t track) const;
 
-  /// Finds an animation that a person names: by its name, or else by its index.
-  /// Errors: kUsage, with the animations that there are.
+  /// Finds an animation by its name, or else by its index. Errors: kUsage with the names of all animations.
   [[nodiscard]] Result<std::size_t> find_animation(const std::string& name_or_index) const;
 
  private:
@@ -277,12 +279,11 @@ class GltfDocument {
   std::unique_ptr<State> state_;
 };
 
-// Changes to a glTF file that leave everything else as it is, byte for byte.
+// Edits of a glTF file that leave everything else unchanged, byte for byte.
 //
-// The JSON is not printed anew: what changes is spliced into the text of the source, so that every token that is not
-// named by a pointer keeps its bytes (64-bit integers, 1e400, unknown extensions, the order of members, blanks). New
-// arrays go behind the BIN chunk of the source, which stays a prefix of the new one unless leave_out_unused() is
-// called.
+// The JSON is not printed anew. Changes are inserted into the text of the source, so that every token that no pointer
+// names keeps its bytes (64-bit integers, 1e400, unknown extensions, the order of members, blanks). New arrays are
+// appended to the BIN chunk of the source, which remains a prefix of the new chunk unless leave_out_unused() is called.
 //
 //     GltfEdit edit(document);
 //     const std::size_t a = edit.add_vectors(deltas, {});               // a new accessor
@@ -290,31 +291,31 @@ class GltfDocument {
 //     edit.append("/meshes/0/weights", "0");
 //     edit.write("walk.exact.glb", /*force=*/false);
 //
-// Pointers   RFC 6901. Changes are made in the order of the calls, each on what those before it left: what was set or
-//            appended can be changed again. Of members that come twice, the last counts, as for the reader.
-// Container  by the extension of the path, .glb or .gltf; streams (-, /dev/stdout, pipes) get that of the source.
-//            GLB to GLB: the source, with a longer BIN chunk. .gltf to GLB: buffers that lie outside (files, data
-//            URIs) move into the BIN chunk, and so do images that are files: the file stands alone. To .gltf: the BIN
-//            chunk and the new arrays become data URIs, so that one file is replaced at once.
-// Folders    into another folder than that of the source, or into a stream, files that the source refers to are taken
-//            along, buffers and images: into the BIN chunk, or as data URIs. Beside the source the references stay.
-//            URIs in extensions are not looked for.
-// Memory     of new arrays, once, and of the changes; the source is streamed from its mapping. Data URIs are built in
+// Pointers   RFC 6901. Changes are made in the order of the calls, each to the result of the earlier ones, so values
+//            that were set or appended can be changed again. If a name occurs twice in an object, the last member is
+//            used, as in the reader.
+// Container  by the extension of the path, .glb or .gltf; streams (-, /dev/stdout, pipes) get the container of the
+//            source. GLB to GLB: the source, with a longer BIN chunk. .gltf to GLB: external buffers (files, data URIs)
+//            and images in files move into the BIN chunk, so the file is self-contained. To .gltf: the BIN chunk and
+//            the new arrays become data URIs, so that a single file can be replaced atomically.
+// Folders    if the result is a stream or in another folder than the source, buffers and images in files are included
+//            in the result: in the BIN chunk, or as data URIs. In the source's folder, references stay as they are.
+//            URIs in extensions are not changed.
+// Memory     one copy of new arrays, and the changes; the source is streamed from its mapping. Data URIs are built in
 //            memory.
 // Threads    an edit and its document belong to one thread at a time.
 
 /// Selects how an accessor of new numbers is written.
 struct GltfVectors {
-  bool bounds = false;  ///< min and max, which positions and times need
-  /// Writes zeros as bytes too, in every array. Otherwise arrays that are mostly zero become a sparse accessor if that
-  /// is smaller, and arrays that are all zero become an accessor without a bufferView, which some readers (Assimp)
-  /// refuse.
+  bool bounds = false;  ///< write min and max, which positions and times need
+  /// Stores all zeros as bytes. Otherwise arrays that are mostly zero become a sparse accessor if that is smaller, and
+  /// arrays that are all zero become an accessor without a bufferView, which some readers (Assimp) refuse.
   bool dense = false;
 };
 
 class GltfEdit {
  public:
-  /// The document must outlive this.
+  /// Makes an edit without changes. The document must outlive the edit.
   explicit GltfEdit(const GltfDocument& source);
   GltfEdit(GltfEdit&&) noexcept;
   GltfEdit& operator=(GltfEdit&&) noexcept;
@@ -322,13 +323,13 @@ class GltfEdit {
   GltfEdit& operator=(const GltfEdit&) = delete;
   ~GltfEdit();
 
-  /// Replaces the value at a pointer, or adds the member that its last token names; missing objects on the way are
-  /// made. json is the text of a value. bytes() and write() report what is wrong with either.
+  /// Replaces the value at a pointer, or adds the member that its last token names, with missing objects in between.
+  /// `json` is the text of a value. bytes() and write() report errors of both.
   void set(std::string pointer, std::string json);
-  /// Adds a value to the end of an array, which is made where it is missing.
+  /// Appends a value to an array, which is created if it is missing.
   void append(std::string pointer, std::string json);
-  /// Tells whether the source, without changes, has a value at a pointer; text() returns the value, empty where there
-  /// is none.
+  /// has() tells whether the source, without changes, has a value at a pointer; text() returns the value, or an empty
+  /// text.
   [[nodiscard]] bool has(const std::string& pointer) const;
   [[nodiscard]] std::string text(const std::string& pointer) const;
 
@@ -337,31 +338,30 @@ class GltfEdit {
   [[nodiscard]] std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   [[nodiscard]] std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
 
-  /// Leaves out what the changes leave unused, from now on: the bytes of arrays that the source refers to and the
-  /// result does not, in buffers that the result holds itself (BIN chunk, data URIs). The bytes behind them move
-  /// towards the front; all indices stay. Files with extensions that may refer to arrays in ways of their own keep all
-  /// their bytes.
+  /// Lets results omit arrays that the source uses but the result does not, in buffers inside the result (BIN chunk,
+  /// data URIs). Later bytes move to the front; all indices stay. Files with extensions that may refer to arrays in
+  /// unknown ways keep all their bytes.
   void leave_out_unused();
 
-  /// Lists how a file at this path differs from the source: pointers that are replaced or added, as they are in the
-  /// result, sorted, with /accessors/N, /buffers/N and so on for new ones. If several were added together, the
-  /// outermost is listed. Without a path, the container and the folder of the source count. Errors: as of write(), but
-  /// for the file.
+  /// Lists the differences between a result at this path and the source: the sorted pointers of the result that are
+  /// replaced or added, including /accessors/N, /buffers/N and so on for new items. If nested values were added
+  /// together, the outermost is listed. Without a path, the container and folder of the source are assumed. Errors:
+  /// those of write() that do not concern the file.
   [[nodiscard]] Result<std::vector<std::string>> pointers(const std::string& path = "") const;
-  /// Lists what a file at this path can not take along, images that are missing, in one sentence each.
+  /// Returns a sentence for each image that a result at this path cannot include because it is missing.
   [[nodiscard]] std::vector<std::string> warnings(const std::string& path) const;
   /// Returns the number of bytes of arrays that were added.
   [[nodiscard]] std::size_t added_bytes() const noexcept;
-  /// Returns the number of bytes of the source that a file at this path lacks, by leave_out_unused(). Errors: as of
+  /// Returns the number of bytes that leave_out_unused() removes from a result at this path. Errors: those of
   /// pointers().
   [[nodiscard]] Result<std::size_t> unused_bytes(const std::string& path = "") const;
 
-  /// Returns the whole new file, as write() would write it to path.
+  /// Returns the complete new file, as write() would write it to the path.
   [[nodiscard]] Result<std::string> bytes(const std::string& path) const;
   /// Writes the new file, by write_output() (io/output.h).
-  /// Errors: of write_output(); kUsage for another extension; kInvalidInput with the pointer as the place where the
-  /// source is such that a change is not possible (a parent that is no object, an array that is none), for JSON that is
-  /// none, for buffers that can not be read, images that are of no known kind, and for a GLB of 4 GiB or more.
+  /// Errors: of write_output(); kUsage for another extension; kInvalidInput, with the pointer as the place, if the
+  /// source does not allow a change (the parent is not an object, or an array is not an array), for text that is not
+  /// JSON, for unreadable buffers, for images of an unknown kind, and for a GLB of 4 GiB or more.
   [[nodiscard]] Status write(const std::string& path, bool force) const;
 
  private:

@@ -1,10 +1,10 @@
-/// Files that are written so that nobody ever sees half of one: any bytes, and motions in the formats that hold them.
+/// Writes files atomically, so that nobody ever sees half of one: any bytes, and motions in several formats.
 ///
 /// The bytes go to a temporary file in the same folder, which is flushed to disk (fsync) and then renamed: a reader
 /// sees the old file or the new one, and after an error the old one and no temporary. A symbolic link is followed: its
-/// target is replaced. An existing file keeps its permissions, and its owner where that is allowed; a new one gets what
-/// the umask allows. Pipes, devices and /dev/stdout, /dev/stderr, /dev/fd/N are written directly, never renamed over;
-/// "-" is the standard output.
+/// target is replaced. An existing file keeps its permissions, and its owner if the system allows that; a new file gets
+/// the permissions that the umask allows. Pipes, devices and /dev/stdout, /dev/stderr, /dev/fd/N are written directly,
+/// never renamed over; "-" is the standard output.
 ///
 /// Threads    functions on different paths may run at the same time.
 #ifndef CHRONORMAL_IO_OUTPUT_H_
@@ -21,43 +21,42 @@
 
 namespace chronormal {
 
-/// Refuses now what write_output() would refuse later: a folder, or an existing file without force. Meant to be called
+/// Refuses the cases that write_output() would refuse later: a folder, or an existing file without `force`. Call it
 /// before a long computation, and before the first of many files.
 [[nodiscard]] Status check_output(const std::string& path, bool force);
 
 /// Returns true if write_output() would write to a pipe, a device or a stream of this process, rather than make a file.
 [[nodiscard]] bool is_stream(const std::string& path);
 
-/// Writes a whole file.
-/// Errors: kFailed with the path as the place: an existing file without force (the message says: --force), a folder,
-/// and whatever the system refuses (no space left on device).
+/// Writes a whole file. Errors: kFailed with the path as the place: for an existing file without `force` (the message
+/// says: --force), for a folder, and for errors of the system (no space left on device).
 [[nodiscard]] Status write_output(const std::string& path, std::string_view bytes, bool force);
-/// Writes a file in pieces, which come one after the other, so that bytes in different places need no copy.
+/// Writes a file from pieces in order, so that bytes at different places need not be copied.
 [[nodiscard]] Status write_output(const std::string& path, std::span<const std::string_view> pieces, bool force);
 
-/// Removes all temporary files that write_output() is writing now, in any thread: for the handler of a signal that ends
-/// the process, which must end it then. It is safe to call from a handler.
+/// Removes all temporary files that write_output() is writing at the moment, in any thread. It is safe to call in a
+/// signal handler, which must then end the process.
 void remove_temporaries() noexcept;
 
-/// Returns the names of `count` numbered files. In the file name of pattern, one %d or %0Nd stands for the number, from
-/// 0; it may be missing if count is at most 1. Errors: kUsage for a pattern of another form.
+/// Returns the names of `count` numbered files. In the file name, one %d or %0Nd is replaced by the number, from 0; it
+/// may be missing if `count` is at most 1. Errors: kUsage for any other pattern.
 [[nodiscard]] Result<std::vector<std::string>> numbered_names(const std::string& pattern, std::size_t count);
 
-/// Returns true if the extension of path names a format that write_motion() writes.
+/// Returns true if the extension of the path names a format that write_motion() can write.
 [[nodiscard]] bool is_motion_file(const std::string& path) noexcept;
 
 /// Writes a motion in the format that the extension of path names:
 ///
 ///     .npz          whole, with its kind
-///     .pc2, .mdd    positions of a sequence without its faces; PC2 gets one frame a second, as open_input() reads it
-///     .obj, .ply    every keyframe into a file of its own, of numbered_names(); .ply is binary, little endian
+///     .pc2, .mdd    positions of a sequence without its faces; PC2 gets one frame per second, as open_input() reads it
+///     .obj, .ply    every keyframe in its own file, named by numbered_names(); .ply is binary, little endian
 ///
-/// Precondition: every keyframe has 3 x vertex_count coordinates, or the format is one of the first three.
-/// Targets in a .glb get base normals, to which vertices at one point throughout add alike unless `weld` is false.
-/// A stream is written as its keyframes are read; errors of the stream are returned, too.
-/// Errors: kUsage with path as the place for another extension, a pattern of another form,
-/// and a motion that the format does not hold: targets in a point cache, faces of different numbers of corners in .npz.
-/// Otherwise those of write_output(); if a file exists and force is not given, nothing is written.
+/// Precondition: every keyframe has 3 x vertex_count coordinates, or the format is one of the first three. Targets in a
+/// .glb get base normals, which vertices at the same point in all keyframes share unless `weld` is false. A stream is
+/// written as its keyframes are read; errors of the stream are returned, too.
+/// Errors: kUsage, with the path as the place, for another extension, for an invalid pattern, and for a motion that the
+/// format cannot represent: targets in a point cache, or faces with different numbers of corners in .npz. Otherwise
+/// those of write_output(); if a file exists and `force` is false, nothing is written.
 [[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force, bool weld = true);
 [[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, bool weld = true);
 

@@ -1,18 +1,19 @@
 /// A mesh that deforms: keyframes of vertex positions over one topology, and the segments between them.
 ///
-/// Inside a segment every vertex moves on a straight line, p(t) = (1 - t) p0 + t p1, with local t in [0, 1]. A
-/// sequence of keyframes 0, 1, 2 has the segments 0 -> 1 and 1 -> 2; blend shapes with base 0 and targets 1, 2 have
-/// 0 -> 1 and 0 -> 2. Both are a Motion, whose kind says which it is: what computes normals need not ask, but what
-/// speaks to people says times of the one and weights of the other.
+/// Inside a segment every vertex moves on a straight line, p(t) = (1 - t) p0 + t p1, with local t in [0, 1]. A sequence
+/// of keyframes 0, 1, 2 has the segments 0 -> 1 and 1 -> 2; blend shapes with base 0 and targets 1, 2 have 0 -> 1 and 0
+/// -> 2. Both are a Motion, and its kind tells which: code that computes normals need not know, but messages for people
+/// mention times for a sequence and weights for targets.
 ///
-/// find_instant() says which segment, and which t in it, belong to a time.
+/// find_instant() converts a time into a segment and its local t.
 ///
-/// Positions are float32. Those of a keyframe that was computed (the targets of a glTF file, or its animation of their
-/// weights) had to be rounded to that, by far more than the length of a short edge beside large coordinates allows for.
-/// Such a keyframe keeps what the rounding left out, and all normals are those of the positions before it.
+/// Positions are float32. The positions of a keyframe that was computed (targets of a glTF file, or an animation of
+/// their weights) had to be rounded to float32, and the rounding error may be large compared with short edges at large
+/// coordinates. Such a keyframe also keeps the remainders of the rounding, and all normals are those of the positions
+/// before rounding.
 ///
 /// Shapes     V = vertices; a keyframe has V positions, packed as (V, 3) float32.
-/// Units      positions: any length; times: seconds, double; of targets, weights: 0 for the base, 1 for a target.
+/// Units      positions: any length; times: seconds, double; for targets, weights: 0 for the base, 1 for a target.
 #ifndef CHRONORMAL_MOTION_MOTION_H_
 #define CHRONORMAL_MOTION_MOTION_H_
 
@@ -39,23 +40,23 @@ namespace chronormal {
 // triangles and a quad are kept as
 //
 //     corners   0 1 2   2 1 3   4 5 6 7        vertex of each corner, face after face
-//     offsets   0       3       6         10   where each face begins, and the end
+//     offsets   0       3       6         10   first corner of each face, and the end
 //
-// A mesh of triangles alone keeps no offsets.
+// A mesh with only triangles has no offsets.
 
 class Topology {
  public:
   Topology() = default;
 
   /// Builds polygons from corners and offsets (see above) over vertices 0 .. vertex_count - 1.
-  /// Errors: a face of fewer than 3 corners, a corner that names no vertex, offsets that do not ascend from 0 to the
-  /// number of corners; the place is "face F" or "face F, corner C". O(corners).
+  /// Errors: a face of fewer than 3 corners, a corner without a vertex, offsets that do not ascend from 0 to the number
+  /// of corners; the place is "face F" or "face F, corner C". O(corners).
   [[nodiscard]] static Result<Topology> polygons(std::size_t vertex_count, std::vector<std::uint32_t> offsets,
                                                  std::vector<std::uint32_t> corners);
 
   /// Builds triangles from three corners each. Errors and cost as for polygons().
   [[nodiscard]] static Result<Topology> triangles(std::size_t vertex_count, std::vector<std::uint32_t> corners);
-  /// Does the same for an index buffer of 16 bits, which is copied.
+  /// Builds triangles from an index buffer of 16 bits, which is copied.
   [[nodiscard]] static Result<Topology> triangles(std::size_t vertex_count, std::span<const std::uint16_t> corners);
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertex_count_; }
@@ -79,29 +80,29 @@ class Topology {
 
  private:
   std::size_t vertex_count_ = 0;
-  std::vector<std::uint32_t> offsets_;  // empty where all faces are triangles
+  std::vector<std::uint32_t> offsets_;  // empty if all faces are triangles
   std::vector<std::uint32_t> corners_;
 };
 
-/// One straight piece of a motion, as a view, from which control normals and schemes are prepared. The Motion that it
-/// comes from must outlive it.
+/// A view of one straight piece of a motion, from which control normals and schemes are prepared. The Motion must
+/// outlive it.
 struct Segment {
   const Topology* topology = nullptr;
-  VectorView<const float> from;  ///< positions at t = 0, one per vertex
+  VectorView<const float> from;  ///< positions at t = 0, one for each vertex
   VectorView<const float> to;    ///< positions at t = 1
-  double start_time = 0;         ///< seconds, at t = 0; of a target, its weight
-  double end_time = 1;           ///< the same at t = 1
+  double start_time = 0;         ///< seconds at t = 0; for targets, a weight
+  double end_time = 1;           ///< seconds or weight at t = 1
   std::size_t index = 0;         ///< the number of the segment in its motion
-  /// Added to `from` and `to`, these give positions before they were rounded to float32 (Motion::Keyframe). Empty where
-  /// nothing was rounded.
+  /// Residuals: added to `from` and `to`, they give the positions before rounding to float32 (Motion::Keyframe). Empty
+  /// if nothing was rounded.
   VectorView<const double> from_residuals = {}, to_residuals = {};
 };
 
-/// Tells what the segments of a motion are.
+/// The kind of a motion, which determines its segments.
 enum class MotionKind {
-  kSequence,   ///< keyframes that follow each other: one segment between every two neighbours
+  kSequence,   ///< keyframes in order: one segment between any two neighbours
   kTargets,    ///< morph targets over a base: segment k leads from keyframe 0, the base, to keyframe k + 1
-  kAnimation,  ///< weights of targets over time: as a sequence, but without a segment where weights jump
+  kAnimation,  ///< weights of targets over time: like a sequence, but without a segment where weights jump
 };
 
 /// Returns "sequence", "targets" or "animation".
@@ -110,18 +111,19 @@ enum class MotionKind {
 struct Motion {
   struct Keyframe {
     std::vector<float> positions;        ///< (V, 3)
-    double time = 0;                     ///< seconds; of targets, the weight
-    std::string name;                    ///< for messages: the file that it came from, or empty
-    std::vector<float> velocities = {};  ///< (V, 3) per second, of a sequence whose file has them; or empty
-    /// (V, 3) per second, for an end of a part of a sequence: the velocities that curves through the whole sequence
-    /// have there (PathKind::kCatmullRom in motion/paths.h). Empty: velocities follow from the keyframes of the motion.
+    double time = 0;                     ///< seconds; for targets, the weight
+    std::string name;                    ///< for messages: the file of the keyframe, or empty
+    std::vector<float> velocities = {};  ///< (V, 3) per second, if the file of a sequence has velocities; or empty
+    /// (V, 3) per second, for a keyframe at the end of a part of a sequence: the velocities of curves through the whole
+    /// sequence (PathKind::kCatmullRom in motion/paths.h). If empty, velocities follow from the keyframes of the
+    /// motion.
     std::vector<float> end_velocities = {};
-    /// (V, 3), or empty where nothing was rounded: a vertex is at its position and its residual, added up. Files hold
-    /// positions alone.
+    /// (V, 3), or empty if nothing was rounded: the exact place of a vertex is the sum of its position and its
+    /// residual. Files store only positions.
     std::vector<double> residuals = {};
 
-    /// Sets the positions to these coordinates rounded to float32, and the residuals to the rest of them.
-    /// low must have the digits of each coordinate that high has not, below half a unit in its last place
+    /// Sets the positions to coordinates rounded to float32, and the residuals to the remainders. `low` must have the
+    /// digits of each coordinate beyond `high`, less than half a unit in its last place
     void set_positions(std::span<const double> high, std::span<const double> low);
   };
   struct SegmentKeys {
@@ -132,98 +134,98 @@ struct Motion {
   Topology topology;
   std::vector<Keyframe> keyframes;
   std::vector<SegmentKeys> segments;
-  /// (V), the number of the separate object that each vertex belongs to: vertices of two objects are never one point,
-  /// wherever they are. Empty: all belong to one object.
+  /// (V), the number of the separate object to which each vertex belongs: vertices of different objects are never one
+  /// point, even at the same place. If empty, all belong to one object.
   std::vector<std::uint32_t> body_of_vertex = {};
   MotionKind kind = MotionKind::kSequence;
-  /// The point that positions count from, the same at all keyframes: (0, 0, 0) but where a file has coordinates far
-  /// from the origin in more digits than float32 keeps. Writers of positions add it. Normals do not depend on it.
+  /// The point from which positions are measured, equal at all keyframes. It is (0, 0, 0) unless a file has coordinates
+  /// far from the origin with more digits than float32 keeps. Writers of positions add it. Normals do not depend on it.
   std::array<double, 3> origin = {};
 
   /// Returns a view of one segment. Precondition: the motion is valid (validate()) and i < segments.size().
   [[nodiscard]] Segment segment(std::size_t i) const noexcept;
 
-  /// Sets the kind and makes the segments that a motion of this kind has, from its keyframes. (In an animation, two
-  /// neighbours at one time are a jump, and no segment joins them.)
+  /// Sets the kind, and makes the segments of a motion of this kind from its keyframes. (In an animation, two
+  /// neighbours at the same time are a jump without a segment.)
   void connect(MotionKind as);
   void connect_as_sequence() { connect(MotionKind::kSequence); }
   void connect_as_targets() { connect(MotionKind::kTargets); }
 };
 
-/// Returns a keyframe as a segment that does not move, from time 0 to 1. Both must outlive it.
+/// Returns a keyframe as a segment without motion, from time 0 to 1. Both arguments must outlive it.
 [[nodiscard]] Segment still_segment(const Topology& topology, const Motion::Keyframe& keyframe) noexcept;
 
-/// Checks data from outside, once, for everything that computes. The rest of the library takes for granted: at least
-/// one face and one segment; every keyframe with 3 x vertex_count finite coordinates, and as many velocities or none;
-/// residuals of rounding to float32, as many or none; a body for each vertex or none; segments between keyframes that
-/// exist; finite times that ascend along every segment; and segments as the kind of the motion has them. (A Topology
-/// checks its own indices.)
-/// Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
+/// Checks data from outside once, for all computations. The rest of the library relies on the following: at least one
+/// face and one segment; every keyframe with 3 x vertex_count finite coordinates, and as many velocities or none;
+/// residuals of rounding to float32, as many or none; a body for each vertex or none; segments between existing
+/// keyframes; finite times that ascend along every segment; and the segments that the kind of the motion demands. (A
+/// Topology checks its own indices.) Errors: the place names the keyframe (and its file, where known), and the vertex
+/// or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);
 
-/// A local t in [0, 1], as exact as a time was: with keys at 0 and 3, time 1 is t = 1/3, which no double is. Where n(t)
-/// is so small that the rounding of t would turn it, integers take the quotient itself. A double is one as it is.
+/// A local t in [0, 1] without rounding: with keys at 0 and 3, time 1 is t = 1/3, which is not a double. If n(t) is so
+/// small that rounding t would turn it, integers use the exact quotient. A double converts to a LocalTime as it is.
 struct LocalTime {
   double t = 0;     ///< rounded once
-  double rest = 1;  ///< 1 - t, rounded once as well: near t = 1 it has digits that t has not
-  /// t is (time - start) / (end - start) without any rounding.
+  double rest = 1;  ///< 1 - t, also rounded once: near t = 1 it has digits that t does not have
+  /// t is exactly (time - start) / (end - start)
   double start = 0, time = 0, end = 1;
 
   LocalTime() = default;
   LocalTime(double local) noexcept : t(local), rest(1 - local), time(local) {}  // NOLINT(google-explicit-constructor)
   operator double() const noexcept { return t; }                                // NOLINT(google-explicit-constructor)
 
-  /// Returns where a time lies between two others. Precondition: start < end, and both are finite. Outside, t is
-  /// that of the nearer end.
+  /// Returns the local t of a time between two others. A time outside gets the t of the nearer end. Precondition: start
+  /// < end, and both are finite.
   [[nodiscard]] static LocalTime between(double start, double time, double end) noexcept;
 
   [[nodiscard]] bool is_double() const noexcept { return start == 0 && end == 1; }
 };
 
-/// The segment of a motion and the local t in it that a time stands for.
+/// A time as a segment of a motion and the local t in this segment.
 struct Instant {
   std::size_t segment = 0;
   LocalTime t;
 };
 
 /// Finds the segment and the local t of a time in seconds. A keyframe between two segments is the beginning of the
-/// later one, and the end of the motion is the end of the last one. The motion must be valid, or stand still.
-/// O(segments). Errors: kUsage for a time at which there is no motion, with the range; for targets, and for a mesh that
-/// stands still.
+/// later one, and the end of the motion is the end of the last one. The motion must be valid, or a mesh at rest.
+/// O(segments). Errors: kUsage for a time outside of the motion, with the valid range; for targets; and for a mesh at
+/// rest.
 [[nodiscard]] Result<Instant> find_instant(const Motion& motion, double time);
 
-// A motion that is larger than memory: its keyframes are read when they are needed, and released after that.
+// A motion that may be larger than memory: its keyframes are read on demand, and released afterwards.
 //
 //     MotionStream stream = ...;                      // from Input::stream() in io/input.h, or from a whole motion
 //     for (std::size_t s = 0; s < stream.motion().segments.size(); ++s) {
 //       if (const Status status = stream.hold_segment(s); !status) return status.error();
-//       const Segment segment = stream.motion().segment(s);      // good until the next hold
+//       const Segment segment = stream.motion().segment(s);      // valid until the next hold
 //     }
 //
 // motion() is the whole motion except for the positions of keyframes that are not held: faces, segments, times and
-// names are always there. So a function that takes a Motion takes the motion of a stream too, once the stream holds
-// what the function looks at. Where keyframes are held one after the other, a thread of its own reads the next one
-// ahead.
+// names are always available. So a function that takes a Motion can take the motion of a stream, if the stream holds
+// the keyframes that the function reads. If keyframes are held in order, a separate thread reads the next one in
+// advance.
 //
-// Memory     the keyframes that are held, and one that is read ahead. Keyframes that take no more than `kept` bytes
-//            together are read once and stay. A motion that was whole before takes nothing more.
-// Threads    one stream belongs to one thread at a time; what is held may be read by many.
+// Memory     the keyframes that are held, and one that is read in advance. If all keyframes together take at most
+//            `kept` bytes, each is read once and stays. A motion in memory takes no additional memory.
+// Threads    a stream belongs to one thread at a time; many threads may read the keyframes that are held.
 
 class MotionStream {
  public:
-  /// Writes the 3 x vertex_count coordinates of a keyframe of the motion, all of them finite. It is called from one
-  /// thread at a time, not always from the same.
+  /// A function that writes the 3 x vertex_count coordinates of a keyframe, all finite. It is called from one thread at
+  /// a time, but not always from the same thread.
   using Reader = std::function<Status(const Motion& motion, std::size_t keyframe, std::span<float> positions)>;
 
-  /// Receives the positions of a keyframe, as the reader has written them.
+  /// A function that receives the positions of a keyframe as the reader has written them.
   using Watcher = std::function<Status(std::size_t keyframe, std::span<const float> positions)>;
 
   static constexpr std::size_t kUsuallyKept = std::size_t{64} << 20;
 
-  /// Wraps a motion that is in memory and stays there; it must outlive the stream, and it may stand still.
+  /// Wraps a motion in memory, which must outlive the stream and may be at rest.
   explicit MotionStream(const Motion& whole);
 
-  /// Wraps a motion whose keyframes have no positions yet; the first one may have some. Everything else of the outline
+  /// Wraps a motion whose keyframes have no positions yet, except perhaps the first one. Everything else in the outline
   /// must be valid (motion/motion.h).
   MotionStream(Motion outline, Reader read, std::size_t kept = kUsuallyKept);
 
@@ -233,22 +235,22 @@ class MotionStream {
 
   [[nodiscard]] const Motion& motion() const noexcept;
 
-  /// Makes sure that the positions of keyframes first to last are there, until the next hold. Errors: those of the
-  /// reader.
-  /// first <= last, and last must be a keyframe
+  /// Reads the positions of the keyframes `first` to `last` if necessary; they stay until the next hold. Errors: those
+  /// of the reader. first <= last, and last must be a keyframe
   [[nodiscard]] Status hold(std::size_t first, std::size_t last);
-  /// Holds both ends of segments first to last.
+  /// Holds both ends of the segments `first` to `last`.
   [[nodiscard]] Status hold_segments(std::size_t first, std::size_t last);
   [[nodiscard]] Status hold_segment(std::size_t segment) { return hold_segments(segment, segment); }
-  /// Holds all keyframes: the motion is in memory then.
+  /// Holds all keyframes, so that the whole motion is in memory.
   [[nodiscard]] Status hold_all();
 
-  /// Tells the watcher at once of every keyframe that is there, and from now on of each one that is read, before
-  /// anybody else sees it and by the thread that reads it. There is one watcher at a time; an empty one ends this.
-  /// Errors: those of the watcher, here and for each hold.
+  /// Calls the watcher at once with every keyframe in memory, and later with each keyframe that is read, before anybody
+  /// else can use it and in the thread that reads it. There is one watcher at a time; an empty one ends this. Errors:
+  /// those of the watcher, from this call and from each hold.
   [[nodiscard]] Status watch(Watcher watcher);
 
-  /// Returns true if keyframes stay in memory once they were held: to hold all costs no more memory than to read them.
+  /// Returns true if keyframes stay in memory once they were held, so that holding all of them costs no additional
+  /// memory.
   [[nodiscard]] bool keeps_all() const noexcept;
 
  private:
@@ -256,11 +258,12 @@ class MotionStream {
   std::unique_ptr<State> state_;
 };
 
-// Blend shapes: a base and targets that move some of its vertices, with any weights at once.
+// Blend shapes: a base, and targets that move some of its vertices, which can be active together with any weights.
 //
 //     p(w) = base + sum_i w_i d_i                                            (section 14 of docs/theory.md)
 //
-// A target lists the vertices that it moves, ascending, and how: target 0 lifts vertex 2, target 1 shifts 0 and 2:
+// A target lists the vertices that it moves, in ascending order, and their deltas. Here target 0 lifts vertex 2, and
+// target 1 shifts 0 and 2:
 //
 //     targets[0]   vertices 2      deltas  0 1 0
 //     targets[1]   vertices 0 2    deltas  1 0 0   1 0 0
@@ -273,7 +276,7 @@ struct BlendTarget {
   std::vector<std::uint32_t> vertices;  ///< ascending
   std::vector<float> deltas;            ///< (n, 3)
 
-  /// Keeps the vertices of dense deltas, (V, 3), that are not (0, 0, 0).
+  /// Makes a target from dense deltas, (V, 3); only the vertices with deltas other than (0, 0, 0) are kept.
   [[nodiscard]] static BlendTarget from_dense(std::span<const float> deltas, std::string name = {});
 };
 
@@ -283,22 +286,22 @@ struct BlendSet {
   std::vector<BlendTarget> targets;
 };
 
-/// Returns the blend shapes of a star of segments (targets in io/input.h): its base, and a target for each segment from
-/// keyframe 0, named as the keyframe at its end. Deltas are differences of positions, rounded to float32. The motion
+/// Returns the blend shapes of a motion of targets (io/input.h): its base, and a target for each segment from keyframe
+/// 0, with the name of the keyframe at its end. Deltas are differences of positions, rounded to float32. The motion
 /// must be valid. Errors, with the place "target K": kUsage for a segment that does not begin at keyframe 0,
 /// kInvalidInput for a delta beyond the range of float32.
 [[nodiscard]] Result<BlendSet> blend_set_of(const Motion& star);
 
-/// Checks what the rest of the library relies on: as many positions as the topology has vertices, all finite, and in
-/// each target vertices that ascend and exist, with one finite delta each.
+/// Checks the properties on which the rest of the library relies: as many positions as the topology has vertices, all
+/// finite, and in each target ascending, existing vertices with one finite delta each.
 /// Errors: kInvalidInput with the place "base, vertex V" or "target K, entry N".
 [[nodiscard]] Status validate(const BlendSet& set);
 
-/// Checks one target that is to become number k of a set over this topology.
+/// Checks a target that is to become number k of a set with this topology.
 [[nodiscard]] Status validate(const BlendTarget& target, const Topology& topology, std::size_t k);
 
-/// Writes the positions at some weights, (V, 3) in double, without a rounding to float32 in between.
-/// weights must have one for each target, result 3 V; targets of weight 0 cost nothing
+/// Writes the positions at some weights, (V, 3) in double, without rounding to float32 in between. `weights` must have
+/// one for each target, and `result` 3 V elements; targets of weight 0 cost nothing
 void blend_positions(const BlendSet& set, std::span<const double> weights, std::span<double> result) noexcept;
 
 }  // namespace chronormal

@@ -1,22 +1,23 @@
-/// Vertices that do not move on straight lines: curves through the keyframes of a sequence, cut into straight pieces.
+/// Curved motion: curves through the keyframes of a sequence, cut into straight pieces.
 ///
-/// Everything in this library is exact for vertices on straight lines. A curve becomes a sequence with more keyframes,
-/// after which all that takes a Motion applies to it:
+/// Everything in this library is exact for vertices on straight lines. A curve is converted into a sequence with more
+/// keyframes, which all functions for a Motion accept:
 ///
 ///     keyframes            0           1                 2
 ///     catmull-rom          0--o--o--o--1--o--o--o--o--o--2         o: keyframes on the curves, at equal steps of time
 ///
-/// The number of pieces that a segment gets follows from a bound, and not from samples. On each piece the cubic of a
-/// vertex is its chord and a deviation s (1 - s) ((1 - s) a + s b) with s in [0, 1], where a and b follow from the
-/// second derivatives at both ends. The products of edges and deviations bound how far the normal of a face, a vector,
-/// is from that of the chords, and the Bernstein coefficients of the latter bound its length. A segment gets the fewest
-/// pieces, of a ladder 1, 2, 3, 4, 6, 8, 12 ..., with which that ratio is at most the sine of the tolerance in every
-/// face and piece. Since it bounds vectors, sums over the faces of a vertex or of a corner are as near, as far as these
-/// faces look the same way.
+/// The number of pieces of a segment follows from a bound, not from samples. On each piece the cubic of a vertex is its
+/// chord plus a deviation s (1 - s) ((1 - s) a + s b) with s in [0, 1], where a and b follow from the second
+/// derivatives at both ends. The products of edges and deviations bound the distance between the normal vector of a
+/// face and that of the chords, and the Bernstein coefficients of the chords' normal bound its length from below. A
+/// segment gets the fewest pieces of the series 1, 2, 3, 4, 6, 8, 12 ... for which the ratio of these two bounds is at
+/// most the sine of the tolerance in every face and piece. Since vectors are bounded, sums over the faces of a vertex
+/// or corner are within the tolerance, too, as far as these faces have similar directions.
 ///
-/// The new keyframes are float32, and the rounding of their positions comes on top: a face whose normals deviate by no
-/// more than that rounding is good enough, too. A face that all but vanishes between two keyframes may be within no
-/// tolerance however many pieces there are: it counts as `beyond`, and decides nothing.
+/// The new keyframes are float32, and the rounding of their positions adds to the error; a face whose normals deviate
+/// by no more than this rounding is accepted, too. A face that nearly vanishes between two keyframes may miss the
+/// tolerance with any number of pieces: such a face is counted in `beyond`, and does not influence the number of
+/// pieces.
 ///
 /// Units      positions: any length L; velocities L / s; tolerances in degrees.
 /// Threads    pure. Cutting runs on all cores, with the same result on any number of them.
@@ -36,20 +37,21 @@
 
 namespace chronormal {
 
-/// Tells how the vertices of a sequence move between its keyframes.
+/// The kind of path on which the vertices of a sequence move between its keyframes.
 enum class PathKind {
-  kLinear,      ///< straight, as players do
-  kCatmullRom,  ///< on cubics whose velocities follow from the keyframes: CubicSegment
-  kHermite,     ///< on cubics with the velocities of the keyframes, or those of kCatmullRom where a keyframe has none
+  kLinear,      ///< on straight lines, like in players
+  kCatmullRom,  ///< on cubics whose velocities follow from the keyframes (CubicSegment)
+  /// On cubics with the velocities of the keyframes; a keyframe without velocities gets those of kCatmullRom.
+  kHermite,
 };
 
-/// The largest angle, in degrees, between normals of straight pieces and of the curve, if none is asked for.
+/// The default of the largest angle, in degrees, between normals of straight pieces and normals of the curve.
 inline constexpr double kPathTolerance = 0.01;
 
-/// A path, and how near straight pieces have to be to it.
+/// A kind of path, and the tolerance of its straight pieces.
 struct Path {
   PathKind kind = PathKind::kLinear;
-  double tolerance = kPathTolerance;  ///< degrees, of normals
+  double tolerance = kPathTolerance;  ///< degrees between normals
 
   [[nodiscard]] bool is_curved() const noexcept { return kind != PathKind::kLinear; }
 };
@@ -57,24 +59,24 @@ struct Path {
 /// Returns the name of a kind: "linear", "catmull-rom" or "hermite".
 [[nodiscard]] std::string_view path_name(PathKind kind) noexcept;
 /// Reads a path: the name of its kind, and after a colon the tolerance of a curve, "catmull-rom:0.1". Errors: kUsage
-/// for another name, with all names, and for a tolerance that is no number above 0 and up to 45.
+/// for another name, with all names, and for a tolerance that is not a number above 0 and at most 45.
 [[nodiscard]] Result<Path> make_path(std::string_view text);
-/// Checks that a motion has such paths. Errors: kUsage for curves in a motion that is no sequence, and for kHermite
-/// where no keyframe has velocities.
+/// Checks that a motion can have such paths. Errors: kUsage for curves in a motion that is not a sequence, and for
+/// kHermite if no keyframe has velocities.
 [[nodiscard]] Status check_path(const Motion& motion, PathKind kind);
 
-/// The velocity at keyframe `at` as kCatmullRom has it: the sum of share[j] p(first + j) over the positions p of the
-/// keyframes first, first + 1, ... from which it follows.
+/// The velocity at keyframe `at` for kCatmullRom: the sum of share[j] p(first + j) over the positions p of the
+/// keyframes first, first + 1, ...
 struct VelocityShares {
   std::size_t first = 0;
   std::vector<double> share;  ///< per second
 
-  /// Adds up positions, (V, 3) each: one for each share, all of one size.
+  /// Returns the weighted sums of positions, (V, 3) each: one array for each share, all of the same size.
   [[nodiscard]] std::vector<float> velocities(std::span<const std::span<const float>> positions) const;
 };
 /// Computes the shares of keyframe `at`. The velocity there is that of the parabola through the keyframe and its two
-/// neighbours, and at the first and the last keyframe that of the cubic through the nearest four, or through as many as
-/// there are, so that between two keyframes the motion is straight. times must ascend; at < times.size()
+/// neighbours, and at the first and the last keyframe that of the cubic through the nearest four keyframes, or through
+/// all if there are fewer; with two keyframes the motion is straight. times must ascend; at < times.size()
 [[nodiscard]] VelocityShares velocity_shares(std::span<const double> times, std::size_t at);
 
 /// The cubics of all vertices from one keyframe to the next, in Bernstein form.
@@ -87,56 +89,57 @@ struct CubicSegment {
   /// Returns the positions of all vertices, rounded to float32: (V, 3).
   [[nodiscard]] std::vector<float> positions(double t) const;
 };
-/// Returns the cubics from keys[i] to keys[i + 1], straight ones too, through their float32 positions: a curve is drawn
-/// through keyframes of files, which have no residuals. A key that has end_velocities (motion/motion.h) keeps them.
-/// keys must ascend in time, all with as many positions; i + 1 < keys.size(). Only keys from which the velocities
-/// follow are looked at.
+/// Returns the cubics from keys[i] to keys[i + 1], or straight lines as cubics. Residuals are ignored, since only
+/// keyframes from files have curves, and these have none. A key with end_velocities (motion/motion.h) uses them. Keys
+/// must ascend in time, with equally many positions; i + 1 < keys.size(). Only the keys that determine the velocities
+/// are read.
 [[nodiscard]] CubicSegment cubic_segment(std::span<const Motion::Keyframe* const> keys, std::size_t i, PathKind kind);
 
-/// Measures how far the paths through every `every`-th keyframe of a sequence are from straight. For every three
-/// successive keyframes it is the second difference of a vertex, relative to the way that the vertex went; both are
-/// added up over all vertices and keyframes. A rigid turn by an angle a from keyframe to keyframe has sin(a / 2). Three
-/// keyframes are held at a time. Errors: those of the stream.
+/// Measures the bend of the paths through every `every`-th keyframe of a sequence: the second differences of vertices
+/// over three successive keyframes, divided by the distances that the vertices move, both summed over all vertices and
+/// keyframes. A rigid turn by an angle a from keyframe to keyframe has a bend of sin(a / 2). Three keyframes are held
+/// at a time. Errors: those of the stream.
 [[nodiscard]] Result<double> bend_of(MotionStream& stream, std::size_t every = 1);
-/// Above this bend, a curve through the keyframes tells little about the motion.
+/// The bend above which a curve through the keyframes says little about the motion.
 inline constexpr double kTooSparse = 0.5;
-/// Tells whether a bend is above kTooSparse by more than what the rounding of float32 positions may add to it: a rigid
-/// turn by 60 degrees from keyframe to keyframe bends by the limit, and is not too sparse.
+/// Tells whether a bend exceeds kTooSparse by more than the effect of rounding positions to float32. A rigid turn by 60
+/// degrees from keyframe to keyframe has exactly this bend, and is not too sparse.
 [[nodiscard]] constexpr bool is_too_sparse(double bend) noexcept { return bend > kTooSparse + 1e-6; }
 
-/// Compares velocities with positions, to find out whether the velocities belong to the motion.
+/// A comparison of velocities with positions, to find out whether the velocities fit the motion.
 struct VelocityFit {
-  /// The way that vertices would go from keyframe to keyframe at the mean of the speeds at both ends, as a multiple of
-  /// the straight way that they go: 1 or somewhat more. It is 100 where velocities are 100 times too large, and 30
-  /// where they are per second and keyframes without times count as seconds.
+  /// The distance that vertices would move from keyframe to keyframe at the mean of the speeds at both ends, divided by
+  /// the distance that they really move: 1 or slightly more if velocities fit. It is 100 if velocities are 100 times
+  /// too large, and 30 if velocities are per second, but frames at 30 per second are read as one second apart.
   double length = 1;
-  /// The mean cosine of the angle between velocities and these ways, where long ones count more: -1 where velocities
-  /// are reversed.
+  /// The mean cosine of the angle between velocities and displacements, weighted by distance: -1 if velocities are
+  /// reversed.
   double direction = 1;
 
-  /// Returns true if a turn of up to about 200 degrees from keyframe to keyframe, or an acceleration from rest,
-  /// explains both.
+  /// Returns true if both numbers can be explained by a turn of up to about 200 degrees from keyframe to keyframe, or
+  /// by an acceleration from rest.
   [[nodiscard]] bool is_plausible() const noexcept { return length >= 1.0 / 3 && length <= 3 && direction >= 0; }
 };
-/// Looks at up to 64 segments, evenly spread, whose keyframes both have velocities. Where there is none, or where no
-/// vertex moves, the result is as if all velocities fitted. Errors: those of the stream.
+/// Compares up to 64 evenly distributed segments whose keyframes both have velocities. If there is none, or if no
+/// vertex moves, the result is the same as if all velocities fitted. Errors: those of the stream.
 [[nodiscard]] Result<VelocityFit> velocity_fit(MotionStream& stream);
 
 /// The result of cutting curves into pieces.
 struct CutPath {
   Path path;
-  std::size_t segments = 0;  ///< between the keyframes that there were
-  std::size_t pieces = 0;    ///< of all of them
-  std::size_t beyond = 0;    ///< faces that are within no tolerance, counted once for each segment
-  double rounding = 0;       ///< L: a bound of what float32 makes of a coordinate
-  double bend = 0;           ///< bend_of() the keyframes
-  VelocityFit velocities;    ///< velocity_fit() of these, on kHermite
+  std::size_t segments = 0;  ///< number of segments between the original keyframes
+  std::size_t pieces = 0;    ///< number of pieces of all segments
+  /// Number of faces that miss the tolerance with any number of pieces, counted once per segment.
+  std::size_t beyond = 0;
+  double rounding = 0;     ///< L: bound of the error of rounding a coordinate to float32
+  double bend = 0;         ///< bend_of() the original keyframes
+  VelocityFit velocities;  ///< velocity_fit() of the keyframes, for kHermite
 };
 
-/// The largest number of pieces of one segment, where none is asked for.
+/// The default of the largest number of pieces of one segment.
 inline constexpr std::size_t kMostPieces = 100;
 
-/// The pieces of a motion, in memory. A motion on kLinear stays as it is.
+/// The pieces of a motion in memory. A motion on kLinear does not change.
 struct CutMotion {
   Motion motion;
   CutPath cut;
@@ -144,14 +147,15 @@ struct CutMotion {
 [[nodiscard]] Result<CutMotion> cut_into_segments(const Motion& motion, const Path& path,
                                                   std::size_t most_pieces = kMostPieces);
 
-/// The pieces of a stream. Its keyframes are read once to find out how many pieces there are, and again when pieces are
-/// asked for, four at a time. Pieces that take no more bytes together than `kept` stay in memory once they were made.
+/// The pieces of a stream. Its keyframes are read once to determine the number of pieces, and again when pieces are
+/// needed, four keyframes at a time. If all pieces together take at most `kept` bytes, they stay in memory once they
+/// were computed.
 struct CutStream {
   MotionStream stream;
   CutPath cut;
 };
-/// Cuts the curves of a stream. Errors: those of check_path() and of the stream; kUsage for a motion that stands still,
-/// and for curves that leave the range of float32.
+/// Cuts the curves of a stream. Errors: those of check_path() and of the stream; kUsage for a mesh at rest, and for
+/// curves that leave the range of float32.
 [[nodiscard]] Result<CutStream> cut_into_segments(MotionStream stream, const Path& path,
                                                   std::size_t most_pieces = kMostPieces,
                                                   std::size_t kept = MotionStream::kUsuallyKept);

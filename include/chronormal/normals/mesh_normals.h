@@ -1,39 +1,37 @@
 /// The unit normals of a mesh that deforms: between two arrays of positions, or at weights of blend shapes.
 ///
-/// MeshNormals is the library's face for engines and bindings. It knows the topology, who shares a normal, how faces
-/// are weighted and how accurate normals must be; it is given a segment (positions at t = 0 and at t = 1) or a set of
-/// blend shapes, prepares what makes an evaluation cheap, and then writes normals as often as it is asked to:
+/// MeshNormals is the main interface of the library for engines and bindings. It has the topology, the corners that
+/// share a normal, the weighting of faces and the accuracy. It takes a segment (positions at t = 0 and at t = 1) or a
+/// set of blend shapes, prepares data for fast evaluation, and then writes normals as often as needed:
 ///
 ///     MeshNormals normals = MeshNormals::make(topology, {.tolerance = kCompactTolerance}).value();
 ///     if (const Status status = normals.set_segment(from, to); !status) return status;
-///     normals.unit_normals(t, result);                         // all of them on this thread, or
+///     normals.unit_normals(t, result);                         // all normals on this thread, or
 ///     normals.unit_normals(t, result, {first, count});         // a range, on any thread of your job system
 ///
 ///     if (const Status status = normals.set_targets(std::move(blend_set)); !status) return status;
-///     normals.set_weights(weights);                            // once for a frame
+///     normals.set_weights(weights);                            // once per frame
 ///     normals.unit_normals(result, {first, count});            // on any thread
 ///
 /// Outputs    the faces, vertices or corners of the topology, in its order. A result has a place for every output; a
-///            call for a range of outputs writes that range and nothing else. Outputs that show one element, such as
-///            the copies of a vertex along a seam, get the same bits, and every division into ranges gives the bits of
-///            one call.
-/// Sharing    is decided by the first segment or set of targets, or by the motion that make() was given, and stays:
-///            vertices that are at one point at both ends (in all keyframes; in the base and at full weight of each
-///            target) are one. Hard edges are those of t = 0.
+///            call for a range of outputs writes only that range. Outputs of the same element, such as copies of a
+///            vertex along a seam, get the same bits, and every division into ranges gives the same bits as one call.
+/// Sharing    is decided by the first segment or set of targets, or by the motion given to make(), and then fixed:
+///            vertices that coincide at both ends (in all keyframes; in the base and at full weight of each target)
+///            share a normal. Hard edges are determined at t = 0.
 /// Accuracy   the direction of every normal is within `tolerance` of exact arithmetic on the positions, by a bound; at
 ///            weights within 1e-6 rad (blend_normals.h). Weightings other than area add fit_bound().
-/// Degenerate (0, 0, 0) where there is no normal; calls return how many of those they wrote, usually 0. Where n(t) is
-///            zero at one t the limit is written (Direction in control_normals.h). t outside [0, 1] is moved to the
-///            nearer end; where t is NaN every normal is (0, 0, 0).
-/// Cost       Preparing a segment costs about as much as recomputing its normals once, an evaluation a thirtieth of
-///            that (docs/benchmarks.md, "Frames of a segment"). Ranges of outputs that share elements evaluate what is
-///            at their rims twice.
-/// Memory     const functions use 48 KiB of the stack at most. set_segment() uses the memory of the segment
-///            before again.
+/// Degenerate (0, 0, 0) if there is no normal; calls return the number of these, usually 0. If n(t) is zero only at
+/// this t, the limit is written (Direction in control_normals.h). t outside [0, 1] is moved to the nearer end; if t is
+/// NaN every normal is (0, 0, 0).
+/// Cost       Preparing a segment costs about as much as recomputing its normals once, and an evaluation a thirtieth of
+///            that (docs/benchmarks.md, "Frames of a segment"). If two ranges share elements, these are evaluated
+///            twice.
+/// Memory     const functions use at most 48 KiB of the stack. set_segment() reuses the memory of the previous segment.
 /// Ownership  positions are read while set_segment() runs, or from begin_segment() to finish_segment(), and are not
 ///            kept.
-/// Threads    const functions may run at the same time, on one object. What is noexcept does not allocate either.
-///            prepare() may run beside them; other functions need the object for themselves.
+/// Threads    const functions may run at the same time on the same object. Functions that are noexcept do not allocate.
+///            prepare() may run at the same time as const functions; other functions need exclusive access.
 #ifndef CHRONORMAL_NORMALS_MESH_NORMALS_H_
 #define CHRONORMAL_NORMALS_MESH_NORMALS_H_
 
@@ -53,61 +51,62 @@
 
 namespace chronormal {
 
-/// The number of evaluations of a segment from which on preparing it is cheaper than recomputing its normals within
-/// 1e-6 rad. It was measured: curves are ahead from the first or the second frame on, on all meshes of
-/// docs/benchmarks.md, "Frames of a segment".
+/// The number of evaluations per segment from which on preparing curves is cheaper than recomputing normals within 1e-6
+/// rad. Measured on all meshes of docs/benchmarks.md ("Frames of a segment"), curves are faster from the first or
+/// second frame on.
 inline constexpr double kCurvesFrom = 2;
 
 struct MeshNormalsOptions {
   ElementOptions elements = {ElementKind::kVertices};
-  Weighting weighting = Weighting::kArea;  ///< kArea for faces, and for blend shapes
-  double tolerance = kExactTolerance;      ///< radians, of segments: at least kExactTolerance
-  Threads threads = Threads::kOne;         ///< to prepare on
+  Weighting weighting = Weighting::kArea;  ///< must be kArea for faces and for blend shapes
+  double tolerance = kExactTolerance;      ///< radians, for segments; at least kExactTolerance
+  Threads threads = Threads::kOne;         ///< the threads on which segments are prepared
 };
 
 /// A range of all outputs, however many there are.
 inline constexpr IndexRange kAllOutputs = {0, ~std::size_t{0}};
 
-/// Control normals in vertex buffers, for shaders: n(t) is (1-t)^2 n0 + 2t(1-t) m + t^2 n1, to be normalised. Only
-/// float32 keeps lengths; in the others the three are divided by their largest component.
+/// Control normals in vertex buffers, for shaders: a shader computes (1-t)^2 n0 + 2t(1-t) m + t^2 n1 and normalises.
+/// Only float32 keeps lengths; the other formats divide the three vectors by their largest component.
 enum class ControlFormat {
   kFloat32,  ///< 36 bytes: n0, m, n1 as x y z
-  kSnorm16,  ///< 20 bytes: likewise, and 2 bytes of 0. The error of a component is at most 1.6e-5
-  kSnorm11,  ///< 12 bytes: a word each for x, y, z; n0 in its lowest 11 bits, then n1 in 11, m in 10: errors up to 1e-3
+  kSnorm16,  ///< 20 bytes: n0, m, n1 as x y z, then 2 bytes of 0. The error of a component is at most 1.6e-5
+  /// 12 bytes: one word each for x, y and z; n0 in the lowest 11 bits, then n1 in 11 bits, m in 10; errors up to 1e-3.
+  kSnorm11,
 };
 
-/// Returns the bytes of one output: 36, 20 or 12.
+/// Returns the number of bytes per output: 36, 20 or 12.
 [[nodiscard]] std::size_t bytes_of(ControlFormat format) noexcept;
 
 class MeshNormals {
  public:
-  /// Makes an object that knows no positions yet. Errors: kInvalidInput for a mesh without faces; kUsage for faces with
-  /// another weighting than area.
+  /// Makes an object without positions. Errors: kInvalidInput for a mesh without faces; kUsage for faces with another
+  /// weighting than area.
   [[nodiscard]] static Result<MeshNormals> make(Topology topology, const MeshNormalsOptions& options = {});
-  /// Makes an object for the segments of a motion, all of whose keyframes say which vertices are one. The motion must
-  /// be valid, or stand still. Errors: also those of make_groups().
+  /// Makes an object for the segments of a motion, whose keyframes together decide which vertices share a normal. The
+  /// motion must be valid, or at rest. Errors: also those of make_groups().
   [[nodiscard]] static Result<MeshNormals> make(const Motion& motion, const MeshNormalsOptions& options = {});
 
-  /// Another object of the same mesh, as for each of many characters: without positions and targets, with the topology
-  /// and, as soon as it is known, who shares a normal in the memory of this one, at no cost. The two may be used at the
-  /// same time.
+  /// Makes another object for the same mesh, for example one for each of many characters. It has no positions or
+  /// targets, and shares the memory of this object for the topology and the groups of corners. The two may be used at
+  /// the same time.
   [[nodiscard]] MeshNormals another() const;
 
   MeshNormals(MeshNormals&&) noexcept;
   MeshNormals& operator=(MeshNormals&&) noexcept;
   ~MeshNormals();
 
-  /// Prepares a segment, in the memory of the one before. Errors, after which everything is as it was: kInvalidInput
-  /// for another number of positions than there are vertices, or one that is not finite (the place is "keyframe 0,
-  /// vertex V"); at first also those of make_groups().
+  /// Prepares a segment, reusing the memory of the previous one. Errors, after which nothing has changed: kInvalidInput
+  /// if the number of positions differs from the number of vertices, or if a position is not finite (the place is
+  /// "keyframe 0, vertex V"); for the first segment also those of make_groups().
   [[nodiscard]] Status set_segment(VectorView<const float> from, VectorView<const float> to);
-  /// Prepares a segment of a motion of the same mesh; its residuals count too.
+  /// Prepares a segment of a motion of the same mesh, including its residuals.
   [[nodiscard]] Status set_segment(const Segment& segment);
 
-  /// Prepares the next segment a little at a time, while the present one is evaluated. begin_segment() does no work
-  /// yet; its errors are those of set_segment(). prepare() does a share of all the work, 0 to 1, on the thread that
-  /// calls it, and returns whether all is done. finish_segment() does what is left and makes the next segment the
-  /// present one. The bits are those of set_segment(). (Fits of other weightings than area are made by
+  /// Prepares the next segment step by step, while the current one is evaluated. begin_segment() does no work yet; its
+  /// errors are those of set_segment(). prepare() does a share of the work, from 0 to 1, on the calling thread, and
+  /// returns true when all is done. finish_segment() does the remaining work and makes the next segment current. The
+  /// results have the same bits as with set_segment(). (Fits for weightings other than area are computed by
   /// finish_segment().)
   [[nodiscard]] Status begin_segment(VectorView<const float> from, VectorView<const float> to);
   bool prepare(double share);
@@ -117,45 +116,46 @@ class MeshNormals {
   /// result must have size() elements
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// Writes them in four bytes each; normals/normal_curves.h says what becomes of (0, 0, 0).
+  /// Writes the unit normals in four bytes each; normals/normal_curves.h explains the encoding of (0, 0, 0).
   std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// Writes them at many t, in one pass over what is prepared. results[k] is for times[k], and there are as many.
+  /// Writes the unit normals at many t, in one pass over the prepared data. results[k] is for times[k], and there must
+  /// be as many.
   std::size_t unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// Writes them on all cores, by the pool of parallel.h, which may allocate.
+  /// Writes the unit normals on all cores, by the thread pool of parallel.h, which may allocate.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) const;
 
   /// Writes the control normals of a segment for every output, one after the other. The tolerance must be
-  /// kExactTolerance. Errors: kUsage for another, or where bytes is not of size() * bytes_of(format).
+  /// kExactTolerance. Errors: kUsage for another tolerance, or if `bytes` does not have size() * bytes_of(format)
+  /// elements.
   [[nodiscard]] Status fill_vertex_buffer(ControlFormat format, std::span<std::byte> bytes) const;
 
-  /// Prepares blend shapes, at weights of 0. Errors: kUsage for another weighting than area; kInvalidInput for a set of
-  /// another mesh; those of validate() for a set, and at first of make_groups().
+  /// Prepares blend shapes, with all weights 0. Errors: kUsage for a weighting other than area; kInvalidInput for a set
+  /// of another mesh; those of validate() for a set, and the first time also those of make_groups().
   [[nodiscard]] Status set_targets(BlendSet set, const BlendNormalsOptions& options = {});
-  /// Chooses how the normals at these weights are made, and moves positions if that is needed. On one thread it does
-  /// not allocate or throw. Targets must be set, and weights must have one for each
+  /// Sets the weights, chooses how normals are computed for them, and blends positions if necessary. With one thread it
+  /// does not allocate or throw. Targets must be set, and there must be a weight for each
   BlendChoice set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
-  /// Writes the unit normals at the weights that are set; returns the number of (0, 0, 0).
-  /// result must have size() elements
+  /// Writes the unit normals at the current weights. Returns the number of (0, 0, 0). result must have size() elements
   std::size_t unit_normals(VectorView<float> result, IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(std::span<Octahedral> result, IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(std::span<Rgb10A2> result, IndexRange outputs = kAllOutputs) const noexcept;
-  /// Sets weights and writes all normals, for callers with one thread, or with those of parallel.h.
+  /// Sets weights and writes all normals, for callers with one thread, or with the thread pool of parallel.h.
   std::size_t unit_normals(std::span<const double> weights, VectorView<float> result, Threads threads = Threads::kOne);
 
-  /// The number of outputs: faces, vertices or corners.
+  /// Returns the number of outputs: faces, vertices or corners.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// The number of different normals, as soon as it is decided who shares them; size() for faces.
+  /// Returns the number of different normals, once it is decided who shares them; size() for faces.
   [[nodiscard]] std::size_t element_count() const noexcept;
   [[nodiscard]] const Topology& topology() const noexcept;
   [[nodiscard]] const MeshNormalsOptions& options() const noexcept;
-  /// Returns the largest angle, in radians, between a fit of the weighting and the weighted normal, over all elements;
-  /// 0 for area.
+  /// Returns the largest angle in radians between the fit of a weighting and the exact weighted normal, over all
+  /// elements; 0 for area.
   [[nodiscard]] double fit_bound() const noexcept;
-  /// Returns the bytes that the segment and the targets take.
+  /// Returns the memory of the segment and the targets in bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:

@@ -1,31 +1,32 @@
 /// Curves of normals: prepared once per segment, evaluated at any t at the speed of memory.
 ///
-/// NormalCurves keeps the control normals of N elements in blocks of 16, each block in the fewest bytes that keep the
-/// tolerance, and one after the other, so that an evaluation is one pass over memory. What a block holds depends on
-/// the largest degree of its elements and on how precise they must be; in bytes for each element
+/// NormalCurves stores the control normals of N elements in consecutive blocks of 16, each in the smallest format that
+/// keeps the tolerance, so that an evaluation is one pass over memory. The format of a block depends on the largest
+/// degree of its elements and on their required precision; in bytes per element:
 ///
 ///     degree 2   36  n0, m, n1 in float32: 16 x of n0, 16 y of n0, ...
-///                20  in int16 against the largest component of the element; or each of n0, m, n1 against its own
-///                    largest component, rounded up to a power of two (5 bits each): for slivers and collapsing faces
+///                20  in int16 relative to the largest component of the element; or for slivers and collapsing faces,
+///                    each of n0, m, n1 relative to its own largest component, rounded up to a power of two (5 bits
+///                    each)
 ///                12  n0, n1 in 11 bits and m in 10
 ///     degree 1   24  n0, n1 in float32;   12 or 20  in int16, likewise
 ///     degree 0   12  the unit normal in float32, 16 with its length
 ///
-/// Scales are those of the element: a direction needs none, so none is stored. Runs of less than 4 blocks join a
-/// neighbour that can hold them, where both lie within the same 32 blocks.
+/// An element's own scale is not stored, since a direction does not need it. Runs of fewer than 4 blocks join a
+/// neighbouring run with a sufficient format, if both are within the same 32 blocks.
 ///
 /// Accuracy   The direction of every element is within `tolerance` of the exact n(t) of the positions at the
-///            double t, by a bound and not by measurement (docs/theory.md, sections 5 and 13): where n(t) gets small
-///            against its control normals, their rounding counts more, so each element carries a certificate of how
-///            small it can get. Where float32 cannot promise 1e-6 rad the element is *flagged* and evaluated in double;
-///            flagged_count() tells how many those are. Where double cannot either, curves that were made from
-///            positions keep the control normals as integers, and know the direction at every t; those that were made
-///            of control normals have the direction of these, and tell by uncertain_count() where even that is not
-///            known.
-/// Lengths    |n(t)| is kept where the tolerance is kExactTolerance, and is lost in compact curves.
+///            double t, by a bound and not by measurement (docs/theory.md, sections 5 and 13). If n(t) becomes small
+///            relative to its control normals, their rounding has a larger effect, so the smallest |n(t)| of each
+///            element is bounded during preparation. If float32 cannot guarantee 1e-6 rad, the element is *flagged* and
+///            evaluated in double; flagged_count() returns the number of these. If double is not enough either, curves
+///            made from positions store the control normals as integers, and give the exact direction at every t;
+///            curves made from control normals give the direction of these, and uncertain_count() counts the elements
+///            for which even that is not certain.
+/// Lengths    |n(t)| is kept if the tolerance is kExactTolerance, and is lost in compact curves.
 /// Ownership  the curves own their memory; results go to the caller's.
-/// Threads    const functions may run at the same time. On one thread and at one t they do not allocate or throw. The
-///            same bits on every instruction set, compiler and number of threads.
+/// Threads    const functions may run at the same time. With one thread and one t they do not allocate or throw.
+///            Results have the same bits on every instruction set, compiler and number of threads.
 /// Speed      results aligned to 64 bytes, packed, as planes or in four bytes, are fastest; docs/benchmarks.md.
 #ifndef CHRONORMAL_NORMALS_NORMAL_CURVES_H_
 #define CHRONORMAL_NORMALS_NORMAL_CURVES_H_
@@ -54,10 +55,11 @@ namespace chronormal {
 //     Rgb10A2       x, y, z: snorm10 from the lowest bits up, and 2 bits of 0: GL_INT_2_10_10_10_REV,
 //                   DXGI R10G10B10A2, VK A2B10G10R10. Within 1.7e-3 rad.
 //
-// A component c of snorm N bits is the integer nearest to c (2^(N-1) - 1), in two's complement. (0, 0, 0), the normal
-// of an element that has none, is 0 in Rgb10A2; Octahedral cannot say it, and 0 there is (0, 0, 1).
+// A component c of snorm N bits is the integer nearest to c (2^(N-1) - 1), in two's complement. (0, 0, 0), the result
+// for an element without a normal, is 0 in Rgb10A2. Octahedral cannot represent it, and gives 0, which is decoded as
+// (0, 0, 1).
 
-/// A separate type for each encoding, so that one cannot be taken for the other; it holds nothing but the four bytes.
+/// A separate type for each encoding, so that the compiler tells them apart. Each has only four bytes.
 struct Octahedral {
   std::uint32_t bits = 0;
   friend bool operator==(const Octahedral&, const Octahedral&) = default;
@@ -71,7 +73,7 @@ struct Rgb10A2 {
 [[nodiscard]] Octahedral encode_octahedral(const Vec3f& v) noexcept;
 [[nodiscard]] Rgb10A2 encode_rgb10a2(const Vec3f& v) noexcept;
 
-/// Decodes to length 1, except for the zero of Rgb10A2.
+/// Decodes a unit vector, or the zero of Rgb10A2.
 [[nodiscard]] Vec3f decode(Octahedral encoded) noexcept;
 [[nodiscard]] Vec3f decode(Rgb10A2 encoded) noexcept;
 
@@ -79,20 +81,20 @@ inline namespace internal {
 struct CurveData;
 }
 
-/// The accuracy that float32 promises: blocks of 36, 24 and 16 bytes, with lengths.
+/// The accuracy that float32 can guarantee: blocks of 36, 24 and 16 bytes, with lengths.
 inline constexpr double kExactTolerance = 1e-6;  // radians
 /// A good choice for shading: a twentieth of a degree. Most blocks take 12 or 20 bytes.
 inline constexpr double kCompactTolerance = 1e-3;  // radians
 
 struct CurveOptions {
-  /// The largest angle, in radians, by which a unit normal may be wrong: at least kExactTolerance, at most 0.2. Values
-  /// outside count as the nearer limit.
+  /// The largest error of a unit normal in radians, from kExactTolerance to 0.2. Values outside of this range count as
+  /// the nearer limit.
   double tolerance = kExactTolerance;
 };
 
 class NormalCurves {
  public:
-  /// Creates curves of no elements.
+  /// Creates curves without elements.
   NormalCurves() noexcept;
   /// Curves can be moved, which leaves empty ones, but not copied.
   NormalCurves(NormalCurves&&) noexcept;
@@ -102,11 +104,11 @@ class NormalCurves {
   /// Prepares the curves of all elements. Reads `normals` once and does not keep it. Throws std::bad_alloc only.
   explicit NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options = {});
 
-  /// Prepares the curves of all faces of a segment, or of all elements of groups, straight from positions, without an
-  /// array of control normals in between. (Meshes in no order need 32 bytes a vertex more for a while.) The first
-  /// curves of some groups also make the paths around their elements, 33 bytes a vertex of a grid, which the groups
-  /// keep for later curves. If many segments are prepared one after the other, name the curves before as `reuse`: they
-  /// are emptied and their memory is used again, which spares asking the system for new pages; the 32 bytes a vertex
+  /// Prepares the curves of all faces of a segment, or of all elements of groups, directly from positions, without an
+  /// array of control normals in between. (Meshes in random order need 32 more bytes per vertex during the call.) The
+  /// first curves for some groups also compute the paths around elements, 33 bytes per vertex of a grid, which the
+  /// groups keep for later curves. If many segments are prepared one after the other, pass the previous curves as
+  /// `reuse`: they are emptied and their memory is reused, which avoids requests for new pages; the 32 bytes per vertex
   /// are then kept for the next curves.
   ///     curves = NormalCurves::of_faces(motion.segment(i), options, Threads::kAll, &curves);
   [[nodiscard]] static NormalCurves of_faces(const Segment& segment, const CurveOptions& options = {},
@@ -115,18 +117,17 @@ class NormalCurves {
                                               const CurveOptions& options = {}, Threads threads = Threads::kOne,
                                               NormalCurves* reuse = nullptr);
 
-  /// Writes n(t) / |n(t)| of every element. Where n(t) = 0 it is the limit direction (see Direction), or (0, 0, 0)
-  /// where n is zero throughout. Returns the number of (0, 0, 0) written, usually 0. control_normals.h says what t
-  /// outside [0, 1] means.
-  /// result must have size() elements
+  /// Writes n(t) / |n(t)| of every element. If n(t) = 0, the result is the limit direction (see Direction), or (0, 0,
+  /// 0) if n is zero throughout. Returns the number of (0, 0, 0) written, usually 0. control_normals.h explains t
+  /// outside [0, 1]. result must have size() elements
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne) const;
-  /// Writes them in four bytes each; see above for what becomes of (0, 0, 0).
+  /// Writes the unit normals in four bytes each; see above for the encoding of (0, 0, 0).
   std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result, Threads threads = Threads::kOne) const;
   std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result, Threads threads = Threads::kOne) const;
 
-  /// Writes the unit normals at many t, reading the curves from memory once: motion blur, or playing a block of frames.
-  /// (Once for each t where results are neither all packed nor all planes.) results[k] is for times[k], and there are
-  /// as many; returns the number of (0, 0, 0) of all of them. Throws std::bad_alloc.
+  /// Writes the unit normals at many t while reading the curves only once, for motion blur or for a block of frames.
+  /// (If results are neither all packed nor all planes, curves are read once for each t.) results[k] is for times[k],
+  /// and there must be as many. Returns the total number of (0, 0, 0). Throws std::bad_alloc.
   std::size_t unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                            Threads threads = Threads::kOne) const;
   std::size_t unit_normals(std::span<const double> times, std::span<const std::span<Octahedral>> results,
@@ -138,19 +139,18 @@ class NormalCurves {
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] bool keeps_lengths() const noexcept;
-  /// Counts the elements of true degree 0, 1 and 2. A tolerance of 2^-12 or more may count elements as straight that
-  /// bend by less than their rounding errors in float32; they are kept as straight then, within the tolerance.
+  /// Counts the elements of true degree 0, 1 and 2. With a tolerance of 2^-12 or more, elements that bend by less than
+  /// their rounding errors in float32 may count as straight; they are then stored as straight, within the tolerance.
   [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept;
-  /// Counts the elements that are uncertain at t: n(t) is so small a part of the terms that it is the sum of, in
-  /// double, that 1e-6 rad is not promised there. It happens only if control normals are all that is known; curves made
-  /// from positions have none.
+  /// Counts the elements that are uncertain at t: n(t) is so small relative to the terms of its sum that double cannot
+  /// guarantee 1e-6 rad. This happens only for curves made from control normals, never for curves made from positions.
   [[nodiscard]] std::size_t uncertain_count(double t) const noexcept;
   /// Counts the elements that are evaluated in double.
   [[nodiscard]] std::size_t flagged_count() const noexcept;
-  /// Returns the memory that is kept, in bytes (8 an index), except for what fills up the last block or what the next
-  /// `reuse` needs.
+  /// Returns the memory in use, in bytes (8 for an index), without the padding of the last block and without memory
+  /// kept for the next `reuse`.
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// The number of elements that are kept in blocks of some number of bytes.
+  /// The number of elements that are stored with some number of bytes.
   struct ByteCount {
     std::size_t bytes = 0;  ///< for each element
     std::size_t elements = 0;
@@ -164,7 +164,7 @@ class NormalCurves {
   [[nodiscard]] const CurveData& data() const noexcept;
   [[nodiscard]] static CurveData* data_of(NormalCurves* reuse);
 
-  std::unique_ptr<CurveData> data_;  // nothing: of no elements
+  std::unique_ptr<CurveData> data_;  // nullptr if there are no elements
 };
 
 }  // namespace chronormal

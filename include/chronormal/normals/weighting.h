@@ -74,7 +74,7 @@ inline constexpr std::array<WeightingInfo, 7> kAllWeightings = {{
     {Weighting::kInverseRoots, "inverse-roots", "the square roots of these reciprocals"},
 }};
 
-/// The first weightings, by which tools shade. The weighting of stored normals is looked for among them.
+/// The weightings that tools use for shading. The weighting of stored normals is searched among these.
 inline constexpr std::array<WeightingInfo, 5> kWeightings = {kAllWeightings[0], kAllWeightings[1], kAllWeightings[2],
                                                              kAllWeightings[3], kAllWeightings[4]};
 
@@ -83,14 +83,13 @@ inline constexpr std::array<WeightingInfo, 5> kWeightings = {kAllWeightings[0], 
 /// Finds a weighting by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<Weighting> make_weighting(std::string_view name);
 
-/// Writes n of a range of faces at t: twice the vector area, within 2^-30 of its length, and zero if it is exactly
-/// zero. (control_normals.h says what t outside [0, 1] means.)
-/// result must have as many elements as the range
+/// Writes n of a range of faces at t: twice the vector area, with an error of at most 2^-30 of its length, and exactly
+/// zero if it is zero. (control_normals.h explains t outside of [0, 1].) result must have as many elements as the range
 void face_normals_at(const Segment& segment, const LocalTime& t, IndexRange faces, std::span<Vec3d> result) noexcept;
 
-/// Writes the weighted normals of a range of elements at t, of any length. Pure: no allocation, no throw. The terms are
-/// added in the order of NormalGroups: shuffling the faces of the mesh gives the same bits.
-/// of_faces must have the result of face_normals_at() for all faces at this t, result as many elements as the range
+/// Writes the weighted normals of a range of elements at t, not normalised. Pure: no allocation, no throw. The terms
+/// are added in the order of NormalGroups: shuffling the faces of the mesh gives the same bits. of_faces must have the
+/// result of face_normals_at() for all faces at this t, result as many elements as the range
 void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 
@@ -99,13 +98,13 @@ void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Wei
                                                          Weighting weighting, const LocalTime& t);
 
 struct WeightingFit {
-  std::vector<ControlNormals> normals;  ///< of each element
-  std::vector<double> bounds;           ///< of each element, radians, in [0, pi]
+  std::vector<ControlNormals> normals;  ///< one for each element
+  std::vector<double> bounds;           ///< one for each element, radians in [0, pi]
 };
 
 /// Fits all elements of a segment. For area the control normals are those of all_group_control_normals(), and the
-/// bounds are 0. Runs on all cores, and takes some 0.1 ms per element of mild motion, up to 1.5 ms where it is strong.
-/// The bits are the same on every number of threads.
+/// bounds are 0. Runs on all cores, and takes about 0.1 ms per element with little motion, and up to 1.5 ms with strong
+/// motion. The bits are the same for every number of threads.
 [[nodiscard]] WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, Weighting weighting);
 
 }  // namespace chronormal

@@ -1,33 +1,32 @@
-/// Compares what a viewer shows with what it should show: the errors of stored normals over a motion.
+/// Audits stored normals: compares the normals that a viewer renders with the true ones, over a motion.
 ///
-/// A viewer shows at a sample what its rule makes of the stored normals; it should show n(t), area-weighted or by
-/// another weighting, from the positions at that time, in double. An author may give normals of his own (another
-/// weighting, a bevel); that offset is kept and is no fault:
+/// At a sample, a viewer renders a normal that its rule computes from the stored normals; the true normal is n(t),
+/// area-weighted or by another weighting, from the positions at that time, in double. An author may have edited normals
+/// (another weighting, a bevel); this offset is kept and is not an error:
 ///
 ///     authored offset    the angle between a stored base normal and the weighted normal of the geometry
-///     motion error       the angle between what is shown at a sample and what should be, the offset kept
+///     motion error       the angle between the rendered and the true normal at a sample, with the offset kept
 ///
 ///     glTF       the rotation from n(0) to the stored N, fixed per vertex
-///     skins      both as the skin of a node takes them to the screen, in the pose of that time (docs/decisions/0022).
-///                The errors of skinning itself are reported apart from these.
-///     sequences  at each keyframe towards its stored normal, but by no more than the angle of keyframe 0: what an
-///                offset grows by is an error. Between two keyframes the two rotations are blended
+///     skins      both normals as the skin of a node transforms them, in the pose of that time (docs/decisions/0022).
+///                The errors of skinning itself are reported separately.
+///     sequences  at each keyframe a rotation towards its stored normal, but by at most the angle of keyframe 0: growth
+///                of the offset is an error. Between two keyframes the two rotations are blended
 ///
 /// Samples    t = i / (samples - 1) of each segment: a target from weight 0 to 1, or the time between two keys of an
-///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as the file says.
-///            Expressions of an avatar, poses in which a file opens, and poses that are asked for stand still: one
-///            sample each.
-/// Judged     samples of vertices that move: a face around them does, or their stored normal.
-/// Unlit      a shown normal that is zero, infinite or NaN cannot be lit: such a sample has an error of 180 degrees,
-///            the most that there is, and is counted.
+///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as in the file.
+///            Expressions of an avatar, poses in which a file opens, and requested poses have one sample each.
+/// Judged     samples of vertices with a face that moves, or with a stored normal that changes.
+/// Unlit      a rendered normal that is zero, infinite or NaN cannot be lit: such a sample has the largest possible
+///            error, 180 degrees, and is counted.
 /// No normal  samples whose n(t) is below 1e-4 of the largest control normal of its element over the motion are counted
-///            apart, and are in no mean and no worst error. Their shown normal must be finite; and it must not be zero
-///            if the faces around have an area, since these are drawn.
-/// Faint      samples without a normal whose n(t) is more than what rounding the positions to float32 may change it by.
-///            They have a direction all the same, and a gate must not pass what is lit from behind: is_within() of
-///            audits and viewers looks at them, with the angle less what that rounding explains.
-/// Cancelled  samples without a normal that are not faint although the faces around have an area: faces that lie back
-///            to back and share their vertices. Nobody knows what is right there, and no gate passes.
+///            separately, and are not part of the mean or the worst error. Their rendered normal must be finite; and it
+///            must not be zero if the faces around have an area, since these are drawn.
+/// Faint      samples without a normal whose n(t) is larger than the effect of rounding positions to float32. They
+///            still have a direction, and normals that are lit from behind must not pass: is_within() of audits and
+///            viewers checks their angle, reduced by the effect of that rounding.
+/// Cancelled  samples without a normal that are not faint although the faces around have an area: faces that are back
+///            to back and share their vertices. Their true normal is unknown, and is_within() is false.
 /// Units      degrees; weights; seconds.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_H_
@@ -54,72 +53,76 @@
 
 namespace chronormal {
 
-/// Selects what a viewer makes of stored normals between two keyframes.
+/// The rule by which a viewer computes normals from stored ones between two keyframes.
 enum class AuditRule {
-  kGltf,   ///< normalize(N + sum w D), with the file's deltas, in float32
-  kLerp,   ///< a straight line between the stored normals of the keyframes
-  kNlerp,  ///< the same between their unit vectors
-  kSlerp,  ///< the arc between them
-  kStep,   ///< the normals of the keyframe before, up to the next one
-  kFlat,   ///< face normals of the mesh as it is, instead of stored ones
+  kGltf,   ///< normalize(N + sum w D) with the file's deltas, in float32
+  kLerp,   ///< linear interpolation between the stored normals of the keyframes
+  kNlerp,  ///< linear interpolation between their unit vectors
+  kSlerp,  ///< slerp between their unit vectors
+  kStep,   ///< the normals of the earlier keyframe, until the next one
+  kFlat,   ///< face normals of the current mesh, instead of stored ones
 };
 
 [[nodiscard]] std::string_view audit_rule_name(AuditRule rule) noexcept;
 /// Finds a rule by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<AuditRule> make_audit_rule(std::string_view name);
 
-/// Errors below this are no fault of a file, since some files store normals in 8 bits.
+/// The error in degrees below which normals do not count as faulty, since some files store normals in 8 bits.
 inline constexpr double kAuditFault = 1;  // degrees
 
-inline constexpr std::size_t kRandomPoses = 200;  ///< of a mesh, where poses are asked for and none are given
+/// Number of random poses of a mesh, if poses are requested without a list.
+inline constexpr std::size_t kRandomPoses = 200;
 
-inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< of a segment
+inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< largest number of samples per segment
 
 struct AuditOptions {
-  std::optional<AuditRule> rule = {};       ///< nothing: kGltf for glTF, kNlerp for sequences
-  std::optional<std::size_t> samples = {};  ///< per segment; nothing: 21, or fewer in long tracks (about 210 in all)
-  /// glTF: in longer tracks every second, third or later segment is judged, so that about so many are. 0: all are.
+  std::optional<AuditRule> rule = {};       ///< default: kGltf for glTF, kNlerp for sequences
+  std::optional<std::size_t> samples = {};  ///< per segment; default: 21, or fewer in long tracks (about 210 in all)
+  /// For glTF: in longer tracks only every second, third or later segment is judged, so that about this many are. 0
+  /// judges all.
   std::size_t most_segments = 0;
-  std::string animation = {};  ///< glTF: this one alone, by name or index; empty: the targets and all of them
-  /// The weighting of the right normals: that of the program which the file comes from. Nothing: for each mesh, and for
-  /// a sequence, the one that its stored base normals follow clearly, or else area.
+  /// For glTF: only this animation, by name or index; if empty, all targets and animations.
+  std::string animation = {};
+  /// The weighting of the true normals, which should be that of the program that made the file. By default, for each
+  /// mesh or sequence, the weighting that its stored base normals clearly follow, or else area.
   std::optional<Weighting> weighting = {};
-  /// glTF: the document that this one was baked from, whose normals are its author's; it must have the same meshes.
-  /// Nothing: the normals of this one are its author's.
+  /// For glTF: the document from which this one was baked, whose normals are the author's; it must have the same
+  /// meshes. By default, the normals of this document are the author's.
   const GltfDocument* author = nullptr;
-  /// glTF: the weights between which each target is judged alone; the first is below the second, and both are finite.
+  /// For glTF: the weights between which each target is judged alone, finite and ascending.
   std::array<double, 2> weights = {0, 1};
-  /// glTF: poses that are judged too, for meshes of which they name a target, or which have their number of targets.
-  /// Without any, but with is_posed, kRandomPoses of each mesh that a program may set (docs/cli.md).
+  /// For glTF: further poses to judge, for meshes with a target that they name, or with their number of targets. With
+  /// is_posed but without poses: kRandomPoses for each mesh that a program may set (docs/cli.md).
   bool is_posed = false;
   std::vector<RigPose> poses = {};
-  std::vector<Viewer> viewers = {};  ///< glTF, by the rule gltf: these are judged too
-  bool skins = true;                 ///< glTF: judges meshes in nodes with a skin as they are seen through it
-  bool weld = true;                  ///< vertices at one point throughout are one
-  bool keep_errors = false;          ///< every single one, in Audit::errors
-  /// Is called with the number of segments.
+  std::vector<Viewer> viewers = {};  ///< for glTF with the rule gltf: viewers that are judged, too
+  bool skins = true;                 ///< for glTF: judges meshes in nodes with a skin as the skin transforms them
+  bool weld = true;                  ///< vertices that coincide in all keyframes share a normal
+  bool keep_errors = false;          ///< keeps every single error in Audit::errors
+  /// Is called with the number of segments that are done, and of all.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// One motion: a target from weight 0 to 1, the weight track of a node, a sequence, an expression of an avatar, the
-/// weights with which a file opens, or poses that were asked for, which are samples of one subject.
+/// One motion: a target from weight 0 to 1, the weight track of a node, a sequence, an avatar's expression, the weights
+/// with which a file opens, or requested poses, which are samples of a single subject.
 struct AuditSubject {
   enum class Kind { kTarget, kTrack, kSequence, kExpression, kOpening, kPoses };
 
   Kind kind = Kind::kTarget;
-  std::string name;                                   ///< of the target, animation or expression; may be empty
-  std::optional<std::size_t> mesh, target;            ///< of a glTF file; target: of --base too
-  std::optional<std::size_t> animation, track, node;  ///< of a track; node: the first that opens so, too
-  std::optional<std::size_t> expression;              ///< among those of the mesh
-  Weighting weighting = Weighting::kArea;             ///< of its right normals
-  std::vector<std::size_t> driven;                    ///< the targets that a track gives other weights than 0
-  std::size_t segments = 0, samples = 0;              ///< samples of each segment
-  std::size_t vertices = 0;                           ///< judged vertices, or corners where there is no one-to-one
+  std::string name;                         ///< name of the target, animation or expression; may be empty
+  std::optional<std::size_t> mesh, target;  ///< for a glTF file; `target` also for --base
+  /// For a track; `node` also for the first node that opens in this pose.
+  std::optional<std::size_t> animation, track, node;
+  std::optional<std::size_t> expression;   ///< index among the expressions of the mesh
+  Weighting weighting = Weighting::kArea;  ///< weighting of the true normals
+  std::vector<std::size_t> driven;         ///< the targets to which a track gives nonzero weights
+  std::size_t segments = 0, samples = 0;   ///< `samples` is per segment
+  std::size_t vertices = 0;                ///< judged vertices, or corners if a vertex has several normals
   MotionError error;
-  MotionError at_keys;                         ///< of the same, those at both ends of each segment
-  std::optional<SkinningError> skinning = {};  ///< where it was judged through a skin
+  MotionError at_keys;                         ///< the errors at both ends of each segment
+  std::optional<SkinningError> skinning = {};  ///< present if the mesh was judged through a skin
 
-  /// Returns true if a sample is found by a weight, and not by a time.
+  /// Returns true if samples of the subject are identified by weights, and not by times.
   [[nodiscard]] bool is_weighed() const noexcept {
     return kind == Kind::kTarget || kind == Kind::kExpression || kind == Kind::kOpening;
   }
@@ -127,20 +130,21 @@ struct AuditSubject {
 
 /// Returns "target", "track", "sequence", "expression", "opening" or "poses".
 [[nodiscard]] const char* audit_subject_name(AuditSubject::Kind kind) noexcept;
-/// Names what a sample of a subject is found by: "weight", "time", or "pose" for the number of a pose.
+/// Returns what identifies a sample of a subject: "weight", "time", or "pose" for the number of a pose.
 [[nodiscard]] const char* audit_moment_name(AuditSubject::Kind kind) noexcept;
 
-/// The distance of stored base normals from the geometry.
+/// The offset of stored base normals from the geometry's normals.
 struct AuthoredOffset {
-  std::optional<std::size_t> mesh;         ///< of a glTF file
-  Weighting weighting = Weighting::kArea;  ///< of the right normals
-  bool is_detected = false;                ///< nobody asked for it: the stored normals follow it, or none clearly
-  std::size_t vertices = 0;                ///< vertices that have both
+  std::optional<std::size_t> mesh;         ///< for a glTF file
+  Weighting weighting = Weighting::kArea;  ///< weighting of the true normals
+  /// True if the weighting was detected in the stored normals, or is the default because none was clear.
+  bool is_detected = false;
+  std::size_t vertices = 0;  ///< number of vertices with both normals
   double sum = 0, worst = 0;
   AuditPlace worst_at;
-  double area_mean = 0;      ///< the same by area
-  bool of_polygons = false;  ///< the right normals are weighed by polygons, of which the file has the triangles
-  /// The weighting that comes closest to the stored normals on average, and how close.
+  double area_mean = 0;      ///< mean offset from area-weighted normals
+  bool of_polygons = false;  ///< true normals are summed over polygons, of which the file has only triangles
+  /// The weighting that is closest to the stored normals on average, and the average angle to it.
   Weighting closest = Weighting::kArea;
   double closest_mean = 0, closest_worst = 0;
 
@@ -149,87 +153,90 @@ struct AuthoredOffset {
 
 struct AuditFinding {
   enum class Kind {
-    kUnlit,           ///< a shown normal is zero, infinite or NaN somewhere
-    kMissingNormals,  ///< a target moves positions, and the base has normals, but the target has none
-    kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1, or at keyframes
-    kWrongBetween,    ///< right there, and off on the way
-    kWrongTogether,   ///< off where an animation or expression has several targets, by more than each of them alone
-    kWrongPose,       ///< the pose in which a file opens, or one that was asked for, is off
-    kStaleTangents,   ///< tangents that are not perpendicular to the right normal at weight 1, as they were in the base
-    kStaleKeys,       ///< a note: stored normals of a target tell nothing of the author's, of `count` vertices
-    kUnknownRule,     ///< a note: base normals follow no rule; degrees is how far rules are from each other
-    kFlat,            ///< a note: primitives without normals, which viewers shade flat and right
-    kSkinned,         ///< a note: nodes with a skin, through which normals are judged; degrees is what skinning turns
-    kUnreadSkin,      ///< a note: nodes with a skin that cannot be read, so that normals are judged without it
-    kBaked,           ///< a note: a bake was here
-    kEmptied,  ///< a note: another program remade the normals that a bake wrote; its correction targets turn nothing
-    kSequenceTargets,  ///< a note: baked keyframes, which mean nothing one by one
-    kBeyondViewer      ///< a note: a mesh has more targets than a viewer takes
+    kUnlit,           ///< a rendered normal is zero, infinite or NaN somewhere
+    kMissingNormals,  ///< a target moves positions, but only the base has normals
+    kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1 or at keyframes
+    kWrongBetween,    ///< normals are right at weight 1 or at keyframes, but wrong in between
+    /// Normals are wrong if an animation or expression combines targets, by more than each target alone.
+    kWrongTogether,
+    kWrongPose,      ///< normals are wrong in the pose in which a file opens, or in a requested pose
+    kStaleTangents,  ///< tangents are not perpendicular to the true normal at weight 1, although they are in the base
+    kStaleKeys,      ///< a note: stored normals of a target do not tell the author's intention, for `count` vertices
+    kUnknownRule,    ///< a note: base normals follow no known rule; `degrees` is the distance between the rules
+    kFlat,           ///< a note: primitives without normals, which viewers shade flat and without error
+    /// A note: nodes with a skin, through which normals are judged; `degrees` is the error of skinning.
+    kSkinned,
+    kUnreadSkin,  ///< a note: nodes with a skin that cannot be read, so normals are judged without the skin
+    kBaked,       ///< a note: the file was baked
+    /// A note: another program has recomputed the normals of a bake, and its correction targets have no effect any
+    /// more.
+    kEmptied,
+    kSequenceTargets,  ///< a note: baked keyframes, which have no meaning one by one
+    kBeyondViewer      ///< a note: a mesh has more targets than a viewer supports
   };
   Kind kind;
   std::optional<std::size_t> mesh, target, node, animation, expression;
-  std::size_t count = 0;               ///< samples, primitives, targets or nodes, as the kind has it
+  std::size_t count = 0;               ///< number of samples, primitives, targets or nodes, depending on the kind
   double degrees = 0;                  ///< the worst
-  std::optional<Error> reason = {};    ///< why something could not be read
-  std::optional<AuditPlace> worst_at;  ///< where there is one
-  std::optional<Viewer> viewer;        ///< the viewer that it is about; nothing: all
+  std::optional<Error> reason = {};    ///< reason why a part could not be read
+  std::optional<AuditPlace> worst_at;  ///< the worst place, if there is one
+  std::optional<Viewer> viewer;        ///< the viewer concerned; nothing if all are
 
-  /// Returns true for a fault. Normals may be missing where the motion does not turn them.
+  /// Returns true for a fault, false for a note. Missing normals are not a fault if the motion does not turn them.
   [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kStaleKeys && degrees > kAuditFault; }
 };
 
-/// The errors of one viewer on a file. It should show n(w) at the weights that it plays.
+/// The errors of one viewer on a file, compared with n(w) at the weights that this viewer plays.
 struct ViewerAudit {
   Viewer viewer;
-  MotionError error;                 ///< of all subjects
-  std::optional<std::size_t> worst;  ///< the subject with the worst error
-  /// The largest distance of a vertex from where the specification has it: a share of the diagonal of the box around
-  /// the base of its mesh.
+  MotionError error;                 ///< errors of all subjects
+  std::optional<std::size_t> worst;  ///< index of the subject with the worst error
+  /// The largest distance of a vertex from its position by the specification, as a share of the diagonal of the box
+  /// around the mesh's base.
   double displaced = 0;
-  /// The number of targets of a mesh beyond those that the viewer takes: it shows nothing then (Viewer::beyond). The
-  /// errors above are as if it left these targets out.
+  /// The number of targets of a mesh beyond the viewer's limit (Viewer::beyond says what then happens). The errors
+  /// above are those of a viewer that ignores these targets.
   std::size_t beyond = 0;
 
-  /// Returns true if the viewer shows the file, and its errors pass the gate (MotionError::passes()).
+  /// Returns true if the viewer supports the file, and its errors pass the limit (MotionError::passes()).
   [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.passes(degrees); }
-  /// Returns true if no more edges are torn than this at any sample.
+  /// Returns true if at most this many edges are torn at every sample.
   [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept { return error.most_torn <= most_torn; }
 };
 
 struct Audit {
   AuditRule rule = AuditRule::kGltf;
-  /// The weighting of the normals that all subjects are judged against; empty where meshes have different ones.
+  /// The weighting of the true normals of all subjects; empty if meshes have different ones.
   std::optional<Weighting> weighting = Weighting::kArea;
-  /// True if normals are stored for every keyframe; otherwise a viewer computes them there.
+  /// True if normals are stored for every keyframe; otherwise a viewer computes them at keyframes.
   bool stored = true;
-  std::array<double, 2> span = {};  ///< of a sequence: the times of its first and its last keyframe
-  std::optional<CutPath> cut = {};  ///< of curves, set by who has cut them: for reports
+  std::array<double, 2> span = {};  ///< for a sequence: the times of its first and last keyframe
+  std::optional<CutPath> cut = {};  ///< for curves; set by the caller that has cut them, for reports
   std::vector<AuditSubject> subjects;
-  /// The number of targets, tracks and expressions that move nothing, or nothing that can be judged: they are no
-  /// subjects.
+  /// The number of targets, tracks and expressions that move nothing that can be judged. They are not subjects.
   std::size_t still = 0;
-  MotionError error;                 ///< of all subjects
-  std::optional<std::size_t> worst;  ///< the subject with the worst error
-  std::vector<ViewerAudit> viewers;  ///< the viewers of the options, in their order
+  MotionError error;                 ///< errors of all subjects
+  std::optional<std::size_t> worst;  ///< index of the subject with the worst error
+  std::vector<ViewerAudit> viewers;  ///< one for each viewer of the options, in the same order
   std::vector<AuthoredOffset> offsets;
   std::vector<AuditFinding> findings;  ///< faults first
-  std::vector<std::string> notes;      ///< of a glTF file: what was left out, or read in another way than it was meant
-  /// The tables of keep_errors: one for each mesh of a glTF file that has subjects, and one for other inputs. Tracks
-  /// with the same keys have rows once, as the first of their subjects.
+  std::vector<std::string> notes;      ///< for a glTF file: parts that were left out or interpreted differently
+  /// The tables for keep_errors: one for each mesh of a glTF file with subjects, or one for other inputs. Tracks with
+  /// the same keys share rows, which name the first of their subjects.
   std::vector<ErrorTable> errors;
 
-  /// Returns true if there was anything to judge. If nothing turns normals, or no face ever has an area, nothing is
-  /// known to be right.
+  /// Returns true if something was judged. Otherwise nothing changes normals, or no face ever has an area, and the
+  /// audit says nothing about the normals.
   [[nodiscard]] bool is_judged() const noexcept { return error.judged + error.faint > 0; }
-  /// Returns true if every named viewer passes the gate, or the rule if none was named: MotionError::passes(). If there
-  /// are motions, some sample must have been judged; a file in which nothing moves is within anything.
+  /// Returns true if every named viewer passes the limit (MotionError::passes()), or the rule if none is named. If
+  /// there are motions, at least one sample must have been judged; a file in which nothing moves always passes.
   [[nodiscard]] bool is_within(double degrees) const noexcept {
     if (!subjects.empty() && !is_judged()) return false;
     if (viewers.empty()) return error.passes(degrees);
     return std::all_of(viewers.begin(), viewers.end(),
                        [degrees](const ViewerAudit& viewer) { return viewer.is_within(degrees); });
   }
-  /// Returns true if no more edges are torn than this at any sample, in any named viewer, or by the rule if none was
+  /// Returns true if at most this many edges are torn at every sample, in every named viewer, or by the rule if none is
   /// named.
   [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept {
     if (viewers.empty()) return error.most_torn <= most_torn;
@@ -238,41 +245,39 @@ struct Audit {
   }
 };
 
-/// The most that an audit may find; an empty limit allows anything.
+/// The limits for the errors of an audit; an empty limit allows everything.
 struct AuditLimits {
-  std::optional<double> degrees = {};          ///< of the worst error
-  std::optional<std::size_t> torn_edges = {};  ///< at one sample
+  std::optional<double> degrees = {};          ///< limit of the worst error
+  std::optional<std::size_t> torn_edges = {};  ///< limit for a single sample
 
   [[nodiscard]] bool any() const noexcept { return degrees || torn_edges; }
-  /// Returns true if an audit, or one of its viewers, keeps to the limits.
+  /// Returns true if an audit, or one of its viewers, respects the limits.
   template <class Found>
   [[nodiscard]] bool allow(const Found& found) const noexcept {
     return (!degrees || found.is_within(*degrees)) && (!torn_edges || found.is_whole(*torn_edges));
   }
 };
 
-/// Adds up the errors of the subjects of one mesh; the result is empty for a mesh without subjects.
+/// Sums the errors of the subjects of one mesh; the result is empty for a mesh without subjects.
 [[nodiscard]] MotionError error_of_mesh(const Audit& audit, std::size_t mesh);
 
 /// Audits the targets of all meshes, each alone, the expressions of an avatar, the poses in which the file opens (if a
-/// mesh or a node gives targets weights), and all weight tracks. Correction targets of a bake are no subjects: with
-/// each target alone, in expressions and in poses that are asked for, they get the weights that follow
-/// (docs/formats.md); a track, and the pose in which the file opens, give them what the file says. A file in which
-/// nothing moves has no subjects.
-/// subjects.
-/// Errors: of GltfDocument; kInvalidInput where extras.chronormal of a mesh is not what a bake writes; kUsage for an
-/// animation that is not there, viewers with another rule than gltf, fewer than 2 samples, weights that are
-/// not ascending, and errors to keep that take more than kMostErrorBytes; kInvalidInput for poses that fit no mesh.
+/// mesh or a node gives targets weights), and all weight tracks. Correction targets of a bake are not subjects. Their
+/// weights follow from their formulas (docs/formats.md) with each target alone, in expressions and in requested poses;
+/// in tracks and in the pose in which the file opens, they are those of the file. A file in which nothing moves has no
+/// subjects. Errors: those of GltfDocument; kInvalidInput if extras.chronormal of a mesh is not a valid mark; kUsage
+/// for an unknown animation, viewers with another rule than gltf, fewer than 2 samples, weights that do not ascend, and
+/// kept errors of more than kMostErrorBytes; kInvalidInput for poses that fit no mesh.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
-/// Audits a motion that is read without a document: a sequence, or targets over a base, each of which is a subject
-/// then. Without stored normals, a viewer computes them at keyframes, area-weighted, and interpolates: the audit
-/// compares its normals in between with the truth. Residuals of positions count, except for finding the weighting that
-/// stored normals follow, which differences of a tenth of a degree tell. Errors: kUsage for the rule gltf, for viewers,
-/// and for fewer than 2 samples; kInvalidInput for normals that do not fit. Precondition: the motion is valid
+/// Audits a motion without a document: a sequence, or targets over a base, each of which is a subject. If there are no
+/// stored normals, a viewer computes area-weighted ones at keyframes and interpolates; the audit compares these normals
+/// with the true ones. Residuals of positions are used, except for detecting the weighting of stored normals, where
+/// differences of a tenth of a degree decide. Errors: kUsage for the rule gltf, for viewers, and for fewer than 2
+/// samples; kInvalidInput if the number of normals does not fit. Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
-/// Audits a stream, of which two keyframes are held at a time. It is read twice, once more up to where all vertices
-/// have moved, and once more up to where none coincide any more. Errors: also those of the stream.
+/// Audits a stream, holding two keyframes at a time. The stream is read twice, once more until all vertices have moved,
+/// and once more until no vertices coincide. Errors: also those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 
 }  // namespace chronormal

@@ -1,20 +1,20 @@
-/// Compares every scheme with the exact normals of any motion, as the paper's Table 1 does, and the deltas of blend
-/// shapes with theirs.
+/// Compares every scheme with the exact normals of a motion, like the paper's Table 1, and the deltas of blend shapes
+/// with their exact normals.
 ///
-/// A viewer that adds one normal delta per target shows normalize(N + sum_i w_i D_i); the true normal is a quadratic
-/// form in the weights (docs/theory.md, section 14). Compared are the deltas of a glTF file, end-point deltas (right
-/// for each target alone at weight 1), the best deltas by least squares (analysis/quality/blend_quality.h), and the
-/// exact normals of BlendNormals, whose errors are those of rounding. The truth is made of cross products of blended
-/// positions in double.
+/// A viewer that adds one normal delta per target renders normalize(N + sum_i w_i D_i); the true normal is a quadratic
+/// form in the weights (docs/theory.md, section 14). The comparison includes the deltas of a glTF file, end-point
+/// deltas (exact for each target alone at weight 1), the best deltas by least squares
+/// (analysis/quality/blend_quality.h), and the exact normals of BlendNormals, which have only rounding errors. True
+/// normals are cross products of blended positions in double.
 ///
 /// Weights    random, from 0 to 1, for 1, 2, 4, 8, 16 targets at once and for all; or the weights of an animation.
 ///            Least squares use as many other random weights of the same kind, or 16 for each target if that is more,
-///            so that they cannot know the weights that they are judged by; for an animation they use the very ones.
-/// Compared   normals that a target of weight other than 0 moves: normals with a face that it moves, and normals that a
-///            file moves by a delta. There is one for each different normal; for a glTF file, one for each vertex.
-/// glTF       Each mesh on its own, with elements by its stored normals. Where an author gave base normals of his own,
-///            the truth is turned as these are, as in an audit (workflow/gltf_shading.h). Flat primitives are right in
-///            viewers and are left out. Targets that a bake added get products of weights.
+///            so they are not fitted to the weights of the comparison; for an animation they use the same weights.
+/// Compared   normals that a target with nonzero weight changes: by moving a face around it, or by a delta in the file.
+///            Each different normal counts once; in a glTF file, once for each vertex.
+/// glTF       each mesh separately, with elements by its stored normals. If an author edited base normals, the true
+///            normals are turned in the same way, as in an audit (workflow/gltf_shading.h). Flat primitives have no
+///            errors in viewers and are left out. Correction targets get their weights by formulas.
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_H_
 #define CHRONORMAL_WORKFLOW_COMPARE_H_
 
@@ -38,115 +38,121 @@
 
 namespace chronormal {
 
-/// Names the rows of the paper's table, and ours; for elements other than faces without the schemes that look at faces.
+/// Returns the names of the rows of the paper's table and of our schemes; for elements other than faces without the
+/// schemes that need faces.
 [[nodiscard]] std::vector<std::string> default_schemes(ElementKind kind = ElementKind::kFaces);
 
-/// Selects how the samples of a segment are visited (section 3 of the paper).
+/// Selects the order in which the samples of a segment are computed (section 3 of the paper).
 enum class Access {
-  kRandom,      ///< each on its own
-  kSequential,  ///< each from the one before, by the schemes that can; the others as in kRandom
+  kRandom,      ///< each sample independently
+  kSequential,  ///< each sample from the previous one, for schemes that can; the others as in kRandom
 };
 
-/// Bounds of the largest error of a scheme at any time of a motion (analysis/certify.h). No sample is above the upper
-/// one.
+/// Bounds of the largest error of a scheme at any time of a motion (analysis/certify.h). No sample exceeds the upper
+/// bound.
 struct CertifiedError {
   double lower = 0;  ///< radians
-  double upper = 0;  ///< radians; pi where no better one could be shown
-  /// The first piece of a segment, from local t to local t, on which the error may be as large as the upper bound.
+  double upper = 0;  ///< radians; pi if no smaller bound could be shown
+  /// The first piece of a segment, as an interval of local t, on which the error may reach the upper bound.
   std::size_t segment = 0, element = 0;
   double from = 0, to = 1;
   std::size_t unbounded = 0;  ///< (element, segment) pairs for which no bound below half a turn could be shown
 };
 
 struct CompareOptions {
-  std::vector<std::string> schemes;  ///< names, in the order of the rows; empty: default_schemes()
-  std::size_t samples = 21;          ///< per segment, ends included; 2 or more
+  std::vector<std::string> schemes;  ///< names, in the order of the rows; if empty, default_schemes()
+  std::size_t samples = 21;          ///< per segment, both ends included; at least 2
   Access access = Access::kRandom;
-  /// Is told from the calling thread how much of the work is done; may be empty.
+  /// Is called in the calling thread with the amount of work done and the total; may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
-  ElementOptions elements = {};  ///< of which normals
-  /// The weighting of faces in the normals of vertices and corners. With another weighting than area the normals are no
+  ElementOptions elements = {};  ///< the elements whose normals are compared
+  /// The weighting of faces in the normals of vertices and corners. With a weighting other than area, normals are not
   /// quadratics: schemes are prepared from the exact weighted normals, and `polynomial` is the quadratic through three
-  /// of them. `quaternion:optimal` and `linear:scaled` look for what is best for that quadratic.
+  /// of them. `quaternion:optimal` and `linear:scaled` search for the optimum for this quadratic.
   Weighting weighting = Weighting::kArea;
-  bool keep_errors = false;   ///< every single one, in Comparison::errors
-  bool keep_samples = false;  ///< keep the errors of each sample together, in SchemeComparison::samples
-  bool certify = false;       ///< bound the largest error at any time, in SchemeComparison::certified
-  /// Degrees, 0 or more: certify, and find the cheapest scheme whose error is never above, in Comparison::cheapest.
+  bool keep_errors = false;   ///< keeps every single error in Comparison::errors
+  bool keep_samples = false;  ///< keeps the errors of each sample together in SchemeComparison::samples
+  bool certify = false;       ///< bounds the largest error at any time in SchemeComparison::certified
+  /// Degrees, at least 0: certify, and find the cheapest scheme whose error never exceeds this, in
+  /// Comparison::cheapest.
   std::optional<double> tolerance = {};
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
-/// element; times are those of one thread among all that work: the median over segments of the median over blocks of up
-/// to 1,024 elements that stay in cache (on a smaller mesh, the calls themselves take most of the time).
+/// element. Times are measured in one thread while all threads work: the median over segments of the median over blocks
+/// of up to 1,024 elements, which stay in the cache (on smaller meshes, the calls themselves take most of the time).
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
-  std::optional<double> relative_to_linear;      ///< sum / sum of linear; nothing where linear errs by rounding only
-  std::size_t fallbacks = 0;                     ///< (element, segment) pairs prepared with a stated fallback
+  std::optional<double> relative_to_linear;  ///< sum / sum of linear; nothing if linear has only rounding errors
+  /// (element, segment) pairs that were prepared with a documented fallback.
+  std::size_t fallbacks = 0;
   std::size_t flagged = 0;                       ///< (element, segment) pairs evaluated in double
   bool sequential = false;                       ///< the scheme was played step by step
-  double prepare_ns = 0;                         ///< control normals included, where the scheme uses them
+  double prepare_ns = 0;                         ///< includes control normals if the scheme uses them
   double evaluate_ns = 0;                        ///< per sample
-  double bytes = 0;                              ///< read by an evaluation
-  OperationCounts operations;                    ///< of the access that was measured
-  std::vector<Quality> samples = {};             ///< with keep_samples: of each sample, segment after segment
-  std::optional<CertifiedError> certified = {};  ///< where it was asked for
+  double bytes = 0;                              ///< bytes that an evaluation reads
+  OperationCounts operations;                    ///< operations of the measured kind of access
+  std::vector<Quality> samples = {};             ///< with keep_samples: the errors of each sample, segment by segment
+  std::optional<CertifiedError> certified = {};  ///< present if requested
 };
 
 struct Comparison {
   ElementKind kind = ElementKind::kFaces;
   std::size_t vertices = 0;
   std::size_t faces = 0;
-  std::size_t elements = 0;  ///< compared elements: faces, or different normals of vertices or corners
+  std::size_t elements = 0;  ///< number of compared elements: faces, or different normals of vertices or corners
   std::size_t segments = 0;
   std::size_t samples = 0;
   std::vector<SchemeComparison> schemes;
-  MotionKind motion = MotionKind::kSequence;  ///< the kind of the segments
-  std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each scheme that was asked for
-  std::optional<double> tolerance = {};       ///< degrees, where it was given
-  std::optional<std::size_t> cheapest = {};   ///< of those judged: within the tolerance for certain; nothing: none is
-  Weighting weighting = Weighting::kArea;     ///< of vertices and corners
-  std::array<double, 2> span = {};            ///< the times of the first and the last keyframe
-  std::optional<CutPath> cut = {};            ///< of curves, set by who has cut them: for reports
+  MotionKind motion = MotionKind::kSequence;  ///< the kind of the motion
+  std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each requested scheme
+  std::optional<double> tolerance = {};       ///< degrees, if given
+  /// The cheapest scheme that is certainly within the tolerance; nothing if there is none.
+  std::optional<std::size_t> cheapest = {};
+  Weighting weighting = Weighting::kArea;  ///< weighting for vertices and corners
+  std::array<double, 2> span = {};         ///< the times of the first and the last keyframe
+  std::optional<CutPath> cut = {};         ///< for curves; set by the caller that has cut them, for reports
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
 ///
-/// Errors     kUsage for a scheme that does not exist or needs faces, fewer than 2 samples, a wrong crease angle or
-///            tolerance, another weighting than area with faces or certificates, certificates of sequential access,
-///            errors to keep that take more than kMostErrorBytes.
-/// Threads    uses all (core/parallel.h); everything but the times is the same on any number of them.
+/// Errors     kUsage for an unknown scheme or one that needs faces, fewer than 2 samples, an invalid crease angle or
+///            tolerance, a weighting other than area with faces or certificates, certificates of sequential access, and
+///            kept errors of more than kMostErrorBytes.
+/// Threads    uses all threads (core/parallel.h); all results except times are the same for any number of threads.
 /// Memory     a few MB beyond the motion, and 8 bytes per scheme and segment for the times; for
 ///            vertices and corners also their groups and 72 bytes for each face and element.
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
-/// Compares them for a stream, of which a few segments are held at a time: as many as have a few thousand elements for
+/// Compares the schemes for a stream, holding a few segments at a time: as many as have a few thousand elements for
 /// each thread, but at least one. Errors: also those of the stream.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
 
-/// Estimates the cost of an evaluation, to put schemes in order: 1 for each byte that is read, for an addition and for
-/// a multiplication, 4 for a quotient or a root, 20 for a sine with its cosine.
+/// Estimates the cost of an evaluation, to sort schemes: 1 for each byte read, each addition and each multiplication, 4
+/// for a quotient or a root, 20 for a sine with its cosine.
 [[nodiscard]] double evaluation_cost(const SchemeComparison& scheme) noexcept;
 
-/// The cheapest scheme whose error is certainly never above a tolerance: the one of the least evaluation_cost().
-/// Candidates are options.schemes, or all schemes that have no parameter and fit the elements.
+/// The scheme with the least evaluation_cost() whose error certainly never exceeds a tolerance. Candidates are
+/// options.schemes, or all schemes without a parameter that fit the elements.
 struct Choice {
-  std::optional<std::string> scheme;  ///< nothing: none is within the tolerance
-  Comparison comparison;              ///< of all that were looked at, at two samples of each segment
+  std::optional<std::string> scheme;  ///< nothing if no scheme is within the tolerance
+  Comparison comparison;              ///< all candidates, compared at two samples of each segment
 };
-/// Finds the cheapest scheme; tolerance: degrees, 0 or more. Errors: those of compare().
+/// Finds the cheapest scheme. `tolerance` is in degrees, at least 0. Errors: those of compare().
 [[nodiscard]] Result<Choice> choose(const Motion& motion, double tolerance, CompareOptions options = {});
 
 inline constexpr std::size_t kMostBlendRows = 10000;
 
 struct BlendCompareOptions {
-  std::size_t rows = 100;  ///< weight vectors for each number of active targets; 1 to kMostBlendRows
-  std::size_t active = 0;  ///< targets at once; 0: 1, 2, 4, 8, 16 and all, as far as there are
-  std::uint64_t seed = 1;  ///< of random weights: the same ones on every system
-  ElementOptions elements = {ElementKind::kVertices};  ///< of a motion; those of a glTF file are as it stores them
-  std::string animation = {};  ///< of a glTF file, by name or index: up to `rows` of its weight vectors, evenly
+  std::size_t rows = 100;  ///< number of weight vectors for each number of active targets; 1 to kMostBlendRows
+  std::size_t active = 0;  ///< number of active targets; 0 means 1, 2, 4, 8, 16 and all, as far as there are so many
+  std::uint64_t seed = 1;  ///< seed of random weights, which are the same on every system
+  /// Elements of a motion; those of a glTF file follow its stored normals.
+  ElementOptions elements = {ElementKind::kVertices};
+  /// An animation of a glTF file, by name or index: up to `rows` of its weight vectors, evenly spaced.
+  std::string animation = {};
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
@@ -161,96 +167,96 @@ struct BlendError {
     double weight = 0;
   };
   BlendDeltas deltas = BlendDeltas::kFile;
-  /// max_at has the weight vector as segment and the output as element. count is the same for all deltas: every sample
-  /// whose geometry has a normal. missing counts samples among them that show zero, infinity or NaN, which count as 180
-  /// degrees.
+  /// In max_at, `segment` is the weight vector and `element` the output. `count` is equal for all deltas: all samples
+  /// whose geometry has a normal. `missing` counts the samples whose rendered normal is zero, infinite or NaN, which
+  /// count as 180 degrees.
   Quality quality;
-  std::vector<Weight> worst_weights;           ///< where the largest error is: the active targets
-  std::optional<std::size_t> worst_primitive;  ///< of a glTF mesh
-  std::size_t worst_output = 0;                ///< the vertex (of the primitive), face or corner that shows it
+  std::vector<Weight> worst_weights;           ///< the active targets at the largest error
+  std::optional<std::size_t> worst_primitive;  ///< for a glTF mesh
+  std::size_t worst_output = 0;                ///< the vertex (of the primitive), face or corner with the largest error
 };
 
-/// The errors at one number of active targets.
+/// The errors for one number of active targets.
 struct BlendErrors {
-  std::size_t active = 0;  ///< of targets at once; of an animation, at most
+  std::size_t active = 0;  ///< number of active targets; for an animation, the largest number
   std::size_t rows = 0;    ///< weight vectors
   std::vector<BlendError> deltas;
 };
 
-/// One motion, or one mesh of a glTF file.
+/// A motion, or a mesh of a glTF file.
 struct BlendSubject {
-  std::optional<std::size_t> mesh;  ///< of a glTF file
-  std::string name;                 ///< of the mesh; may be empty
+  std::optional<std::size_t> mesh;  ///< for a glTF file
+  std::string name;                 ///< name of the mesh; may be empty
   ElementKind kind = ElementKind::kVertices;
   std::size_t vertices = 0, faces = 0;
-  std::size_t outputs = 0;           ///< normals that can be compared
+  std::size_t outputs = 0;           ///< number of normals that can be compared
   std::vector<std::string> targets;  ///< names
   std::vector<BlendErrors> errors;
 };
 
 struct BlendComparison {
   std::vector<BlendSubject> subjects;
-  std::size_t flat = 0;   ///< glTF meshes with targets, but without a stored normal
-  std::size_t still = 0;  ///< glTF meshes of which no target moves a normal
+  std::size_t flat = 0;   ///< number of glTF meshes with targets, but without stored normals
+  std::size_t still = 0;  ///< number of glTF meshes whose targets do not change normals
 };
 
-/// Compares the deltas of blend shapes, given as a valid star of segments. Cost: for each row an evaluation, a
+/// Compares the deltas of blend shapes, given as a valid motion of targets. Cost: for each row an evaluation, a
 /// recomputation of the mesh, and the angles. Errors: kUsage for options beyond their range, more active targets than
-/// there are, and a motion that is no star; those of make_groups() and blend_set_of(); kInvalidInput if there are more
-/// targets than memory for rows of their weights.
+/// there are, and a motion that is not one of targets; those of make_groups() and blend_set_of(); kInvalidInput if
+/// there are so many targets that rows of weights do not fit into memory.
 [[nodiscard]] Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options = {});
 
-/// Compares them for all meshes of a file that have targets and normals; with options.animation, for the meshes that it
-/// drives. Errors: those above, and those of GltfDocument; kUsage if an animation is not there or drives none of them,
-/// and for random weights of a mesh whose targets are the keyframes of a baked sequence; kInvalidInput if no mesh can
-/// be compared.
+/// Compares the deltas for all meshes of a file with targets and normals; with options.animation, for the meshes that
+/// this animation drives. Errors: those above, and those of GltfDocument; kUsage if the animation does not exist or
+/// drives none of the meshes, and for random weights of a mesh whose targets are the keyframes of a baked sequence;
+/// kInvalidInput if no mesh can be compared.
 [[nodiscard]] Result<BlendComparison> compare_blends(const GltfDocument& document,
                                                      const BlendCompareOptions& options = {});
 
-// Compares interpolated normals with keyframes that were left out: with what a sampled motion really did.
+// Compares interpolated normals with keyframes that were left out, which show the real motion.
 //
-// Everything else here takes the motion between two keyframes to be straight, and asks how near the normals are to the
-// normals of that motion. For blend shapes and a shutter that is the truth. A simulation or a capture did something
-// else between its frames, and the frames themselves tell what: all but every N-th keyframe are left out, normals are
-// interpolated between the kept ones, and compared with the normals of the ones that were left out.
+// All other comparisons assume straight motion between two keyframes, and compare normals with the exact normals of
+// this motion. For blend shapes and shutters the assumption is true, but a simulation or a capture moves differently
+// between its frames. The frames themselves tell the difference: all keyframes except every N-th are left out, normals
+// are interpolated between the kept ones, and compared with the normals of the frames that were left out.
 //
 // Paths      "linear": vertices move straight, and the schemes are those of compare(). "catmull-rom": each vertex
-//            moves on cubics through the kept keyframes. Its velocity at each of them is that of the parabola through
-//            it and its two neighbours, and at an end of the motion that of the cubic through the nearest four. Its
-//            normals are exact on that path. "hermite": the same with the velocities of the keyframes, where they have
-//            them.
-// Bend       that of the kept keyframes, by bend_of() in motion/paths.h.
+//            moves on cubics through the kept keyframes. Its velocity at a keyframe is that of the parabola through the
+//            keyframe and its two neighbours, and at an end of the motion that of the cubic through the nearest four
+//            keyframes. Normals are exact on that path. "hermite": cubics with the velocities of the keyframes, if
+//            there are any.
+// Bend       the bend of the kept keyframes, by bend_of() in motion/paths.h.
 // Source     docs/truth.md.
 
 struct TruthOptions {
-  std::size_t every = 2;             ///< keyframes 0, N, 2 N, ... are kept; 2 or more
-  std::vector<std::string> schemes;  ///< names; empty: those that compare() takes
-  ElementOptions elements = {};      ///< of which normals
+  std::size_t every = 2;             ///< keyframes 0, N, 2 N, ... are kept; at least 2
+  std::vector<std::string> schemes;  ///< names of schemes; if empty, those of compare()
+  ElementOptions elements = {};      ///< the elements whose normals are compared
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// One way to make normals between the kept keyframes.
+/// A way to compute normals between the kept keyframes.
 struct TruthRow {
   std::string path;    ///< "linear", "catmull-rom" or "hermite"
-  std::string scheme;  ///< of a linear path; "exact" on a curved one
-  Quality quality;     ///< max_at: the kept segment, the face or the first vertex or corner, and the local t
+  std::string scheme;  ///< the scheme on a linear path; "exact" on a curved one
+  Quality quality;     ///< max_at has the kept segment, the face or the first vertex or corner, and the local t
 };
 
 struct TruthComparison {
   ElementKind kind = ElementKind::kFaces;
   std::size_t vertices = 0, faces = 0, elements = 0;
   std::size_t kept = 0;      ///< keyframes
-  std::size_t left_out = 0;  ///< keyframes that the rows are held against; those behind the last one kept are neither
-  double bend = 0;           ///< of the kept keyframes; 0 where there are two
+  std::size_t left_out = 0;  ///< number of keyframes to compare with; those after the last kept keyframe do not count
+  double bend = 0;           ///< bend of the kept keyframes; 0 if there are two
   std::vector<TruthRow> rows;
 };
 
 /// Compares schemes on straight paths, and exact normals on curved ones, with the keyframes that were left out. There
-/// is a row for each scheme, then one for "catmull-rom", and one for "hermite" where keyframes have velocities.
+/// is a row for each scheme, then one for "catmull-rom", and one for "hermite" if keyframes have velocities.
 ///
-/// Errors     kUsage for a motion that is no sequence (targets and animations of weights are straight: there is no
-///            other truth), fewer than two kept keyframes, and what compare() refuses in schemes and elements.
-/// Threads    uses all; the same on any number of them.
+/// Errors     kUsage for a motion that is not a sequence (the motion of targets and of animated weights is truly
+///            straight), fewer than two kept keyframes, and schemes and elements that compare() refuses.
+/// Threads    uses all threads; results are the same for any number of threads.
 /// Memory     the control normals of one segment: 72 bytes for each face and element, and the positions that are left
 ///            out.
 /// Precondition: the motion is valid (validate() in motion/motion.h)

@@ -1,8 +1,8 @@
-/// Inspects a motion: what it holds, and what in it will trouble a program that needs its normals. Inspects what a glTF
-/// file holds beside its motion: the normals that it stores, which of them follow the targets, and tracks of weights.
+/// Inspects a motion: its contents, and problems for programs that need its normals. For a glTF file also the normals
+/// that it stores, the targets that change them, and tracks of weights.
 ///
-/// Counts of faces over keyframes or segments come as Places: how many (face, keyframe) pairs there are, how many
-/// different faces take part, and the first pair, by keyframe or segment and then by face.
+/// Faces at keyframes or in segments are counted as Places: the number of (face, keyframe) pairs, the number of
+/// different faces in these, and the first pair, by keyframe or segment and then by face.
 ///
 /// Units      positions as in the file; radians; seconds; bytes.
 #ifndef CHRONORMAL_WORKFLOW_INSPECT_H_
@@ -24,128 +24,130 @@
 
 namespace chronormal {
 
-/// Counts faces at keyframes or in segments.
+/// Counts of faces at keyframes or in segments.
 struct Places {
   std::size_t pairs = 0;
   std::size_t faces = 0;
   std::size_t first_at = 0;    ///< the keyframe or segment of the first pair
   std::size_t first_face = 0;  ///< its face
-  double first_t = 0;          ///< where in the segment, for what has an instant there
+  double first_t = 0;          ///< local t of the first pair, if it has an instant
 };
 
-/// The largest value of something, and the first place where it is.
+/// The largest value of a quantity, and the first place where it occurs.
 struct Largest {
   double value = 0;
-  std::size_t segment = 0, element = 0;  ///< element: a vertex or a face
+  std::size_t segment = 0, element = 0;  ///< `element` is a vertex or a face
 };
 
-/// One segment: for a star of targets, one target.
+/// A segment; for targets, a target.
 struct SegmentInspection {
   std::size_t moved_vertices = 0;
-  Largest motion;                   ///< the longest way of a vertex
-  Largest turn;                     ///< the angle between the normals of a face at both ends
-  std::size_t turned_far = 0;       ///< faces of which that is more than 90 degrees
-  std::size_t collapses = 0;        ///< faces that have no area at an instant inside, or nearly none
-  std::size_t vanishing = 0;        ///< faces among these that lose it exactly, and not nearly
-  std::size_t turned_over = 0;      ///< faces among these that come out of it with the opposite normal
-  std::size_t without_normals = 0;  ///< faces that have no area throughout
-  std::size_t flagged = 0;          ///< faces that are evaluated in double (NormalCurves)
-  std::size_t bytes = 0;            ///< of its NormalCurves
+  Largest motion;                   ///< the longest displacement of a vertex
+  Largest turn;                     ///< the largest angle between the normals of a face at both ends
+  std::size_t turned_far = 0;       ///< number of faces with an angle of more than 90 degrees
+  std::size_t collapses = 0;        ///< number of faces with no area, or nearly none, at an instant inside
+  std::size_t vanishing = 0;        ///< number of these faces that have exactly no area
+  std::size_t turned_over = 0;      ///< number of these faces that have the opposite normal afterwards
+  std::size_t without_normals = 0;  ///< number of faces without area in the whole segment
+  std::size_t flagged = 0;          ///< number of faces that are evaluated in double (NormalCurves)
+  std::size_t bytes = 0;            ///< memory of its NormalCurves
 };
 
 struct Inspection {
   std::size_t vertices = 0, faces = 0, keyframes = 0;
   double first_time = 0, last_time = 0;  ///< of keyframes
   Vec3d low, high;                       ///< bounding box over all keyframes
-  double diagonal = 0;                   ///< of that box
-  Largest motion, turn;                  ///< over all segments
-  Found doubled;                         ///< vertices that are at the place of a lower one in all keyframes
-  Found doubled_at_start;                ///< in keyframe 0; never fewer
+  double diagonal = 0;                   ///< diagonal of that box
+  Largest motion, turn;                  ///< largest values over all segments
+  Found doubled;                         ///< vertices that coincide with a lower one in all keyframes
+  /// Vertices that coincide with a lower one in keyframe 0, which are at least as many.
+  Found doubled_at_start;
   Surface surface;
-  Found cut;  ///< faces that a fan around the first corner does not cover in keyframe 0, so that ears are cut off
+  Found cut;  ///< faces that a fan around the first corner does not cover in keyframe 0, so that they are cut by ears
   std::vector<SegmentInspection> segments;
 
-  Places no_area;           ///< keyframes: no area at all
-  Places slivers;           ///< keyframes: see inspect()
-  Places collapses;         ///< segments: the normal vanishes inside, or falls below 1e-6 of its control normals
-  Places vanishing;         ///< segments: the normal is zero inside, exactly (analysis/signs.h)
-  Places turned_over;       ///< segments: those of which the normal is opposed afterwards
-  Places turned_far;        ///< segments: the normals at both ends are more than 90 degrees apart
-  Places without_normals;   ///< segments: no area throughout, so there is no direction to give
+  Places no_area;  ///< at keyframes: faces without area
+  Places slivers;  ///< at keyframes: slivers (see inspect())
+  /// In segments: faces whose normal vanishes inside, or falls below 1e-6 of its control normals.
+  Places collapses;
+  Places vanishing;         ///< in segments: faces whose normal is exactly zero inside (analysis/signs.h)
+  Places turned_over;       ///< in segments: collapsing faces with the opposite normal afterwards
+  Places turned_far;        ///< in segments: faces whose end normals are more than 90 degrees apart
+  Places without_normals;   ///< in segments: faces without area throughout, which have no normal
   std::size_t flagged = 0;  ///< (face, segment) pairs that are evaluated in double
 
-  std::size_t keyframe_bytes = 0;  ///< positions of all keyframes
-  std::size_t normal_bytes = 0;    ///< NormalCurves of all segments at once
+  std::size_t keyframe_bytes = 0;  ///< memory for the positions of all keyframes
+  std::size_t normal_bytes = 0;    ///< memory for the NormalCurves of all segments at once
 };
 
 /// Inspects a motion, or a mesh: a motion of one keyframe and no segment. progress(done, total), if given, is called
 /// from the calling thread.
 ///
-/// A face is a sliver at a keyframe where it has an area, but so small a one that it may be nothing but the rounding of
-/// the positions to float32: where moving them by half a unit in the last place could turn its normal any way. So that,
-/// and the boxes, are of float32 positions; everything else counts the residuals of a computed motion.
+/// A face is a sliver at a keyframe if it has an area, but one that is so small that it may only be the rounding of the
+/// positions to float32: moving positions by half a unit in the last place could turn its normal in any direction.
+/// Slivers and boxes use float32 positions; everything else uses the residuals of a computed motion.
 ///
-/// Threads    uses all (core/parallel.h); the result is the same on any number of them.
-/// Memory     some 100 bytes a face, for the edges between faces; nothing grows with faces x segments.
-/// Cost       control normals of every segment, once, and a look at what its NormalCurves would take, which are not
-///            made; the rest is near linear.
-/// Precondition: the motion is valid (validate() in motion/motion.h), but that it may have no segment
+/// Threads    uses all threads (core/parallel.h); the result is the same for any number of threads.
+/// Memory     about 100 bytes per face, for the edges between faces; no memory grows with faces x segments.
+/// Cost       control normals of every segment, and an estimate of its NormalCurves, which are not built; the rest is
+///            nearly linear.
+/// Precondition: the motion is valid (validate() in motion/motion.h), except that it may have no segment
 [[nodiscard]] Inspection inspect(const Motion& motion,
                                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});
-/// Inspects a stream, of which two keyframes are held, or for small meshes as many as keep all threads busy. Errors:
+/// Inspects a stream, holding two keyframes, or for small meshes enough keyframes to keep all threads busy. Errors:
 /// those of the stream.
 [[nodiscard]] Result<Inspection> inspect(MotionStream& stream,
                                          const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
-/// One primitive that has faces; what is not here is in GltfPrimitive.
+/// A primitive with faces; GltfPrimitive has further properties.
 struct GltfPrimitiveInspection {
   std::size_t mesh = 0, primitive = 0;
   std::size_t triangles = 0;
-  std::size_t off_length = 0;  ///< stored normals that are not of length 1, to the rounding of 8-bit integers
-  /// Vertices at the place of a lower one in the base, and the number of them with another normal than the lowest one
-  /// there (by more than kSplitNormalTolerance of normals/normal_groups.h).
+  std::size_t off_length = 0;  ///< stored normals whose length is not 1 within the rounding of 8-bit integers
+  /// Vertices that coincide with a lower one in the base, and the number of them with another normal than the lowest
+  /// one (by more than kSplitNormalTolerance of normals/normal_groups.h).
   std::size_t doubled = 0, split = 0;
-  /// Targets that move positions, and the numbers of them that move normals and tangents too.
+  /// Targets that move positions, and the numbers of these that also change normals or tangents.
   std::size_t moving = 0, moving_normals = 0, moving_tangents = 0;
 };
 
-/// One track of weights.
+/// A track of weights.
 struct GltfTrackInspection {
   std::size_t animation = 0, track = 0;
   double first_time = 0, last_time = 0;
-  double lowest = 0, highest = 0;  ///< of the weights, between the keys too
+  double lowest = 0, highest = 0;  ///< range of the weights, also between keys
 };
 
 struct GltfInspection {
   std::vector<GltfPrimitiveInspection> primitives;
   std::vector<GltfTrackInspection> tracks;
-  std::vector<std::size_t> instances;  ///< per mesh: how many nodes have it
-  std::size_t skinned_nodes = 0;       ///< nodes with a skin that have a mesh
+  std::vector<std::size_t> instances;  ///< the number of nodes of each mesh
+  std::size_t skinned_nodes = 0;       ///< nodes with a skin and a mesh
   std::size_t without_faces = 0;       ///< primitives of points or lines, or without positions
 };
 
-/// Reads all geometry and all weight tracks, one after the other. Memory: that of the largest primitive, and what the
-/// document keeps. Errors: of GltfDocument.
+/// Reads all geometry and all weight tracks one after the other. Memory: that of the largest primitive, and data that
+/// the document keeps. Errors: those of GltfDocument.
 [[nodiscard]] Result<GltfInspection> inspect(const GltfDocument& document);
 
-/// Counts the vertices of a motion that are at the place of a lower one in all keyframes and have another normal stored
-/// than the lowest one there that has any: some of Inspection::doubled, across primitives too. (Vertices at one place
-/// are of one mesh and one node, so that their normals need no transform.) Memory and errors as of inspect(). The
-/// motion must be one of this document, and of these parts.
+/// Counts the vertices of a motion that coincide with a lower vertex in all keyframes, but have a different stored
+/// normal than the lowest such vertex with a normal. They are a part of Inspection::doubled, also across primitives.
+/// (Coinciding vertices belong to the same mesh and node, so normals need no transform.) Memory and errors are those of
+/// inspect(). The motion must belong to this document and these parts.
 [[nodiscard]] Result<std::size_t> count_split_normals(const GltfDocument& document, const Motion& motion,
                                                       std::span<const GltfPart> parts);
 
-/// The facts about a glTF file that its motion does not hold.
+/// The facts about a glTF file that are not part of its motion.
 struct InspectedGltf {
-  const GltfDocument* document = nullptr;  ///< of the input
+  const GltfDocument* document = nullptr;  ///< the document of the input
   GltfInspection inspection;
-  std::span<const GltfPart> parts;       ///< of the input: where vertices and faces came from
-  double curve_error = 0;                ///< as Input has it
+  std::span<const GltfPart> parts;       ///< the origin of vertices and faces of the input
+  double curve_error = 0;                ///< the error of the cut curves, as in Input
   std::size_t split = 0;                 ///< of count_split_normals()
-  std::optional<std::size_t> animation;  ///< the one that is looked at; nothing: the targets, or what stands still
+  std::optional<std::size_t> animation;  ///< the inspected animation; nothing for targets or a mesh at rest
 };
 
-/// An opened input, and what is known of it.
+/// An opened input, and the results of its inspection.
 struct Inspected {
   Input opened;
   std::optional<Inspection> inspection;  ///< nothing for a glTF file without faces
@@ -159,9 +161,8 @@ struct Inspected {
   [[nodiscard]] bool has_targets() const noexcept { return kind == MotionKind::kTargets && !segments.empty(); }
 };
 
-/// Inspects an input of any kind, opened with allow_mesh; animation is the one of its options. progress is as for
-/// inspect().
-/// Errors: those of Input::motion() and GltfDocument.
+/// Inspects an input of any kind that was opened with allow_mesh; `animation` is the one of its options. `progress` is
+/// the same as for inspect(). Errors: those of Input::motion() and GltfDocument.
 [[nodiscard]] Result<Inspected> inspect_input(
     Input input, const std::string& animation,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});

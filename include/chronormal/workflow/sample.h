@@ -1,33 +1,32 @@
 /// Computes the normals of a motion at chosen moments.
 ///
 /// A moment is
-///     a time     of a sequence, in its own seconds; there is no motion before its first and after its last
+///     a time     of a sequence, in seconds; there is no motion before its first time and after its last
 ///     weights    of blend shapes, one for each target: the vertices are at base + sum of w (target - base). They may
 ///                be negative or more than 1, which extrapolates
-///     neither    of a mesh that stands still: one keyframe and no segment
+///     neither    for a mesh at rest: one keyframe and no segment
 ///
-/// Area-weighted normals are within 1e-6 rad of exact arithmetic, however thin, small or mixed in size the faces are:
-/// at times from positions, or by curves of the segment where kCurvesFrom times or more are asked for there
-/// (normals/mesh_normals.h), areas themselves and a mesh that stands still from positions. At weights that
-/// holds for positions before they are rounded to float32. Other weightings, which are no polynomials, are
-/// computed anew in double.
+/// Area-weighted normals are within 1e-6 rad of exact arithmetic, also for thin and small faces and faces of mixed
+/// sizes. They are computed from positions, or at times by curves of the segment if kCurvesFrom times or more are
+/// requested there (normals/mesh_normals.h). At weights the guarantee holds for positions before rounding to float32.
+/// Other weightings, which are not polynomials, are computed anew in double.
 ///
-/// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and those
-///            that show the same element have the same bits.
-/// Degenerate An element without a normal has (0, 0, 0). Where n(t) is zero at one time only, area-weighted unit
-///            normals at times are the limit (Direction in normals/control_normals.h), and the others (0, 0, 0).
+/// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and
+///            outputs of the same element have the same bits.
+/// Degenerate An element without a normal gets (0, 0, 0). If n(t) is zero only at this time, area-weighted unit normals
+/// are the limit (Direction in normals/control_normals.h), and all other normals are (0, 0, 0).
 ///
-/// Schemes    With a scheme the normals are the ones that it gives, and only normals at the ends of a segment are
-///            exact. At weights it goes from the base to one target: its weight must be in [0, 1], and the other
+/// Schemes    With a scheme, normals are interpolated by it, and only normals at the ends of a segment are exact. At
+///            weights, a scheme interpolates from the base to one target, whose weight must be in [0, 1]; all other
 ///            weights must be 0.
 ///
 /// Files      write_samples() writes them as
 ///     npy    an array (moments, outputs, 3) of float32
 ///     npz    `normals` as above; `times` (moments) or `weights` (moments, targets) of float64; `positions` (moments,
-///            V, 3); and, where all faces have as many corners, `faces`
-///     ply    a file per moment, binary, of the mesh as it is then; nx, ny, nz of vertices or of faces
+///            V, 3); and, if all faces have equally many corners, `faces`
+///     ply    a binary file per moment, with the mesh at that moment; nx, ny, nz of vertices or of faces
 ///     obj    a file per moment; vn of faces (f v//vn with one vn per face), vertices (one vn per vertex) or corners
-///            (one for each normal that differs)
+///            (one for each different normal)
 #ifndef CHRONORMAL_WORKFLOW_SAMPLE_H_
 #define CHRONORMAL_WORKFLOW_SAMPLE_H_
 
@@ -57,32 +56,32 @@ class SchemeNormals;
 
 enum class NormalLength {
   kUnit,  ///< 1
-  kArea,  ///< n itself: for a face, twice its area; for a vertex or corner, that of the sum
+  kArea,  ///< n itself, whose length is twice the area of a face; for a vertex or corner the sum over faces
 };
 
 /// The steps of sequential access (section 3 of the paper): normals at t = 0, 1/steps, ..., 1 of each segment, each
-/// made from the ones before it by additions or by a rotation.
+/// computed from the previous ones by additions or by a rotation.
 struct Stepping {
-  std::size_t steps = 1;  ///< of a segment, 1 or more
-  /// The state is made anew every so many steps; 0: never, as in the paper.
+  std::size_t steps = 1;  ///< per segment, at least 1
+  /// The state is recomputed after so many steps; 0 means never, as in the paper.
   std::size_t anchor_interval = kDefaultAnchorInterval;
 };
 
 struct SampleOptions {
   ElementOptions elements = {ElementKind::kVertices};
   Weighting weighting = Weighting::kArea;
-  NormalLength length = NormalLength::kUnit;  ///< kArea for the weighting kArea only
-  /// Interpolates by this scheme (schemes/scheme.h) between the exact normals at the ends of a segment; empty: exact
-  /// normals. For the weighting kArea and the length kUnit only.
+  NormalLength length = NormalLength::kUnit;  ///< kArea only for the weighting kArea
+  /// Interpolates by this scheme (schemes/scheme.h) between the exact normals at the ends of a segment; if empty,
+  /// normals are exact. Only for the weighting kArea and the length kUnit.
   std::string scheme = {};
-  std::optional<Stepping> stepping = {};  ///< plays the scheme, at the times of step_moments() only
+  std::optional<Stepping> stepping = {};  ///< plays the scheme step by step, only at the times of step_moments()
 };
 
-/// Checks that a pose can have these weights. Errors: kUsage for a motion that is not blend shapes, if there is not one
-/// weight for each target, or for a weight that is not finite.
+/// Checks that a pose can have these weights. Errors: kUsage for a motion that is not blend shapes, for a number of
+/// weights other than that of targets, and for a weight that is not finite.
 [[nodiscard]] Status check_weights(const Motion& motion, std::span<const double> weights);
 
-/// The moments in the order of the output. At most one list has any; if both are empty, the mesh stands still.
+/// The moments in the order of the output. At most one list is not empty; if both are empty, the mesh is at rest.
 struct Moments {
   std::vector<double> times;
   std::vector<std::vector<double>> weights;
@@ -92,12 +91,11 @@ struct Moments {
   }
 };
 
-/// The largest angle between normals that were played and the normals of the same scheme at random access, at the same
-/// t.
+/// The largest angle between played normals and the normals of the same scheme at random access, at the same t.
 struct Drift {
   double largest = 0;      ///< radians
-  std::size_t output = 0;  ///< the first one that shows it
-  double time = 0;         ///< or the weight of the target
+  std::size_t output = 0;  ///< the first output with this angle
+  double time = 0;         ///< time, or the weight of the target
 };
 
 /// A mesh at one moment.
@@ -108,31 +106,32 @@ struct Pose {
 
 class NormalSampler {
  public:
-  /// Makes a sampler. The motion must be valid or stand still, and outlive the sampler. Errors: of make_groups() and
-  /// make_scheme(); kUsage for faces with another weighting than area, for the length kArea with another weighting, for
-  /// a scheme with either, with elements that it has no meaning for, or for a mesh that stands still, and for stepping
-  /// without a scheme or with one that has no sequential form.
+  /// Makes a sampler. The motion must be valid or a mesh at rest, and must outlive the sampler. Errors: those of
+  /// make_groups() and make_scheme(). kUsage for faces with a weighting other than area, and for the length kArea with
+  /// another weighting. kUsage for a scheme with another weighting, with the length kArea, with elements that it does
+  /// not support, or for a mesh at rest. kUsage for stepping without a scheme, or with a scheme that has no sequential
+  /// form.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
   /// Makes a sampler of a stream: a pose at a time reads the two keyframes around it, and a pose of weights reads all
   /// keyframes. Errors: also those of the stream, here and for each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
-  /// Computes the pose at a time. evaluations says how many times of its segment will follow each other, this one
-  /// included; what is prepared for the first of them serves all. Errors: of find_instant(); kUsage if no step leads to
-  /// the time.
+  /// Computes the pose at a time. `evaluations` is the number of consecutive times in its segment, including this one;
+  /// data that is prepared for the first of them serves all. Errors: those of find_instant(); kUsage if the time is not
+  /// a step of the playback.
   [[nodiscard]] Result<Pose> at_time(double time, double evaluations = 1);
 
-  /// Computes the pose of weights. Errors: of check_weights(); kUsage for weights with which a vertex leaves the range
-  /// of float32 and, with a scheme, for weights that are not between the base and one target.
+  /// Computes the pose for weights. Errors: those of check_weights(); kUsage for weights with which a vertex exceeds
+  /// the range of float32 and, with a scheme, for weights that are not between the base and one target.
   [[nodiscard]] Result<Pose> at_weights(std::span<const double> weights);
 
-  /// Computes the pose of keyframe 0, the only one of a mesh that stands still. A stream must hold that keyframe.
+  /// Computes the pose of keyframe 0, the only pose of a mesh at rest. A stream must hold that keyframe.
   [[nodiscard]] Pose at_rest() const;
 
   /// Returns the number of faces, vertices or corners.
   [[nodiscard]] std::size_t output_count() const noexcept;
 
-  /// Returns the element of each vertex or corner; empty for faces, which are the elements.
+  /// Returns the element of each vertex or corner; empty for faces.
   [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept;
 
   /// Returns the normals of a pose for every output: (outputs, 3).
@@ -147,36 +146,35 @@ class NormalSampler {
 
   [[nodiscard]] bool are_faces() const noexcept { return options_.elements.kind == ElementKind::kFaces; }
   [[nodiscard]] std::size_t element_count() const noexcept;
-  // Computes area-weighted normals, prepared for the next moment of the segment.
+  // Computes area-weighted normals, and prepares for further moments of the segment.
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, const LocalTime& t, double evaluations);
-  // Computes normals anew, for this moment only.
+  // Computes normals for this moment only.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, const LocalTime& t) const;
-  // Computes normals by the scheme; time is reported with a drift.
+  // Computes normals by the scheme; `time` is used to report the drift.
   [[nodiscard]] Result<std::vector<float>> scheme_normals(const Segment& segment, double t, double time);
-  // Scales the normals to unit length if the options ask for that.
+  // Scales the normals to length 1 if the options demand it.
   [[nodiscard]] std::vector<float> as_asked(std::span<const Vec3d> exact) const;
   [[nodiscard]] bool are_exact_units() const noexcept {
     return options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
   }
 
-  std::unique_ptr<MotionStream> whole_ = {};  // where a motion was given
+  std::unique_ptr<MotionStream> whole_ = {};  // used if a motion was given
   MotionStream* stream_;
-  const Motion* motion_;  // of the stream
+  const Motion* motion_;  // the motion of the stream
   SampleOptions options_;
-  std::unique_ptr<const NormalGroups> groups_;     // but for faces; prepared normals refer to them
-  NormalCurves curves_;                            // of one segment
-  std::shared_ptr<SchemeNormals> scheme_normals_;  // likewise, where there is a scheme
+  std::unique_ptr<const NormalGroups> groups_;     // except for faces; prepared normals refer to these groups
+  NormalCurves curves_;                            // curves of the current segment
+  std::shared_ptr<SchemeNormals> scheme_normals_;  // used with a scheme, for the current segment
   std::optional<std::size_t> segment_;             // which
   Drift drift_;
 };
 
-/// Returns the moments at which stepping goes through a motion: times of a sequence, in which the end of a segment is
-/// the beginning of the next one; for targets, each of them from weight 0 to 1. Errors: kUsage where the motion has no
-/// segment.
+/// Returns the moments of all steps through a motion: times of a sequence, in which the end of a segment is the
+/// beginning of the next one; for targets, each target from weight 0 to 1. Errors: kUsage if the motion has no segment.
 [[nodiscard]] Result<Moments> step_moments(const Motion& motion, std::size_t steps);
 
-/// Counts for each time how many times from it on lie in the same segment without a break: the evaluations that
-/// NormalSampler::at_time() wants to know of. Errors: of find_instant()
+/// Counts for each time the consecutive times, from this one on, in the same segment: the number of evaluations for
+/// NormalSampler::at_time(). Errors: those of find_instant()
 [[nodiscard]] Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times);
 
 enum class SampleFormat { kNpy, kNpz, kPly, kObj };
@@ -184,36 +182,37 @@ enum class SampleFormat { kNpy, kNpz, kPly, kObj };
 /// Finds a format by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<SampleFormat> make_sample_format(std::string_view name);
 
-/// Finds the format of a file by its extension; nothing for another extension.
+/// Finds the format of a file by its extension; returns nothing for another extension.
 [[nodiscard]] std::optional<SampleFormat> find_sample_format(std::string_view path);
 
-/// The most bytes that the arrays of a .npz file for a pipe may have: they are in memory until it is written.
+/// The largest total size of arrays in a .npz file for a pipe, since they are in memory until it is written.
 inline constexpr std::size_t kMostSampleBytes = addressable(std::uint64_t{4} << 30);
 
 struct SampleOutput {
-  std::string path;  ///< "-" is the standard output; %d or %0Nd in a name of .ply or .obj is the number of the moment
+  /// "-" is the standard output; %d or %0Nd in a name of .ply or .obj is replaced by the number of the moment.
+  std::string path;
   SampleFormat format = SampleFormat::kNpy;
   bool force = false;
 };
 
-/// Names the files that `count` moments will be written to, and checks before a long computation that they can be.
+/// Returns the names of the files for `count` moments, and checks before a long computation that they can be written.
 /// Errors: kUsage for normals of corners in PLY, and for several moments in one .ply or .obj; those of check_output().
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count);
 
 struct SampleSummary {
-  std::size_t normals = 0;  ///< normals that were written: moments x outputs
-  std::size_t zeros = 0;    ///< normals among these that are (0, 0, 0)
-  Drift drift = {};         ///< of those that were computed by this call, with stepping
+  std::size_t normals = 0;  ///< number of written normals: moments x outputs
+  std::size_t zeros = 0;    ///< number of these that are (0, 0, 0)
+  Drift drift = {};         ///< with stepping: the largest drift in this call
 };
 
-/// Computes the poses and writes each at once, so that only one is in memory. Only a .npz file for a pipe is gathered
-/// in memory, since its checksums come before the bytes that they cover.
-/// progress(done, total), if given, is called after each moment.
+/// Computes the poses and writes each of them immediately, so that only one is in memory. Only a .npz file for a pipe
+/// is collected in memory, since its checksums precede the bytes that they cover. progress(done, total), if given, is
+/// called after each moment.
 ///
-/// Errors: of NormalSampler, sample_files() and write_output(); kUsage for more than kMostSampleBytes in memory. All
-/// moments are checked before the first is computed, and a file of the names that exist stops all unless force is
-/// given.
+/// Errors: those of NormalSampler, sample_files() and write_output(); kUsage for more than kMostSampleBytes in memory.
+/// All moments are checked before the first is computed, and if one of the files exists, nothing is written unless
+/// `force` is true.
 [[nodiscard]] Result<SampleSummary> write_samples(
     const Motion& motion, const SampleOptions& options, const Moments& moments, const SampleOutput& output,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});

@@ -1,21 +1,22 @@
-/// Programs that show a glTF file, and compressors that rewrite it on the way, with what they make of stored normals.
+/// Viewers, which are programs that show a glTF file, and compressors, which rewrite it first, with their rules for
+/// stored normals.
 ///
-/// The specification wants normalize(N + sum_k w_k D_k), with the weights of the file's tracks. Every viewer here shows
-/// normalize(N' + sum_k w'_k D'_k) instead, of what it keeps of N, of D_k and of the weights:
+/// The specification demands normalize(N + sum_k w_k D_k), with the weights of the file's tracks. Every viewer here
+/// renders normalize(N' + sum_k w'_k D'_k) instead, where N', D'_k and w'_k are the values that it stores:
 ///
 ///     sum       N' = N, D' = D                             as 32-bit floats, or deltas as 16-bit ones
 ///     unit      N' = u(N), D' = u(N + D) - u(N)            a unit normal u for each target: the direction of N + D, or
-///                                                          through a frame what is no direction if |N + D| is not 1
+///               with by_frame a different vector if |N + D| is not 1
 ///     clamped   N' and D' are rounded to signed integers of a few bits that stand for [-1, 1]: larger components of D
 ///               are cut
 ///
-///     w'        zero where |w| is not above least_weight, and for targets beyond the first most_targets; with
+///     w'        zero if |w| is at most least_weight, and for targets beyond the first most_targets; with
 ///               weight_bits below 32, weights of tracks are rounded to unsigned integers that stand for [0, 1]
 ///
-/// If |N + D| = 1 and no component of D is beyond 1, viewers of all three rules show the same but for rounding.
+/// If |N + D| = 1 and no component of D exceeds 1, viewers of all three rules render the same up to rounding.
 ///
-/// The model leaves out what compressors do to positions, the keys that Godot's importer removes, and that Filament
-/// makes its frame of texture coordinates or tangents where there are any, and not of the normal alone.
+/// The model does not include changes of positions by compressors, the keys that Godot's importer removes, and
+/// Filament's use of texture coordinates or tangents for its frame if there are any.
 ///
 /// Threads    everything here is pure
 #ifndef CHRONORMAL_WORKFLOW_VIEWERS_H_
@@ -32,49 +33,49 @@
 
 namespace chronormal {
 
-/// Selects how a viewer makes the normal that it shows.
+/// The rule by which a viewer computes the rendered normal.
 enum class NormalRule { kSum, kUnit, kClamped };
 
-/// Selects how a viewer plays a track of weights. Resampled tracks have 30 samples a second and are linear between them
-/// (steps stay steps).
+/// The rule by which a viewer plays a track of weights. Resampled tracks have 30 samples per second and are linear in
+/// between (steps stay steps).
 enum class TrackRule {
-  kSpecified,               ///< as appendix C of the glTF specification has it
-  kSplinesResampled,        ///< CUBICSPLINE from time 0 on, with its last key; others as specified
-  kAllResampled,            ///< every track, from the first key of the animation on
-  kSplinesWithoutDuration,  ///< CUBICSPLINE with tangents times the part of the time between keys that has gone by
-  kSplinesMisread,          ///< CUBICSPLINE by the first third of its numbers, and weights of zero beyond these
+  kSpecified,               ///< by appendix C of the glTF specification
+  kSplinesResampled,        ///< CUBICSPLINE is resampled from time 0 on, including the last key; others as specified
+  kAllResampled,            ///< every track is resampled from the first key of the animation on
+  kSplinesWithoutDuration,  ///< CUBICSPLINE with tangents multiplied by the elapsed share of the time between keys
+  kSplinesMisread,          ///< CUBICSPLINE by the first third of its numbers, and zero weights afterwards
 };
 
-/// Selects how a viewer takes a normal through the skin of a node (docs/decisions/0022).
+/// The rule by which a viewer transforms a normal by the skin of a node (docs/decisions/0022).
 enum class SkinRule {
-  kBlended,           ///< through the linear part of the blended matrix of the joints
-  kInverseTranspose,  ///< through the inverse transpose of that
-  kByJoint            ///< through the cofactors of each joint, and blends the unit vectors
+  kBlended,           ///< by the linear part of the blended matrix of the joints
+  kInverseTranspose,  ///< by the inverse transpose of that matrix
+  kByJoint            ///< by the cofactors of each joint, then blending the unit vectors
 };
 
-inline constexpr double kViewerSampleRate = 30;  ///< samples a second of tracks that are resampled
+inline constexpr double kViewerSampleRate = 30;  ///< samples per second of resampled tracks
 
 struct Viewer {
   std::string_view name;   ///< on the command line
   std::string_view title;  ///< for people: "three.js", "after gltfpack"
   NormalRule normals = NormalRule::kSum;
-  /// The number of bits. sum: of the float that keeps a component of a delta; unit: of each of the two octahedral
-  /// numbers that keep a direction, or of the four numbers of a quaternion; clamped: of the integer that keeps a
-  /// component, its sign included.
+  /// The number of bits. For kSum: of the float that stores a component of a delta. For kUnit: of each of the two
+  /// octahedral numbers that store a direction, or of the four numbers of a quaternion. For kClamped: of the integer
+  /// that stores a component, including its sign.
   int bits = 32;
-  /// unit: u is the third axis of the rotation that a quaternion has, which is taken from the frame that Frisvad's rule
-  /// makes of the vector, as if that were of length 1. (Building an Orthonormal Basis from a 3D Unit Vector Without
-  /// Normalization, 2012.)
+  /// For kUnit: u is the third axis of the rotation of a quaternion. The quaternion comes from the frame that Frisvad's
+  /// rule makes from the vector, as if it were a unit vector. (Building an Orthonormal Basis from a 3D Unit Vector
+  /// Without Normalization, 2012.)
   bool by_frame = false;
-  bool octahedral_base = false;  ///< clamped: N goes through octahedral numbers of as many bits before
+  bool octahedral_base = false;  ///< for kClamped: N is first rounded to octahedral numbers with as many bits
   TrackRule tracks = TrackRule::kSpecified;
   SkinRule skins = SkinRule::kBlended;
-  int weight_bits = 32;  ///< of a weight in a track
+  int weight_bits = 32;  ///< bits of a weight in a track
   double least_weight = 0;
-  bool adds_tangents = true;     ///< of targets; else the tangents of the base stay, whatever the targets do
-  std::size_t most_targets = 0;  ///< of a primitive; 0: no limit is known
-  std::string_view beyond = {};  ///< what happens to a file with more targets, where there is a limit
-  std::string_view source = {};  ///< where this can be read
+  bool adds_tangents = true;     ///< adds up tangents of targets; otherwise the tangents of the base are used
+  std::size_t most_targets = 0;  ///< largest number of targets of a primitive; 0 if there is no known limit
+  std::string_view beyond = {};  ///< what the viewer does with a file that has more targets, if there is a limit
+  std::string_view source = {};  ///< where this is documented
 
   [[nodiscard]] constexpr bool keeps_halves() const noexcept { return normals == NormalRule::kSum && bits == 16; }
   friend bool operator==(const Viewer& a, const Viewer& b) noexcept { return a.name == b.name; }
@@ -151,31 +152,32 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
                "packages/extensions/src/ext-meshopt-compression/encoder.ts"},
 }};
 
-/// Finds the viewers of a list of names with commas between them, in the order of the list and each once; "all" names
-/// the viewers that show a file as it is, which compressors do not.
-/// Errors: kUsage for a name that there is none of, with all names, and the nearest one where it is near.
+/// Finds the viewers of a list of names with commas between them, in the order of the list and each once; "all" selects
+/// the viewers that show a file unchanged, but not compressors. Errors: kUsage for an unknown name, with all names, and
+/// a similar one if there is one.
 [[nodiscard]] Result<std::vector<Viewer>> find_viewers(std::string_view names);
 
-/// Returns what a viewer keeps of the base normal N; (0, 0, 0) for zero.
+/// Returns the value that a viewer stores for the base normal N; (0, 0, 0) for zero.
 [[nodiscard]] Vec3f kept_normal(const Viewer& viewer, const Vec3f& normal) noexcept;
 
-/// Returns what a viewer keeps of the delta D of a target, and adds to kept_normal() for each unit of weight.
+/// Returns the value that a viewer stores for the delta D of a target. For each unit of weight it is added to
+/// kept_normal().
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& delta) noexcept;
-/// Does the same if the result of kept_normal() is known.
+/// Returns the same value if the result of kept_normal() is already known.
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& kept_normal,
                                const Vec3f& delta) noexcept;
 
-/// Replaces weights that a viewer leaves out by zero. There is one weight for each named target, or for each of all
-/// targets if none are named.
+/// Sets weights that a viewer ignores to zero. There is a weight for each named target, or for every target if none is
+/// named.
 void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<const std::size_t> targets = {}) noexcept;
 
-/// Returns the start of the sum of a vertex, to which each target adds its weight times kept_delta() in their order, in
-/// float32: N', or zero in viewers of 16-bit floats, which add up deltas alone.
+/// Returns the first term of the sum of a vertex, to which targets in their order add their weight times kept_delta(),
+/// in float32: N', or zero in viewers with 16-bit floats, which sum deltas separately.
 [[nodiscard]] constexpr Vec3f first_of_sum(const Viewer& viewer, const Vec3f& kept_normal) noexcept {
   return viewer.keeps_halves() ? Vec3f{} : kept_normal;
 }
 
-/// Returns the unit normal that is shown for a sum; zero, or not finite, if the sum is.
+/// Returns the unit normal that is rendered for a sum; zero or not finite if the sum is.
 [[nodiscard]] Vec3f shown_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 
 }  // namespace chronormal
