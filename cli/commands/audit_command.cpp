@@ -1,4 +1,4 @@
-// The command `audit`: its options, and how its result is printed or becomes a part of a shard.
+// The command `audit`: its options, and the output of its result or of its part in a shard.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,7 +41,7 @@ struct AuditArguments {
   bool json = false;
 };
 
-// The message of a gate for an input in which nothing moves: a build that has lost its animations must not pass.
+// The message for a tolerance and an input in which nothing moves: a build that has lost its animations must not pass.
 constexpr const char* kNothingMoves =
     "nothing moves stored normals, so that there is nothing to judge, and no limit is of use";
 
@@ -56,8 +56,7 @@ std::string shell_word(const std::string& word) {
   return printable(quoted + "'");
 }
 
-// Returns the words of a command line that name the input, select its keyframes, and say how vertices move between
-// them.
+// Returns the words of a command line that name the input, select its keyframes, and choose the path of vertices.
 std::string words_of(const InputOptions& input) {
   std::string words;
   constexpr std::size_t kMost = 4;
@@ -220,26 +219,26 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   return how;
 }
 
-// Says why small normals do not pass. place ends the sentence.
+// Explains why small normals do not pass. `place` ends the sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
   return formatted("where faces all but vanish, the worst error is {:.4g} degrees, beyond the tolerance of {:g}{}",
                    error.faint_worst, *audited.limits.degrees, place);
 }
 
-// Says why torn edges do not pass.
+// Explains why torn edges do not pass.
 std::string why_torn(const Audited& audited, const MotionError& error) {
   return formatted("at one moment {}, beyond the limit of {}",
                    counted(error.most_torn, "edge is torn", "edges are torn"), grouped(*audited.limits.torn_edges));
 }
 
-// Says why normals that cancel do not pass.
+// Explains why normals that cancel do not pass.
 std::string why_cancelled(const MotionError& error) {
   return formatted(
       "{} no right normal although the faces around have an area, and no tolerance allows what nobody can judge",
       counted(error.cancelled, "pair has", "pairs have"));
 }
 
-// Says why errors are beyond the tolerance; if they are not, says which other limit is exceeded.
+// Explains why errors exceed the tolerance, or else which other limit is exceeded.
 std::string why_beyond(const Audited& audited, const MotionError& error, const std::string& worst_label,
                        const std::string& unlit_label, const std::string& faint_label,
                        const std::string& cancelled_label) {
@@ -255,7 +254,7 @@ std::string why_beyond(const Audited& audited, const MotionError& error, const s
   return why_torn(audited, error);
 }
 
-// Says why a viewer does not pass.
+// Explains why a viewer does not pass.
 std::string why_beyond(const Audited& audited, const ViewerAudit& found) {
   if (found.beyond > 0 && audited.limits.degrees)
     return formatted("{}: a mesh has {} more than it takes: {}", found.viewer.title,
@@ -272,7 +271,7 @@ std::string why_beyond(const Audited& audited) {
                     cancelled_label(audited));
 }
 
-// Says why an input does not pass, if so. place is its name if there are several inputs. Returns whether it passes.
+// Prints why an input does not pass, if so. `place` is its name if there are several inputs. Returns true if it passes.
 bool say_what_is_beyond(const Audited& audited, const std::string& place) {
   if (audited.passed()) return true;
   const std::vector<ViewerAudit>& viewers = audited.audit.viewers;
@@ -290,7 +289,7 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
   Result<std::optional<Audited>> audited = audit_input(options, how, progress, *run.value(), segments);
   progress.clear();
   if (!audited) return audited.error();
-  if (!audited.value()) return kExitDone;  // the first rank prints
+  if (!audited.value()) return kExitDone;  // only the first rank prints
   Audited& found = *audited.value();
   if (options.errors) {
     const Status written = write_errors(found.audit.errors, *options.errors, options.common.force);
@@ -316,7 +315,7 @@ int worse_exit(int a, int b) {
   return *std::find_if(kWorstFirst.begin(), kWorstFirst.end(), [&](int code) { return code == a || code == b; });
 }
 
-// Judges files one by one. A file that cannot be read does not keep the others from being judged.
+// Judges files one by one. A file that cannot be read does not stop the others from being judged.
 Result<int> run_several(const AuditArguments& options, const AuditOptions& how, const std::vector<std::string>& names,
                         Progress& progress) {
   if (options.run.resume) return misuse("--resume", "it goes on with one sequence, and these are several glTF files");

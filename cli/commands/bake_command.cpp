@@ -42,8 +42,8 @@ struct BakeArguments {
   std::optional<double> tolerance;
   std::optional<std::size_t> most_targets;
   bool animations_only = false, plan = false;
-  std::optional<std::string> drivers;  // the file for them beside the result
-  std::optional<std::string> poses;    // the file of the poses that a rig is made for
+  std::optional<std::string> drivers;  // the file for the drivers, beside the result
+  std::optional<std::string> poses;    // the file of the poses for which the rig is baked
   bool json = false, no_audit = false, no_weld = false;
 };
 
@@ -107,7 +107,7 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   return how;
 }
 
-// Returns whether some mesh has no candidate within the requested limits.
+// Returns true if some mesh has no candidate within the requested limits.
 bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
   return std::any_of(bake.meshes.begin(), bake.meshes.end(), [&how](const BakedMesh& mesh) {
@@ -136,16 +136,16 @@ void warn_if_worse(const BakeReport& report, bool of_animations) {
   if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit, of_animations)});
 }
 
-// Audits the input, by audit_before, and the written file, both by the true normals of the author of a glTF file. The
-// result has more keys in a track, so an audit of it has more samples and may find errors that were there before: the
-// input is audited at as many samples before the result is called worse. Returns nothing if neither file has anything
-// that an audit can judge. Errors: kFailed if the written file cannot be read.
+// Audits the input, by audit_before, and the written file, both against the true normals of the original glTF file.
+// Tracks of the result have more keys, so its audit has more samples and may find errors that the input has as well:
+// the input is therefore audited at equally many samples before the result is called worse. Returns nothing if an audit
+// can judge neither file. Errors: kFailed if the written file cannot be read.
 template <class AuditBefore>
 Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const BakeArguments& options,
                                                  const GltfDocument* author, const AuditBefore& audit_before) {
   std::optional<BeforeAndAfter> result;
   if (options.no_audit || is_stream(options.common.output)) return result;
-  // Tells a user who ends the audit that the file is complete.
+  // Tells a user who interrupts the audit that the file is complete.
   struct Stands {
     Stands() { say_at_end("chronormal: the output stands; only its audit was ended (--no-audit leaves it out)\n"); }
     Stands(const Stands&) = delete;
@@ -157,7 +157,7 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   audited.weighting = how.weighting;
   constexpr std::size_t kEnoughSegments = 120;
   audited.most_segments = kEnoughSegments;
-  if (author != nullptr) {  // a sequence looks alike in all viewers and has no own poses
+  if (author != nullptr) {  // a sequence looks the same in all viewers and has no poses of its own
     audited.viewers = how.viewers;
     audited.viewers.insert(audited.viewers.end(), how.spared.begin(), how.spared.end());
     audited.is_posed = how.is_posed;
@@ -183,8 +183,8 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   return result;
 }
 
-// Returns whether all normals of the result can be lit, as far as an audit checked them. Says so if they cannot and a
-// tolerance was requested.
+// Returns true if all normals of the result can be lit, as far as an audit checked them. Otherwise prints a message if
+// a tolerance was requested.
 bool is_lit(const BakeArguments& options, const BakeReport& report) {
   const std::size_t unlit = report.audit ? report.audit->after.error.unlit : 0;
   if (!options.tolerance || unlit == 0) return true;
@@ -208,7 +208,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   progress.clear();
   if (!baked) return baked.error();
 #ifdef __GLIBC__
-  (void)::malloc_trim(0);  // memory of the bake is free, but not yet returned to the system
+  (void)::malloc_trim(0);  // returns the freed memory of the bake to the system
 #endif
   const int code = is_beyond(options, how, baked.value()) ? kExitBeyond : kExitDone;
   BakeReport told{input.name(), output, options.drivers, std::nullopt, input.notes()};
@@ -218,7 +218,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
     if (!printed) return printed.error();
     return code;
   }
-  // In another folder, a file needs other paths to its resources.
+  // In another folder, references to resources need other paths.
   Result<std::vector<std::string>> pointers = edit.pointers(output);
   if (!pointers) return pointers.error();
   baked.value().pointers = std::move(pointers).value();
@@ -269,7 +269,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (how.encoding == BakeEncoding::kKeys && how.tolerance.value_or(kHarmlessTolerance) < kLeastKeyTolerance)
     return misuse("--tolerance", "of --encode keys it must be 0.001 degrees or more");
   if (how.encoding == BakeEncoding::kKeys && options.input.is_curved()) {
-    // The promise is about the curves: the pieces that they were cut into take their share of it.
+    // The tolerance is about the curves, and their straight pieces use a part of it.
     const double asked = how.tolerance.value_or(kHarmlessTolerance),
                  pieces = make_path(options.input.path).value().tolerance;
     how.tolerance = asked - pieces;
@@ -333,7 +333,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
 }
 
-// Finds the output. Without -o it is the last of several files, if that can be one: IN OUT.
+// Finds the output. Without -o, the last of several files is the output if its name allows it: IN OUT.
 Status take_output(BakeArguments& options) {
   std::vector<std::string>& files = options.input.files;
   if (options.output) {
@@ -349,8 +349,8 @@ Status take_output(BakeArguments& options) {
   return Success{};
 }
 
-// Checks that no output replaces another one or an input. Only OUT may be INPUT, since it keeps everything that INPUT
-// has.
+// Checks that no output replaces another output or an input. Only OUT may be INPUT, since the result keeps the whole
+// content of INPUT.
 Status check_files(const BakeArguments& options) {
   std::vector<NamedFile> poses;
   if (options.poses && *options.poses != "random") poses.push_back({"--poses", *options.poses});

@@ -4,7 +4,7 @@
 
 #ifdef CHRONORMAL_REPORT_PAGE
 
-// The assembler copies the file; a compiler would have to parse an array with one number per byte.
+// Includes the file by the assembler, since a compiler would have to parse an array with a number for each byte.
 asm(".pushsection .rodata\n"
     ".global chronormal_page_begin, chronormal_page_end\n"
     ".hidden chronormal_page_begin, chronormal_page_end\n"

@@ -17,7 +17,7 @@ Status check(const InputOptions& input, bool elements_given, const BlendArgument
   return Success{};
 }
 
-// Adds the option to a message of the library.
+// Adds the option as the place to an error of the library.
 Error blamed(Error error, const std::string& option) {
   if (error.code == ErrorCode::kUsage && error.place.empty()) error.place = option;
   return error;

@@ -1,4 +1,4 @@
-// The command `compare`: its options, and how its result is printed or becomes a part of a shard.
+// The command `compare`: its options, and the output of its result or of its part in a shard.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -68,7 +68,7 @@ std::vector<std::string> scheme_names(const CompareArguments& options) {
   return options.schemes ? split_at_commas(*options.schemes) : std::vector<std::string>();
 }
 
-// Returns an option that was given but has no meaning with --blend.
+// Returns an option that was given although it has no effect with --blend.
 std::string option_of_schemes(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
@@ -187,7 +187,7 @@ Result<std::optional<NamedComparison>> compare_one(Input& input, const CompareAr
   return prints.value() ? std::optional(std::move(named)) : std::nullopt;
 }
 
-// Returns an option that was given but has no meaning if several ranks divide one motion.
+// Returns an option that was given although it has no effect if several ranks divide one motion.
 std::string option_of_one_process(const CompareArguments& options) {
   if (options.errors) return "--errors";
   if (options.face) return "--face";
@@ -238,7 +238,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
     if (!comparison.value()) break;
     comparisons.push_back(std::move(*comparison.value()));
     if (options.each && !wanted.base.empty())
-      comparisons.back().name = wanted.files.front();  // all inputs share the base
+      comparisons.back().name = wanted.files.front();  // all inputs have the same base
   }
   return comparisons;
 }
@@ -271,7 +271,7 @@ Result<int> run_blend(const CompareArguments& options) {
   return kExitDone;
 }
 
-// Returns an option that was given but has no meaning with --truth.
+// Returns an option that was given although it has no effect with --truth.
 std::string option_of_samples(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
@@ -302,7 +302,7 @@ Result<int> run_truth(const CompareArguments& options) {
   return kExitDone;
 }
 
-// An option that was given, and has no meaning with --face.
+// Returns an option that was given although it has no effect with --face.
 std::string option_of_all_faces(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.certify) return "--certify";
@@ -359,7 +359,7 @@ Result<int> run(const CompareArguments& options) {
   if (!options.face && options.blend.rows && options.truth.every)
     return misuse("--truth", "blend shapes move straight: leave out --blend for a sequence of keyframes");
   if (!options.face && options.blend.rows) return run_blend(options);
-  // Find out about wrong names before anything long begins.
+  // Reports wrong names before any long computation.
   for (const std::string& name : scheme_names(options)) {
     if (name.empty()) return misuse("--schemes", "there is an empty name in the list");
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
@@ -406,7 +406,7 @@ Result<int> run(const CompareArguments& options) {
   CompareRun segments;
   auto comparisons = compare_inputs(options, progress, *run.value(), segments);
   if (!comparisons) return comparisons.error();
-  if (comparisons.value().empty()) return kExitDone;  // the first rank prints
+  if (comparisons.value().empty()) return kExitDone;  // only the first rank prints
 
   if (options.errors) {
     const Status written =

@@ -17,8 +17,7 @@ struct TruthArguments {
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input, leaves keyframes out, and compares with them. Errors: as reading and compare_with_truth() return
-/// them.
+/// Reads the input, leaves keyframes out, and compares with them. Errors: those of reading and of compare_with_truth().
 [[nodiscard]] Result<NamedTruthComparison> compare_input_with_truth(const InputOptions& input,
                                                                     const ElementArguments& elements,
                                                                     const TruthArguments& arguments,

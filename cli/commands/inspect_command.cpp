@@ -22,7 +22,7 @@ Result<Inspected> open_and_inspect(const InputOptions& options, Progress& progre
   InputOptions wanted = options;
   wanted.allow_mesh = true;
   wanted.stream = true;
-  wanted.shading = KeepShading::kFirst;  // problems of normals and groups also affect audit
+  wanted.shading = KeepShading::kFirst;  // problems of normals and groups also affect audits
   Result<Input> input = open_input("inspect", std::move(wanted), progress);
   if (!input) return input.error();
   Result<Inspected> result =

@@ -1,4 +1,4 @@
-// chronormal query collapse: when faces have no area.
+// The command `query collapse`: the times when faces have no area.
 
 #include "cli/commands/query_question.h"
 

@@ -1,5 +1,5 @@
-// chronormal query: asks one of several questions about whole intervals of time. Each question has its own file
-// (cli/commands/query_question.h). This file has the shared parts: the input, the span, and the output of the answer.
+// The command `query`, which answers several queries about whole intervals of time. Each query has its own file
+// (cli/commands/query_question.h); this file has the common parts: the input, the span, and the output of the answer.
 
 #include <algorithm>
 #include <memory>
@@ -67,8 +67,8 @@ Result<Question> find_question(const QueryArguments& options) {
   return *found;
 }
 
-// Says of a mesh behind a skin that answers are about the mesh before it: joints move vertices on curves that no
-// straight segment follows. Errors: kUsage where the places in the world were asked for.
+// Warns that for a mesh with a skin, answers are about the mesh without the skin: joints move vertices on curves, which
+// straight segments cannot represent. Errors: kUsage if positions in the world were requested.
 Status check_skins(const Input& input, const InputOptions& options) {
   if (input.document() == nullptr) return Success{};
   for (const GltfNode& node : input.document()->nodes()) {
@@ -162,7 +162,7 @@ std::string footer(const std::vector<Question>& questions) {
 
 Command query_command() {
   auto options = std::make_shared<QueryArguments>();
-  // A question takes an interval of time instead of a range of keyframes.
+  // A query takes an interval of time instead of a range of keyframes.
   std::vector<Option> input = input_table(options->input, {{"--from", ""}, {"--to", ""}}), own;
   input.insert(input.begin(), {"QUESTION", &options->question, "what is asked (listed below)"});
   for (const Question& question : options->questions)

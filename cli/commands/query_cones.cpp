@@ -1,4 +1,4 @@
-// chronormal query cones: cones that contain the normals of faces and of meshlets.
+// The command `query cones`: cones that contain the normals of faces and of meshlets.
 
 #include <memory>
 

@@ -1,4 +1,4 @@
-// chronormal query contain: finds the points inside a closed mesh, and when each passes through its surface.
+// The command `query contain`: the points inside a closed mesh, and the times when they cross its surface.
 
 #include <memory>
 #include <utility>

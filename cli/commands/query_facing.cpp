@@ -1,4 +1,4 @@
-// chronormal query facing: when faces show their front to a viewer, and silhouette edges.
+// The command `query facing`: the times when faces show their front to a viewer, and silhouette edges.
 
 #include <cmath>
 #include <memory>

@@ -1,4 +1,4 @@
-/// A question of `chronormal query`: one file query_NAME.cpp, with one function that describes it.
+/// A query of `chronormal query`. Each has a file query_NAME.cpp with one function that describes it.
 #ifndef CLI_COMMANDS_QUERY_QUESTION_H_
 #define CLI_COMMANDS_QUERY_QUESTION_H_
 
@@ -12,16 +12,16 @@
 
 namespace chronormal::cli {
 
-/// Asks a motion, of the elements where the question takes any.
+/// A function that answers the query for a motion, and for elements if the query supports them.
 using Ask =
     std::function<Result<QueryAnswer>(const Motion&, const QuerySpan&, const QueryProgress&, const ElementOptions&)>;
 
 struct Question {
   std::string name, summary;
-  std::vector<Option> options;  ///< options of this question only
-  /// Parses the options before any input is read. Errors: kUsage with an option as the place.
+  std::vector<Option> options;  ///< options of this query only
+  /// Parses the options before any input is read, and returns the function. Errors: kUsage with an option as the place.
   std::function<Result<Ask>()> understand;
-  bool takes_elements = false;  ///< or is about faces alone
+  bool takes_elements = false;  ///< false if the query is only about faces
 };
 
 [[nodiscard]] Question collapse_question();

@@ -1,4 +1,4 @@
-// chronormal query shutter: mean normals for motion blur.
+// The command `query shutter`: mean normals for motion blur.
 
 #include "cli/commands/query_question.h"
 

@@ -33,7 +33,7 @@ struct ReportArguments {
 
 bool is_container(const ReportArguments& options) { return lower_extension(options.common.output) == ".bin"; }
 
-// Returns the template installed or built with the program, below share/ beside it, or nothing if the system does not
+// Returns the template that was installed or built with the program, in share/ beside it; nothing if the system cannot
 // tell where the program is.
 std::optional<std::string> usual_template() {
   std::error_code failed;
@@ -42,8 +42,8 @@ std::optional<std::string> usual_template() {
   return (program.parent_path().parent_path() / "share" / "chronormal" / "report.html").string();
 }
 
-// Reads the template of the page before anything is computed, so that no work is wasted. A named template comes first,
-// then the built-in one, then the one beside the program.
+// Reads the template of the page before any computation, so that no work is wasted. A named template has priority, then
+// the built-in one, then the one beside the program.
 Result<std::string> read_template(const ReportArguments& options) {
   if (!options.page_template && !built_in_page().empty()) return std::string(built_in_page());
   const std::optional<std::string> path = options.page_template ? options.page_template : usual_template();

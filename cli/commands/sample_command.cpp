@@ -74,7 +74,7 @@ std::vector<std::vector<Option>> tables(SampleArguments& options) {
           options.common.table(true)};
 }
 
-// The options of the command line, parsed.
+// The parsed options of the command line.
 struct Request {
   SampleOptions sample;
   AskedMoments asked;
@@ -149,7 +149,7 @@ Result<Request> understand(const SampleArguments& options) {
     if (const Status output = options.run.check_output(options.common); !output) return output.error();
     const Status distinct = check_distinct({{"OUT", options.common.output}}, input_files(options.input));
     if (!distinct) return distinct.error();
-    // An interrupted run may have written OUT just before its end. write_samples() finds out.
+    // An interrupted run may have written OUT just before its end; write_samples() detects this.
     return request;
   }
   const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count(), request.run);
@@ -183,7 +183,7 @@ Status take_hard_edges(Input& input, const std::string& what, ElementOptions& el
   return Success{};
 }
 
-// Says how large the task is if it is large; it is not refused.
+// Prints the size of the task if it is large. A large task is not refused.
 void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
   constexpr double kMuch = 1e9;
   const std::size_t elements = kind == ElementKind::kFaces     ? topology.face_count()

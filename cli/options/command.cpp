@@ -18,8 +18,8 @@
 namespace chronormal::cli {
 namespace {
 
-// Reports how curves were cut. Wrong velocities give curves that look like any others, so that only a comparison with
-// positions can find them.
+// Prints how curves were cut, and warns of velocities that do not fit: curves with wrong velocities look plausible, and
+// only a comparison with positions reveals them.
 void say_of_curves(const std::string& command, const CutPath& cut, std::size_t faces, bool is_quiet) {
   const auto warn = [&](const std::string& message) { say(command, message, Tone::kWarning); };
   if (!is_quiet)

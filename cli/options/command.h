@@ -1,7 +1,7 @@
-/// The parts that all commands of the program share: the options that every one has, exit codes, and output.
+/// The parts that all commands share: their common options, exit codes, and output.
 ///
-/// Each command is one file, NAME_command.cpp, with one function that describes it. The contract that scripts
-/// depend on (stdout, stderr, exit codes) is in docs/cli.md.
+/// Each command is one file, NAME_command.cpp, with one function that describes it. The contract that scripts depend on
+/// (stdout, stderr, exit codes) is in docs/cli.md.
 #ifndef CLI_OPTIONS_COMMAND_H_
 #define CLI_OPTIONS_COMMAND_H_
 
@@ -33,15 +33,15 @@ struct CommonOptions {
   [[nodiscard]] std::vector<Option> table(bool output_required);
 };
 
-/// Returns the options that choose the input, as in io/input.h, without the ones that the command refuses. The table
-/// refers to input.
+/// Returns the options that choose the input, as in io/input.h, except those that the command refuses. The table refers
+/// to `input`.
 [[nodiscard]] std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused = {});
 
-/// Opens the input that the options name, with a progress bar. Reports in the name of the command how it was read
-/// (Input::notes()) and how curves, which are cut at once, were cut.
+/// Opens the input that the options name, with a progress bar. Prints, in the name of the command, notes on how it was
+/// read (Input::notes()) and on how curves were cut.
 [[nodiscard]] Result<Input> open_input(const char* command, InputOptions options, Progress& progress);
 
-/// Says what was written to a file, unless --quiet: "-> walk.npz: 5 keyframes".
+/// Prints a message about a written file, unless --quiet: "-> walk.npz: 5 keyframes".
 void say_written(const CommonOptions& common, const std::string& what);
 
 /// The options that choose the normals: --elements, --crease, --no-weld.
@@ -53,7 +53,7 @@ struct ElementArguments {
 
   [[nodiscard]] std::vector<Option> table();
   [[nodiscard]] std::string kind() const { return asked.value_or(usual); }
-  /// Returns the requested elements. Errors: kUsage for an unknown kind, and for options that do not go with it.
+  /// Returns the requested elements. Errors: kUsage for an unknown kind, and for options that do not fit the kind.
   [[nodiscard]] Result<ElementOptions> options() const;
 };
 
@@ -61,18 +61,18 @@ struct ElementArguments {
 struct JudgeArguments {
   std::string weighting;               ///< empty: as the stored base normals suggest
   std::string viewers;                 ///< empty: only the specification
-  std::string viewers_by_old_name;     ///< by --host, which warns
-  std::optional<std::size_t> samples;  ///< of each segment
+  std::string viewers_by_old_name;     ///< given by --host, which causes a warning
+  std::optional<std::size_t> samples;  ///< samples per segment
 
-  /// Returns the options. of_viewers tells the help what the command does with the named viewers.
+  /// Returns the options. `of_viewers` is the help text for the viewers.
   [[nodiscard]] std::vector<Option> table(const std::string& of_viewers);
-  /// Writes the requested values and keeps the others. Errors: kUsage for unknown names. Warns in the name of the
-  /// command about the old name of an option.
+  /// Writes the requested values, and keeps the others. Errors: kUsage for unknown names. Warns about the old name of
+  /// an option, in the name of the command.
   [[nodiscard]] Status read(const char* command, std::optional<Weighting>& to_weighting,
                             std::vector<Viewer>& to_viewers) const;
 };
 
-/// Checks that viewers are named only for a glTF file. Errors: kUsage.
+/// Checks that viewers are only named for a glTF file. Errors: kUsage.
 [[nodiscard]] Status check_viewers(const std::vector<Viewer>& viewers, const Input& input);
 
 /// Returns the last component of a path.

@@ -1,5 +1,5 @@
-// All lines of help are broken here. A line that begins with a blank is kept as it is, like the rows of a list; all
-// other lines flow together into paragraphs.
+// Breaks all lines of help. A line that begins with a blank, like the rows of a list, is kept; all other lines are
+// joined into paragraphs.
 #include "cli/options/help.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct Paragraph {
   std::size_t hang = 0;  ///< indentation of all lines after the first
 };
 
-// Splits a text at separators. (A stream would take a lack of memory for the end of the text.)
+// Splits a text at separators. (With a stream, a lack of memory would look like the end of the text.)
 std::vector<std::string> parts_of(const std::string& text, char separator) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -35,7 +35,7 @@ std::vector<std::string> parts_of(const std::string& text, char separator) {
   return parts;
 }
 
-// Splits a text into paragraphs, which flow, and rows, which keep their line.
+// Splits a text into paragraphs, whose lines are joined, and rows, which keep their lines.
 std::vector<Paragraph> paragraphs_of(const std::string& text) {
   std::vector<Paragraph> paragraphs;
   bool flows = false;
@@ -56,8 +56,8 @@ std::vector<Paragraph> paragraphs_of(const std::string& text) {
   return paragraphs;
 }
 
-// Breaks a paragraph between words. Every line begins at `indent`, except the first, which follows the text that is
-// already there.
+// Breaks a paragraph between words. Every line begins at `indent`, except the first, which continues the text before
+// it.
 std::string broken(const Paragraph& paragraph, std::size_t indent, std::size_t columns) {
   const std::size_t first = std::min(paragraph.text.find_first_not_of(' '), paragraph.text.size());
   std::string result = paragraph.text.substr(0, first);
@@ -136,7 +136,7 @@ std::string for_manual(const std::string& text) {
   return result;
 }
 
-// Formats a text for the manual: rows keep their lines, and paragraphs flow.
+// Formats a text for the manual: rows keep their lines, and lines of paragraphs are joined.
 std::string lines_for_manual(const std::string& text) {
   std::string result;
   for (const Paragraph& paragraph : paragraphs_of(text)) {
@@ -165,7 +165,7 @@ std::string quoted_for_shell(const std::string& text) {
   return result + '\'';
 }
 
-// Returns the first sentence of a help in one line.
+// Returns the first sentence of an option's help in one line.
 std::string brief(const Option& option) {
   std::string text = option.help.substr(0, option.help.find("\n "));
   std::replace(text.begin(), text.end(), '\n', ' ');

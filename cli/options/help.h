@@ -1,5 +1,5 @@
-/// Help for a terminal, a manual page, and completions for shells. All of them are made from the tables of options, so
-/// that none can name an option that the program does not have.
+/// Help for a terminal, a manual page, and completions for shells, all made from the tables of options, so that they
+/// match the options of the program.
 #ifndef CLI_OPTIONS_HELP_H_
 #define CLI_OPTIONS_HELP_H_
 
@@ -20,8 +20,8 @@ namespace chronormal::cli {
 /// Returns the manual page for man(1).
 [[nodiscard]] std::string manual_page(const std::vector<Command>& commands);
 
-/// Returns the completions for bash, zsh or fish, to be put where that shell looks for them. Errors: kUsage for another
-/// shell.
+/// Returns the completions for bash, zsh or fish, to be installed where that shell looks for them. Errors: kUsage for
+/// another shell.
 [[nodiscard]] Result<std::string> completions(const std::vector<Command>& commands, std::string_view shell);
 
 /// Returns the names in the spelling of an option: "-o" and "--output". Empty for arguments without a name.

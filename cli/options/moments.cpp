@@ -182,7 +182,7 @@ Result<std::vector<double>> weights_of(const AskedMoments::Pose& pose, const Tar
   return weights;
 }
 
-// Checks that a motion of this kind can be sampled at such moments.
+// Checks that a motion of this kind can be sampled at the requested moments.
 Status check_kind(const Motion& motion, const AskedMoments& asked) {
   const bool has_times = asked.at_keys || !asked.times.empty(), has_weights = !asked.poses.empty();
   if (motion.segments.empty()) {

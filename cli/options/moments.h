@@ -5,8 +5,8 @@
 ///     --times keys               the times at which the input has keyframes
 ///     --weights 0.5,0,1          a weight for each target
 ///     --weights jawOpen=0.5,3=1  weights by the names or numbers of targets; all others are 0
-///     --step 100                 every segment in 100 equal steps, each from the one before
-///     --step 100:0               the same, and nothing is made anew on the way
+///     --step 100                 every segment in 100 equal steps, each computed from the previous one
+///     --step 100:0               the same without recomputing the state in between
 ///
 /// The weight follows the last '=', so that names may contain one. A name with a comma, or with blanks at its ends, is
 /// written in double quotes, in which "" is a quote.
@@ -53,8 +53,8 @@ struct AskedMoments {
 /// Parses the arguments. Errors: kUsage, with the option as the place.
 [[nodiscard]] Result<AskedMoments> understand(const MomentArguments& arguments);
 
-/// Returns the moments for this input; none for a mesh that does not move. Errors: of Input::motion(); kUsage if the
-/// moments do not go with the motion, and for names that no target or several targets have.
+/// Returns the moments for this input; none for a mesh at rest. Errors: those of Input::motion(); kUsage if the moments
+/// do not fit the motion, and for names that no target or several targets have.
 [[nodiscard]] Result<Moments> moments_of(Input& input, const AskedMoments& asked);
 
 }  // namespace chronormal::cli

@@ -31,7 +31,7 @@ CLI::Option* add_target(CLI::App& command, const std::string& names, bool* targe
   return command.add_flag(names, *target, help);
 }
 
-// Adds an optional text by a function, since the parser would take an empty text for a missing one.
+// Adds an optional text by a function, since the parser would treat an empty text as a missing one.
 CLI::Option* add_target(CLI::App& command, const std::string& names, std::optional<std::string>* target,
                         const std::string& help) {
   return command.add_option_function<std::string>(
@@ -49,8 +49,8 @@ CLI::Option* add_target(CLI::App& command, const std::string& names, T* target, 
   return command.add_option(names, *target, help);
 }
 
-// Checks the value of an option that takes a number. The parser would take an empty text for an option that was not
-// given, and accept "nan" as a number.
+// Checks the value of an option that takes a number. The parser would treat an empty text as a missing option, and
+// accept "nan" as a number.
 template <class T>
 std::string fault_of_number(const T*, const std::string& value) {
   constexpr bool is_text = std::is_same_v<T, bool> || std::is_same_v<T, std::string> ||
@@ -72,7 +72,7 @@ void add_option(const Option& option, CLI::App& command) {
   added->required(rules.required);
   if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
   if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
-  // The table's own check explains more than that a number is needed.
+  // The table's own check has a better message than that a number is needed.
   added->check(
       [target = option.target, check = rules.check](const std::string& value) {
         std::string wrong = check ? check(value) : "";
@@ -104,13 +104,13 @@ int print_or_report(const std::string& text) {
   return printed ? kExitDone : report("", printed.error());
 }
 
-// Returns "; did you mean NAME?", or nothing.
+// Returns "; did you mean NAME?", or an empty text.
 std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
   const std::string nearest = nearest_name(word, names);
   return nearest.empty() ? "" : formatted("; did you mean {}?", nearest);
 }
 
-// Checks the command, since a wrong one deserves a better answer than the parser gives.
+// Checks the name of the command, since the parser's message for a wrong one is not helpful.
 bool is_known(const std::vector<Command>& commands, std::string_view first) {
   if (first.starts_with('-')) return true;
   std::vector<std::string> names;
@@ -146,8 +146,8 @@ std::vector<std::string> names_of_options(const Command& command, bool only_with
   return names;
 }
 
-// Says what to do instead of using an unknown option: the command's own reason, else the commands that have the option,
-// else the nearest option of the command.
+// Returns advice on an unknown option: the command's own reason, or else the commands that have the option, or else the
+// most similar option of the command.
 std::string advice_on(std::string_view name, const Command& command, const std::vector<Command>& commands) {
   for (const RefusedOption& refused : command.refused)
     if (refused.name == name) return " here: " + refused.reason;
@@ -160,8 +160,8 @@ std::string advice_on(std::string_view name, const Command& command, const std::
   return suggestion(name, own);
 }
 
-// Finds the first unknown option, which the parser would overlook if a required one is missing. A word after an option
-// that takes a value is that value, whatever it looks like.
+// Finds the first unknown option, which the parser would not report if a required one is missing. A word after an
+// option that takes a value is the value, whatever it looks like.
 std::optional<Error> find_unknown_option(const Command& command, const std::vector<Command>& commands,
                                          std::span<char* const> arguments) {
   std::vector<std::string> names = names_of_options(command);

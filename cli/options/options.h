@@ -15,48 +15,48 @@
 
 namespace chronormal::cli {
 
-/// Returns the problem with the value of an option, as it was written, or an empty text if there is none.
+/// Returns the problem with the value of an option as it was written, or an empty text if there is none.
 using Check = std::function<std::string(const std::string& value)>;
 
 /// One row of the table: an option, or the arguments without a name.
 struct Option {
-  /// Points to the variable for the value, whose type determines the syntax: a bool is a flag, a list takes one value
-  /// each time that the option is given, and an optional knows whether the option was given.
+  /// Points to the variable for the value, whose type determines the syntax: a bool is a flag, a list gets a value each
+  /// time that the option is given, and an optional remembers whether the option was given.
   using Target = std::variant<bool*, std::string*, std::optional<std::string>*, std::vector<std::string>*, double*,
                               std::optional<double>*, std::size_t*, std::optional<std::size_t>*>;
 
   struct Rules {
     bool required = false;
-    std::string needs = {}, excludes = {};  ///< an option further up in the table: "--blend"
+    std::string needs = {}, excludes = {};  ///< an earlier option in the table: "--blend"
     Check check = {};
   };
 
-  std::string spelling;  ///< as the help has it: "-o,--output OUT", "--force", "INPUT"
+  std::string spelling;  ///< the spelling in the help: "-o,--output OUT", "--force", "INPUT"
   Target target;
   std::string help;
   Rules rules = {};
 };
 
-/// An option that other commands have and this one does not, with the reason or an alternative.
+/// An option that other commands have but this one refuses, with the reason or an alternative.
 struct RefusedOption {
   std::string name, reason;
 };
 
-/// A command of the program. Its tables of options come one after the other; the first one chooses the input, and help
-/// shows it last.
+/// A command of the program. Its options are in several tables in order; the first table chooses the input, and help
+/// prints it last.
 struct Command {
   std::string name, summary;
   std::vector<std::vector<Option>> tables;
   std::string footer;
-  std::function<Result<int>()> run;  ///< returns the exit code; called after the options have their values
+  std::function<Result<int>()> run;  ///< returns the exit code; called after the options have got their values
   std::vector<RefusedOption> refused = {};
   bool shares = false;  ///< tells whether several ranks divide the task (cli/ranks/ranks.h)
 };
 
-/// Returns a check that the value is a whole number in a range, written in digits only.
+/// Returns a check that the value is an integer in a range, written only in digits.
 [[nodiscard]] Check check_whole(std::size_t least, std::size_t most = static_cast<std::size_t>(-1));
 
-/// Returns a check that there is a value, with the message for the case that there is none.
+/// Returns a check that the value is not empty, with the message for an empty value.
 [[nodiscard]] Check check_given(std::string message);
 
 /// Parses the command line and runs the command that it names, or prints help, the version, --manual-page or

@@ -1,5 +1,5 @@
 /// Compares the files that a command writes with each other and with the files that it reads: none may replace another,
-/// whatever their names look like.
+/// even under different names for the same file.
 #ifndef CLI_OPTIONS_OUTPUTS_H_
 #define CLI_OPTIONS_OUTPUTS_H_
 
@@ -17,11 +17,11 @@ struct NamedFile {
   std::string path;
 };
 
-/// Lists the files of an input that can be found without opening one; other problems are reported when it is opened.
+/// Lists the files of an input that can be found without opening it; other problems are reported when it is opened.
 [[nodiscard]] std::vector<NamedFile> input_files(const InputOptions& input);
 
-/// Checks that each output differs from the outputs before it and from all inputs; "-" is the standard output, which
-/// may be a file, too. Errors: kUsage, with the option of the output as the place.
+/// Checks that each output differs from earlier outputs and from all inputs; "-" is the standard output, which may be a
+/// file, too. Errors: kUsage, with the option of the output as the place.
 [[nodiscard]] Status check_distinct(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& read);
 
 }  // namespace chronormal::cli

@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 std::string journal_name(const std::string& output) { return output + ".journal"; }
 
-// Returns the value of an option as a text, empty if it was not given.
+// The value of an option as text, empty if it was not given.
 struct ValueText {
   std::string operator()(const bool* value) const { return *value ? "given" : ""; }
   std::string operator()(const std::string* value) const { return *value; }

@@ -1,5 +1,5 @@
-/// Divides the work of a command and resumes it: --shard, --resume, and the ranks that mpirun starts. Commands know
-/// none of the three: a CommandRun makes a SegmentRun (workflow/segments/segment_run.h) from them.
+/// Divides the work of a command and resumes it: --shard, --resume, and the ranks that mpirun starts. Commands need not
+/// know which of the three is used: a CommandRun makes a SegmentRun (workflow/segments/segment_run.h) from them.
 ///
 ///     const auto run = options.run.begin("compare", tables(options), options.input, options.common);
 ///     CompareRun segments;
@@ -8,9 +8,9 @@
 ///     run->join(compare_part(...), merge_compare_parts);         // on several ranks
 ///     run->finish(text);
 ///
-/// With --resume, OUT.journal describes the run (version, command, options, input files with their sizes and times of
-/// change) and records what is done. It stays if the run ends too early, for whatever reason, and is removed when OUT
-/// is whole.
+/// With --resume, the file OUT.journal describes the run (version, command, options, input files with their sizes and
+/// modification times) and records the results so far. The journal stays if the run ends too early for any reason, and
+/// is removed when OUT is complete.
 #ifndef CLI_OPTIONS_RUN_H_
 #define CLI_OPTIONS_RUN_H_
 
@@ -33,8 +33,8 @@
 
 namespace chronormal::cli {
 
-/// One run of a command. If a run with --resume is destroyed before finish(), it tells how to continue, or removes the
-/// journal if nothing was done. A signal that ends the program meanwhile has the same effect.
+/// A run of a command. If a run with --resume is destroyed before finish(), it prints how to continue, or removes the
+/// journal if nothing was done. A signal that ends the program during the run has the same effect.
 class CommandRun {
  public:
   /// journal must be empty without --resume.
@@ -44,11 +44,11 @@ class CommandRun {
   CommandRun& operator=(const CommandRun&) = delete;
   ~CommandRun();
 
-  /// Makes a SegmentRun of the share of this process: it has the limits of the input, and shows progress in `things`.
+  /// Makes a SegmentRun for the share of this process, with the limits of the input, which shows progress in `things`.
   /// Errors: kUsage for --resume and an input that is not a sequence of keyframes.
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                const std::string& things, SegmentRun& run);
-  /// Does the same with a result for each segment: read(text, name) reads back the text that write(result) put into the
+  /// Makes a SegmentRun with a result for each segment: read(text, name) reads the text that write(result) put into the
   /// journal. Errors: also those of read.
   template <class Found, class Read>
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
@@ -65,8 +65,8 @@ class CommandRun {
     return Success{};
   }
 
-  /// Joins the results of several ranks: on the first rank, which prints, it sets whole to merge(parts). Returns false
-  /// on the other ranks, which have nothing left to do. Errors: as merge returns them.
+  /// Joins the results of several ranks: on the first rank, which prints, sets `whole` to merge(parts). Returns false
+  /// on the other ranks, which are finished. Errors: those of merge.
   template <class Whole, class Merge>
   [[nodiscard]] static Result<bool> join(const std::string& part, const Merge& merge, Whole& whole) {
     if (!has_ranks()) return true;
@@ -78,15 +78,15 @@ class CommandRun {
     return true;
   }
 
-  /// Tells whether OUT is a part for merge.
+  /// Tells whether OUT is a part for `merge`.
   [[nodiscard]] bool is_part() const noexcept { return shard_.has_value(); }
-  /// Tells whether one process does all of the work without a break, so that times are meaningful.
+  /// Tells whether one process does all of the work without interruption, so that times are meaningful.
   [[nodiscard]] bool is_timed() const noexcept { return !journal_ && !has_ranks(); }
 
   /// Writes the result to OUT, and removes the journal. If OUT already has this text, an earlier run ended between the
-  /// two steps, and OUT is kept. Errors: as print_to() and the journal return them.
+  /// two steps, and OUT is kept. Errors: those of print_to() and the journal.
   [[nodiscard]] Status finish(std::string_view text);
-  /// Removes the journal if OUT is already whole.
+  /// Removes the journal if OUT is already complete.
   [[nodiscard]] Status finish();
 
  private:
@@ -104,12 +104,13 @@ struct RunArguments {
   std::optional<std::string> shard;
   bool resume = false;
 
-  /// Returns --shard and --resume. of_what ends the help of --shard: it says what is divided, and what OUT is then.
+  /// Returns --shard and --resume. `of_what` ends the help of --shard: the data that is divided, and the content of
+  /// OUT.
   [[nodiscard]] std::vector<Option> options(const std::string& of_what);
 
-  /// Refuses options that ranks or shares do not support. Errors: kUsage if there are several ranks and --shard,
-  /// --resume or `other`, an option that was given and does not divide the task; if several copies that know nothing of
-  /// each other would do the same work; and for a --shard that is not a share I/N.
+  /// Refuses options that ranks or shares do not support. Errors: kUsage if there are several ranks together with
+  /// --shard, --resume or `other`, which is an option that does not allow dividing the task; if several independent
+  /// copies of the program would do the same work; and for a --shard that is not a share I/N.
   [[nodiscard]] Status check(const std::string& other = "") const;
 
   /// Returns the share that --shard or the ranks give this process. check() must have passed.
@@ -119,9 +120,9 @@ struct RunArguments {
   /// kUsage for --resume without a file.
   [[nodiscard]] Status check_output(const CommonOptions& common) const;
 
-  /// Begins a run, or resumes one that has the options in the tables. Errors: kUsage if the journal belongs to another
-  /// run, with the difference, and for inputs that cannot be read again; errors of the journal and of finding the
-  /// files.
+  /// Begins a run, or resumes one with the same options as in the tables. Errors: kUsage if the journal belongs to
+  /// another run, with the difference, and for inputs that cannot be read again; errors of the journal and of finding
+  /// the files.
   [[nodiscard]] Result<std::unique_ptr<CommandRun>> begin(const std::string& command,
                                                           const std::vector<std::vector<Option>>& tables,
                                                           const InputOptions& input, const CommonOptions& common) const;
@@ -130,8 +131,8 @@ struct RunArguments {
   [[nodiscard]] Result<std::optional<Shard>> read_shard() const;
 };
 
-/// Refuses ranks and shares for a command or an input that one process handles alone. Errors: kUsage, with the reason
-/// `what`: "it divides the segments of a sequence, and a glTF file is none".
+/// Refuses ranks and shares for a command or an input that one process handles alone. Errors: kUsage with the reason
+/// `what`, for example "it divides the segments of a sequence, and a glTF file is none".
 [[nodiscard]] Status refuse_shares(const RunArguments& run, const char* what);
 
 }  // namespace chronormal::cli

@@ -1,11 +1,11 @@
 // Ranks by MPI. Texts are sent as bytes: first their number, then the bytes in blocks that MPI can count; an error is
-// one message. A waiting rank sleeps between polls, since the ranks of one machine share its cores, and looks for
-// errors whenever it waits: the first rank for errors of the others, the others for the message of the first that all
-// must end.
+// one message. A waiting rank sleeps between polls, since the ranks of one machine share its cores, and checks for
+// errors whenever it waits: the first rank checks for errors of the others, and the others check for the first rank's
+// message that all must end.
 //
-// The first rank must send this message itself. mpirun would send SIGTERM, and soon after that SIGKILL; Open MPI means
-// to wait a second in between, but when one rank ends, its signal cuts this short for all others. On a busy machine
-// they were killed before they had removed their files.
+// The first rank must send this message itself. mpirun would send SIGTERM, and soon afterwards SIGKILL; Open MPI
+// intends to wait a second in between, but when a rank ends, its signal ends the waiting for all others. On a busy
+// machine, ranks were killed before they had removed their files.
 #include <mpi.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ constexpr int kFirst = 0;
 constexpr int kText = 1, kError = 2, kEnd = 3, kReady = 4;  // kinds of messages
 constexpr std::uint64_t kBlock = std::uint64_t{1} << 30U;
 constexpr std::chrono::milliseconds kNap{1};
-constexpr std::chrono::seconds kGrace{5};  // for ranks that look for the message of the first only now and then
+constexpr std::chrono::seconds kGrace{5};  // time for ranks that check for the first rank's message only now and then
 
 struct State {
   int rank = 0, count = 1;
@@ -42,15 +42,15 @@ State& state() {
 
 bool is_first() { return state().rank == kFirst; }
 
-// Tells whether this process is a rank. Open MPI's mpirun, any PMIx (srun, Open MPI 5) and any PMI (MPICH, Intel MPI)
-// set one of these variables for each rank.
+// Tells whether this process is a rank. Open MPI's mpirun, every PMIx (srun, Open MPI 5) and every PMI (MPICH, Intel
+// MPI) set one of these variables for each rank.
 bool was_started_as_rank() {
   constexpr const char* kVariables[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
   return std::any_of(std::begin(kVariables), std::end(kVariables),
                      [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
-// Receives a message of this kind, if there is one, and tells whether there was.
+// Receives a message of this kind if there is one. Returns true if there was.
 bool take_signal(int from, int kind) {
   int is_there = 0;
   MPI_Iprobe(from, kind, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
@@ -58,7 +58,7 @@ bool take_signal(int from, int kind) {
   return is_there != 0;
 }
 
-// Tells the other ranks to end. Returns when they have removed their files, or when the time for that is over.
+// Tells the other ranks to end. Returns when they have removed their files, or when their time is over.
 void end_others() {
   for (int rank = 1; rank < state().count; ++rank) {
     MPI_Request request{};  // never awaited: some ranks may never look
@@ -83,7 +83,7 @@ void end_others() {
   std::_Exit(code);
 }
 
-// Ends this rank, by waiting for mpirun, if the first rank has said that all must end.
+// Ends this rank, by waiting for mpirun, if the first rank has told all ranks to end.
 void look_for_end() {
   if (!take_signal(kFirst, kEnd)) return;
   remove_temporaries();
@@ -102,7 +102,7 @@ void wait(MPI_Request& request) {
   }
 }
 
-// Calls move(data, bytes), which begins an operation that wait() ends, for one block after the other.
+// Calls move(data, bytes), which begins an operation that wait() ends, for each block.
 template <class Byte, class Move>
 void move_blocks(std::span<Byte> bytes, const Move& move) {
   while (!bytes.empty()) {
@@ -137,7 +137,7 @@ std::string receive_text(int from) {
   return text;
 }
 
-// Converts an error to a text: its code, its place and its message, with a zero between them.
+// Converts an error to a text: its code, its place and its message, with zero bytes in between.
 std::string text_of(const Error& error) {
   return formatted("{}", static_cast<int>(error.code)) + '\0' + error.place + '\0' + error.message;
 }
@@ -148,7 +148,7 @@ Error error_of(const std::string& text) {
           text.substr(message)};
 }
 
-// Adds the rank to an error, unless all ranks have it.
+// Adds the number of the rank to an error, unless all ranks have the error.
 Error of_rank(int rank, Error error) {
   if (error.code != ErrorCode::kUsage)
     error.place = formatted("rank {}{}{}", rank, error.place.empty() ? "" : ": ", error.place);
@@ -176,7 +176,7 @@ void look_for_errors() {
   MPI_Request request{};
   MPI_Isend(text.data(), static_cast<int>(text.size()), MPI_BYTE, kFirst, kError, MPI_COMM_WORLD, &request);
   wait(request);
-  for (;;) (void)broadcast_text("");  // until the first rank ends all of them
+  for (;;) (void)broadcast_text("");  // waits until the first rank ends all ranks
 }
 
 }  // namespace

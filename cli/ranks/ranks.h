@@ -4,10 +4,10 @@
 ///
 /// Every rank runs the same command on the share of the segments or times that own_shard() returns. The results come
 /// together on the first rank, which alone prints. An error on any rank goes to the first, which prints it with the
-/// number of the rank and ends all of them; usage errors, which every rank has, carry no number.
+/// number of the rank and ends all ranks; usage errors, which all ranks have, are printed without a number.
 ///
-/// A process that was not started as a rank never starts MPI: it is the first of one, and nothing here costs it
-/// anything. alone.cpp is for builds without MPI, mpi.cpp for builds with it.
+/// A process that was not started as a rank never starts MPI: it is the first of one rank, and these functions cost it
+/// nothing. alone.cpp is for builds without MPI, mpi.cpp for builds with MPI.
 ///
 /// Threads    everything here belongs to the main thread.
 #ifndef CLI_RANKS_RANKS_H_
@@ -27,29 +27,28 @@ namespace chronormal::cli {
 /// Tells whether the program was built with MPI.
 [[nodiscard]] bool has_mpi() noexcept;
 
-/// Counts the copies of this program that mpirun has started and that know nothing of each other: more than 1 only in a
-/// build without MPI.
+/// Counts the independent copies of this program that mpirun has started: more than 1 only in a build without MPI.
 [[nodiscard]] std::size_t count_of_copies() noexcept;
 
-/// Joins the other ranks, if there are any. `report` prints an error and returns its exit code. Must be called once,
-/// before anything else here.
+/// Connects with the other ranks, if there are any. `report` prints an error and returns its exit code. Must be called
+/// once, before the other functions.
 void start_ranks(std::function<int(const Error&)> report);
 
 /// Returns the share of this rank.
 [[nodiscard]] Shard own_shard() noexcept;
 [[nodiscard]] inline bool has_ranks() noexcept { return !own_shard().is_all(); }
 
-/// Returns the texts of all ranks, in order, on the first rank, once all have called this; returns nothing on the
-/// others, at once.
+/// Returns the texts of all ranks, in order, on the first rank, once all have called this; on the other ranks, returns
+/// nothing at once.
 [[nodiscard]] std::vector<std::string> gather_texts(const std::string& own);
 
 /// Returns the text of the first rank on every rank, once the first has called this.
 [[nodiscard]] std::string broadcast_text(const std::string& of_first);
 
-/// Replaces each number by the largest that any rank has in its place, once all have called this.
+/// Replaces each number by the largest number of all ranks at the same index, once all have called this.
 void maximize_numbers(std::span<double> numbers);
 
-/// Returns these three functions for the library, or nullptr if there is one process.
+/// Returns the three functions above for the library, or nullptr if there is only one process.
 [[nodiscard]] inline const Peers* ranks_as_peers() {
   static const Peers peers{gather_texts, broadcast_text, maximize_numbers};
   return has_ranks() ? &peers : nullptr;
@@ -59,8 +58,8 @@ void maximize_numbers(std::span<double> numbers);
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] ProgressCallback watching_ranks(ProgressCallback progress);
 
-/// Ends a task with the exit code of the first rank for all, or with the error of any rank. No other function here may
-/// be called afterwards. Returns the exit code.
+/// Ends a task on all ranks, with the exit code of the first rank or with the error of any rank. No other function here
+/// may be called afterwards. Returns the exit code.
 [[nodiscard]] int end_ranks(const Result<int>& result);
 
 }  // namespace chronormal::cli

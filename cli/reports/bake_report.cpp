@@ -23,7 +23,7 @@ std::string mesh_name(const BakedMesh& mesh) {
   return mesh.name.empty() ? formatted("mesh {}", mesh.mesh) : printable(mesh.name, kLongestName);
 }
 
-// Returns the largest error of the deltas against the normals that they encode, as the bake computes it for its targets
+// Returns the largest error of the deltas against the normals that they encode, which the bake computes for its targets
 // and its resampled animations. An audit, in contrast, judges everything that is rendered.
 double fit_error(const BakedMesh& mesh) { return mesh.largest_error + mesh.resampling_error; }
 
@@ -111,8 +111,8 @@ struct ViewerRow {
   bool is_named = true, is_better = false;
 };
 
-// Returns the errors that bake itself measured: adds up all poses of all meshes whose deltas are fitted to the
-// animations, or of all others. The averages cover fewer samples than the averages of an audit.
+// Returns the errors that bake itself measured: sums over all poses of all meshes whose deltas are fitted to the
+// animations, or of all others. The averages cover fewer samples than those of an audit.
 std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   std::vector<ViewerRow> rows;
   for (const Viewer& viewer : kViewers) {
@@ -137,8 +137,8 @@ std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   return rows;
 }
 
-// Returns the errors that the audits found, which decide about a file, if there are audits and no deltas are fitted to
-// the animations alone; otherwise returns the errors that bake measured.
+// Returns the errors that decide about a file: those of the audits, if there are audits and no deltas are fitted to the
+// animations alone; otherwise the errors that bake measured.
 std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& report, bool of_animations) {
   std::vector<ViewerRow> rows = measured_rows(bake, of_animations);
   if (!report.audit || any_of_animations(bake)) return rows;
@@ -159,7 +159,7 @@ std::string torn(double edges) {
   return grouped(static_cast<std::size_t>(std::lround(edges)));
 }
 
-// Says which poses the errors in a table of viewers cover.
+// Returns words for the poses that a table of viewers covers.
 std::string poses_words(bool of_animations) {
   return of_animations ? "in what the file plays (targets alone, which --animations-only gives up, are not in it)"
                        : "in what the file plays, and for each target alone";
@@ -202,7 +202,7 @@ const ViewerRow& worst_of(const std::vector<ViewerRow>& rows) {
 
 std::string rounded_change(double before, double after) { return formatted("{:.3g} -> {:.3g}", before, after); }
 
-// Says first how much better the file is, in which viewers, and how much larger.
+// Begins with how much better the file is, in which viewers, and how much larger.
 std::string verdict(const GltfBake& bake, const BakeReport& report) {
   std::vector<ViewerRow> better, left_out, others;
   for (const bool of_animations : {false, true})
@@ -232,7 +232,7 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
   return text;
 }
 
-// Says what is still wrong in the viewers that the file is made for, with a way out.
+// Says which errors remain in the viewers that the file is made for, with a remedy.
 std::string left_over(const GltfBake& bake) {
   double worst = 0;
   for (const BakedMesh& mesh : bake.meshes)
@@ -258,7 +258,7 @@ std::string left_text(const GltfBake& bake) {
   return text;
 }
 
-// Returns whether every mesh got a candidate within the tolerance.
+// Returns true if every mesh got a candidate within the tolerance.
 bool are_all_within(const GltfBake& bake) {
   return std::all_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
     return std::any_of(mesh.candidates.begin(), mesh.candidates.end(),
@@ -301,7 +301,8 @@ std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   return any ? formatted("\n{}:\n\n{}", poses_words(of_animations), table.text()) : "";
 }
 
-// Lists the respects with their figures: "on average (normals are off by 0.6400 degrees, before by 3.3200)".
+// Lists the respects in which a result is worse or better with their figures: "on average (normals are off by 0.6400
+// degrees, before by 3.3200)".
 std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text;
@@ -337,7 +338,7 @@ std::string lines_after(const BakeReport& report) {
   return text;
 }
 
-// Says how far what is right for straight pieces is from the curves that these stand for.
+// Says how far normals that are right for straight pieces are from those of the original curves.
 std::string beside_curves(const SequenceBake& bake) {
   if (!bake.cut) return "";
   return formatted(" for the straight pieces, within {:g} degrees of the curves", bake.cut->path.tolerance);

@@ -8,13 +8,13 @@
 
 namespace chronormal::cli {
 
-/// Says in what respects the result is worse than the input, and in what it is better, with figures. of_animations:
-/// some deltas are fitted to the animations, and have no meaning for a target alone.
+/// Says in which respects the result is worse than the input, and in which it is better, with figures. With
+/// of_animations, some deltas are fitted to the animations, and have no meaning for a target alone.
 [[nodiscard]] std::string worse_text(const BeforeAndAfter& audit, bool of_animations);
 /// Tells whether some deltas of a result are fitted to the animations.
 [[nodiscard]] bool any_of_animations(const GltfBake& bake);
 
-/// Says what the bake added: the table has a line for each mesh.
+/// Returns a table of what the bake added, with a line for each mesh.
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 

@@ -39,7 +39,7 @@ std::string headline(const NamedComparison& input) {
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
 
-// Round the digits of a bound outwards, so that the printed number is a bound as well.
+// Rounds the digits of a bound outwards, so that the printed number is a bound as well.
 std::string rounded_up(double value) { return four_decimals(std::ceil(value * 1e4) / 1e4); }
 std::string rounded_down(double value) { return four_decimals(std::floor(value * 1e4) / 1e4); }
 
@@ -47,7 +47,8 @@ std::string sample_pairs(std::size_t count, const std::string& word) {
   return formatted("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
 }
 
-// Adds facts that the table does not show, one line each: shares that were treated differently, and what was left out.
+// Returns facts that the table does not show, one line each: parts that were treated differently, and parts that were
+// left out.
 std::string notes(const Comparison& comparison, const std::string& prefix) {
   const std::size_t pairs = comparison.elements * comparison.segments;
   const std::string word(one_element(comparison.kind));
@@ -94,7 +95,7 @@ std::string segment_cell(const NamedComparison& input, std::size_t segment) {
 // The columns of Table 2.
 struct OperationColumn {
   int OperationCounts::*count;
-  const char* short_name;  // as in the text table
+  const char* short_name;  // as in the table for people
   const char* latex;
 };
 
@@ -106,7 +107,7 @@ constexpr std::array<OperationColumn, 5> kOperations = {{
     {&OperationCounts::trigonometric, "trig", "trig"},
 }};
 
-// Writes a text in LaTeX with characters that need no package.
+// Writes a text in LaTeX with only characters that need no package.
 std::string latex_text(const std::string& text) {
   std::string result;
   for (const char c : printable(text)) {

@@ -11,7 +11,7 @@ namespace chronormal::cli {
 
 /// Columns that a table may have besides the errors.
 struct TableColumns {
-  bool times = true;  ///< without them the table is the same on every run
+  bool times = true;  ///< the table without times is the same in every run
   bool operations = false;
 };
 
@@ -22,8 +22,8 @@ struct TableColumns {
 [[nodiscard]] std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inputs);
 
 /// Returns both tables of the paper as LaTeX, for inputs that were compared by the same schemes: the sums with their
-/// ratios to linear, and the operations at random and in sequence. They need no package, and every name is ASCII: other
-/// characters become question marks.
+/// ratios to linear, and the operations at random and in sequence. The tables need no LaTeX package; in names,
+/// characters outside of ASCII become question marks.
 [[nodiscard]] std::string compare_latex(const std::vector<NamedComparison>& inputs);
 
 /// Returns a header line, and a line for each input and scheme. Names with commas, quotes or line ends are quoted (RFC

@@ -13,14 +13,14 @@ namespace {
 
 using Align = Table::Align;
 
-// A component of a vector; what rounds to zero has no sign.
+// Formats a component of a vector; a value that rounds to zero has no sign.
 std::string component(double value) { return formatted("{:8.4f}", std::fabs(value) < 5e-5 ? 0 : value); }
 
 std::string shortest(const std::vector<double>& lengths) {
   return lengths.empty() ? "1" : formatted("{:.4g}", *std::min_element(lengths.begin(), lengths.end()));
 }
 
-// The tangent, binormal and normal of a scheme at one sample, as columns.
+// Formats the tangent, binormal and normal of a scheme at one sample as columns.
 std::string frame_text(const char* name, const SchemeFigure& scheme, std::size_t sample) {
   const Vec3d n = scheme.normals[sample], t = scheme.tangents[sample], b = cross(n, t);
   const double rows[3][3] = {{t.x, b.x, n.x}, {t.y, b.y, n.y}, {t.z, b.z, n.z}};

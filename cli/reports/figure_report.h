@@ -8,7 +8,8 @@
 
 namespace chronormal::cli {
 
-/// A line per scheme, and below it the matrix of the paper and the frames at both ends. input: its name.
+/// Returns a line for each scheme, and below it the matrix of the paper and the frames at both ends. `input` is the
+/// name of the input.
 [[nodiscard]] std::string figure_table(const std::string& input, const FaceFigure& figure);
 
 }  // namespace chronormal::cli

@@ -20,7 +20,7 @@ using Align = Table::Align;
 
 constexpr std::size_t kLongestCell = 32;
 
-// Faces that move rigidly still turn by the rounding of their positions.
+// A smaller turn is not reported: faces that move rigidly also turn by the rounding of their positions.
 constexpr double kRoundedTurn = 1e-4;  // radians
 
 std::string size_in_bytes(std::size_t bytes) {
@@ -176,7 +176,7 @@ std::string named_or_numbered(const std::string& name, const char* kind, std::si
   return name.empty() ? formatted("{} {}", kind, number) : printable(name, kLongestCell);
 }
 
-// Returns two decimals: exporters compute weights, and miss 0 and 1 slightly.
+// Formats a weight with two decimals, since exporters compute weights and miss 0 and 1 slightly.
 std::string weight_cell(double weight) {
   std::string text = formatted("{:.2f}", weight);
   return text == "-0.00" ? "0.00" : text;

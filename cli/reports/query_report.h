@@ -8,7 +8,7 @@
 
 namespace chronormal::cli {
 
-/// Returns the facts, one line each, and the first rows of every table. input is the name of the queried file.
+/// Returns the facts, one line each, and the first rows of every table. `input` is the name of the input file.
 [[nodiscard]] std::string query_text(const std::string& input, const QueryAnswer& answer);
 
 }  // namespace chronormal::cli

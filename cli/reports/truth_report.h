@@ -8,7 +8,7 @@
 
 namespace chronormal::cli {
 
-/// Returns one aligned table with a line for each path and scheme, and below it what the figures mean.
+/// Returns one aligned table with a line for each path and scheme, followed by sentences that explain the figures.
 [[nodiscard]] std::string truth_table(const NamedTruthComparison& input);
 
 /// Returns a header line, and a line for each path and scheme.

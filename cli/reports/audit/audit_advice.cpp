@@ -12,19 +12,19 @@
 namespace chronormal::cli {
 namespace {
 
-// Names the remedy for the errors that an audit found. The last line of the report states it.
+// The remedy for the errors that an audit found, which the last line of the report recommends.
 enum class Remedy {
   kNone,      // no normal is wrong
   kUnknown,   // no judged normal is wrong, but others could not be judged, or there were none
   kTangents,  // normals are right; bake writes no tangents
-  kViewers,   // right by the specification, wrong in viewers that differ from it
-  kRule,      // the judged rule is not what viewers do with a glTF file
-  kOriginal,  // the wrong parts were baked before, and are never baked twice
-  kTargets,   // bake takes no targets over a base
+  kViewers,   // normals are right by the specification, but wrong in viewers that differ from it
+  kRule,      // the requested rule is not the one that viewers use for glTF files
+  kOriginal,  // the wrong meshes were baked before, and bake does not bake them twice
+  kTargets,   // bake does not accept targets over a base
   kBake,
 };
 
-// Returns the error above which a normal is worth a line: a fault, or the requested tolerance.
+// Returns the error above which a normal is reported: a fault, or the requested tolerance.
 double limit_of(const Audited& input) { return std::min(kAuditFault, input.limits.degrees.value_or(kAuditFault)); }
 
 bool is_wrong(const AuditSubject& subject, double limit) { return !subject.error.is_within(limit); }
@@ -43,7 +43,7 @@ bool is_driven(const Audited& input, const AuditSubject& subject) {
   return std::any_of(input.audit.subjects.begin(), input.audit.subjects.end(), drives);
 }
 
-// Lists the subjects with errors, of meshes that were baked before or of all others.
+// Lists the subjects with errors, either of meshes that were baked before or of all others.
 std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked) {
   std::vector<const AuditSubject*> result;
   for (const AuditSubject& subject : input.audit.subjects)

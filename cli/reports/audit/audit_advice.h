@@ -1,4 +1,5 @@
-/// Tells what to do about an audited file: a command for this very file, never one that was already run or cannot help.
+/// Recommends what to do about an audited file: a command for this very file, but never one that was already run or
+/// that cannot help.
 #ifndef CLI_REPORTS_AUDIT_ADVICE_H_
 #define CLI_REPORTS_AUDIT_ADVICE_H_
 
@@ -8,7 +9,7 @@
 
 namespace chronormal::cli {
 
-/// Returns the last line of the report after an empty line, or nothing if nothing was judged.
+/// Returns the last line of the report, after an empty line; nothing if nothing was judged.
 [[nodiscard]] std::string advice(const Audited& input);
 
 /// Returns a few words for a table: "right", "within 2", "bake it", ...

@@ -1,4 +1,4 @@
-/// The result of `audit` of several files: a row for each.
+/// The result of `audit` for several files: a row for each.
 #ifndef CLI_REPORTS_AUDIT_FILES_H_
 #define CLI_REPORTS_AUDIT_FILES_H_
 
@@ -25,7 +25,7 @@ struct AuditedFile {
   Json json;                         ///< of audit_object(), or "input" and "error"
 };
 
-/// Returns the table, after the worst error of all files.
+/// Returns the table of all files, after their worst error.
 [[nodiscard]] std::string audit_files_text(const std::vector<AuditedFile>& files);
 
 /// Returns one JSON object: "files" has an entry for each file, and "passed" says whether all files passed.

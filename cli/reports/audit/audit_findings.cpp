@@ -1,4 +1,4 @@
-// A face has dozens of targets with the same fault: one line covers all of them, and names the worst.
+// A face has dozens of targets with the same fault, so a line covers all of them, and names the worst.
 #include "cli/reports/audit/audit_findings.h"
 
 #include <algorithm>
@@ -14,11 +14,11 @@ namespace {
 
 using Kind = AuditFinding::Kind;
 
-// Findings of one cause in one mesh.
+// Findings with the same cause in one mesh.
 struct Group {
   const AuditFinding* worst = nullptr;
   std::size_t targets = 0, animations = 0, expressions = 0;
-  std::size_t count = 0;  // of all of them together
+  std::size_t count = 0;  // count of all of them together
 
   [[nodiscard]] std::size_t size() const noexcept { return targets + animations + expressions; }
 };

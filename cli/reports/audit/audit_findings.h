@@ -12,7 +12,7 @@ namespace chronormal::cli {
 /// Counts the lines of faults, including lines that are cut.
 [[nodiscard]] std::size_t count_fault_lines(const Audit& audit);
 
-/// Return the lines with their title, the worst faults first, or nothing if there are none. Long lists are cut.
+/// Return the lines with their title, the worst faults first, or an empty text if there are none. Long lists are cut.
 [[nodiscard]] std::string fault_lines(const Audited& input);
 [[nodiscard]] std::string note_lines(const Audited& input);
 

@@ -23,11 +23,11 @@ namespace {
 using Align = Table::Align;
 
 constexpr std::size_t kLongestBar = 40;
-constexpr double kSeen = 0.005;                     // degrees: the smallest value that two decimals show
+constexpr double kSeen = 0.005;                     // the smallest number of degrees that two decimals show
 constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the samples
 constexpr double kDisplaced = 1e-5;                 // smallest share of the size that is reported
 
-// Says in how many viewers the audit is "within 1 degree and 0 torn edges".
+// Returns the number of viewers in which the audit is "within 1 degree and 0 torn edges", in words.
 std::string limits_words(const Audited& input) {
   std::string limits;
   if (input.limits.degrees)
@@ -49,7 +49,7 @@ std::string torn(const MotionError& error) {
   return formatted("{:.2g}", edges);
 }
 
-// Says how true normals are defined, if not in the usual way.
+// Explains the definition of true normals if it is not the usual one.
 std::string weighting_words(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.weighting == Weighting::kArea) return "";
@@ -138,8 +138,7 @@ std::string subject_table(const Audited& input) {
   return text;
 }
 
-// Prints a row of errors for each viewer. The first row follows the specification, and all later tables are about it
-// alone.
+// Prints a row of errors for each viewer. The first row is for the specification, to which all later tables refer.
 std::string viewer_table(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.viewers.empty()) return "";
@@ -220,7 +219,7 @@ std::string offset_lines(const Audited& input) {
   return text.empty() ? text : "\nAuthored offset, which is no fault:\n" + text;
 }
 
-// Names the place of the first sample that a count is about.
+// Names the place of the first sample of a count.
 std::string first_label(const Audited& input, std::size_t MotionError::*count, AuditPlace MotionError::*place) {
   const std::vector<AuditSubject>& subjects = input.audit.subjects;
   const auto first =

@@ -21,13 +21,13 @@ struct Audited {
   /// Returns the glTF file, or nullptr.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
   [[nodiscard]] bool passed(const ViewerAudit& viewer) const { return limits.allow(viewer); }
-  /// Returns whether the limits are met: in every named viewer, or by the rule if none was named. A file in which
-  /// nothing moves meets them.
+  /// Returns true if the limits are met in every named viewer, or by the rule if none is named. A file in which nothing
+  /// moves meets them.
   [[nodiscard]] bool passed() const { return limits.allow(audit); }
 };
 
-/// Returns the verdict first, then tables of the motions and of the errors, the findings, and what to do. Long tables
-/// are cut.
+/// Returns the verdict, tables of the motions and of the errors, the findings, and a recommendation. Long tables are
+/// cut.
 [[nodiscard]] std::string audit_text(const Audited& input);
 
 /// Names the place of the worst error of all: "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55".

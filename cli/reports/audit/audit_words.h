@@ -1,4 +1,4 @@
-/// Names the things that the texts of `audit` mention, and formats its figures.
+/// Names the objects that the texts of `audit` mention, and formats its figures.
 #ifndef CLI_REPORTS_AUDIT_WORDS_H_
 #define CLI_REPORTS_AUDIT_WORDS_H_
 
@@ -16,7 +16,7 @@ inline constexpr std::size_t kMostAuditRows = 16;
 /// Returns two decimals, or a power of ten if two decimals would be zero.
 [[nodiscard]] std::string degrees(double value);
 
-/// Does the same, with emphasis if the value is a fault.
+/// Formats degrees in the same way, with emphasis if the value is a fault.
 [[nodiscard]] std::string judged_degrees(double value);
 
 /// Returns "1 pair", "12 pairs": samples of a vertex at a moment.
