@@ -1,4 +1,4 @@
-/// Loops in blocks, one after the other or on all cores. The blocks are the same on any number of threads.
+/// Loops over blocks of indices, in sequence or on all cores. The blocks are the same for every number of threads.
 #ifndef CHRONORMAL_CORE_BLOCKS_H_
 #define CHRONORMAL_CORE_BLOCKS_H_
 

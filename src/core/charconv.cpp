@@ -1,7 +1,7 @@
 #include "core/charconv.h"
 
 #ifndef __cpp_lib_to_chars
-#ifdef CHRONORMAL_ALONE  // the two files of tools/two_files.py, which write numbers into messages alone, without fmt
+#ifdef CHRONORMAL_ALONE  // the two files of tools/two_files.py, which format numbers only for messages, and have no fmt
 
 #include <cstdio>
 #include <cstdlib>
@@ -58,8 +58,8 @@ std::to_chars_result put(char* first, char* last, std::string_view text) {
   return {std::copy(text.begin(), text.end(), first), std::errc()};
 }
 
-// Formats as the standard asks of to_chars(): the shorter notation, and fixed where both are as long. fmt finds only
-// the digits, so the point and the exponent are placed here.
+// Formats like std::to_chars(): in the shorter notation, or in fixed notation if both have the same length. fmt only
+// provides the digits; the point and the exponent are placed here.
 template <class Number>
 std::to_chars_result shortest(char* first, char* last, Number value) {
   const std::string found = fmt::format("{}", value);
@@ -87,7 +87,8 @@ std::to_chars_result shortest(char* first, char* last, Number value) {
   if (before_point <= 0) {
     fixed = "0." + std::string(static_cast<std::size_t>(-before_point), '0') + digits;
   } else if (before_point >= count) {
-    // The number is an integer with more digits than it takes to tell it apart: print all of its own digits, not zeros.
+    // The number is an integer with more digits than are needed to identify it: prints all of its digits instead of
+    // zeros.
     fixed = fmt::format("{:.0f}", value).substr(sign.size());
   } else {
     fixed = digits.substr(0, static_cast<std::size_t>(before_point)) + '.' +

@@ -1,8 +1,7 @@
-/// Numbers from text and to text, as <charconv> has them. Some standard libraries have none for floating point yet
-/// (libc++ 13, with which the wasm module is built): there, fast_float reads and fmt writes, with the same characters.
-/// Private.
+/// Conversions of numbers from and to text, like <charconv>. Some standard libraries do not support floating point yet
+/// (libc++ 13, which the wasm module uses): then fast_float reads and fmt writes the same characters. Private.
 ///
-/// Libraries differ where a number is out of range: from_chars() returns result_out_of_range, or an infinite number or
+/// Libraries differ for numbers out of range: from_chars() returns result_out_of_range, or an infinite number or
 /// 0. Callers must expect both.
 #ifndef CHRONORMAL_CORE_CHARCONV_H_
 #define CHRONORMAL_CORE_CHARCONV_H_

@@ -13,14 +13,14 @@
 
 namespace chronormal::inline internal {
 
-/// Holds the lower factor of a matrix. Making it costs O(n^3), each solve() O(n^2).
+/// The lower Cholesky factor of a matrix. The constructor costs O(n^3), each solve() O(n^2).
 class Cholesky {
  public:
   Cholesky() = default;
-  /// Factors a matrix (n, n), of which only the lower half is read. No squared pivot becomes smaller than `least`,
-  /// since rounding could make one negative. least must be positive
+  /// Factors a matrix (n, n), of which only the lower half is read. Squared pivots are replaced by `least` if they are
+  /// smaller, since rounding could make them negative. `least` must be positive
   Cholesky(std::vector<double> matrix, std::size_t n, double least) : lower_(std::move(matrix)), n_(n) {
-    // Take each column from everything to its right, so that the inner loops run along rows.
+    // Subtracts each column from everything to its right, so that inner loops go along rows.
     std::vector<double> column(n_);
     for (std::size_t k = 0; k < n_; ++k) {
       const double pivot = std::sqrt(std::max(lower_[k * n_ + k], least));
@@ -34,7 +34,7 @@ class Cholesky {
     }
   }
 
-  /// Replaces right sides by their solution. values must have n elements
+  /// Replaces right-hand sides by their solutions. `values` must have n elements
   void solve(std::span<Vec3d> values) const {
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t k = 0; k < i; ++k) values[i] = values[i] - at(i, k) * values[k];

@@ -1,7 +1,7 @@
 /// Rounds a double to the float32 that a file stores. Private.
 ///
-/// Casting to float and back is not enough: the vectorizer of GCC 12 takes a narrowing and a widening of two values
-/// side by side for no operation, so that a vector would stay as precise as it was.
+/// A cast to float and back is not enough: the vectorizer of GCC 12 removes the narrowing and widening of two adjacent
+/// values, so a vector would not be rounded.
 #ifndef CHRONORMAL_CORE_FLOAT32_H_
 #define CHRONORMAL_CORE_FLOAT32_H_
 

@@ -1,4 +1,4 @@
-// Allocates memory for arrays that are streamed, in huge pages where it is large.
+// Allocates memory for arrays that are streamed, with huge pages for large arrays.
 #include "core/memory.h"
 
 #include <cassert>

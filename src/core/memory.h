@@ -1,4 +1,4 @@
-/// Memory for arrays that are streamed. It is aligned to cache lines, and in huge pages where it is large.
+/// Memory for arrays that are streamed: aligned to cache lines, and with huge pages for large arrays.
 #ifndef CHRONORMAL_CORE_MEMORY_H_
 #define CHRONORMAL_CORE_MEMORY_H_
 
@@ -9,10 +9,10 @@
 
 namespace chronormal::inline internal {
 
-/// Holds the number of bytes read and written by one pass from which on results go past the caches. All arrays of
-/// results must be aligned to 64 bytes for it (in recompute and the schemes, packed as well). In a shared cache of 32
-/// MiB such results would push out what is read next, and be pushed out before anybody reads them. Measured there, with
-/// and without a reader after it, bypassing is faster from 20 to 30 MiB on.
+/// The number of bytes read and written in one pass from which on results bypass the caches. All arrays of results must
+/// then be aligned to 64 bytes (in recompute and the schemes, also packed). In a shared cache of 32 MiB, such results
+/// would evict data that is read next, and would be evicted before anybody reads them. Measurements on such a machine,
+/// with and without a reader afterwards, show that bypassing is faster from 20 to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
 /// Allocates `size` bytes, aligned as AlignedBytes are. Throws std::bad_alloc.
@@ -36,7 +36,7 @@ class AlignedBytes {
 
   /// Sets the size, without touching the bytes or moving them. size must not be larger than capacity()
   void resize(std::size_t size) noexcept;
-  /// Gives the memory behind size() back to the system if it is in huge pages; it can still be used.
+  /// Returns the memory after size() to the system if it is in huge pages; it can still be used.
   void release_rest() noexcept;
 
   [[nodiscard]] std::byte* data() noexcept { return data_.get(); }
@@ -60,7 +60,7 @@ class AlignedArray {
 
  public:
   AlignedArray() = default;
-  /// Allocates `count` values. Throws std::bad_alloc, also where count * sizeof(T) is beyond the range of std::size_t.
+  /// Allocates `count` values. Throws std::bad_alloc, also if count * sizeof(T) exceeds the range of std::size_t.
   explicit AlignedArray(std::size_t count);
 
   [[nodiscard]] T* data() noexcept { return reinterpret_cast<T*>(bytes_.data()); }
@@ -73,7 +73,7 @@ class AlignedArray {
   AlignedBytes bytes_;
 };
 
-/// Gives a std::vector that is streamed memory as AlignedBytes has it.
+/// An allocator that gives a std::vector the memory of AlignedBytes, for streaming.
 template <class T>
 struct AlignedAllocator {
   using value_type = T;

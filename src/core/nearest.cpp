@@ -8,7 +8,8 @@ namespace chronormal::inline internal {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, last,
-      row(b.size() + 1);  // distances of a's prefixes: two letters and one letter shorter, and this
+      // Distances of the prefixes of `a` that are two letters shorter, one letter shorter, and of this prefix.
+      row(b.size() + 1);
   for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
   for (std::size_t i = 0; i < a.size(); ++i) {
     before = std::exchange(last, row);

@@ -1,4 +1,4 @@
-/// Guesses which of some names a mistyped one was meant to be. Private.
+/// Guesses which name was meant by a mistyped one. Private.
 #ifndef CHRONORMAL_CORE_NEAREST_H_
 #define CHRONORMAL_CORE_NEAREST_H_
 
@@ -9,8 +9,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns how many letters have to be put in, left out, replaced, or swapped with their neighbour to make one word of
-/// the other, each at most once (optimal string alignment). O(product of lengths).
+/// Returns how many letters must be inserted, deleted, replaced, or swapped with their neighbour to turn one word into
+/// the other, where no letter is edited twice (optimal string alignment). O(product of lengths).
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// Returns the name that is nearest to a word, the first of equals. Returns "" if none is within two letters or a third

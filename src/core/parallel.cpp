@@ -1,14 +1,15 @@
 // Runs loops on a pool of threads for the whole process. A loop is a Job on the stack of its caller, and is in the
-// pool's list while pieces of it may be left. The caller takes pieces from the first to the last, and so do the workers
-// that find a seat.
+// pool's list while it may have pieces left. The caller takes pieces in order, and so do workers, whose number is
+// limited by seats.
 //
 //     a loop in a piece   is a job whose parent is the job of that piece. It shares the seats of the outermost job, so
-//                         that a ThreadLimit holds for all that goes on inside. Loops inside get workers as they find
-//                         pieces; there is no queue that a thread could wait in.
-//     waiting             A caller that has no piece left waits for the helpers that work on its last ones.
-//                         Meanwhile it helps with the jobs inside its own, and with no others: whatever it waits for is
-//                         on the stack of a thread that goes on, so that nothing can lock up.
-//     fork()              The child has only the thread that called fork(). It makes no others if its parent had some.
+//                         that a ThreadLimit applies to all nested loops. Workers join nested loops when they find
+//                         pieces; no thread waits in a queue.
+//     waiting             A caller that has no piece left waits for the helpers that work on its last pieces. Meanwhile
+//                         it only helps with jobs nested in its own: everything that it waits for is on the stack of a
+//                         running thread, so there is no deadlock.
+//     fork()              The child has only the thread that called fork(). It creates no others if its parent had
+//                         some.
 #include "chronormal/core/parallel.h"
 
 #include <algorithm>
@@ -42,7 +43,7 @@ thread_local Interruption* interruption = nullptr;  // interruption of the compu
 
 constexpr std::chrono::milliseconds kBetweenQuestions(50);
 
-// Makes this thread work for the computation of an Interruption while it lives, or for one that nobody ends.
+// During its lifetime, makes this thread work for the computation of an Interruption, or for one that nobody ends.
 class InterruptionScope {
  public:
   explicit InterruptionScope(Interruption* of) : before_(std::exchange(interruption, of)) {}
@@ -128,14 +129,15 @@ std::size_t thread_count_without_limit() noexcept {
 
 class Pool {
  public:
-  // Makes the threads that are missing beside the caller's. Returns how many there are with it, at most `wanted`.
+  // Creates the missing threads. Returns the number of threads including the caller, at most `wanted`.
   std::size_t provide(std::size_t wanted) noexcept {
     if (wanted <= 1 || is_forked_) return 1;
     if (worker_count_ + 1 < wanted) {
       const std::lock_guard lock(mutex_);
       try {
         while (!has_all_ && workers_.size() + 1 < wanted) workers_.emplace_back([this] { work(); });
-      } catch (const std::exception&) {  // no thread, or no memory for one: go on with the others
+        // If the system grants no thread, or no memory for one, the loop uses the existing threads.
+      } catch (const std::exception&) {
         has_all_ = true;
       }
       worker_count_ = workers_.size();
@@ -240,7 +242,7 @@ class Pool {
         changed_.wait(lock);
       }
       --waiting_;
-      if (job.asked != nullptr) {  // perhaps by this thread, which alone may ask whether to end
+      if (job.asked != nullptr) {  // the interruption may belong to this thread, which alone may call its callback
         lock.unlock();
         try {
           check_interruption();
@@ -262,7 +264,7 @@ class Pool {
         opened_.wait(lock);
         continue;
       }
-      // The outermost job may be over as soon as nobody helps with this one.
+      // The outermost job may be destroyed as soon as nobody helps with this one, so it is read first.
       Job& outermost = *job->outermost;
       ++outermost.seated, ++busy_;
       help(*job, lock);
@@ -271,15 +273,16 @@ class Pool {
   }
 
   std::mutex mutex_;
-  std::condition_variable opened_;   // tells workers: there is a job
-  std::condition_variable changed_;  // tells callers: nobody helps with a job any more, or there is one to help with
+  std::condition_variable opened_;  // notifies workers that there is a job
+  // Notifies callers that a job has no helpers any more, or that there is a job to help with.
+  std::condition_variable changed_;
   std::vector<std::thread> workers_;
   std::atomic<std::size_t> worker_count_ = 0;
   std::atomic<bool> is_forked_ = false;
   bool has_all_ = false, has_ended_ = false;
   std::size_t busy_ = 0;     // workers that help
   std::size_t waiting_ = 0;  // callers that wait for helpers
-  Job* jobs_ = nullptr;      // list of jobs in the order in which they were opened
+  Job* jobs_ = nullptr;      // list of jobs in the order in which they began
 };
 
 // The pool is never destroyed, since a thread may use it until the very end.

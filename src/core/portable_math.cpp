@@ -1,5 +1,5 @@
 // Computes sine, cosine, arc sine, arc tangent, exponential and logarithm of one number by the polynomials of Google
-// Highway's math-inl.h. Every operation is rounded by itself, so that all compilers give the same bits, which are also
+// Highway's math-inl.h. Every operation is rounded separately, so that all compilers give the same bits, which are also
 // the bits of all earlier versions of the library.
 #include "core/portable_math.h"
 
@@ -17,9 +17,9 @@ namespace chronormal::inline internal::portable {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// From these arguments on, exp() is infinite or 0.
+// The arguments beyond which exp() is infinite or 0.
 constexpr double kLargestExponent = 709.8, kSmallestExponent = -746;
-// Holds the bound of |x| below which the reduction of exp() is valid.
+// The bound of |x| below which the argument reduction of exp() is valid.
 constexpr double kFarExponent = 700;
 
 constexpr double kSine[] = {
@@ -82,8 +82,7 @@ double reduced(double x, double q) noexcept {
   return x + q * -1.2736634327021899816e-24;
 }
 
-// Returns the whole part of x >= 0. Where x is larger than any number of 31 bits, or NaN, returns the largest of these
-// numbers.
+// Returns the integer part of x >= 0, or the largest 31-bit number if x is larger or NaN.
 std::uint32_t whole_part(double x) noexcept { return x < 0x7FFFFFFF ? static_cast<std::uint32_t>(x) : 0x7FFFFFFF; }
 
 double power_of_two(std::int32_t exponent) noexcept {
@@ -155,8 +154,8 @@ double exp2(double x) noexcept {
 double log(double x) noexcept {
   if (x == 0) return -kInfinity;
   if (!(x > 0) || std::isinf(x)) return x > 0 ? x : std::numeric_limits<double>::quiet_NaN();
-  // Write x as 2^exponent y with y in [sqrt(1/2), sqrt(2)), by the upper half of its bits; make subnormal numbers
-  // larger first.
+  // Writes x as 2^exponent y with y in [sqrt(1/2), sqrt(2)), using the upper half of its bits; subnormal numbers are
+  // first made larger.
   constexpr std::uint64_t kOne = 0x3FF0000000000000, kRootOfHalf = 0x3FE6A09E00000000;
   const bool is_subnormal = x < std::numeric_limits<double>::min();
   const auto bits = bit_cast<std::uint64_t>(is_subnormal ? x * 0x1p54 : x);

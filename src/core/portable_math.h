@@ -2,10 +2,11 @@
 ///
 /// The last bits of the standard library's functions differ from system to system, and even from processor to
 /// processor, so files and reports that are computed with them would differ. The functions here are polynomials of
-/// Google Highway, without fused operations. Square roots, rounding and remainders are exact anyway, and are taken from
-/// the standard library.
+/// Google Highway, without fused operations. Square roots, rounding and remainders are exact everywhere, so the
+/// standard library's are used.
 ///
-/// Errors     below 5 units in the last place; infinity and NaN give what <cmath> gives, except in sin() and cos()
+/// Errors     below 5 units in the last place; for infinity and NaN the results equal those of <cmath>, except in sin()
+///            and cos()
 /// Threads    pure
 #ifndef CHRONORMAL_CORE_PORTABLE_MATH_H_
 #define CHRONORMAL_CORE_PORTABLE_MATH_H_

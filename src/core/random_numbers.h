@@ -1,4 +1,4 @@
-/// Random numbers that are the same with every standard library.
+/// Random numbers that are the same for every standard library.
 #ifndef CHRONORMAL_CORE_RANDOM_NUMBERS_H_
 #define CHRONORMAL_CORE_RANDOM_NUMBERS_H_
 

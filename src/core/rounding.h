@@ -1,9 +1,9 @@
-/// Finds what in a computed vector is nothing but rounding error, and sets it to zero.
+/// Sets components of a computed vector to zero if they are only rounding error.
 ///
 /// Terms that cancel leave rounding errors behind, which have a length but a meaningless direction: three collinear
 /// corners would get a random normal. Each error is at most a multiple of the unit roundoff u times the sum of the
-/// absolute values that were added (Higham, Accuracy and Stability of Numerical Algorithms, sections 2 to 4). So that
-/// sum is kept beside the value, and a value that is not above the error counts as zero.
+/// absolute values that were added (Higham, Accuracy and Stability of Numerical Algorithms, sections 2 to 4). So this
+/// sum is computed along with the value, and a value that is not above the error counts as zero.
 #ifndef CHRONORMAL_CORE_ROUNDING_H_
 #define CHRONORMAL_CORE_ROUNDING_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::inline internal {
 
-/// Unit roundoffs u: one operation of double, or of float, has a relative error of at most u.
+/// The unit roundoffs u: an operation in double, or in float, has a relative error of at most u.
 inline constexpr double kUnitRoundoff = 0x1p-53;
 inline constexpr double kFloatUnitRoundoff = 0x1p-24;
 
@@ -62,8 +62,8 @@ class VectorSum {
   std::size_t terms_ = 0;
 };
 
-/// Adds up cross products of rounded edges. The error of each stays below 4 u of the absolute products in it; twice
-/// that is taken for safety.
+/// Adds up cross products of rounded edges. The error of each is below 4 u times the absolute products in it; twice
+/// that is assumed for safety.
 class CrossSum {
  public:
   void add(const Vec3d& a, const Vec3d& b) noexcept {

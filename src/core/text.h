@@ -1,4 +1,4 @@
-/// Texts for people and programs: words with counts in them, and names from files, made safe to print. Private.
+/// Texts for people and programs: words with counts, and names from files, which are made safe to print. Private.
 #ifndef CHRONORMAL_CORE_TEXT_H_
 #define CHRONORMAL_CORE_TEXT_H_
 
@@ -9,9 +9,9 @@
 
 namespace chronormal::inline internal {
 
-/// Makes a name from a file safe to print, since a file may hold anything. Control characters, characters that turn the
-/// direction of writing, and bytes that are not UTF-8 become \xNN. A text longer than `most` characters is cut and ends
-/// in "...". 4 <= most
+/// Makes a name from a file safe to print, since a file may contain any bytes. Control characters, characters that
+/// change the writing direction, and bytes that are not UTF-8 become \xNN. A text longer than `most` characters is cut
+/// and ends in "...". 4 <= most
 [[nodiscard]] std::string printable(std::string_view text, std::size_t most = static_cast<std::size_t>(-1));
 
 /// Returns the text of a JSON document, in UTF-8, with unsafe characters as \uNNNN inside its strings. Line ends stay.
@@ -23,12 +23,13 @@ namespace chronormal::inline internal {
 /// Returns a count with its noun: "1 face", "1,234 faces".
 [[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
 
-/// Returns a number as people write it, for messages: 0.3 for 0.30000000000000004. It has six significant digits, or as
-/// many more as tell it from others in the same message. A number of up to eight characters stands as it is.
+/// Returns a number in the way that people write it, for messages: 0.3 for 0.30000000000000004. It has six significant
+/// digits, or as many as are needed to distinguish it from `others` in the same message. A number of up to eight
+/// characters is not rounded.
 [[nodiscard]] std::string rounded_text(double value, std::initializer_list<double> others = {});
 
-/// Print a number. with_decimals: fixed point. with_digits: significant digits, trailing zeros removed. Both print "-"
-/// for infinity and NaN.
+/// Format a number. with_decimals: fixed point. with_digits: significant digits, without trailing zeros. Both return
+/// "-" for infinity and NaN.
 [[nodiscard]] std::string with_decimals(double value, int decimals);
 [[nodiscard]] std::string with_digits(double value, int digits);
 

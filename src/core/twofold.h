@@ -2,8 +2,8 @@
 /// second of which is at most half a unit in the last place of the first.
 ///
 /// Source: Dekker, A floating-point technique for extending the available precision (1971). Sums and products of
-/// doubles are exact if nothing leaves their range. Sums and products of two Twofold are within 2^-100 of their
-/// operands.
+/// doubles are exact without overflow and underflow. Sums and products of two Twofold have an error of at most 2^-100
+/// relative to their operands.
 #ifndef CHRONORMAL_CORE_TWOFOLD_H_
 #define CHRONORMAL_CORE_TWOFOLD_H_
 
@@ -23,7 +23,7 @@ struct Twofold {
     return {high, (a - of_a) + (b - of_b)};
   }
   [[nodiscard]] static Twofold product(double a, double b) noexcept {
-    // Split the factors into halves of 26 digits, whose products are exact.
+    // The factor that splits doubles into halves of 26 digits, whose products are exact.
     constexpr double kSplit = 0x1p27 + 1;
     const double a_scaled = kSplit * a, b_scaled = kSplit * b;
     const double a1 = a_scaled - (a_scaled - a), a2 = a - a1, b1 = b_scaled - (b_scaled - b), b2 = b - b1;
@@ -44,8 +44,8 @@ struct Twofold {
   }
 };
 
-/// Returns a + a_low - (b + b_low), rounded once but for 2^-9 of a rounding, whatever cancels. |a_low| and |b_low| must
-/// be at most 2^-23 of |a| and |b|
+/// Returns a + a_low - (b + b_low), rounded once up to 2^-9 of a rounding, even if terms cancel. |a_low| and |b_low|
+/// must be at most 2^-23 of |a| and |b|
 [[nodiscard]] inline double difference(double a, double a_low, double b, double b_low) noexcept {
   const double of_high = a - b, of_low = a_low - b_low, sum = of_high + of_low;
   // Most differences of floats are exact, and much larger than the difference of the low parts.
@@ -54,8 +54,8 @@ struct Twofold {
   return both.high + (both.low + (high.low + low.low));
 }
 
-/// Adds up products, for many sums side by side, in twice the digits of double, so that cancellation leaves no rounding
-/// error. The part that an addition loses is added up beside the sum.
+/// Sums of products in twice the digits of double, for many sums side by side, so that cancellation leaves no rounding
+/// error. The part that an addition loses is added up separately.
 class LongSums {
  public:
   explicit LongSums(std::size_t count) : high_(count), low_(count) {}

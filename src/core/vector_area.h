@@ -5,12 +5,11 @@
 ///
 ///     n = sum over c = 2 ... n of (p[c-1] - p0) x (p[c] - p0)
 ///
-/// which does not depend on how the polygon is cut, convex or not, flat or not. The formula takes edges from one
-/// corner, not the products of positions of Newell's form, which would lose the digits of a small polygon far from the
-/// origin.
+/// which does not depend on how the polygon is cut, also if it is concave or not flat. The formula uses edges from one
+/// corner; the products of positions in Newell's formula would lose the digits of a small polygon far from the origin.
 ///
-/// The edges need not be vectors: intervals, pairs for both ends of a segment and polynomials in t go through the same
-/// fan. A caller that bounds the error of n adds up what its bound needs beside the sum.
+/// The edges need not be vectors: intervals, pairs for both ends of a segment and polynomials in t are summed by the
+/// same function. A caller that bounds the error of n computes its bound in the same loop.
 #ifndef CHRONORMAL_CORE_VECTOR_AREA_H_
 #define CHRONORMAL_CORE_VECTOR_AREA_H_
 

@@ -1,8 +1,8 @@
 /// Integers as wide as needed, for sums of products of floats that must not round.
 ///
 /// Every finite float is an integer times 2^-149, so a product of two is an integer times 2^-298, and so is every sum
-/// of such products. Kept whole, it has no rounding error, whatever cancels. It also needs nothing from the floating
-/// point unit: the result is the same in every rounding mode, and with subnormal numbers flushed to zero.
+/// of such products. Stored completely, it has no rounding error, even if terms cancel. It is also independent of the
+/// floating-point unit: the result is the same in every rounding mode, and with subnormal numbers flushed to zero.
 ///
 ///     value = sum of digit(k) 2^(24 k),   24 bits each and signed
 ///
@@ -55,7 +55,7 @@ struct DoubleParts {
   }
 };
 
-/// Holds a double t in [2^-200, 1], or 0, as an integer of 53 bits times 2^-scale. The scale is as small as possible.
+/// A double t in [2^-200, 1], or 0, as an integer of 53 bits times 2^-scale, with the smallest possible scale.
 struct UnitFraction {
   std::array<std::int64_t, 3> digits{};
   unsigned scale = 0;
@@ -165,8 +165,8 @@ class WideInteger {
   /// Returns value * 2^exponent with a relative error of at most 2^-51, if it is in the range of normal doubles. The
   /// digits must be settled.
   [[nodiscard]] double to_double(int exponent) const noexcept {
-    // Four digits have at least 71 bits from the highest on, and the digits below them are less than one unit of the
-    // last.
+    // Four digits have at least 71 bits from the highest bit on, and the digits below them are less than one unit of
+    // the last digit.
     constexpr std::size_t kTaken = 4;
     const std::size_t end = size_ < kTaken ? 0 : size_ - kTaken;
     double value = 0;
@@ -182,7 +182,7 @@ class WideInteger {
   }
 
   std::array<std::int64_t, kMost> digits_{};
-  std::size_t size_ = 0;  // all digits from there on are zero
+  std::size_t size_ = 0;  // number of digits in use; all higher ones are zero
 };
 
 }  // namespace chronormal::inline internal

@@ -33,14 +33,15 @@ class SmallSet {
   std::array<std::uint32_t, 2 * kMost> slots_;
 };
 
-/// Positions of at most this many bytes may be read in any order, since a cache near the core holds them.
+/// Positions of at most this many bytes may be read in any order, since they fit into a cache near the core.
 inline constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 
 /// The number of lines per face up to which caches and their prefetchers keep up by themselves.
 inline constexpr double kMostLinesPerFace = 1;
 
-/// Returns how many cache lines of packed positions a face reads that the faces just before it did not: about 0.2 on a
-/// mesh in grid order, 3 if vertices lie in no order. A pure function of the topology; takes less than 0.02 ms.
+/// Returns the number of cache lines of packed positions that a face reads and the preceding faces did not: about 0.2
+/// on a mesh in grid order, and 3 if vertices are in random order. A pure function of the topology; takes less than
+/// 0.02 ms.
 [[nodiscard]] inline double lines_per_face(const Topology& topology) {
   constexpr std::size_t kSamples = 16, kRun = 64, kVerticesOfLine = 5;
   const std::size_t count = topology.face_count();

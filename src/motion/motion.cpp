@@ -78,7 +78,7 @@ LocalTime LocalTime::between(double start, double time, double end) noexcept {
   assert(start < end);
   if (!(start < time)) return std::isnan(time) ? time : 0.0;
   if (!(time < end)) return 1.0;
-  // Halve numbers whose difference is beyond the range of double; the halves are exact wherever that matters.
+  // Halves numbers whose difference exceeds the range of double; the halves are exact wherever that matters.
   const double scale = std::isfinite(end - start) ? 1 : 0.5;
   const Twofold done = Twofold::sum(scale * time, -scale * start), left = Twofold::sum(scale * end, -scale * time),
                 whole = Twofold::sum(scale * end, -scale * start);

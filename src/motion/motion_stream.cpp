@@ -1,5 +1,5 @@
-// Holds a window of keyframes. Keyframes that leave the window give their memory to those that enter it, so that a pass
-// over a motion allocates memory once, for the window and for the keyframe that is read ahead.
+// A window of keyframes. Keyframes that leave the window give their memory to keyframes that enter it, so that a pass
+// over a motion allocates memory once, for the window and for the keyframe that is read in advance.
 #include "chronormal/motion/motion.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class ReadAhead {
       done_ = std::async(std::launch::async, [read, keyframe, this] { return read(keyframe, positions_); });
       keyframe_ = keyframe;
     } catch (const std::system_error&) {
-      keyframe_.reset();  // without a thread, it is read when it is needed
+      keyframe_.reset();  // without a thread, the keyframe is read on demand
     }
 #endif
   }
@@ -64,14 +64,15 @@ class ReadAhead {
 }  // namespace
 
 struct MotionStream::State {
-  const Motion* whole = nullptr;  // otherwise nullptr, and the rest counts:
+  const Motion* whole = nullptr;  // the motion in memory; otherwise nullptr, and the other members are used
   Motion outline = {};
   Reader read = {};
   Watcher watcher = {};
   bool keeps_all = false;
   std::size_t first = 0, end = 0;              // the window
   std::vector<std::vector<float>> spare = {};  // memory of keyframes that left the window
-  ReadAhead ahead = {};                        // last member: reading must end before what it needs is destroyed
+  // Last member, since reading must end before the data that it uses are destroyed.
+  ReadAhead ahead = {};
 
   [[nodiscard]] std::vector<float> room() {
     std::vector<float> positions;
@@ -83,7 +84,7 @@ struct MotionStream::State {
     return positions;
   }
 
-  // Reads a keyframe, and shows it to the watcher.
+  // Reads a keyframe, and passes it to the watcher.
   [[nodiscard]] Status read_keyframe(std::size_t keyframe, std::span<float> positions) const {
     const Status status = read(outline, keyframe, positions);
     return status && watcher ? watcher(keyframe, positions) : status;

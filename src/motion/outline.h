@@ -1,4 +1,4 @@
-/// The two halves of validate(). One checks a motion without its positions, the other the positions of one keyframe.
+/// The two parts of validate(): one checks a motion without its positions, the other the positions of one keyframe.
 /// Private.
 #ifndef CHRONORMAL_MOTION_OUTLINE_H_
 #define CHRONORMAL_MOTION_OUTLINE_H_

@@ -1,20 +1,20 @@
 // Draws cubics through keyframes, and cuts them into straight pieces.
 //
-// Let e and f be edges of a face over one piece, as chords, and let the cubics differ from them by p and q times
-// s (1 - s). p is linear, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, where the derivatives are by s:
-// both sides are cubics that vanish at s = 0 and 1, with the same second derivatives. So the normal of the curve
-// differs from the normal n of the chords by
+// Let e and f be edges of a face over one piece, as chords, and let the cubics differ from them by p and q times s (1 -
+// s). p is linear, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, where the derivatives are by s: both
+// sides are cubics that vanish at s = 0 and 1, with the same second derivatives. So the normal of the curve differs
+// from the normal n of the chords by
 //
 //     d = s (1 - s) (e x q + p x f) + s^2 (1 - s)^2 p x q                                                           (1)
 //
 // added up over the triangles of the face. Both products are quadratics in s, and so is n. A quadratic is never longer
 // than the longest of its Bernstein coefficients, and nowhere shorter than the shortest of their projections on a
 // direction. With s (1 - s) <= 1/4 this bounds |d| from above by r and |n| from below by l, and the angle between n and
-// n + d by asin(r / l). Sums over faces differ by no more than the sum of their r, so that nothing else is needed for
+// n + d by asin(r / l). Sums over faces differ by no more than the sum of their r, so that the same bounds serve
 // vertices and corners.
 //
 // Rounding a keyframe to float32 moves each coordinate by up to 2^-24 of it, which changes (1) in the same way: up to
-// |e| |dq| + |dp| |f| + |dp| |dq|. Cutting a piece whose r is below that gains nothing.
+// |e| |dq| + |dp| |f| + |dp| |dq|. Cutting a piece whose r is below this effect gains nothing.
 #include "chronormal/motion/paths.h"
 
 #include <algorithm>
@@ -70,7 +70,7 @@ std::vector<const Motion::Keyframe*> pointers_to(const std::vector<Motion::Keyfr
 }
 
 // Holds the keyframes that determine the cubics of a segment: its ends, and one more on each side. The first and the
-// last segment take two from the one side that there is.
+// last segment need two on their only other side.
 Status hold_cubics(MotionStream& stream, std::size_t segment) {
   const std::size_t end = stream.motion().keyframes.size() - 1;
   const std::size_t before = segment - std::min<std::size_t>(segment, 1);
@@ -82,7 +82,8 @@ struct BendSums {
   double bent = 0, way = 0;
 };
 
-// Adds the share of one keyframe to the two sums that bend_of() divides. It and its neighbours must be held.
+// Adds the contribution of one keyframe to the two sums that bend_of() divides. The keyframe and its neighbours must be
+// held.
 void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums& sums) {
   const Motion::Keyframe &from = motion.keyframes[at - every], &middle = motion.keyframes[at],
                          &to = motion.keyframes[at + every];
@@ -91,7 +92,7 @@ void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums&
   const auto before = packed(from.positions), here = packed(middle.positions), after = packed(to.positions);
   for (std::size_t v = 0; v < here.count; ++v) {
     const Vec3d p = to_double(before[v]), q = to_double(here[v]), r = to_double(after[v]);
-    // If times are even, the second difference is twice the distance from the middle.
+    // For equal time steps, the second difference is twice the distance from the middle.
     sums.bent += 2 * length(q - ((1 - part) * p + part * r));
     sums.way += length(q - p) + length(r - q);
   }
@@ -102,14 +103,14 @@ struct Ends {
   Vec3d from, to;
 };
 
-// Holds the edge from the first corner of a face over a piece: its chord, the difference of the cubic from it, and a
-// bound of how far rounding may move either end.
+// The edge from the first corner of a face, over a piece: its chord, the deviation of the cubic from the chord, and a
+// bound of the rounding of either end.
 struct PieceEdge {
   Ends chord, beside;
   double rounding = 0;
 };
 
-// Adds up products of edges as a quadratic.
+// Sums of products of edges, as quadratics.
 class Products {
  public:
   void add(const Ends& e, const Ends& f) noexcept {
@@ -127,7 +128,7 @@ class Products {
   Vec3d from_, middle_, to_;
 };
 
-// Decides for faces of one segment whether a number of pieces is enough.
+// Decides for faces of a segment whether a number of pieces is sufficient.
 class PieceBounds {
  public:
   PieceBounds(const Topology& topology, const CubicSegment& cubics, double sine)
@@ -218,7 +219,8 @@ Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
     left.push_back(never.size());
   }
   auto rung = static_cast<std::size_t>(std::find(left.begin(), left.end(), never.size()) - left.begin());
-  // Smaller pieces should keep every face that larger ones kept. Check once more, since the result is what is promised.
+  // Smaller pieces should be sufficient for every face for which larger ones were. Checks once more, since the result
+  // is guaranteed.
   for (; rung > 0 && rung + 1 < ladder.size(); ++rung) {
     const std::vector<std::uint32_t> now = bounds.not_within(nullptr, ladder[rung]);
     if (std::includes(never.begin(), never.end(), now.begin(), now.end())) break;
@@ -455,7 +457,7 @@ Result<CutStream> cut_into_segments(MotionStream stream, const Path& path, std::
     if (!fit) return fit.error();
     cut.velocities = fit.value();
   }
-  cutter->segment = static_cast<std::size_t>(-1);  // the keyframes of the segment are no longer held
+  cutter->segment = static_cast<std::size_t>(-1);  // marks that the keyframes of the segment are no longer held
   const auto read = [cutter](const Motion&, std::size_t keyframe, std::span<float> positions) {
     return cutter->write(keyframe, positions);
   };

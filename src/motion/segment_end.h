@@ -1,6 +1,6 @@
 /// One end of a segment in full precision: float32 positions, and the residuals of their rounding if the motion was
-/// computed (motion/motion.h). Everything that makes normals in double or in integers reads positions here. Code that
-/// loads float32 positions by itself must ask fits_lanes() first. Private.
+/// computed (motion/motion.h). All code that computes normals in double or in integers reads positions here. Code that
+/// loads float32 positions directly must call fits_lanes() first. Private.
 #ifndef CHRONORMAL_MOTION_SEGMENT_END_H_
 #define CHRONORMAL_MOTION_SEGMENT_END_H_
 
@@ -29,8 +29,8 @@ class SegmentEnd {
   /// Returns the position of a vertex without its residual.
   [[nodiscard]] Vec3f position(std::size_t vertex) const noexcept { return positions_[vertex]; }
 
-  /// Returns the vector from vertex a to vertex b, or from a vertex to a point. Each component is rounded once, however
-  /// far from the origin both are (but for a share of a rounding: core/twofold.h).
+  /// Returns the vector from vertex a to vertex b, or from a vertex to a point. Each component is rounded once, also
+  /// far from the origin (up to a fraction of a rounding: core/twofold.h).
   [[nodiscard]] Vec3d edge(std::size_t a, std::size_t b) const noexcept {
     const Vec3d p = to_double(positions_[a]), q = to_double(positions_[b]);
     return has_residuals() ? difference(q, residuals_[b], p, residuals_[a]) : q - p;

@@ -1,5 +1,5 @@
-// Clips ears in the coordinate plane in which the polygon looks largest. A product of two float32 is exact in double,
-// so the area of a triangle is a sum of six doubles, whose sign can be found exactly.
+// Clips ears in the coordinate plane in which the polygon has the largest area. A product of two float32 is exact in
+// double, so the area of a triangle is a sum of six doubles, whose sign can be determined exactly.
 #include "motion/triangles.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-// Returns the sign of a sum of doubles that does not overflow. It adds them up one by one as a sum of numbers that do
-// not overlap (Shewchuk 1997, Grow-Expansion); the largest of them has the sign.
+// Returns the sign of a sum of doubles that does not overflow. Adds the terms to a list of numbers that do not overlap
+// (Shewchuk 1997, Grow-Expansion); the largest of these has the sign of the sum.
 int sign_of_sum(const std::array<double, 6>& terms) {
   std::array<double, 6> parts{};
   std::size_t count = 0;
@@ -46,7 +46,7 @@ int turn(const Point& a, const Point& b, const Point& c) {
   return sign_of_sum(terms);
 }
 
-// Returns the polygon in a coordinate plane, in which it turns left.
+// Returns the polygon projected to a coordinate plane, in which it is counter-clockwise.
 std::vector<Point> flattened(std::span<const std::uint32_t> face, std::span<const float> positions) {
   std::array<double, 3> area = {};
   const auto at = [&](std::size_t c, std::size_t axis) { return positions[3 * std::size_t{face[c]} + axis]; };
@@ -109,7 +109,7 @@ std::vector<std::array<std::uint32_t, 3>> clipped(const std::vector<Point>& poin
   };
   std::size_t at = 1;
   while (rest.size() > 3) {
-    // Cut ears in turn, so that triangles do not all meet in one corner; then corners on a line, which cost no area. A
+    // Cuts ears in turn, so that triangles do not all meet in one corner; then corners on a line, which have no area. A
     // polygon that crosses itself may have neither.
     std::size_t found = rest.size();
     for (std::size_t i = 0; i < rest.size() && found == rest.size(); ++i)

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kHalfTurn = 3.14159265358979323846;
 
-// Float32 formulas treat vectors shorter than 1e-8 in another way.
+// Below this length, the float32 formulas treat vectors in a different way.
 constexpr double kShortest = 1.1e-8;
 
 // Bounds the rounding error of a sum of a few products of numbers up to 1.

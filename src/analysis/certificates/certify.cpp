@@ -21,7 +21,7 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kMostPieces = 256;
-// A piece is not split below this width, where it is as good as a single instant.
+// The smallest width of a piece; a narrower piece is practically a single instant.
 constexpr double kNarrowest = 0x1p-40;
 constexpr double kPromisedShare = 0x1p-26;  // of a control normal: see face_control_normals()
 constexpr std::size_t kBlockSize = 1024;
@@ -40,8 +40,8 @@ constexpr double kCutting = 0x1p-46;           // the rounding of splitting a po
 // Returns the factor that brings the largest component to 1. A zero vector is not scaled: only its error counts.
 double scale_of(double largest) { return largest == 0 ? 1 : 1 / largest; }
 
-// Divides a quadratic that is certainly zero at an end by t or 1 - t: the result has the same direction, and is not
-// zero there. Returns nothing if n is certainly zero throughout.
+// Divides a quadratic that is certainly zero at an end by t or 1 - t. The quotient has the same direction, and is not
+// zero at that end. Returns nothing if n is certainly zero throughout.
 std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlErrors& errors) {
   const double largest = std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
   if (largest == 0 && errors == ControlErrors{}) return std::nullopt;
@@ -128,7 +128,7 @@ struct Warp {
 
 constexpr ErrorBounds kUnknown{0, std::numbers::pi, 0, 0, 1};
 
-// Holds what all elements of a block share.
+// The data that all elements of a block share.
 class Certifier {
  public:
   explicit Certifier(const Scheme& scheme)

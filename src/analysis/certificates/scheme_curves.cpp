@@ -94,8 +94,8 @@ CurvePiece SumCurve::over(double a, double b) const noexcept {
   std::array<Vec3d, WeightBasis::kMostDegree + 1> coefficients = p_;
   const std::span<Vec3d> p(coefficients.data(), degree_ + 1);
   restrict_in_place(p, a, b);
-  // Takes the cubic with the same ends and end slopes. Raised to the degree of p, it has a coefficient to compare with
-  // each one of p.
+  // Takes the cubic with the same ends and end slopes. After raising it to the degree of p, its coefficients can be
+  // compared with those of p.
   const double degree = static_cast<double>(degree_), steps = degree / 3;
   const Bernstein<Vec3d, 3> cubic = {p[0], p[0] + steps * (p[1] - p[0]),
                                      p[degree_] + steps * (p[degree_ - 1] - p[degree_]), p[degree_]};
@@ -181,7 +181,8 @@ CurvePiece SphericalCurve::over(double a, double b) const noexcept {
       const double turn = angle_between(from.at, to.at);
       const double most = turn + half * (from.speed + to.speed) + from.across + to.across + 1e-9;
       if (!(most < kMostTurn)) return {{}, kInfinity, {}, kInfinity, 0};
-      // If one end moves by 1, the point moves by at most the largest sin(share T) / sin T for shares on this piece.
+      // If one end moves by 1, a point of the arc moves by at most the largest sin(share T) / sin T for the shares on
+      // this piece.
       const double sine = portable::sin(most);
       const auto factor = [most, sine](double share) {
         if (most < 1e-6) return share * (1 + 1e-9);

@@ -1,5 +1,5 @@
-/// Bounds the curves of schemes piece by piece: on any [a, b], by a cubic with a ball around it that contains the
-/// rendered vector.
+/// Bounds the curves of schemes piece by piece: on any [a, b], finds a cubic and a radius, so that the rendered vector
+/// is within a ball of that radius around the cubic.
 ///
 /// Everything is computed from the float32 coefficients that the scheme evaluates (schemes/fitted_curves.h), so the
 /// rounding of fits does not matter. The rounding of one evaluation, with e = 2^-24, is bounded for each formula of
@@ -26,7 +26,7 @@
 
 namespace chronormal::inline internal {
 
-/// Weighted sums with weights of degree 3 at most, and quadratics; both are exact cubics.
+/// Weighted sums with weights of degree 3 at most, and quadratics, which are all exact cubics.
 class CubicCurve {
  public:
   /// basis.degree() must be 3 at most
@@ -60,8 +60,8 @@ class SumCurve {
   double radius_ = 0;
 };
 
-/// Great arcs and other circular arcs. If an arc reaches its middle at another time, it is given by the share of time
-/// before that, and runs in warped time; see warped_normal().
+/// Great arcs and other circular arcs. If an arc reaches its middle at a time other than 1/2, it is given by the share
+/// of time before its middle, and runs in warped time; see warped_normal().
 class ArcCurve {
  public:
   /// Takes w, p, q, A in the planes of the formula: kGreatArc, kCircleArc or kTimedCircleArc.

@@ -72,10 +72,10 @@ class Cluster {
     return enclosing_cone(cones);
   }
 
-  // Returns the point center - s axis with the least s >= 0 that lies behind all faces, or nothing if float32 has no
+  // Returns the point center - s axis with the smallest s >= 0 that is behind all faces, or nothing if float32 has no
   // such point:
   //     s n(t).axis >= n(t).(center - p(t))
-  // Both sides are cubics in t, so it holds if it holds for each of their Bernstein coefficients.
+  // Both sides are cubics in t, so the inequality holds if it holds for each pair of Bernstein coefficients.
   [[nodiscard]] std::optional<Vec3f> apex(const Vec3d& center, const NormalCone& cone) const {
     const Vec3d axis = to_double(cone.axis);
     double s = 0;

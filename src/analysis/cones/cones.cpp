@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kBlock = 256;  // control normals of a block are 18 KiB
 constexpr std::size_t kRefinements = 10;
-constexpr double kSineRounding = 0x1p-46;  // of the sine of a sum of angles
+constexpr double kSineRounding = 0x1p-46;  // relative rounding error of the sine of a sum of angles
 
 bool is_zero(const Vec3d& v) { return v == Vec3d{}; }
 
@@ -49,7 +49,7 @@ struct Farthest {
   double sine = 0, cosine = 2;
   Vec3d axis;  // of the cone
 
-  // Returns a number that falls as the angle grows from 0 to 270 degrees.
+  // Returns a number that decreases as the angle grows from 0 to 270 degrees, for comparing angles.
   [[nodiscard]] double nearness() const noexcept { return sine >= 0 ? cosine : -2 - cosine; }
 };
 
@@ -151,7 +151,7 @@ NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {
     axis = unit(axis + (1 / static_cast<double>(i + 2)) * (point - axis));
   }
 
-  // The cone must hold around the axis as it is rounded.
+  // The cone must be valid around the rounded axis.
   const Vec3f rounded = to_float(best);
   const Farthest far = farthest_of(cones, unit(to_double(rounded)), exact_split);
   const double sine = far.sine + kSineRounding;

@@ -1,13 +1,14 @@
-// The mean of the unit normal is computed by Gauss's rule on small pieces of the interval, with a bound of its error.
+// Computes the mean of the unit normal by Gauss's rule on small pieces of the interval, with a bound of its error.
 //
 // In a piece n(s) = a + b s + c s^2 with s in [-1, 1], and |n(s)|^2 = q(s) is a quartic with q(0) = |a|^2. For complex
 // s with |s| <= R
 //     |q(s) - q(0)| <= |q1| R + |q2| R^2 + |q3| R^3 + |q4| R^4 = k |a|^2
-// so where k < 1 the unit normal n(s) / sqrt(q(s)) is analytic in that disc, and its component along any direction is
-// at most M = (|a| + |b| R + |c| R^2) / (|a| sqrt(1 - k)). The disc with R = (4 + 1/4) / 2 contains the ellipse with
-// the foci -1 and 1 and the half-axes' sum 4, and there Chebyshev's coefficients of an analytic function are at most 2
-// M 4^-j. Gauss's rule with 8 nodes is exact up to degree 15, so the mean that it gives is off by at most
-//     32/15 M 4^-16 / (1 - 4^-2)                               (Trefethen, Approximation Theory and Practice, chapter 19)
+// so if k < 1 the unit normal n(s) / sqrt(q(s)) is analytic in that disc, and its component along any direction is at
+// most M = (|a| + |b| R + |c| R^2) / (|a| sqrt(1 - k)). The disc with R = (4 + 1/4) / 2 contains the ellipse with the
+// foci -1 and 1 and the half-axes' sum 4, and there Chebyshev's coefficients of an analytic function are at most 2 M
+// 4^-j. Gauss's rule with 8 nodes is exact up to degree 15, so the error of the mean is at most
+//     32/15 M 4^-16 / (1 - 4^-2)                               (Trefethen, Approximation Theory and Practice, chapter
+//                                                              19)
 #include "chronormal/analysis/cones.h"
 
 #include <algorithm>
@@ -100,7 +101,7 @@ ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& leng
   if (largest == 0) return {};
   const Vec3d mean = 1.0 / 3 * (n0 + m + n1);
   if (!std::isfinite(largest)) return {mean, {}, 1};
-  // Scaling by a power of two keeps squares in range.
+  // Scales by a power of two, so that squares neither overflow nor underflow.
   int exponent = 0;
   (void)std::frexp(largest, &exponent);
   const auto scaled = [exponent](double x) { return std::ldexp(x, -exponent); };

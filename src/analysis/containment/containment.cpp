@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kPointsPerBlock = 64;
 
-// An edge in the direction in which a face runs along it.
+// An edge, in the direction in which a face has it.
 struct PassedEdge {
   std::uint32_t low, high;  // points
   bool upwards;
@@ -103,8 +103,8 @@ std::size_t axis_of(const ControlNormals& n) {
 
 constexpr std::size_t kUpwards = 2;
 
-// Returns a root in [0, 1] to the precision of double; the first one if the ends have the same sign. It uses Newton's
-// method, kept between the ends that bracket the root.
+// Returns a root in [0, 1] to the precision of double, or the first one if the ends have the same sign. Uses Newton's
+// method, restricted to the interval that brackets the root.
 std::optional<double> first_root(const Bernstein<double, 3>& p) {
   if (!(p[0] < 0 && p[3] > 0) && !(p[0] > 0 && p[3] < 0)) {
     const Roots<3> roots = roots_in_unit_interval(p);
@@ -123,7 +123,7 @@ std::optional<double> first_root(const Bernstein<double, 3>& p) {
   return t;
 }
 
-// Holds what all points need of a segment.
+// The data of a segment that all points need.
 struct MeshInSegment {
   Segment segment;  // of the triangles
   std::span<const std::uint32_t> faces;
@@ -148,7 +148,7 @@ struct Containment::Mesh {
 
 namespace {
 
-// One point on its way through a segment.
+// The path of one point through a segment.
 class Passage {
  public:
   Passage(const MeshInSegment& mesh, const MovingPoint& point) : mesh_(mesh), point_(point) {}
@@ -241,7 +241,8 @@ class Passage {
     return signs.volume_at(t);
   }
 
-  // Within a moment, open triangles account for the change of the winding number that certain roots do not explain.
+  // Within a moment, attributes to the open triangles the change of the winding number that certain roots do not
+  // explain.
   void sum_up(const Cell& moment, std::vector<std::uint32_t> open) {
     int change = winding_number(moment.to) - winding_number(moment.from);
     for (const Root& root : roots_) {

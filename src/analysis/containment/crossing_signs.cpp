@@ -72,7 +72,7 @@ void add_cross(const ExactVector& a, const ExactVector& b, ProductVector& sum) n
   }
 }
 
-// Holds the corners seen from the point at both ends of a cell, as integers of one unit. Each is computed when it is
+// The corners relative to the point at both ends of a cell, as integers with a common unit. Each is computed when it is
 // first needed.
 class ExactCell {
  public:
@@ -123,7 +123,7 @@ class ExactCell {
     return 0;
   }
 
-  // Does the same for coefficient i of the side of an edge.
+  // Computes the sign of coefficient i of the side of an edge.
   [[nodiscard]] int side(std::size_t edge, std::size_t axis, std::size_t i) noexcept {
     const std::size_t next = kNext[edge], x = first_of(axis), y = second_of(axis);
     Product value;
@@ -204,7 +204,7 @@ class ExactCell {
                       Coordinate& result) const noexcept {
     if (weight.digits[0] == 0 && weight.digits[1] == 0) return;
     WideInteger<kCoordinateDigits> difference;
-    // Most differences are exact in double, and whole numbers of few bits; they need no wide integers.
+    // Most differences are exact in double, and are integers of few bits, so they need no wide integers.
     constexpr double kMost = 0x1p62;
     const float a = p.value, b = q.value;
     const double rounded = double{a} - double{b}, back = double{a} - rounded;
@@ -236,7 +236,7 @@ class ExactCell {
   std::array<std::array<std::array<bool, 3>, 3>, 2> is_made_{};
 };
 
-// An ExactCell that is made only when it is needed.
+// An ExactCell that is only made when it is needed.
 struct Integers {
   const std::array<MovingPoint, 3>& corners;
   const MovingPoint& point;
@@ -246,7 +246,7 @@ struct Integers {
   ExactCell& get() noexcept { return made ? *made : made.emplace(corners, point, cell); }
 };
 
-// Returns the sign that all have; 0 if they differ or one is 0.
+// Returns the sign that all values have; 0 if signs differ or one is 0.
 template <std::size_t kCount>
 int common_sign(const std::array<int, kCount>& signs) noexcept {
   for (const int sign : signs) {

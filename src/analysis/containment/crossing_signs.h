@@ -1,5 +1,5 @@
-/// Computes the signs that decide whether a moving point crosses a moving triangle: never wrong, and never zero by
-/// chance.
+/// Computes the signs that decide whether a moving point crosses a moving triangle. The signs are exact, and are not
+/// zero in special positions.
 ///
 /// Seen from the point, the corners a, b, c of the triangle move on straight lines. Two kinds of polynomials in t
 /// decide:
@@ -50,7 +50,7 @@ struct Cell {
 /// A point that moves on a straight line through a segment.
 struct MovingPoint {
   Vec3f from, to;
-  Vec3d from_residual = {}, to_residual = {};  ///< what the floats lack (motion/segment_end.h)
+  Vec3d from_residual = {}, to_residual = {};  ///< the remainders of the rounding to float (motion/segment_end.h)
 };
 
 /// The behaviour of a triangle in a cell.
@@ -68,7 +68,7 @@ class CrossingSigns {
  public:
   CrossingSigns(const std::array<MovingPoint, 3>& corners, const MovingPoint& point) noexcept;
 
-  /// Tells whether all corners are throughout on the same side of the point along one axis, so that nothing is crossed.
+  /// Tells whether all corners stay on the same side of the point along one axis, so that nothing is crossed.
   [[nodiscard]] bool is_beside() const noexcept;
 
   /// Returns the behaviour of the triangle in a cell, with sides along axis 0, 1 or 2.

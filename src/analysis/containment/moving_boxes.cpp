@@ -45,7 +45,7 @@ BoxTree build_box_tree(VectorView<const float> positions, std::span<const std::u
   std::vector<Middle> middles(corners.size() / 3);
   for (std::size_t i = 0; i < middles.size(); ++i) {
     const auto v = corners.subspan(3 * i, 3);
-    // Adds a third of each position, so that no sum overflows.
+    // Adds a third of each position, since a sum of three could overflow.
     const Vec3f middle = (1.0F / 3) * positions[v[0]] + (1.0F / 3) * positions[v[1]] + (1.0F / 3) * positions[v[2]];
     middles[i] = {{middle.x, middle.y, middle.z}, static_cast<std::uint32_t>(i)};
   }

@@ -2,8 +2,8 @@
 ///
 /// A box has its corners at both ends of a segment and moves between them on straight lines, as everything inside does.
 /// For a point that also moves, the times at which it is inside are given by six linear inequalities. So a fast mesh
-/// does not need large boxes. The order of the triangles, a binary tree split at medians, is made once; every segment
-/// puts its own boxes around it.
+/// does not need large boxes. The tree of triangles, split at medians, is computed once; every segment has its own
+/// boxes around the tree's nodes.
 ///
 /// Threads    const functions may run at the same time.
 /// Source     Gruenschloss et al., MSBVH: an efficient acceleration data structure for ray traced motion blur (2011).
@@ -33,7 +33,7 @@ struct BoxNode {
 
 struct BoxTree {
   std::vector<BoxNode> nodes;        ///< the root first, parents before their children
-  std::vector<std::uint32_t> order;  ///< the triangles, so that those of a node follow each other
+  std::vector<std::uint32_t> order;  ///< the triangles, ordered so that those of a node are consecutive
 };
 
 /// Groups triangles that are near each other in these positions. corners has three vertices for each triangle. O(n log

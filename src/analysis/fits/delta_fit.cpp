@@ -12,7 +12,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Relative to the mean of the diagonal. It keeps deltas that the rows do not determine near the deltas at the start.
+// Weight of the penalty that keeps deltas close to the start if the rows do not determine them, relative to the mean of
+// the diagonal.
 constexpr double kRidge = 1e-9;
 
 Vec3d at(const std::vector<float>& values, std::size_t i) {
@@ -81,7 +82,7 @@ void DeltaFit::add(std::span<const double> weights, std::span<const Vec3d> missi
 
 void DeltaFit::solve() {
   const std::size_t targets = right_.size();
-  std::optional<Cholesky> factors;  // of the last element: neighbours mostly have the same targets
+  std::optional<Cholesky> factors;  // factors of the last element, since neighbours mostly have the same targets
   std::vector<std::uint32_t> factored;
   for (const std::vector<Entry>& entries : entries_of_elements(deltas_)) {
     if (entries.empty()) continue;

@@ -1,7 +1,7 @@
 /// Fits the normal deltas that a viewer should add up, by least squares.
 ///
-/// A viewer renders normalize(N + sum_i w_i D_i) for the weights w. DeltaFit starts from given deltas D, is told what
-/// is missing for some weight vectors, and then changes every D so that as little as possible is missing:
+/// A viewer renders normalize(N + sum_i w_i D_i) for the weights w. DeltaFit starts from given deltas D, gets the
+/// differences to the wanted normals for some weight vectors, and then changes every D to minimise the differences:
 ///
 ///     DeltaFit fit(start);
 ///     for (each weight vector w) {
@@ -29,8 +29,8 @@ struct DeltaNormals {
   std::vector<BlendTarget> deltas;  ///< D_i, by elements instead of vertices
 };
 
-/// Writes N + sum_i w_i D_i of all elements: the direction that a viewer renders, of any length.
-/// weights must have one value per delta, result one vector per element
+/// Writes N + sum_i w_i D_i of all elements: the direction that a viewer renders, not normalised. `weights` must have a
+/// value for each delta, and `result` a vector for each element
 void shown_normals(const DeltaNormals& deltas, std::span<const double> weights, std::span<Vec3d> result) noexcept;
 
 class DeltaFit {
@@ -40,8 +40,8 @@ class DeltaFit {
   /// Returns the present deltas: the ones at the start, or the result of the last solve().
   [[nodiscard]] const DeltaNormals& deltas() const noexcept { return deltas_; }
 
-  /// Asks for shown_normals(deltas(), weights) + missing. O(entries of deltas + targets^2).
-  /// weights must have one value per delta, missing one vector per element
+  /// Adds a row to the fit that demands shown_normals(deltas(), weights) + missing. O(entries of deltas + targets^2).
+  /// `weights` must have a value for each delta, and `missing` a vector for each element
   void add(std::span<const double> weights, std::span<const Vec3d> missing);
 
   /// Changes the deltas so that the sum of |missing|^2 over all rows since the last solve() is smallest, for each
@@ -52,7 +52,7 @@ class DeltaFit {
 
  private:
   DeltaNormals deltas_;
-  // The normal equations: one matrix, of which each element uses a part, and the missing vector for each entry.
+  // The normal equations: one matrix, of which each element uses a part, and a right-hand side for each entry.
   std::vector<double> matrix_;
   std::vector<std::vector<Vec3d>> right_;
 };

@@ -1,7 +1,7 @@
-// The direction of the line u0 + w (s u1 - u0) runs along the great circle from u0 to u1, and s only decides how fast
-// it runs where. So for each w, the angle to n(w) falls with s while the line is behind n(w), seen along the circle,
-// and grows once it is ahead. Hence, if all angles are below 90 degrees, their maximum over w has one valley, and the
-// best s is where the worst angle behind equals the worst ahead: the root of a monotone function.
+// The direction of the line u0 + w (s u1 - u0) moves along the great circle from u0 to u1, and s only changes its
+// speed. So for each w, the angle to n(w) decreases with s while the line is behind n(w), seen along the circle, and
+// increases when it is ahead. Hence, if all angles are below 90 degrees, their maximum over w has a single minimum in
+// s. At this s, the worst angle behind equals the worst angle ahead, so s is the root of a monotone function.
 //
 // The maximum over w is taken over samples; then the true maxima at that s are added to the samples, until the result
 // no longer improves (an exchange as in the algorithm of Remez).
@@ -47,7 +47,7 @@ class Samples {
  public:
   static constexpr std::size_t kMost = 128;
 
-  // Places equidistant samples first, then denser ones where the normal turns fast.
+  // Places equidistant samples, and then additional ones where the normal turns fast.
   explicit Samples(const ControlNormals& normals) noexcept : normals_(normals) {
     constexpr std::size_t kIntervals = 16, kMostTurning = 80;
     constexpr int kLevels = 20;
@@ -97,7 +97,7 @@ struct Peak {
   double w = 0, key = 0;
 };
 
-// Returns the key of the angle between the line and a sample. Where the line is zero, its direction jumps, and both
+// Returns the key of the angle between the line and a sample. If the line is zero there, its direction jumps, and both
 // sides count.
 double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexcept {
   const Vec3d line = (1 - sample.w) * from + sample.w * to;
@@ -144,14 +144,14 @@ Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) no
   return best;
 }
 
-// Holds the samples as functions of s alone.
+// The samples as functions of s.
 class ScaleSearch {
  public:
   ScaleSearch(const Vec3d& u0, const Vec3d& u1) noexcept : u0_(u0), u1_(u1), pole_(unit(cross(u0, u1))) {}
 
   void add(const Sample& sample) noexcept {
     const double w = sample.w, v = 1 - w;
-    if (w == 0 || w == 1) return;  // the line is exact there, or as exact as a limit can be
+    if (w == 0 || w == 1) return;  // the line is exact at the ends, or as exact as a limit can be
     const double height = dot(sample.u, pole_);
     terms_[count_++] = {v * dot(pole_, cross(u0_, sample.u)),
                         w * dot(pole_, cross(u1_, sample.u)),
@@ -164,7 +164,7 @@ class ScaleSearch {
   }
   void clear() noexcept { count_ = 0; }
 
-  // Returns the best log s over the samples, and writes the largest angle over them as a key.
+  // Returns the best log s over the samples, and writes the key of the largest angle.
   [[nodiscard]] double best_log_scale(double guess, double& key) const noexcept {
     double low = -kRange, high = kRange;
     const double best = below_right_angle(low, high) ? balance(low, high, guess) : best_of_grid();
@@ -293,17 +293,18 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   Samples samples(normals);
   const double key_of_one = highest_peak(samples, u0, u1).key;
   const EndDelta plain{u1 - u0, 1, angle_of_key(key_of_one)};
-  // Below this sine, the directions are equal or antipodal, and rounding decides which way is ahead.
+  // The sine of the smallest angle between directions; below it they are equal or antipodal, and rounding would decide
+  // which is ahead.
   constexpr double kSmallestSine = 1e-10;
   if (length(cross(u0, u1)) < kSmallestSine) return plain;
 
-  // Round 0 tries the s that fits an element of degree 1 exactly, which no search can.
+  // Round 0 tries the s that is exact for an element of degree 1, which a search would only approximate.
   double log_scale = log_of_degree_1(normals), lowest_possible = 0;
   Peak best{0, 3};
   double best_scale = 1;
   ScaleSearch search(u0, u1);
   constexpr int kExchanges = 6;
-  constexpr double kGain = 1 + 1e-3, kExact = 1e-24;  // of keys: half of it in angles
+  constexpr double kGain = 1 + 1e-3, kExact = 1e-24;  // gain in keys, which is half as much in angles
   for (int round = 0; round <= kExchanges; ++round) {
     const double s = portable::exp(log_scale);
     samples.follow(u0, s * u1);

@@ -1,6 +1,7 @@
 // Subspace iteration (Halko, Martinsson and Tropp, Finding Structure with Randomness, 2011, algorithm 4.4): a block of
-// random columns is multiplied by the matrix and made orthonormal, again and again. Restricted to this block, the
-// matrix is small; its eigenvectors, found by Jacobi's rotations, turn the block into eigenvectors of the large matrix.
+// random columns is repeatedly multiplied by the matrix and orthonormalised. Restricted to the space of this block, the
+// matrix is small; its eigenvectors, found by Jacobi rotations, combine the columns of the block to eigenvectors of the
+// large matrix.
 #include "analysis/fits/leading_vectors.h"
 
 #include <algorithm>
@@ -11,9 +12,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kMore = 8;  // columns beyond those that are asked for, which make the iteration converge
+constexpr std::size_t kMore = 8;  // additional columns, which make the iteration converge
 constexpr int kIterations = 16, kMostSweeps = 30;
-constexpr double kNothing = 1e-12;  // of the largest eigenvalue: smaller ones are rounding
+constexpr double kNothing = 1e-12;  // share of the largest eigenvalue; smaller eigenvalues are rounding errors
 constexpr double kDiagonal = 1e-13;
 
 // Columns side by side, (columns, n).
@@ -59,7 +60,7 @@ Columns multiplied(std::span<const double> matrix, const Columns& columns) {
   Columns result;
   for (const std::vector<double>& column : columns) {
     std::vector<double>& product = result.emplace_back(column.size(), 0.0);
-    // The matrix is symmetric, so that its rows are its columns.
+    // The matrix is symmetric, so its rows equal its columns.
     for (std::size_t r = 0; r < column.size(); ++r)
       if (column[r] != 0) add(product, column[r], matrix.subspan(r * column.size(), column.size()));
   }

@@ -1,5 +1,5 @@
-/// Finds the leading eigenvectors of a matrix of inner products, which give the leading singular vectors of the vectors
-/// multiplied.
+/// Finds the leading eigenvectors of a matrix of inner products of vectors, which are the leading singular vectors of
+/// the set of vectors.
 ///
 /// Threads    pure: the same bits everywhere
 #ifndef CHRONORMAL_ANALYSIS_FITS_LEADING_VECTORS_H_

@@ -1,16 +1,17 @@
 /// Measures the error of normals in viewers that add one normal delta per target, at any weights.
 ///
 /// A viewer renders normalize(N + sum_i w_i D_i). The true normal is a quadratic form in the weights (docs/theory.md,
-/// section 14), so no choice of D is right everywhere. Three choices are compared: the deltas that a file stores; the
-/// end-point deltas, right for each target alone at weight 1; and the deltas that are best overall for given weights:
+/// section 14), so no choice of D is exact everywhere. Three choices are compared: the deltas that a file stores; the
+/// end-point deltas, which are exact for each target alone at weight 1; and the deltas with the smallest overall error
+/// for given weights:
 ///
 ///     const std::vector<double> weights = random_blend_weights({.targets = 102, .rows = 200, .active = 8});
 ///     BlendNormals normals = BlendNormals::of_groups(set, groups);
 ///     const Quality ends = delta_quality(endpoint_deltas(normals), normals, weights);
 ///     const Quality best = delta_quality(best_deltas(normals, weights), normals, weights);
 ///
-/// Weights    rows of one weight for each target: random ones, or the frames of an animation.
-/// Threads    uses the scratch of the BlendNormals: one call at a time on each.
+/// Weights    rows with a weight for each target: random rows, or the frames of an animation.
+/// Threads    functions use the scratch memory of the BlendNormals, so only one call per object may run at a time.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_BLEND_QUALITY_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_BLEND_QUALITY_H_
 
@@ -31,14 +32,13 @@ namespace chronormal::inline internal {
 
 /// Returns exact base normals, and the deltas that make sum |N + sum_i w_i D_i - u(w)|^2 over all rows smallest, for
 /// each element separately. If the rows do not determine the deltas (fewer rows than targets, weights that always go
-/// together), it takes the ones nearest to the end-point deltas. Cost: an evaluation for each row, and for each element
-/// a linear system with one equation for each target that moves it.
-/// weights must be (rows, targets)
+/// together), it takes the deltas closest to the end-point deltas. Cost: an evaluation for each row, and for each
+/// element a linear system with one equation for each target that moves it. weights must be (rows, targets)
 [[nodiscard]] DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights);
 
 /// Returns the angles between the rendered and the exact normals, over all rows, and all elements for which one of the
-/// two differs from the base. max_at has the row as its segment.
-/// weights must be (rows, targets), deltas those of the elements and targets of normals
+/// two differs from the base. max_at has the row as its segment. `weights` must be (rows, targets), and `deltas` must
+/// have the elements and targets of `normals`
 [[nodiscard]] Quality delta_quality(const DeltaNormals& deltas, BlendNormals& normals, std::span<const double> weights);
 
 struct BlendWeightOptions {

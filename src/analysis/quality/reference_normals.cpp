@@ -15,7 +15,7 @@
 namespace chronormal {
 namespace {
 
-// Some 500,000 rounding errors: a result above this share has a direction that is right to at least 1e-5 rad.
+// The share is about 500,000 rounding errors, so a larger result has a direction with an error of at most 1e-5 rad.
 constexpr double kDoubtfulShare = 1e-10;
 // A normal that a rounding of t turns by more than this has no definite direction at t.
 constexpr double kMostTurned = 1e-5;

@@ -28,7 +28,7 @@ struct Buckets {
   std::vector<std::size_t> offsets;
   std::vector<Item> items;
 
-  // Calls visit(put) twice, which must call put(bucket, item) for the same items each time.
+  // Fills the buckets. visit(put) is called twice, and must call put(bucket, item) for the same items each time.
   template <class Visit>
   Buckets(std::size_t count, Visit visit) : offsets(count + 1, 0) {
     visit([this](std::size_t bucket, const Item&) { ++offsets[bucket + 1]; });
@@ -39,16 +39,16 @@ struct Buckets {
   }
 };
 
-// A face at an edge. The edge runs from the lower point, in whose bucket this is, to the higher one.
+// A use of an edge by a face. The edge goes from its lower point, whose bucket contains this, to its higher point.
 struct EdgeUse {
   std::uint32_t far = 0;
   std::uint32_t face = 0;
-  std::uint32_t near_vertex = 0, far_vertex = 0;  // as the face has them
-  bool is_forward = false;                        // the face goes from near to far
+  std::uint32_t near_vertex = 0, far_vertex = 0;  // the vertices of the face at these points
+  bool is_forward = false;                        // true if the face has the edge from near to far
 };
 
-// Counts the kinds of edges. is_copy tells of each face whether a lower one has the same vertices, wound the same way:
-// an edge that only these two have is open, and they do not count as wound against each other.
+// Counts the kinds of edges. is_copy tells for each face whether a lower face has the same vertices and winding: an
+// edge that only such two faces have is open, and does not count as turned.
 void survey_edges(const Topology& topology, const Points& points, const std::vector<bool>& is_copy, Surface& surface) {
   Buckets<EdgeUse> uses(points.count, [&](auto put) {
     for (std::size_t f = 0; f < topology.face_count(); ++f) {
@@ -91,8 +91,8 @@ bool has_twice(std::span<const std::uint32_t> outline, std::vector<std::uint32_t
 }
 
 // Rotates the points of a face, which are all different, so that the lowest comes first, and reverses them if necessary
-// so that the lower one of its neighbours is next. Faces with the same outline are then equal. Returns whether the
-// points were not reversed: faces that agree in this are wound the same way.
+// so that the lower one of its neighbours is next. Faces with the same outline are then equal. Returns true if the
+// points were not reversed; faces with the same result have the same winding.
 bool make_canonical(std::span<std::uint32_t> outline) {
   std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
   if (outline[1] < outline.back()) return true;
@@ -143,7 +143,7 @@ void survey_faces(const Topology& topology, const Points& points, std::vector<bo
       return a < b;
     });
     for_each_group(begin, end, same_outline, [&](auto first, auto last) {
-      std::array<std::size_t, 2> seen{};  // by the direction in which they are wound
+      std::array<std::size_t, 2> seen{};  // by winding
       for (auto f = first; f != last; ++f) {
         std::size_t& alike = seen[starts_low[*f] ? 1 : 0];
         if (alike++ == 0) continue;
@@ -199,7 +199,7 @@ Surface survey(const Topology& topology, const Points& points) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
   Surface surface;
   std::vector<bool> is_copy(topology.face_count());
-  // The two run at once: each writes members of its own.
+  // Both run at the same time, since they write different members.
   parallel_for(2, [&](std::size_t i) {
     if (i == 0)
       survey_faces(topology, points, is_copy, surface);

@@ -1,10 +1,11 @@
-/// Finds the roots of a polynomial whose coefficients are known only up to a bound, if that bound lets them be certain.
+/// Finds the roots of a polynomial whose coefficients are only known up to an error bound, if the number of roots is
+/// certain despite the errors.
 ///
 /// In Bernstein form the coefficients bound the polynomial, and by Descartes' rule one change of sign among them is
-/// exactly one root. So a part of [0, 1] is settled if all coefficients are beyond the bound on one side; or if they
-/// come in the order: beyond the bound on one side, of unknown sign, beyond the bound on the other side. Any other part
-/// is halved, a few times; what is not settled then is left to integers (analysis/signs/exact_roots.h). The only root
-/// of a part is bracketed by two values beyond the bound.
+/// exactly one root. So a part of [0, 1] is settled if all coefficients have the same certain sign, or if there are
+/// first coefficients of one certain sign, then some of unknown sign, and then some of the other certain sign. Every
+/// other part is halved, a few times; if it is still not settled, integers decide (analysis/signs/exact_roots.h). The
+/// only root of a part is bracketed by two values beyond the bound.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 
@@ -22,8 +23,8 @@ namespace chronormal::inline internal {
 template <std::size_t M>
 class CertainRoots {
  public:
-  /// Finds the roots of all polynomials with coefficients within `error` of p. Returns false if they differ in the
-  /// number of roots, or if it would take more to see that they do not. (No root is at 0 or 1 then.)
+  /// Finds the roots of all polynomials with coefficients within `error` of p. Returns false if such polynomials differ
+  /// in the number of roots, or might differ. (If it returns true, no root is at 0 or 1.)
   [[nodiscard]] static bool find(const std::array<double, M>& p, double error, ExactRoots& found) noexcept {
     double size = 0;
     for (const double b : p) size = std::max(size, std::fabs(b));
@@ -43,7 +44,8 @@ class CertainRoots {
   bool settle(const std::array<double, M>& p, double t0, double width, int halvings) noexcept {
     const int first = sign_of(p[0]), last = sign_of(p[M - 1]);
     if (first != 0 && last != 0) {
-      // One side, then unknown ones, then the other: at most one change of sign, whatever the unknown ones are.
+      // The order is one sign, then unknown signs, then the other sign, so there is only one change of sign in any
+      // case.
       bool is_settled = true;
       std::size_t k = 0;
       while (k < M && sign_of(p[k]) == first) ++k;
@@ -70,8 +72,8 @@ class CertainRoots {
     double root = 0, slope = 0;  // slope: |p'| at the root
   };
 
-  // Returns the only root of a quadratic with values of different signs at its ends: the root of p2 s^2 + 2 p1 s + p0
-  // with s = t / (1 - t) > 0, in the form in which nothing cancels.
+  // Returns the only root of a quadratic with values of different signs at its ends. With s = t / (1 - t) > 0 it is the
+  // root of p2 s^2 + 2 p1 s + p0, by the formula that does not cancel.
   static double root_of_quadratic(double p0, double p1, double p2) noexcept {
     const double w = p1 + std::copysign(std::sqrt(p1 * p1 - p0 * p2), p1);
     return (w < 0) == (p2 < 0) ? p0 / (p0 - w) : w / (w - p2);

@@ -1,4 +1,4 @@
-// Decides in three stages, each of which settles the faces that it is sure of.
+// Finds collapses in three stages. Each stage settles the faces for which its answer is certain.
 //
 // 1. A half space: if all control normals have a positive dot product with one direction, so has n(t), which is a
 // convex
@@ -42,14 +42,14 @@ bool is_in_half_space(const ControlNormals& c) noexcept {
 bool spans_space(const ControlNormals& c) noexcept {
   const double size = length_1(c.n0) * length_1(c.m) * length_1(c.n1);
   const double determinant = std::fabs(dot(c.n0, cross(c.m, c.n1)));
-  // If products underflow, nothing is proved.
+  // A product that underflows proves nothing.
   return size > 0x1p-900 && size < 0x1p900 && determinant > 8 * kShare * size;
 }
 
 // Changes the sign of a vector, and leaves no negative zeros, which are ugly to read.
 Vec3d signed_by(int sign, const Vec3d& v) noexcept { return Vec3d{} + static_cast<double>(sign) * v; }
 
-// Returns the direction of a vector of integers, whose common unit does not matter.
+// Returns the direction of a vector of integers, independent of their common unit.
 template <std::size_t kMost>
 Vec3d direction(const std::array<WideInteger<kMost>, 3>& v, int sign = 1) noexcept {
   std::size_t size = 0;
@@ -73,7 +73,7 @@ Product minor(const IntegerPolynomial<2, kDigits>& p, const IntegerPolynomial<2,
   return result;
 }
 
-// Finds the collapses if every n(t) is a multiple of one vector, by the quadratic f, which is one of its components.
+// Finds the collapses if every n(t) is a multiple of one vector, from the quadratic f, which is one component of n.
 Collapses on_a_line(const Vectors& c, const IntegerPolynomial<2, kDigits>& f) noexcept {
   std::size_t k = 0;
   while (f.a[k].sign() == 0) ++k;
@@ -86,7 +86,7 @@ Collapses on_a_line(const Vectors& c, const IntegerPolynomial<2, kDigits>& f) no
   return found;
 }
 
-// Finds the one possible collapse, at the root of a linear polynomial.
+// Finds the only possible collapse, at the root of a linear polynomial.
 Collapses at_root_of(const IntegerPolynomial<1, 2 * kDigits + 1>& linear, const Vectors& c) noexcept {
   const auto& [l0, l1] = linear.a;
   if (l1.sign() == 0) return {};
@@ -131,7 +131,7 @@ Collapses in_integers(const Vectors& c) noexcept {
   for (std::size_t k = first + 1; k < 3; ++k) {
     const IntegerPolynomial<2, kDigits> g = component(c, k);
     const IntegerPolynomial<1, 2 * kDigits + 1> linear{{minor(f, g, 0, 2), minor(f, g, 1, 2)}};
-    // If both are linear and no multiples of each other, they have no common root.
+    // Two linear polynomials that are not multiples of each other have no common root.
     if (linear.terms() == 0 && minor(f, g, 0, 1).sign() != 0) return {};
     if (linear.terms() != 0) return at_root_of(linear, c);
   }

@@ -5,11 +5,12 @@
 ///
 /// Sturm's theorem counts the roots: in the chain f, f', -(f mod f'), ... the number of changes of sign drops by one at
 /// each root of f, whatever its multiplicity, and nowhere else. All signs are signs of integers (core/wide_integer.h),
-/// taken just after t, so that a t which is itself a root needs no exception. The count is monotone in t, so a search
-/// among the doubles finds the neighbours between which it steps. The search starts from a guess in floating point,
-/// which only affects how long it takes: a few microseconds from a good one.
+/// taken just after t, so a t that is itself a root needs no special case. The count is monotone in t, so a search over
+/// doubles finds the neighbours between which it changes. The search starts from a guess in floating point, which only
+/// affects the time: a few microseconds with a good guess.
 ///
-/// Roots between the same two neighbouring doubles are returned as one. Roots below 2^-200 cannot be told from 0.
+/// Roots between the same two neighbouring doubles are returned as one. Roots below 2^-200 are not distinguished from
+/// 0.
 ///
 /// Source: Basu, Pollack, Roy, Algorithms in Real Algebraic Geometry (2006), chapter 2.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_EXACT_ROOTS_H_
@@ -75,7 +76,7 @@ struct IntegerPolynomial {
     return value.sign();
   }
 
-  /// Returns the sign of f just after t, which is that of its first derivative that is not zero there.
+  /// Returns the sign of f just after t, which is the sign of the first derivative that is not zero at t.
   [[nodiscard]] int sign_after(const UnitFraction& t) const noexcept {
     for (std::size_t derivative = 0; derivative <= N; ++derivative) {
       if (const int sign = sign_at(t, derivative); sign != 0) return sign;
@@ -205,7 +206,7 @@ template <std::size_t N, std::size_t kDigits>
 
   const Roots<N> guesses = guess_roots(f);
   for (int i = 1; i <= total;) {
-    // The first double with i roots up to it lies in (low, high].
+    // The first double up to which there are i roots is in (low, high].
     const double guess = guesses.count == 0 ? 0.5 : guesses.t[std::min(static_cast<std::size_t>(i), guesses.count) - 1];
     std::int64_t low = -1, high = static_cast<std::int64_t>(kLastDouble), step = 1;
     for (auto probe = static_cast<std::int64_t>(number_of_double(guess)); low < high - 1; step *= 2) {

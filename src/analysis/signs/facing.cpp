@@ -1,4 +1,4 @@
-// Decides in three stages, each of which settles the faces that it is sure of.
+// Decides the sides of faces in three stages. Each stage settles the faces for which its answer is certain.
 //
 // 1. The Bernstein coefficients of f, from control normals that are within 2^-26 of their length of the exact ones:
 //    if all are clearly positive, or all negative, so is f. This is the answer for most faces.
@@ -54,7 +54,7 @@ void leave(std::size_t i, FacingCoefficients& f) noexcept {
   for (auto& bounds : f.bounds) bounds[i] = std::numeric_limits<double>::infinity();
 }
 
-// Computes the coefficients of f from the control normals of a block of faces.
+// Computes the coefficients of f for a block of faces from their control normals.
 void glance(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
             FacingCoefficients& result) noexcept {
   const bool fits = fits_double(view);
@@ -83,7 +83,7 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
   }
 }
 
-// Returns what a shutter sees, by the control normals alone; nothing if they cannot tell.
+// Returns the sides seen through a shutter from the control normals alone, or nothing if these are not precise enough.
 template <std::size_t M>
 std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size_t i, double t0, double t1) noexcept {
   if (f.signs[i] != 0) return static_cast<ShutterSide>(f.signs[i]);
@@ -101,7 +101,7 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
   }
   constexpr double kRoundings = 64;  // of restrict_to() and of the coefficients
   bound += kRoundings * kUnitRoundoff * size;
-  // Seeing a front and a back for certain settles it, be it at the ends or between them.
+  // If both a front and a back are certainly seen, at the ends or in between, the answer is certain.
   bool shows_front = false, shows_back = false;
   for (const double share : {0.0, 1.0, 0.5, 0.25, 0.75}) {
     const double t = share == 1 ? t1 : t0 + share * (t1 - t0);
@@ -118,7 +118,7 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
 
 // Returns a bound of the error of any component of the control normals of a triangle. Each is a sum of products of a
 // component of one edge and a component of the other: two products in n0 and n1, and half of a sum of four in m. The
-// error is at most 48 u of the largest such product by core/rounding.h, and less for normals that were made of
+// error is at most 48 u of the largest such product by core/rounding.h, and less for normals that were computed in
 // integers.
 double rounding_of_triangle(const Segment& segment, std::span<const std::uint32_t> corners) noexcept {
   const auto largest_edge = [&segment, corners](std::size_t c) {
@@ -158,7 +158,7 @@ constexpr std::size_t kWayDigits = kPlaceDigits + 1, kPartDigits = kPlaceDigits 
 template <std::size_t kDigits>
 using WideVector = std::array<WideInteger<kDigits>, 3>;
 
-// Returns the smallest shift of a component of some vectors.
+// Returns the smallest shift of all components of some vectors.
 unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
   unsigned lowest = std::numeric_limits<unsigned>::max();
   for (const Vec3d& v : vectors) {
@@ -179,7 +179,7 @@ struct Place {
   }
 };
 
-// Returns p - q in integers of one unit.
+// Returns p - q in integers with a common unit.
 WideVector<kPlaceDigits> difference(const Place& p, const Place& q, unsigned shift) noexcept {
   WideVector<kPlaceDigits> result;
   const auto add = [&](const Vec3d& v, std::int64_t sign) {
@@ -225,8 +225,8 @@ Way<kWayDigits> whole_way(const View& view, const Place& from_corner, const Plac
   return way;
 }
 
-// Returns the way to an eye on a part of its own way, times the denominators of both times: with the times p / q and r
-// / s, q s (view.from - from) + p s (view.to - view.from), and its change until t = 1.
+// Returns the vector to an eye on a part of its path, multiplied by the denominators of both times: with the times p /
+// q and r / s, this is q s (view.from - from) + p s (view.to - view.from); and its change until t = 1.
 Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& to) noexcept {
   constexpr std::size_t kProductDigits = 2 * TimeFraction::kDigits;
   const TimeFraction start = TimeFraction::of(view.start), end = TimeFraction::of(view.end);
@@ -251,7 +251,7 @@ Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& t
   return way;
 }
 
-// Returns f of one normal, times a positive number.
+// Returns f for a normal, times a positive number.
 template <std::size_t kDegree, std::size_t kDigits>
 auto times_normal(const ExactCurve& normal, const Way<kDigits>& way) noexcept {
   IntegerPolynomial<kDegree, kNormalDigits + kDigits + 1> f;
@@ -282,13 +282,13 @@ void in_integers(const Segment& segment, std::size_t face, const View& view, con
   in_integers<M>(segment, ExactCurve::of_polygon(segment, vertices), vertices[0], view, body);
 }
 
-// Narrows a bracket of the only root between its ends, at which the signs are known and differ. Its middle is a good
-// guess of the root, so one step to either side of it is mostly enough.
+// Narrows a bracket of the only root. The signs at its ends are known and differ. The middle of the bracket is a good
+// guess of the root, so one step to either side of it is usually enough.
 template <class Polynomial>
 void close_in(const Polynomial& f, int before, double& lower, double& upper) noexcept {
   double step = 0x1p-49, probe = lower + (upper - lower) / 2 - step;
   while (upper - lower > kWidestBracket) {
-    // A probe must lie between the ends; and no t below 2^-200 is told from 0.
+    // A probe must be between the ends, and no t below 2^-200 is distinguished from 0.
     if (!(lower < probe && probe < upper && probe >= 0x1p-200)) probe = lower + (upper - lower) / 2;
     const int sign = f.sign_at(UnitFraction::of(probe));
     if (sign == 0) {

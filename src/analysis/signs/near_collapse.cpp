@@ -43,7 +43,8 @@ NearCollapses find_near_collapses(const ControlNormals& normals) noexcept {
   const ControlNormals c{scaled(normals.n0), scaled(normals.m), scaled(normals.n1)};
   if (stays_long(c)) return found;
 
-  // Between neighbouring roots of the derivative |n(t)| is monotone, so neighbours below the share are one collapse.
+  // Between neighbouring roots of the derivative, |n(t)| is monotone, so neighbouring minima with no larger value in
+  // between are one collapse.
   const Bernstein<Vec3d, 2> n = {c.n0, c.m, c.n1};
   const Bernstein<double, 4> square = multiply(n, n, dot<double>);
   Bernstein<double, 3> derivative;

@@ -1,9 +1,9 @@
-/// Finds the instants inside a segment at which a normal nearly vanishes, so that its direction is as good as
+/// Finds the instants inside a segment at which a normal nearly vanishes, so that its direction is practically
 /// discontinuous when it is interpolated or rendered.
 ///
-/// "Nearly" means that |n(t)| falls below kCollapseShare of the largest control normal: far above what float32 rounds,
-/// so that a face which was made to collapse and then rounded is among them, and far below any length that was meant.
-/// The functions of analysis/signs.h decide exactly whether it vanishes.
+/// "Nearly" means that |n(t)| falls below kCollapseShare of the largest control normal: far above the rounding of
+/// float32, so that faces that were made to collapse and then rounded are found, and far below any intended length. The
+/// functions of analysis/signs.h decide exactly whether a normal vanishes.
 ///
 /// Source     docs/theory.md, section 3; the minima of |n(t)| are the roots of a cubic (core/polynomial.h).
 /// Threads    pure: no allocation, no throw.
@@ -19,15 +19,16 @@
 
 namespace chronormal::inline internal {
 
-/// Far above the rounding of float32 positions, far below any intended length.
+/// The share of the largest control normal below which a normal nearly vanishes: far above the rounding of float32
+/// positions, and far below any intended length.
 inline constexpr double kCollapseShare = 1e-6;
 
-/// A collapse nearer to an end than this is one of the keyframe there, whose face has no area.
+/// A collapse that is closer to an end than this belongs to the keyframe there, whose face has no area.
 inline constexpr double kCollapseMargin = 1e-6;
 
 struct NearCollapse {
   double t = 0;             ///< |n(t)| is smallest here
-  bool turns_over = false;  ///< the direction after it is opposed to the direction before
+  bool turns_over = false;  ///< true if the direction afterwards is opposite to the direction before
 };
 
 struct NearCollapses {
@@ -45,8 +46,8 @@ struct NearCollapses {
   return least > 2 * kCollapseShare * most * length_1(w);
 }
 
-/// Finds where n(t) vanishes, or nearly, for t in (0, 1). Zeros so close together that |n(t)| stays below the share
-/// between them are one. Cost: three dot products for most faces, the roots of a cubic for faces that turn far.
+/// Finds where n(t) vanishes, or nearly, for t in (0, 1). Zeros between which |n(t)| stays below the share count as
+/// one. Cost: three dot products for most faces, the roots of a cubic for faces that turn far.
 [[nodiscard]] NearCollapses find_near_collapses(const ControlNormals& normals) noexcept;
 
 }  // namespace chronormal::inline internal

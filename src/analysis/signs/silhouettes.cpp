@@ -1,5 +1,5 @@
-// Silhouette edges over time: the changes of both faces at an edge, in the order of time. Brackets that touch count as
-// one change, so that the order of all others is certain.
+// Silhouette edges over time: the changes of both faces at an edge, in the order of time. Changes whose brackets touch
+// count as one, so that the order of all changes is certain.
 
 #include <algorithm>
 #include <cassert>

@@ -1,5 +1,4 @@
-/// Says where the positions of a cache lie in its file, so that a sample can be read without the samples before it.
-/// Private to io.
+/// The layout of a cache in its file, by which a sample can be read without the samples before it. Private to io.
 ///
 ///     byte begin                       sample 0: (V, 3) numbers, float32 or float64
 ///     byte begin + 3 V item_size       sample 1, and so on
@@ -24,16 +23,16 @@
 
 namespace chronormal::inline internal {
 
-/// The number of bytes at the beginning of a file in which its layout is looked for. A file that needs more has none.
+/// The number of bytes at the beginning of a file in which its layout must be found. Otherwise the file has no layout.
 inline constexpr std::size_t kLayoutBytes = std::size_t{1} << 20;
 
 struct CacheLayout {
   std::size_t vertex_count = 0;
-  std::vector<double> times;  ///< in seconds, one for each sample
+  std::vector<double> times;  ///< seconds, one for each sample
   std::uint64_t begin = 0;
   std::size_t item_size = sizeof(float);  ///< 4 or 8
   std::endian order = std::endian::little;
-  Origin origin = {};      ///< the point from which positions count; only for float64
+  Origin origin = {};      ///< the point from which positions are measured; only for float64
   std::string array = {};  ///< the name of the array in NumPy: errors then name an element, and not a byte
 
   [[nodiscard]] std::size_t coordinates() const noexcept { return 3 * vertex_count; }

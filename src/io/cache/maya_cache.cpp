@@ -100,7 +100,7 @@ class DescriptionReader {
   MayaCacheDescription description_;
 };
 
-// Takes a word and the whole number after it off the front of text. Returns false if they are not there.
+// Removes a word and the integer after it from the beginning of the text. Returns false if they are not there.
 bool take_number_after(std::string_view& text, std::string_view word, std::int32_t& number) {
   if (!text.starts_with(word)) return false;
   const std::string_view digits = text.substr(word.size());

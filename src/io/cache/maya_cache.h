@@ -13,11 +13,11 @@
 /// Maya counts 6000 ticks a second. A frame is TimePerFrame ticks of the description, or 250 (24 frames a second) if it
 /// does not say. A cache may be sampled more or less often than once a frame.
 ///
-/// A channel has the points of one mesh. The reader takes the channel that the caller names; else the one with as many
-/// points as the mesh has vertices, and among several such channels the only one whose ChannelInterpretation is
+/// A channel has the points of one mesh. The reader takes the channel that the caller names; otherwise the channel with
+/// as many points as the mesh has vertices, and of several such channels the only one whose ChannelInterpretation is
 /// "positions".
 ///
-/// Threads    pure, but for the files that read_maya_cache() opens.
+/// Threads    pure, except that read_maya_cache() opens files.
 #ifndef CHRONORMAL_IO_CACHE_MAYA_CACHE_H_
 #define CHRONORMAL_IO_CACHE_MAYA_CACHE_H_
 
@@ -34,12 +34,12 @@ namespace chronormal::inline internal {
 
 constexpr std::int32_t kMayaTicksPerSecond = 6000;
 
-/// Holds the content of a description.
+/// The content of a description.
 struct MayaCacheDescription {
   struct Channel {
     std::string name;
     std::string interpretation;       ///< "positions", "normals", ...
-    bool is_regular = false;          ///< whether there is a sample every `step` ticks from start to end
+    bool is_regular = false;          ///< true if there is a sample every `step` ticks from start to end
     std::int32_t step = 0;            ///< > 0 if is_regular
     std::int32_t start = 0, end = 0;  ///< ticks; start <= end if is_regular
   };
@@ -54,9 +54,9 @@ struct MayaCacheDescription {
 /// another root, unknown types and formats, malformed numbers, more than 16 MiB.
 [[nodiscard]] Result<MayaCacheDescription> read_maya_description(std::string_view bytes, const std::string& name);
 
-/// Reads one .mc or .mcx file by itself. Errors: kInvalidInput with the place "NAME, byte N", followed by channel and
-/// point for a coordinate that is not finite or too large: chunks that do not lie inside the one around them, or are in
-/// a meaningless order; no channel that the options choose, or several (the message names them); a channel whose number
+/// Reads a single .mc or .mcx file. Errors: kInvalidInput with the place "NAME, byte N", followed by channel and point
+/// for a coordinate that is not finite or too large: chunks that do not lie inside the one around them, or are in a
+/// meaningless order; no channel that the options choose, or several (the message names them); a channel whose number
 /// of points changes.
 [[nodiscard]] Result<PositionCache> read_maya_points(std::string_view bytes, const std::string& name,
                                                      const CacheOptions& options = {});
@@ -64,7 +64,7 @@ struct MayaCacheDescription {
 /// Reads a description and the files of points beside it. These are the files in its folder that begin with its name
 /// without ".xml"; nothing else is opened. Samples are sorted by time.
 ///
-/// Errors: from both readers, with the file name in the place; kFailed for files that cannot be opened;
+/// Errors: those of both readers, with the file name in the place; kFailed for files that cannot be opened;
 /// kInvalidInput with the missing time and the file, if a regularly sampled channel lacks samples that the description
 /// declares. With a resolver, files are found by their paths through it; kUsage for a cache of a file per frame, whose
 /// files only a folder can list.

@@ -14,13 +14,13 @@
 
 namespace chronormal::inline internal::maya {
 
-/// Holds the place of the points of one channel at one time.
+/// The place of the points of one channel at one time.
 struct Points {
   std::string_view channel;  ///< points into the file
   std::int32_t ticks = 0;
   std::uint32_t count = 0;
   bool is_double = false;
-  std::size_t begin = 0;  ///< byte of the first of 3 x count coordinates, all inside the file
+  std::size_t begin = 0;  ///< offset of the first of 3 x count coordinates, all inside the file
 };
 
 /// Lists all points of a file in its order. Errors: as for read_maya_points().
@@ -32,8 +32,8 @@ struct Points {
                                                  const std::vector<MayaCacheDescription::Channel>& described,
                                                  const std::string& name);
 
-/// Holds what the points of one channel say about an origin to count from (io/mesh/far_origin.h): the origin if the
-/// first of them are far, and whether any of them has more digits than float32.
+/// The origin of the points of one channel (io/mesh/far_origin.h): its value if the first points are far from zero, and
+/// whether some point has more digits than float32.
 struct FarPoints {
   Origin origin = {};
   bool has_more_digits = false;
@@ -41,8 +41,8 @@ struct FarPoints {
 [[nodiscard]] FarPoints find_far_points(std::string_view bytes, const std::vector<Points>& list,
                                         std::string_view channel);
 
-/// Reads the points of one channel from a list, counts them from the origin of the cache, and appends them with their
-/// times in seconds (ticks / 6000). Errors: as for read_maya_points().
+/// Reads the points of one channel from a list, subtracts the origin of the cache, and appends them with their times in
+/// seconds (ticks / 6000). Errors: those of read_maya_points().
 [[nodiscard]] Status append_samples(std::string_view bytes, const std::vector<Points>& list, std::string_view channel,
                                     const std::string& name, PositionCache& cache);
 

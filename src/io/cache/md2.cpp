@@ -122,8 +122,9 @@ class Md2Reader {
     return Success{};
   }
 
-  // Sets the times of frames. Frames of one clip follow each other. A model of several clips is an animation, in which
-  // each clip begins at the time at which the one before ends: two keyframes at one time, and no segment between them.
+  // Sets the times of frames. Frames of one clip follow each other. A model of several clips is an animation in which
+  // each clip begins at the time at which the previous one ends: there are two keyframes at this time, and no segment
+  // between them.
   static void set_times(double frames_per_second, Motion& motion) {
     std::size_t clips = 1;
     double frame = 0;

@@ -8,8 +8,8 @@
 ///     frame      3 x float32 scale, 3 x float32 translate, 16 characters of name, V x {3 bytes x y z, 1 byte normal}
 ///
 /// A position is scale * byte + translate, in double, rounded to float32. Frames whose names tell of several clips
-/// (stand01, stand02, run1) are an animation that jumps from one clip to the next. Quake counts the corners of a
-/// triangle clockwise; they are turned round, so that normals point outwards.
+/// (stand01, stand02, run1) are an animation that jumps from one clip to the next. Quake lists the corners of a
+/// triangle clockwise; the reader reverses them, so that normals point outwards.
 ///
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_MD2_H_
@@ -23,8 +23,8 @@
 
 namespace chronormal::inline internal {
 
-/// Reads a motion; name is its name for messages. Keyframe k is at k / frames_per_second, less one frame for each clip
-/// before, and has the name of the frame ("stand01"). The result is valid (validate() in motion/motion.h).
+/// Reads a motion; `name` is for messages. Keyframe k is at k / frames_per_second, minus one frame for each earlier
+/// clip, and has the name of the frame ("stand01"). The result is valid (validate() in motion/motion.h).
 ///
 /// Errors: kInvalidInput with the place "NAME, byte N", followed by triangle or frame if they are known: another first
 /// word or version, no vertices or triangles, fewer than two frames, tables that do not lie inside the file (all of

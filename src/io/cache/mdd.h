@@ -1,4 +1,4 @@
-/// MDD, the point cache of LightWave. It is big endian, and has no first word by which to recognise it:
+/// MDD, the point cache of LightWave. It is big endian, and does not begin with a word by which it could be recognised:
 ///
 ///     byte  0   int32    samples, S
 ///           4   int32    vertices, V
@@ -20,7 +20,7 @@
 
 namespace chronormal::inline internal {
 
-/// Reads an MDD file; name is its name for messages. It uses no options.
+/// Reads an MDD file; `name` is for messages. The options have no effect.
 ///
 /// Errors: kInvalidInput with the place "NAME, byte N", followed by sample and vertex if they are known: no vertices or
 /// samples, more or fewer bytes than the header declares (refused before memory is taken), times and coordinates that
@@ -28,13 +28,13 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<PositionCache> read_mdd(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
-/// Errors: from read_mdd(), except for coordinates; kInvalidInput for times beyond these bytes.
+/// Finds the layout of a file of `size` bytes from its first kLayoutBytes bytes, or from all of them. Errors: those of
+/// read_mdd(), except for coordinates; kInvalidInput for times beyond these bytes.
 [[nodiscard]] Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
 /// Makes the header of a motion, its counts and times. Errors, without a place: kUsage for blend shapes, for more than
-/// 2^31 - 1 vertices or keyframes, and for times that are the same in float32.
+/// 2^31 - 1 vertices or keyframes, and for times that are equal in float32.
 [[nodiscard]] Result<std::string> mdd_header(const Motion& motion);
 
 /// Writes the header, and the positions as they are read. Errors: from the header, the stream and the file.

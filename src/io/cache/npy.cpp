@@ -18,7 +18,7 @@ class Python {
  public:
   explicit Python(std::string_view text) noexcept : text_(text) {}
 
-  // Takes a sign if it is the next one.
+  // Removes a sign if it is the next character.
   bool sign(char c) {
     while (!text_.empty() && (scan::is_blank(text_.front()) || text_.front() == '\n')) text_.remove_prefix(1);
     if (!text_.starts_with(c)) return false;
@@ -94,7 +94,7 @@ bool read_type(std::string_view type, bool allow_text, Array& array) {
   return array.item_size == 1 || array.item_size == 2 || array.item_size == 4 || array.item_size == 8;
 }
 
-// Reads the header of an array of numbers, or if it is allowed of text.
+// Reads the header of an array of numbers, or if allow_text, of text.
 Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, bool allow_text, bool more_may_follow,
                               const std::string& place) {
   const auto error = [&](std::string message) { return invalid_input(place, std::move(message)); };

@@ -1,4 +1,4 @@
-/// One NumPy array: a header in the form of Python, and its elements. Private to io.
+/// A NumPy array: a header in Python syntax, and its elements. Private to io.
 ///
 ///     "\x93NUMPY"  version 1.0  uint16 length   {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 3), }
 ///     elements
@@ -21,7 +21,7 @@ enum class Kind : char { kFloat = 'f', kInteger = 'i', kUnsigned = 'u', kText = 
 /// The bytes with which every .npy file begins.
 inline constexpr std::string_view kFirstWord("\x93NUMPY", 6);
 
-/// The longest header that is read. NumPy itself stops at 10,000 bytes unless it is told otherwise.
+/// The longest header that is read. NumPy's own default limit is 10,000 bytes.
 constexpr std::size_t kLongestHeader = 65536;
 
 struct Array {
@@ -31,7 +31,7 @@ struct Array {
   bool is_fortran = false;
   std::vector<std::uint64_t> shape;
   std::size_t data_begin = 0;  ///< byte of the first element
-  std::string_view data;       ///< the elements; set by the caller, which has them
+  std::string_view data;       ///< the elements; set by the caller
 
   [[nodiscard]] std::uint64_t element_count() const noexcept {
     std::uint64_t count = 1;
@@ -56,10 +56,10 @@ struct Array {
 /// Returns the bytes of such an array.
 [[nodiscard]] std::string write_text(std::string_view text);
 
-/// Reads the header of an array of total_size bytes, of which start are the first (all, or kLongestHeader + 12).
-/// Afterwards the elements of shape, whose products do not overflow, are exactly what follows data_begin; if more may
-/// follow, they are its first data_end() - data_begin bytes. Errors: kInvalidInput with place, and a message that says
-/// what is wrong.
+/// Reads the header of an array of total_size bytes, of which `start` is the beginning (all bytes, or kLongestHeader +
+/// 12). Afterwards the sizes in `shape` do not overflow when multiplied, and the elements are exactly the bytes after
+/// data_begin; if more_may_follow, they are the first data_end() - data_begin of these. Errors: kInvalidInput with
+/// place, and a message that says what is wrong.
 [[nodiscard]] Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place,
                                         bool more_may_follow = false);
 

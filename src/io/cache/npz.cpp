@@ -1,4 +1,4 @@
-// Reads the arrays of NumPy files as a motion, all at once or as a layout, and writes motions as arrays.
+// Reads the arrays of NumPy files as a motion, completely or as a layout, and writes motions as arrays.
 #include "io/cache/npz.h"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string
   return layout;
 }
 
-// Finds the origin from which positions are to count, by the first sample of an array with data. It is (0, 0, 0) if no
+// Finds the origin from which positions are measured, by the first sample of an array with data. It is (0, 0, 0) if no
 // sample has more digits than float32. In an array that is too large to examine, only the first, the middle and the
 // last sample are examined.
 Origin origin_of(const Array& array) {
@@ -111,7 +111,7 @@ Result<PositionCache> read_positions(const Array& array, const std::string& name
   return cache;
 }
 
-// VTK and PyVista put the number of corners before the corners of each face.
+// VTK and PyVista store the number of corners before the corners of each face.
 constexpr const char* kPadded =
     "the faces are padded: each begins with its number of corners, as VTK and PyVista have them. Write the corners "
     "alone: "
@@ -135,7 +135,7 @@ bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   return !is_fan;
 }
 
-// Tells this for one long list, in which each face begins with its number of corners.
+// Tells whether one long list of faces is padded: each face begins with its number of corners.
 bool is_padded_list(const Array& array) {
   if (array.kind == Kind::kFloat || array.shape.size() != 1) return false;
   const std::size_t size = array.element_count();
@@ -191,7 +191,7 @@ Status read_times(const Array& array, PositionCache& cache, const std::string& p
   return Success{};
 }
 
-// Takes velocities per second, in an array of the shape of the positions.
+// Reads velocities per second from an array of the same shape as the positions.
 Status take_velocities(const Array& array, const std::string& name, Motion& motion) {
   Result<PositionCache> read = read_positions(array, name, "velocities", false);
   if (!read) return read.error();
@@ -288,7 +288,8 @@ class Archive {
     return nullptr;
   }
 
-  // Checks that there may be memory for an array as bytes and as numbers, beside what was read before.
+  // Checks against the limit that an array may take memory, as bytes and as numbers, in addition to everything that was
+  // read before.
   [[nodiscard]] Status ask_for(const zip::Member& member, const Array& array) {
     constexpr std::uint64_t kBytesPerRow = 128;  // a keyframe, or less
     const std::uint64_t rows = array.shape.size() == 3 ? array.shape[0] : 0;
@@ -306,7 +307,8 @@ class Archive {
   std::string storage_;
 };
 
-// Reads a motion. With a layout, it leaves positions that can be read one by one in the file, and says where they lie.
+// Reads a motion. With a layout, positions that can be read sample by sample stay in the file, and the layout tells
+// their place.
 Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, double frames_per_second,
                                std::size_t max_expansion, std::optional<CacheLayout>* layout) {
   Result<std::vector<zip::Member>> members = zip::read_directory(bytes, name);

@@ -9,8 +9,8 @@
 ///
 ///     velocities  (T, V, 3)   float32 or float64         per second, of a sequence; optional, for hermite paths
 ///
-/// Targets are a base, keyframe 0, and a keyframe for each target; they have no times. In an animation, two keyframes
-/// that follow each other at one time are a jump.
+/// Targets are a base, keyframe 0, and a keyframe for each target; they have no times. In an animation, two
+/// neighbouring keyframes at the same time are a jump.
 ///
 /// The reader takes C and Fortran order, both byte orders, versions 1 to 3 of the array header, zip members stored or
 /// deflated (savez_compressed), and zip64. It skips other arrays in the file. float64 positions are rounded to float32.
@@ -37,21 +37,22 @@
 
 namespace chronormal::inline internal {
 
-/// Reads a motion; name is its name for messages. The result is valid (validate() in motion/motion.h).
+/// Reads a motion; `name` is for messages. The result is valid (validate() in motion/motion.h).
 ///
-/// Errors: kInvalidInput. The place begins with name and goes on with the byte of the zip file, or the array and its
+/// Errors: kInvalidInput. The place begins with the name, followed by the byte of the zip file, or by the array and its
 /// element ("walk.npz, positions[3, 17, 0]"): a damaged zip file or array (its checksum is verified), shapes and types
 /// other than the ones above, coordinates that are not finite or too large for float32, indices without a vertex,
 /// velocities of another shape than the positions, times that do not ascend, an unknown kind. Sizes that disagree
 /// between directory, member and array header are refused before memory is taken.
-/// Memory: in proportion to the arrays, which deflate may have made a thousand times smaller. So expansion is asked
-/// first, with bytes and numbers of everything that is deflated, and what a keyframe takes beside its positions.
+/// Memory: in proportion to the arrays, which deflate may have compressed by a factor of a thousand. So the limit of
+/// expansion is checked first, for the bytes and numbers of all deflated arrays, and for the memory of a keyframe in
+/// addition to its positions.
 [[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1,
                                       std::size_t max_expansion = Expansion::kUsual);
 
-/// Reads a motion, but leaves positions that are stored in C order in the file: layout says where they lie, the
-/// keyframes have none, and the checksum of the positions is not verified. Other positions are read, and layout has no
-/// value.
+/// Reads a motion, but leaves positions that are stored in C order in the file: `layout` tells their place, the
+/// keyframes have no positions, and the checksum of the positions is not verified. Other positions are read, and
+/// `layout` has no value.
 [[nodiscard]] Result<Motion> read_npz_outline(std::string_view bytes, const std::string& name, double frames_per_second,
                                               std::size_t max_expansion, std::optional<CacheLayout>& layout);
 
@@ -60,16 +61,16 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<PositionCache> read_npy(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
-/// Errors: from read_npy(), except for coordinates; kInvalidInput for Fortran order.
+/// Finds the layout of a file of `size` bytes from its first kLayoutBytes bytes, or from all of them. Errors: those of
+/// read_npy(), except for coordinates; kInvalidInput for Fortran order.
 [[nodiscard]] Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
 /// Writes positions (float32) as they are read, faces (int32, or uint32 for more than 2^31 vertices), times (float64)
 /// if there are any, velocities if all keyframes have them, and the kind of a motion unless it is a sequence. Arrays
 /// are stored, so that they can be mapped. The same motion gives the same bytes.
-/// Errors, without a place: kUsage for a mesh that does not move, and for faces of different numbers of corners, which
-/// no (F, k) array can hold; errors of the stream and of the file.
+/// Errors, without a place: kUsage for a mesh at rest, and for faces with different numbers of corners, which an (F, k)
+/// array cannot represent; those of the stream and of the file.
 [[nodiscard]] Status write_npz(MotionStream& stream, OutputFile& file);
 
 /// Builds the bytes of a .npy file: an array in C order, little endian, that is filled from its first element to its
@@ -86,7 +87,7 @@ class NpyBytes {
 
   void append(std::span<const float> values);
 
-  /// Returns the file, once all elements of the shape are there.
+  /// Returns the file, after all elements of the shape were written.
   [[nodiscard]] const std::string& bytes() const& noexcept { return bytes_; }
   [[nodiscard]] std::string bytes() && noexcept { return std::move(bytes_); }
 
@@ -108,7 +109,7 @@ struct NpzMember {
 /// Returns the bytes of positions (V, 3) as float64, to which their origin was added.
 [[nodiscard]] std::string placed_bytes(std::span<const float> positions, const Origin& origin);
 
-/// Writes a .npz file of stored arrays, some of which grow while it is written, all at the same time.
+/// Writes a .npz file of uncompressed arrays, several of which may grow at the same time.
 ///
 ///     NpzOutput npz(file);
 ///     const std::size_t normals = npz.add_growing("normals", {moments, outputs, 3});
@@ -129,9 +130,10 @@ class NpzOutput {
   [[nodiscard]] Status begin();
   /// Writes the next bytes of a growing array, little endian.
   [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
-  /// Continues a file that another process has begun (OutputFile::join()), after the same arrays were added. skip()
-  /// skips the bytes of a growing array that others write. The process that has called begin() calls finish(), after
-  /// calling add_checksum() for everything that each of the others, in their order, has appended to each growing array.
+  /// join() continues a file that another process has begun (OutputFile::join()), after the same arrays were added.
+  /// skip() skips the bytes of a growing array that other processes write. The process that has called begin() calls
+  /// finish(), but first add_checksum() for the data that each of the others, in order, has appended to each growing
+  /// array.
   void join();
   void skip(std::size_t array, std::uint64_t bytes) { members_[array].end += bytes; }
   /// Returns the checksum of the bytes that were appended to an array.
@@ -145,7 +147,7 @@ class NpzOutput {
   struct Member {
     std::string name, start;
     std::uint64_t size = 0;
-    std::uint64_t end = 0;  // place in the file where the written bytes end
+    std::uint64_t end = 0;  // offset in the file at which the written bytes end
     std::uint32_t checksum = 0;
   };
   [[nodiscard]] zip::Frame frame() const;

@@ -1,4 +1,4 @@
-/// PC2, the point cache of 3ds Max that most programs know. It is little endian:
+/// PC2, the point cache of 3ds Max, which most programs support. It is little endian:
 ///
 ///     byte  0   "POINTCACHE2" and a zero byte
 ///          12   int32    version: 1
@@ -8,7 +8,7 @@
 ///          28   int32    samples, S
 ///          32   float32  S x V x 3 coordinates
 ///
-/// Sample k is at the frame first + k * step, which is that many frames / frames_per_second in seconds.
+/// Sample k is at frame first + k * step; divided by frames_per_second, this is its time in seconds.
 ///
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_PC2_H_
@@ -25,7 +25,7 @@
 
 namespace chronormal::inline internal {
 
-/// Reads a PC2 file; name is its name for messages.
+/// Reads a PC2 file; `name` is for messages.
 ///
 /// Errors: kInvalidInput with the place "NAME, byte N", followed by sample and vertex for a coordinate that is not
 /// finite: another first word or version, no vertices or samples, more or fewer bytes than the header declares (refused
@@ -33,8 +33,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<PositionCache> read_pc2(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Finds where the positions lie in a file of so many bytes, from its first kLayoutBytes bytes or from all of it.
-/// Errors: from read_pc2(), except for coordinates.
+/// Finds the layout of a file of `size` bytes from its first kLayoutBytes bytes, or from all of them. Errors: those of
+/// read_pc2(), except for coordinates.
 [[nodiscard]] Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
@@ -43,7 +43,7 @@ namespace chronormal::inline internal {
 /// keyframes.
 [[nodiscard]] Result<std::string> pc2_header(const Motion& motion, double frames_per_second = 1);
 
-/// Writes the header, at one frame a second, and the positions as they are read. Errors: from the header, the
+/// Writes the header, with one frame per second, and the positions as they are read. Errors: those of the header, the
 /// stream and the file.
 [[nodiscard]] Status write_pc2(MotionStream& stream, OutputFile& file);
 

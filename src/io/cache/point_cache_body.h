@@ -16,14 +16,14 @@
 
 namespace chronormal::inline internal::point_cache {
 
-/// Holds the counts of a header.
+/// The counts in a header.
 struct Counts {
   std::int32_t vertices = 0;
   std::int32_t samples = 0;
 };
 
-/// Checks that there are vertices and samples, and from `begin` on exactly the bytes that they take: times_size bytes
-/// and 3 x vertices float32 for each sample. Afterwards no product of them overflows.
+/// Checks that there are vertices and samples, and that the file has from `begin` on exactly their bytes: times_size
+/// bytes for times, and 3 x vertices float32 for each sample. Afterwards products of the counts do not overflow.
 [[nodiscard]] inline Status check_counts(std::uint64_t file_size, const std::string& name, Counts counts,
                                          std::size_t begin, std::size_t times_size) {
   const std::string place = binary::place(name, begin);

@@ -1,9 +1,9 @@
-/// Positions of vertices at several times, without faces, as point caches hold them. A mesh gives them their faces:
+/// Positions of vertices at several times, without faces, as in point caches. A mesh provides the faces:
 ///
 ///     mesh (faces, V vertices)  +  cache (V vertices at 11 times)  =  motion of 11 keyframes and 10 segments
 ///
-/// Vertex v of the cache is vertex v of the mesh. A cache does not say so, and programs that renumber vertices when
-/// they export a mesh break it without a trace. The positions of the mesh itself are not used.
+/// Vertex v of the cache is vertex v of the mesh. Nothing in a cache confirms this, and a program that renumbers
+/// vertices when it exports a mesh breaks the match unnoticed. The positions of the mesh itself are not used.
 ///
 /// Shapes     V = vertices; positions are (V, 3).
 /// Units      times: seconds.
@@ -24,8 +24,8 @@
 
 namespace chronormal::inline internal {
 
-/// Holds the result of a cache reader: at least one vertex and one sample, finite times and positions. The times need
-/// not ascend.
+/// The result of a cache reader: at least one vertex and one sample, finite times and positions. The times need not
+/// ascend.
 struct PositionCache {
   struct Sample {
     double time = 0;               ///< seconds
@@ -34,31 +34,31 @@ struct PositionCache {
 
   std::size_t vertex_count = 0;
   std::vector<Sample> samples;
-  Origin origin = {};  ///< the point from which positions count
+  Origin origin = {};  ///< the point from which positions are measured
 };
 
-/// Holds what a cache reader may need to know; most formats need little of it.
+/// The facts that a cache reader may need; most formats need few of them.
 struct CacheOptions {
-  double frames_per_second = 1;  ///< finite and > 0; for formats whose times are frames (PC2, npy)
+  double frames_per_second = 1;  ///< finite and > 0; for formats whose times are in frames (PC2, npy)
   std::size_t vertex_count = 0;  ///< vertices of the mesh, to choose among the channels of a Maya cache; 0 if unknown
   std::string channel;           ///< name of a channel of a Maya cache; if empty, vertex_count decides
 };
 
-/// Gives the samples of a cache the faces of a mesh, as a sequence or another kind that is known. Every keyframe takes
-/// the name of the cache. The result is valid (motion/motion.h), except that samples without positions give keyframes
-/// without positions.
-/// keyframes without any.
+/// Combines the samples of a cache with the faces of a mesh into a sequence or a motion of another given kind. Every
+/// keyframe gets the name of the cache. The result is valid (motion/motion.h), except that samples without positions
+/// give keyframes without positions.
 ///
-/// Errors: kInvalidInput with cache_name in the place: another number of vertices than the mesh (the message has both),
-/// fewer than two samples, times that do not ascend as the kind has it (the place has the sample).
+/// Errors: kInvalidInput with cache_name in the place, for a number of vertices that differs from the mesh's (the
+/// message has both), for fewer than two samples, and for times that do not ascend as the kind demands (the place has
+/// the sample).
 [[nodiscard]] Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
                                                const std::string& cache_name, MotionKind kind = MotionKind::kSequence);
 
 /// Checks that the keyframes of a motion are a list of two samples or more. Errors: kUsage without a place.
 [[nodiscard]] Status check_keyframes(const Motion& motion);
 
-/// Checks this, and that segments join all neighbours: such a motion is one sequence, which even the simplest format
-/// can hold. Errors: kUsage without a place.
+/// Checks that segments join all neighbouring keyframes: such a motion is a plain sequence, which even the simplest
+/// format can store. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
 /// Calls each() with the coordinates of one keyframe after the other, as bytes of float32, to which the origin of the

@@ -24,7 +24,7 @@ namespace chronormal {
 namespace {
 
 // Returns the triangles of a list, strip or fan (section 3.7.2.1 of the specification). Every second triangle of a
-// strip is turned round, so that all face the same side. Indices left over make no triangle.
+// strip is reversed, so that all face the same side. Remaining indices form no triangle.
 std::vector<std::uint32_t> to_triangles(int mode, std::vector<std::uint32_t> elements) {
   if (mode == 4) {
     elements.resize(elements.size() - elements.size() % 3);
@@ -95,7 +95,8 @@ Result<GltfDocument> GltfDocument::open(const std::string& path, const GltfOptio
 Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
                                         const std::optional<std::string>& folder, const GltfOptions& options) {
   Result<GltfDocument> document = read(file.bytes(), name, folder, options);
-  // The bytes stay where they are when the file moves: mapped, or in a string that is too long to lie in its object.
+  // The bytes stay at their address when `file` is moved: they are mapped, or in a string that is too long to be stored
+  // inside its object.
   if (document) document.value().state_->file = std::move(file);
   return document;
 }
@@ -142,8 +143,8 @@ Result<GltfKeys> assembled_keys(gltf::Bytes& bytes, const gltf::TrackSource& sou
   return keys;
 }
 
-// Counts the keys of tracks that are put together from channels with different times. If these cannot be read, the
-// number stays as it is, and an attempt to read the keys reports the error.
+// Counts the keys of tracks that are assembled from channels with different times. If these cannot be read, the number
+// does not change, and reading the keys reports the error later.
 void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
   for (std::size_t a = 0; a < model.animations.size(); ++a) {
     for (std::size_t t = 0; t < model.animations[a].tracks.size(); ++t) {
@@ -157,8 +158,8 @@ void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
   }
 }
 
-// Drops the tracks whose numbers cannot be read, with a note for each array that is at fault. Arrays without their own
-// bytes are only checked when keys are asked for.
+// Drops the tracks whose numbers cannot be read, with a note for each array at fault. Arrays without their own bytes
+// are only checked when keys are read.
 void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
   std::map<std::pair<std::size_t, bool>, bool> known;  // by the accessor, and whether it has times
   const auto can_read = [&](std::size_t accessor, bool has_times) {
@@ -183,7 +184,7 @@ void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
     for (std::size_t t = 0; t < tracks.size(); ++t) {
       if (!can_read_all(sources[t])) continue;
       now[t] = kept;
-      // A track with the same keys was read as well as this one.
+      // A track with the same keys was read like this one, so it exists too.
       tracks[t].same_keys_as = now[tracks[t].same_keys_as];
       if (kept != t) {
         tracks[kept] = std::move(tracks[t]);
@@ -252,7 +253,7 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
     }
   }
 
-  // A compressed mesh may hold all of the attributes or some.
+  // A compressed mesh may contain all attributes or some.
   if (Status status =
           state_->read(source.base, wanted.shading, geometry.positions, geometry.normals, geometry.tangents);
       !status)

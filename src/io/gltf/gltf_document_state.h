@@ -20,12 +20,12 @@ struct GltfDocument::State {
   State(GlbChunks found, gltf::Model parsed, gltf::Origin asset, std::size_t most)
       : chunks(found), model(std::move(parsed)), name(asset.name), bytes(model, std::move(asset)), most_bytes(most) {}
 
-  // Returns an error if the arrays of a primitive and so many targets would take too much memory.
+  // Returns an error if the arrays of a primitive and this many targets would take too much memory.
   [[nodiscard]] Status check_size(std::size_t mesh, std::size_t primitive, std::size_t targets, bool shading);
   // Reads the wanted arrays that an object of attributes names, except arrays that already have values.
   [[nodiscard]] Status read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
                             std::vector<float>& normals, std::vector<float>& tangents);
-  // Gives memory back that holds the files, after so many vertices were read.
+  // Releases memory that maps the files, after this many vertices were read.
   void release(std::size_t vertices) const noexcept;
 
   std::optional<FileBytes> file;  // if the document keeps it

@@ -29,7 +29,7 @@ struct GltfEdit::State {
 
   [[nodiscard]] Status apply(const Change& change, JsonText& json) const;
   [[nodiscard]] Result<gltf::EditLayout> lay_out(gltf::LayoutTarget target);
-  /// Returns what a path asks for. An empty path stands for the file of the source itself.
+  /// Returns the target for a path. An empty path means the file of the source itself.
   [[nodiscard]] Result<gltf::LayoutTarget> target_of(const std::string& path) const;
 
   GltfDocument::State& document;

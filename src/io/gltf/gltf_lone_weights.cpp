@@ -1,18 +1,18 @@
 // Evaluates the channel of one weight at the keys of all weights of its node. Pieces of lines, steps and cubics are
-// lines, steps and cubics, so that nothing is lost.
+// lines, steps and cubics again, so nothing is lost.
 #include "io/gltf/gltf_lone_weights.h"
 
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// Holds the three numbers that a cubic spline has at each of its keys.
+// The three numbers of a cubic spline at a key.
 struct Row {
   double in_tangent = 0, value = 0, out_tangent = 0;
 };
 
 double number(std::span<const float> numbers, std::size_t i) { return static_cast<double>(numbers[i]); }
 
-// Returns the key of this index as the file has it.
+// Returns the key with this index, as in the file.
 Row key_at(const LoneKeys& keys, std::size_t k) {
   if (keys.interpolation != GltfInterpolation::kCubicSpline) return {0, number(keys.values, k), 0};
   return {number(keys.values, 3 * k), number(keys.values, 3 * k + 1), number(keys.values, 3 * k + 2)};
@@ -23,7 +23,7 @@ double slope_after(const LoneKeys& keys, std::size_t k) {
   return (number(keys.values, k + 1) - number(keys.values, k)) / (number(keys.times, k + 1) - number(keys.times, k));
 }
 
-// Returns a row at one of the keys of the channel. If the channel is constant on one side, the row is too.
+// Returns the row at a key of the channel. If the channel is constant on one side of the key, so is the row.
 Row row_at_key(const LoneKeys& keys, std::size_t k, bool is_first, bool is_last) {
   Row row = key_at(keys, k);
   const bool begins = k == 0, ends = k + 1 == keys.times.size();

@@ -10,17 +10,18 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Holds the keys of a channel for one weight, with as many values as keys, or three times as many for a cubic spline.
+/// The keys of a channel for one weight, with as many values as keys, or three times as many for a cubic spline.
 struct LoneKeys {
-  std::span<const float> times;   ///< ascending; one at least
+  std::span<const float> times;   ///< ascending; at least one
   std::span<const float> values;  ///< for a cubic spline: in-tangent, value, out-tangent of each key
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
 };
 
-/// Writes the weight at each of `times` into values[target + width * i], so that the track takes the same course as the
+/// Writes the weight at each of `times` into values[target + width * i], so that the track has the same curve as the
 /// channel. The times must ascend, and contain all keys of the channel. Before its first key and after its last, the
 /// channel is constant. In a cubic track each time has three rows, of which the first and the last are the slopes
-/// before and after it; the channel may then be linear or cubic. Otherwise it must have the interpolation of the track.
+/// before and after the time; the channel may then be linear or cubic. Otherwise the channel must have the
+/// interpolation of the track.
 void write_column(const LoneKeys& keys, std::span<const float> times, bool is_cubic_track, std::size_t target,
                   std::size_t width, std::span<double> values) noexcept;
 

@@ -24,7 +24,7 @@ using gltf::WeightCurve;
 // A face that speaks for a quarter of an hour needs some 200,000 pieces at the usual tolerance.
 constexpr std::size_t kMostPieces = 250000;
 
-// Collects the primitives of a motion, one after the other, and what moves them.
+// Collects the primitives of a motion in order, with the targets and tracks that move them.
 class Assembly {
  public:
   Assembly(const GltfDocument& document, bool world) : document_(document), world_(world) {}
@@ -90,7 +90,7 @@ class Assembly {
   // Reads geometry and faces of all parts.
   [[nodiscard]] Status read(bool with_targets) {
     std::vector<std::uint32_t> corners;
-    std::uint32_t body = 0;  // number of a mesh as one node carries it
+    std::uint32_t body = 0;  // number of a mesh in a node
     for (std::size_t p = 0; p < parts().size(); ++p) {
       GltfPart& part = result_.parts[p];
       Result<GltfGeometry> geometry = document_.geometry(part.mesh, part.primitive, {false, with_targets});
@@ -289,7 +289,8 @@ class AnimationReader {
     return Success{};
   }
 
-  // Returns the most keyframes that so many pieces of time have: one at each end, and two where weights jump.
+  // Returns the largest number of keyframes for a number of pieces of time: one at each end, and two where weights
+  // jump.
   [[nodiscard]] std::size_t keyframes_of(std::size_t pieces) const {
     const bool jump = std::any_of(curves_.begin(), curves_.end(), [](const WeightCurve& c) { return c.jumps(); });
     return jump ? 2 * pieces : pieces + 1;
@@ -378,7 +379,8 @@ class AnimationReader {
     return weights;
   }
 
-  // Adds the keyframes at both ends of a piece of time. The first is the one before it unless the weights jump there.
+  // Adds the keyframes at both ends of a piece of time. The first one is shared with the previous piece unless the
+  // weights jump there.
   Status add_piece(double from, double to) {
     const Motion& motion = assembly_.motion();
     for (const auto& [time, just_before] : {std::pair(from, false), std::pair(to, true)}) {

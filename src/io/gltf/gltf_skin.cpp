@@ -29,7 +29,8 @@ Quaternion as_rotation(const Quaternion& q) {
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
-// Returns the rotation at a time. LINEAR keys are interpolated along the arc between them, as the specification says.
+// Returns the rotation at a time. LINEAR keys are interpolated along the arc between them, as the specification
+// demands.
 Quaternion rotation_at(const gltf::WeightCurve& curve, GltfInterpolation interpolation, double time, bool just_before) {
   Quaternion rotation;
   const auto times = curve.times();
@@ -128,7 +129,7 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
   if (source.influence_fault) return *source.influence_fault;
   const std::vector<gltf::InfluenceSource>& sets = source.influences;
   if (sets.empty()) return invalid_input(state.bytes.place(pointer), "there is no JOINTS_0 for the skin of the mesh");
-  // Sets may be many, and all of one accessor.
+  // A file may have many sets of weights that all use the same accessor.
   constexpr std::uint64_t kOfVertex = 4 * (2 * sizeof(float) + sizeof(JointShare));
   const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / kOfVertex / sets.size();
   if (Status status = state.bytes.expansion().check(
@@ -137,7 +138,7 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
       !status)
     return status;
   std::vector<std::vector<float>> joints(sets.size()), weights(sets.size());
-  // Decode all joints and weights that a compressed mesh holds together.
+  // Decodes all joints and weights that a compressed mesh contains together.
   std::vector<gltf::AttributeSource> compressed;
   std::vector<std::pair<std::string, std::vector<float>*>> of_compressed;
   for (std::size_t n = 0; n < sets.size(); ++n) {

@@ -1,12 +1,11 @@
-/// Skins of glTF files: where their joints are at any time, and which of them the vertices follow. Private to io and
+/// Skins of glTF files: the transforms of their joints at any time, and the joints of each vertex. Private to io and
 /// workflow.
 ///
-///     joint matrix    the transform of the joint in the world, after the inverse bind matrix of the skin. It takes a
-///                     vertex of the mesh to where that joint carries it (section 3.7.3.3 of the specification). The
-///                     place of the node that has the skin does not matter.
+///     joint matrix    the transform of the joint in the world, after the inverse bind matrix of the skin. It maps a
+///                     vertex of the mesh to its position if it follows only this joint (section 3.7.3.3 of the
+///                     specification). The transform of the node with the skin does not matter.
 ///
-/// Opening a document checks nothing of this, so that a file whose skin makes no sense can still be read by
-/// callers that do not need it.
+/// Opening a document does not check skins, so that callers that do not need them can read a file with an invalid skin.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
 #define CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
 
@@ -23,7 +22,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds a joint of the skin that a vertex follows, and its share.
+/// A joint of a vertex, and its weight.
 struct JointShare {
   std::uint32_t joint = 0;
   double share = 0;
@@ -31,8 +30,8 @@ struct JointShare {
 
 class GltfSkin {
  public:
-  /// Reads the skin of a node and what an animation does to its joints; without an animation they stand as the file has
-  /// them. Errors: kInvalidInput with the JSON pointer, if the skin or the animation breaks the specification
+  /// Reads the skin of a node, and the animation of its joints; without an animation, joints are as in the file.
+  /// Errors: kInvalidInput with the JSON pointer, if the skin or the animation violates the specification
   [[nodiscard]] static Result<GltfSkin> read(const GltfDocument& document, std::size_t node,
                                              std::optional<std::size_t> animation);
 
@@ -51,8 +50,8 @@ class GltfSkin {
   /// Returns the times of the keys of all its curves, ascending, each once.
   [[nodiscard]] std::vector<double> key_times() const;
 
-  /// Returns the joint matrices at a time. Where joints jump, they are the ones just after the time, or just before it
-  /// if just_before is set. O(joints and nodes above them).
+  /// Returns the joint matrices at a time. If joints jump, they are those just after the time, or just before it if
+  /// just_before is set. O(joints and nodes above them).
   [[nodiscard]] std::vector<AffineTransform> pose(double time, bool just_before) const;
 
  private:
@@ -68,12 +67,12 @@ class GltfSkin {
     gltf::WeightCurve curve;
   };
 
-  // Numbers the joints and all nodes above them.
+  // Numbers the joints and all their ancestors.
   void add_bones(const GltfDocument& document);
   [[nodiscard]] Status add_curve(const GltfDocument& document, const gltf::NodeChannel& channel);
 
   std::vector<std::uint32_t> joints_;        // nodes
-  std::vector<std::uint32_t> bone_of_node_;  // kNoBone if a node is no bone
+  std::vector<std::uint32_t> bone_of_node_;  // kNoBone if the node is not a bone
   std::vector<std::uint32_t> bone_of_joint_;
   std::vector<AffineTransform> inverse_binds_;
   std::vector<Bone> bones_;

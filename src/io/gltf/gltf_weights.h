@@ -10,11 +10,11 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Gives the weights of one node (N targets) as functions of time: constant before the first key and after the last,
-/// and between keys as in appendix C of the glTF specification.
+/// The weights of a node (N targets) as functions of time: constant before the first key and after the last, and
+/// between keys by appendix C of the glTF specification.
 class WeightCurve {
  public:
-  /// keys are as GltfDocument::keys() returns them.
+  /// Takes keys from GltfDocument::keys().
   WeightCurve(GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count)
       : target_count_(target_count), interpolation_(interpolation), keys_(std::move(keys)) {}
 
@@ -23,11 +23,11 @@ class WeightCurve {
 
   [[nodiscard]] std::span<const double> times() const noexcept { return keys_.times; }
 
-  /// Writes the weights at a time. Where they jump, takes the ones just after it, or just before it if just_before is
-  /// set.
+  /// Writes the weights at a time. If they jump, they are those just after the time, or just before it if just_before
+  /// is set.
   void at(double time, bool just_before, std::span<double> weights) const noexcept;
 
-  /// Writes a bound of |w''| of every weight between two times that lie between the same two keys; 0 if the weights are
+  /// Writes a bound of |w''| for every weight between two times within the same key interval; 0 if the weights are
   /// linear or constant.
   void curvature(double from, double to, std::span<double> bounds) const noexcept;
 

@@ -79,7 +79,7 @@ Motion connected(Topology topology, std::vector<Motion::Keyframe> keyframes) {
   return motion;
 }
 
-// Makes a wave in which every point runs round an ellipse, and a weaker one across it.
+// Makes a wave in which every point moves around an ellipse, and a weaker wave across it.
 Motion cloth() {
   const Grid grid{133, 132, false};
   std::vector<Motion::Keyframe> keyframes;
@@ -123,7 +123,7 @@ Motion twist() {
   return connected(grid.topology(), {column(0, 0), column(1, 2 * kPi / 3)});
 }
 
-// Turns a sphere inside out: every point goes past the centre to the opposite side, turning as it goes.
+// Turns a sphere inside out: every point passes the centre to the opposite side, rotating on the way.
 Motion eversion() {
   const Grid grid{100, 105, true};
   const auto sphere = [&grid](double time, double scale, double turn) {
@@ -142,7 +142,7 @@ Motion soup() {
   std::mt19937_64 random(20110601);
   std::vector<std::uint32_t> corners(3 * kFaces);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
-  // Random numbers are made by hand here, since the standard distributions differ between libraries.
+  // Makes random numbers without the standard distributions, which differ between libraries.
   const auto coordinate = [&random] {
     return static_cast<float>(std::ldexp(static_cast<double>(random() >> 40), -23) - 1);
   };
@@ -168,8 +168,8 @@ Motion bumps() {
       const double radius = 1 + 0.03 * portable::sin(5 * around) * portable::sin(6 * down);
       const Vec3d base = radius * Vec3d{out.x, 0.85 * out.y, 1.2 * out.z};
       if (target == 0) return base;
-      // There are four rows of three on the front, which looks along x. Every other one pushes out, the others along
-      // the skin.
+      // The front, which faces x, has four rows of three targets. Every other one pushes outwards, the others move
+      // along the skin.
       const std::size_t row = (target - 1) / 3, column = (target - 1) % 3;
       const double centre_around = 0.45 * (static_cast<double>(column) - 1);
       const double centre_down = kPi / 2 + 0.35 * (static_cast<double>(row) - 1.5);

@@ -1,4 +1,4 @@
-// Holds the one table of file formats.
+// The only table of file formats.
 #include "io/input/formats.h"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ bool is_obj(std::string_view first_bytes) {
     if (keyword.empty() || keyword.starts_with('#')) continue;
     return std::find(kKeywords.begin(), kKeywords.end(), keyword) != kKeywords.end();
   }
-  return has_comment;  // nothing but comments so far
+  return has_comment;  // only comments so far
 }
 
 bool is_ply(std::string_view first_bytes) {

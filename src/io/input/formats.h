@@ -1,8 +1,8 @@
-/// The one table of file formats: how each is recognised, what it holds, and which functions read and write it. Private
-/// to io.
+/// The only table of file formats: how each is recognised, what kind of data it contains, and which functions read and
+/// write it. Private to io.
 ///
-/// A new format is a new entry. tests/io/input/formats_test.cpp and motion_readers_test.cpp walk the table and fail for
-/// a reader that has no truncation, boundary and mutation tests, or no fuzz target fuzz/NAME_fuzz.cpp.
+/// A new format is a new entry. tests/io/input/formats_test.cpp and motion_readers_test.cpp go through the table and
+/// fail for a reader without truncation, boundary and mutation tests, or no fuzz target fuzz/NAME_fuzz.cpp.
 #ifndef CHRONORMAL_IO_INPUT_FORMATS_H_
 #define CHRONORMAL_IO_INPUT_FORMATS_H_
 
@@ -34,13 +34,13 @@ struct Format {
   std::string_view name;  ///< "obj": for messages, and name of its fuzz target
   Holds holds;
   std::span<const std::string_view> extensions;  ///< lower case, with the dot: ".obj"
-  /// Returns whether a file that begins with these bytes (a few hundred are enough) looks like this format. It is
-  /// nullptr if only the extension tells.
+  /// Returns true if a file that begins with these bytes (a few hundred are enough) looks like this format. nullptr if
+  /// only the extension tells.
   bool (*recognises)(std::string_view first_bytes) = nullptr;
 
-  // Only the reader that matches what the format holds is set. It is nullptr too for glTF, targets and Maya's
-  // descriptions, which need more than bytes. name is for messages. Errors: kInvalidInput, always with a place.
-  // Positions count from the origin (io/mesh/far_origin.h).
+  // Only the reader for the kind of data of the format is set. None is set for glTF, targets and Maya's descriptions,
+  // which need more than bytes. `name` is for messages. Errors: kInvalidInput, always with a place. The origin is
+  // subtracted from positions (io/mesh/far_origin.h).
   Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name, const Origin& origin) = nullptr;
   /// Reads a mesh with smoothing groups and normals; nullptr if the format is read without them.
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name,
@@ -50,55 +50,54 @@ struct Format {
                                         const Origin& origin) = nullptr;
   Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second,
                                 std::size_t max_expansion) = nullptr;
-  /// Reads the same motion as read_motion, but leaves the positions of keyframes in the file; nullptr if the keyframes
-  /// of the format cannot be read one by one.
+  /// Reads the same motion as read_motion, but leaves the positions of keyframes in the file; nullptr if keyframes
+  /// cannot be read one by one.
   Result<Motion> (*read_outline)(std::string_view bytes, const std::string& name, double frames_per_second,
                                  std::size_t max_expansion, std::optional<CacheLayout>& layout) = nullptr;
   Result<PositionCache> (*read_cache)(std::string_view bytes, const std::string& name,
                                       const CacheOptions& options) = nullptr;
 
-  /// Finds where samples lie (io/cache/cache_layout.h); nullptr if they cannot be read one by one.
+  /// Finds the places of samples (io/cache/cache_layout.h); nullptr if samples cannot be read one by one.
   Result<CacheLayout> (*find_layout)(std::string_view bytes, std::uint64_t size, const std::string& name,
                                      const CacheOptions& options) = nullptr;
 
-  // Both write the format; nullptr if nothing does.
+  // The next two write the format; nullptr if that is not supported.
   std::string (*write_mesh)(const Topology& topology, VectorView<const float> positions,
                             const Origin& origin) = nullptr;
   Status (*write_motion)(MotionStream& stream, OutputFile& file) = nullptr;
 };
 
-/// Returns all formats, in the order in which they are asked whether they recognise a file.
+/// Returns all formats, in the order in which `recognises` is called.
 [[nodiscard]] std::span<const Format> formats() noexcept;
 
-/// Returns the format whose extension the file name has, in upper or lower case, or nullptr if there is none.
+/// Returns the format with the extension of the file name, in upper or lower case, or nullptr if there is none.
 [[nodiscard]] const Format* find_format(std::string_view file_name) noexcept;
 
 /// Returns the format of a file by its extension, or else by its content (the standard input, an unknown extension).
 /// Returns nullptr if neither tells.
 [[nodiscard]] const Format* find_format(std::string_view file_name, std::string_view bytes) noexcept;
 
-/// Begins a message about a file that has no format: "neither the name nor the content tells the format", where `what`
-/// is "the format"; or "this is a PNG image", if the bytes are of a known kind.
+/// Returns the beginning of a message about a file of unknown format: "neither the name nor the content tells the
+/// format", where `what` is "the format"; or "this is a PNG image", if the bytes are of a known kind.
 [[nodiscard]] std::string unknown_format(std::string_view bytes, std::string_view what);
 
-/// Says what to do about a file whose format is not read here, but which other programs can convert, by its name or its
-/// first bytes: "this is an FBX file, which is not read: ...". Returns an empty text for other files.
+/// Recommends what to do about a file, recognised by its name or its first bytes, that is not supported but that other
+/// programs can convert: "this is an FBX file, which is not read: ...". Returns an empty text for other files.
 [[nodiscard]] std::string way_in(std::string_view file_name, std::string_view bytes);
 
-/// Returns ".obj, .ply": the extensions of all formats that hold one of these, for messages; the last one follows
-/// `last`.
+/// Returns ".obj, .ply" for messages: the extensions of all formats of these kinds, with `last` before the last one.
 [[nodiscard]] std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last = ", ");
 
-/// Says what is wanted of a mesh file beside positions and faces, if its format has it. No format has both.
+/// The data to read from a mesh file besides positions and faces, if its format has them. No format has both.
 struct WantedOfMesh {
   bool shading = false;
   bool velocities = false;
-  Origin origin = {};  ///< the point from which positions are to count
+  Origin origin = {};  ///< the point that is subtracted from positions
 };
 
-/// Detects the format of a mesh and reads the wanted attributes that it stores. place is for messages, and begins the
-/// place of every error. Errors: kInvalidInput if the format holds no mesh, with a message that lists what can be read;
-/// errors of the reader.
+/// Detects the format of a mesh and reads the requested attributes that it stores. `place` is for messages, and begins
+/// the place of every error. Errors: kInvalidInput if the format does not contain a mesh, with a message that lists the
+/// supported formats; those of the reader.
 [[nodiscard]] Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name,
                                           const std::string& place, WantedOfMesh wanted = {});
 

@@ -1,5 +1,5 @@
-// Finds the glTF files that inputs stand for. Keyframes and glTF files are told apart only by their names. A folder
-// whose own files are meshes is a sequence, whatever its subfolders hold.
+// Finds the glTF files among inputs. Keyframes and glTF files are distinguished only by their names. A folder whose own
+// files are meshes is a sequence, whatever its subfolders contain.
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -30,7 +30,7 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::string own_mesh, own_gltf;
   while (!code && entries != fs::recursive_directory_iterator{}) {
     const std::string path = entries->path().string();
-    std::error_code ignored;  // a broken link is no file
+    std::error_code ignored;  // a broken link is not a file
     if (file_name_of(path).starts_with('.')) {
       entries.disable_recursion_pending();
     } else if (!fs::is_directory(path, ignored)) {

@@ -1,6 +1,6 @@
-// The one entry for everything that is read. open_input() goes through the forms that an input can have, in this order:
-// a built-in morph, a base with its targets, a cache with its mesh, one file that is whole, the files of a sequence.
-// The extension of a file tells its format, or else its content, which has been read by then: no file is opened twice.
+// The entry point for reading any input. open_input() tries the forms of an input in this order: a built-in morph, a
+// base with its targets, a cache with its mesh, a single file with everything, the files of a sequence. The extension
+// of a file tells its format, or else its content; no file is opened twice.
 #include "chronormal/io/input.h"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ Error chooses_nothing(const InputOptions& options) {
                 "it chooses among the keyframes of a sequence, which this is not");
 }
 
-// Holds what was opened: a document, or else a motion or a mesh.
+// The result of opening: a document, or else a motion or a mesh.
 struct Opened {
   std::optional<GltfDocument> document;
   std::size_t file_size = 0;  // size of the document
@@ -171,8 +171,8 @@ Result<PositionCache> outline_of(const CacheLayout& layout) {
   return cache;
 }
 
-// Holds the layout of a cache whose samples can be read one by one. There is none if they cannot, or if something is
-// wrong, which the reader of the whole file reports.
+// The layout of a cache whose samples can be read one by one. It is missing if they cannot, or if the file has a fault,
+// which the reader of the whole file then reports.
 struct FoundSamples {
   PositionedFile file;
   CacheLayout layout;
@@ -195,10 +195,11 @@ void note_if_far(const Origin& origin, std::span<const float> first, ReadMotion&
   if (std::string note = note_of_lost_digits(first); !note.empty()) read.notes.push_back(std::move(note));
 }
 
-// Returns a doubt that a cache has the vertices of a mesh in another order, or belongs to another mesh; empty if
-// nothing suggests it. Motion keeps the lengths of edges, or changes them smoothly. If vertices are in a wrong order,
-// edges are as long as the distances of any two points, which are much longer in all but the smallest meshes. There the
-// coordinates tell, each axis by itself: if they are the coordinates of the mesh in another order, so are the vertices.
+// Returns a warning if a cache seems to have the vertices of a mesh in another order, or to belong to another mesh;
+// otherwise an empty text. Motion keeps the lengths of edges, or changes them smoothly. If vertices are in a wrong
+// order, edges are as long as the distances between arbitrary points, which are much longer except in the smallest
+// meshes. In small meshes the coordinates are compared, each axis separately: if they are the coordinates of the mesh
+// in another order, so are the vertices.
 std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh, const std::vector<float>& first) {
   constexpr double kTolerance = 1e-4, kFarther = 2, kSpread = 0.15;
   constexpr std::size_t kFewCoordinates = 1 << 20;  // are sorted in no time
@@ -293,7 +294,7 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   Result<PositionCache> cache = samples ? outline_of(samples->layout) : read_cache(input, cache_options, options);
   if (!cache) return cache.error();
   const Origin of_mesh_origin = read.motion.origin, of_cache_origin = cache.value().origin;
-  // The files of a cache have at least as many bytes as its positions.
+  // The size of the files of a cache is estimated by its positions.
   read.bytes_read += sizeof(float) * 3 * std::uint64_t{cache.value().vertex_count} * cache.value().samples.size();
   if (options.progress) options.progress(2, 2);
   Result<Motion> motion =
@@ -323,7 +324,7 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   return read;
 }
 
-// Reads a mesh that does not move, as one keyframe.
+// Reads a mesh without motion, as a single keyframe.
 Result<ReadMotion> read_still_mesh(std::string_view bytes, const std::string& path, const InputOptions& options) {
   if (options.chooses_frames()) return chooses_nothing(options);
   ReadMotion read;
@@ -334,8 +335,8 @@ Result<ReadMotion> read_still_mesh(std::string_view bytes, const std::string& pa
   return read;
 }
 
-// Returns whether one input is a file by itself, and not a pattern or a folder, that may be whole. A mesh is whole only
-// if one that does not move is allowed.
+// Returns true if an input is a single file, not a pattern or a folder, that may contain everything. A mesh counts only
+// if meshes without motion are allowed.
 bool may_be_whole(const std::string& input, const InputOptions& options) {
   const Format* const format = find_format(input);
   if (format != nullptr && format->holds == Holds::kMesh && !options.allow_mesh) return false;
@@ -363,7 +364,7 @@ Result<Opened> open_document(FileBytes file, const std::string& path, const Inpu
   return opened;
 }
 
-// Reads a file that holds a whole motion, or only its outline if samples can be read one by one.
+// Reads a file with a whole motion, or only its outline if samples can be read one by one.
 Status read_whole_motion(const Format& format, std::string_view bytes, const std::string& path,
                          const InputOptions& options, ReadMotion& read) {
   const std::string name = file_name_of(path);
@@ -382,7 +383,7 @@ Status read_whole_motion(const Format& format, std::string_view bytes, const std
     note_if_far(read.motion.origin, read.motion.keyframes.front().positions, read);
     return keep_chosen(options, read.motion);
   }
-  // Faults of the first sample are found when it is read again.
+  // Faults of the first sample are found when it is read again later.
   first.resize(layout->coordinates());
   if (read_sample(*layout, *file, name, 0, first)) note_if_far(layout->origin, first, read);
   Result<MotionStream> stream =
@@ -392,7 +393,7 @@ Status read_whole_motion(const Format& format, std::string_view bytes, const std
   return Success{};
 }
 
-// Opens an input that is one file.
+// Opens an input that is a single file.
 Result<Opened> open_whole(const std::string& path, const InputOptions& options) {
   Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();
@@ -494,7 +495,7 @@ struct Input::State {
   std::size_t most_pieces = kMostPieces, kept_bytes = 0;
   std::optional<CutPath> cut;
   std::optional<Error> cut_error;
-  // The next members belong to the document, and are set once it was asked for them.
+  // The next members are for a document, and are set when they are first requested.
   bool has_motion = true, has_normals = true;
   std::vector<GltfPart> parts;
   double curve_error = 0;

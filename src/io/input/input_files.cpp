@@ -1,4 +1,4 @@
-// Finds the files that inputs stand for, in order, and reads one mesh from them.
+// Finds the files of inputs, in order, and reads single meshes from them.
 #include "io/input/input_files.h"
 
 #include <glob.h>
@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view kNoneMatches = "no file of this name, and none that matches it";
 constexpr std::string_view kTopologyMustNotChange = ": topology must not change between keyframes";
 
-// Takes the digits at the front of text, and drops leading zeros.
+// Removes the digits at the beginning of the text, and returns them without leading zeros.
 std::string_view take_number(std::string_view& text) {
   std::size_t end = 0;
   while (end < text.size() && scan::is_digit(text[end])) ++end;
@@ -54,7 +54,7 @@ std::optional<std::pair<std::string, std::string>> around_number(const std::stri
   return std::pair{input.substr(0, percent), std::string(rest.substr(1))};
 }
 
-// Finds the files whose names have a number there, and nothing else.
+// Finds the files whose names have only a number at this place.
 std::vector<std::string> match_numbered(const std::string& before, const std::string& after) {
   // A backslash is a part of the name here.
   std::vector<std::string> files = match_pattern(before + "[0-9]*" + after, GLOB_NOESCAPE);
@@ -220,18 +220,18 @@ double closing_time(std::span<const double> times, std::span<const std::size_t> 
 
 namespace {
 
-// Gives both ends of a loop the velocities of the curve that goes round.
+// Gives both ends of a loop the velocities of the closed curve.
 Status set_loop_velocities(const InputOptions& options, std::size_t count,
                            const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   const Result<std::vector<std::size_t>> frames = choose_frames(count, options);
   if (!frames) return frames.error();
   const std::size_t round = chosen.keyframes.size() - 1;
   const double period = chosen.keyframes.back().time - chosen.keyframes.front().time;
-  constexpr std::size_t kBeside = 3;  // velocities depend on so many keyframes on each side
+  constexpr std::size_t kBeside = 3;  // number of keyframes on each side on which velocities depend
   std::vector<double> times;
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i <= 2 * kBeside; ++i) {
-    const std::size_t rounds = kBeside, at = i + rounds * round - kBeside;  // counted from as many rounds before
+    const std::size_t rounds = kBeside, at = i + rounds * round - kBeside;  // counted from that many rounds earlier
     times.push_back(chosen.keyframes[at % round].time +
                     (static_cast<double>(at / round) - static_cast<double>(rounds)) * period);
     which.push_back(frames.value()[at % round]);
@@ -256,7 +256,7 @@ Status set_end_velocities(const InputOptions& options, std::span<const double> t
                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   if (!options.is_curved() || !options.chooses_frames()) return Success{};
   if (options.loop) return set_loop_velocities(options, times.size(), read, chosen);
-  // Only the keyframes that the same step chooses from the whole sequence count.
+  // Uses only the keyframes of the whole sequence that the same step selects.
   const std::size_t start = options.from % options.every, first = options.from / options.every;
   std::vector<double> of_whole, of_part;
   for (std::size_t k = start; k < times.size(); k += std::min(options.every, times.size()))

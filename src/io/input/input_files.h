@@ -1,4 +1,4 @@
-/// The files that inputs stand for, and reading one mesh from them, for sequences, targets and caches. Private to io.
+/// Finds the files of inputs, and reads single meshes, for sequences, targets and caches. Private to io.
 #ifndef CHRONORMAL_IO_INPUT_INPUT_FILES_H_
 #define CHRONORMAL_IO_INPUT_INPUT_FILES_H_
 
@@ -16,21 +16,21 @@
 
 namespace chronormal::inline internal {
 
-/// Holds a motion as it is read from files, and what they store beside it.
+/// A motion as it is read from files, with other data that the files store.
 struct ReadMotion {
   Motion motion;
-  std::optional<MotionStream> stream = {};  ///< stream of the motion, or instead of it if keyframes are still in files
+  std::optional<MotionStream> stream = {};  ///< the motion as a stream, if keyframes are still in files
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
   std::string shaded_by;                      ///< as Input has it
   std::vector<std::string> other_files = {};  ///< files of a sequence that are examined for more digits than float32 if
                                               ///< its first file has none
   std::uint64_t bytes_read = 0;               ///< size of all files
-  std::vector<std::string> notes = {};        ///< as Input has them
+  std::vector<std::string> notes = {};        ///< notes as in Input
   std::optional<FileSeries> series = {};      ///< as Input has it
 };
 
-/// Returns the files of a folder that count, in any order.
+/// A function that returns the relevant files of a folder, in any order.
 using FolderLister = std::function<Result<std::vector<std::string>>(const std::string& folder)>;
 
 /// Returns whether path a comes before b. Runs of digits count as numbers of any size; plain order breaks ties.
@@ -41,9 +41,9 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 /// Sorts the files by stands_before().
 [[nodiscard]] Status sort_by_number(const std::string& input, std::vector<std::string>& files);
 
-/// Returns the files that the options stand for, in order, as io/input.h describes them. list_folder lists folders, and
-/// `sort` sorts the files of folders and patterns. Does not open the files. Errors: kFailed if nothing of that name
-/// exists or nothing matches a pattern; kUsage for "-" twice; errors of list_folder and sort. The place is the input.
+/// Returns the files that the options name, in order, as io/input.h describes. list_folder lists folders, and `sort`
+/// sorts the files of folders and patterns. Does not open the files. Errors: kFailed if nothing of that name exists or
+/// nothing matches a pattern; kUsage for "-" twice; those of list_folder and sort. The place is the input.
 [[nodiscard]] Result<std::vector<std::string>> find_input_files(const InputOptions& options,
                                                                 const FolderLister& list_folder,
                                                                 const FileSorter& sort = sort_by_number);
@@ -59,17 +59,17 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
 
-/// Returns the keyframes that the options choose among so many. In a loop, the first of them comes again at the end.
-/// Errors: kUsage with the option as the place, if there are fewer than two.
+/// Returns which of `count` keyframes the options select. In a loop, the first of them is repeated at the end. Errors:
+/// kUsage with the option as the place, if there are fewer than two.
 [[nodiscard]] Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOptions& options);
 
-/// Returns the time at which a loop comes back to the first of these keyframes, which is also the last one. times are
+/// Returns the time at which a loop returns to the first of these keyframes, which is also the last one. `times` are
 /// the times of all keyframes of the sequence.
 [[nodiscard]] double closing_time(std::span<const double> times, std::span<const std::size_t> frames);
 
 /// Gives the first and the last chosen keyframe their end_velocities, if vertices move on curves and the velocities
-/// depend on keyframes beyond these ends. If every N-th keyframe is chosen, these are every N-th, too. times are the
-/// times of all keyframes of the sequence, and read(k) returns the positions of one of them.
+/// depend on keyframes beyond these ends. If every N-th keyframe is chosen, the keyframes beyond are every N-th, too.
+/// `times` are the times of all keyframes of the sequence, and read(k) returns the positions of keyframe k.
 [[nodiscard]] Status set_end_velocities(const InputOptions& options, std::span<const double> times,
                                         const std::function<Result<std::vector<float>>(std::size_t k)>& read,
                                         Motion& chosen);

@@ -1,4 +1,4 @@
-// Finds the files of an input, and asks the system about each.
+// Finds the files of an input, and gets their sizes and times from the system.
 #include "io/input/input_identity.h"
 
 #include <sys/stat.h>
@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns the file of a cache that is given with its channel, "cache.mcx#shape".
+// Returns the file of a cache that is named with its channel, "cache.mcx#shape".
 std::string without_channel(const std::string& input) {
   const std::size_t hash = input.rfind('#');
   std::error_code ignored;

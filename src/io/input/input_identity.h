@@ -21,8 +21,8 @@ struct FileIdentity {
   [[nodiscard]] std::string text() const;
 };
 
-/// Returns the files that the options stand for, in order; none for a built-in morph. Errors: from finding them;
-/// kUsage for a pipe, which cannot be read again, and for a Maya .xml, whose caches are other files.
+/// Returns the files that the options name, in order; none for a built-in morph. Errors: those of finding them; kUsage
+/// for a pipe, which cannot be read again, and for a Maya .xml, whose caches are other files.
 [[nodiscard]] Result<std::vector<FileIdentity>> identify_files(const InputOptions& options);
 
 }  // namespace chronormal::inline internal

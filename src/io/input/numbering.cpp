@@ -1,5 +1,5 @@
-// Finds the numbers in the names of files. A name is cut into texts and numbers, in a way that all names of a set agree
-// on. Names with the same texts are one group; a sequence is one group, in which one number differs from name to name.
+// Finds the numbers in the names of files. A name is divided into texts and numbers, in the same way for all names of a
+// set. Names with the same texts form a group; a sequence is a group in which one number differs from name to name.
 #include "io/input/numbering.h"
 
 #include <algorithm>
@@ -46,11 +46,11 @@ struct Number {
 struct Place {
   std::size_t begin = 0, end = 0;    // range of the number with its sign
   std::size_t digits = 0;            // place of its first digit
-  std::size_t point = 0, power = 0;  // places of the decimal point and of the letter e; `end` if there is none
+  std::size_t point = 0, power = 0;  // positions of the decimal point and of the letter e; `end` if missing
 };
 
 struct Cut {
-  std::vector<std::string> texts;  // one more than there are numbers; the last is the extension, in lower case
+  std::vector<std::string> texts;  // one text more than numbers; the last one is the extension in lower case
   std::vector<Place> places;
 
   [[nodiscard]] std::string key() const {
@@ -137,7 +137,7 @@ Number number_at(std::string_view name, const Place& place) {
   return number;
 }
 
-// Returns the number as a double, for which it may be too large.
+// Returns the number as a double, or infinity if it is too large.
 double value_of(const Number& number) {
   const std::string text = (number.is_negative ? "-0." : "0.") + number.digits + "e" + std::to_string(number.point);
   double value = 0;
@@ -145,7 +145,7 @@ double value_of(const Number& number) {
   return code == std::errc{} || number.point < 0 ? value : std::numeric_limits<double>::infinity();
 }
 
-// A set of names that are cut alike, and what tells them apart.
+// A set of names with the same texts, and the numbers that distinguish them.
 struct Group {
   std::vector<std::size_t> files;
   std::vector<std::size_t> varying;  // numbers that differ between the files
@@ -273,8 +273,8 @@ std::string group_words(const std::vector<std::string>& files, const Group& grou
          " files)";
 }
 
-// Divides groups in which several numbers differ by all of these but the last: take1_1, take1_2, take2_1, take2_2.
-// Names that then stand alone, such as names with dates, form one group.
+// Divides groups in which several numbers differ by all these numbers except the last: take1_1, take1_2, take2_1,
+// take2_2. Names that would be alone in their group, such as names with dates, form one group.
 std::vector<Group> divided(const Names& names, const std::vector<Group>& groups) {
   std::vector<Group> result;
   for (const Group& group : groups) {
@@ -304,8 +304,8 @@ void reorder(std::vector<std::string>& files, const std::vector<std::size_t>& or
   files = std::move(sorted);
 }
 
-// Tells whether a shell may have listed the files in this order: by their bytes, or as most languages sort, where
-// letters and digits count first.
+// Tells whether a shell may have listed the files in this order: by bytes, or as most languages sort, with letters and
+// digits first.
 bool stand_as_listed(const std::vector<std::string>& files) {
   const auto letters_of = [](const std::string& name) {
     std::string letters;

@@ -1,11 +1,11 @@
 /// Reads the numbers in the names of files, which give the order and the times of files if nothing else does. Private
 /// to io.
 ///
-/// A number has digits and may have a fraction: t_0.05. A minus belongs to it at the start of a name and after a blank,
-/// and if the set also has names without one at the same place, so that frame-001 to frame-100 are counted upwards. It
-/// has an exponent only if all names have one there: t_1e-05. A point between two numbers is no decimal point if a
-/// version stands before it (v2.0001, 001.0001), or if the digits after it cannot be a fraction that a program printed
-/// (1.9, 1.10).
+/// A number has digits and may have a fraction: t_0.05. A minus sign belongs to the number at the start of a name,
+/// after a blank, or if the set also has names without one at the same place; so frame-001 to frame-100 are positive. A
+/// number has an exponent only if all names have one at that place: t_1e-05. A point between two numbers is not a
+/// decimal point if a version is before it (v2.0001, 001.0001), or if the digits after it cannot be a fraction that a
+/// program printed (1.9, 1.10).
 #ifndef CHRONORMAL_IO_INPUT_NUMBERING_H_
 #define CHRONORMAL_IO_INPUT_NUMBERING_H_
 
@@ -18,16 +18,16 @@
 
 namespace chronormal::inline internal {
 
-/// Sorts the files of one folder or one pattern by their numbers; files without numbers stand in plain order. Errors:
-/// kInvalidInput with `input` as the place if they are several sequences, or a sequence and other files, or if two of
-/// them have the same number; the message lists them.
+/// Sorts the files of one folder or one pattern by their numbers; files without numbers are sorted as text. Errors:
+/// kInvalidInput with `input` as the place if there are several sequences, or a sequence and other files, or if two
+/// files have the same number; the message lists them.
 [[nodiscard]] Status sort_as_sequence(const std::string& input, std::vector<std::string>& files);
 
-/// Sorts three or more files that were listed in the order of their letters, as a shell lists them, if their numbers
-/// have another order. Returns whether it did. Files that were listed in any other order stay as they are.
+/// Sorts three or more files by their numbers if they were listed alphabetically, as a shell lists them, and their
+/// numbers have another order. Returns true if it did. Files that were listed in any other order stay as they are.
 [[nodiscard]] bool sort_listed(std::vector<std::string>& files);
 
-/// Holds the times that the names of files give.
+/// The times that the names of files contain.
 struct FileTimes {
   /// Seconds, or frames from the first file on: 0, 1, 2, ... if the steps from one number to the next are even, or if
   /// numbers do not tell.

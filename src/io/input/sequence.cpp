@@ -1,4 +1,4 @@
-// Reads sequences, which are mesh files in order, of one topology.
+// Reads sequences, which are ordered mesh files with the same topology.
 #include "io/input/sequence.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
     const std::filesystem::path path = entries->path();
     const std::string name = path.filename().string();
     const Format* const own = find_format(name);
-    std::error_code ignored;  // a broken link is no file
+    std::error_code ignored;  // a broken link is not a file
     if (own != nullptr && own->holds == Holds::kMesh && !name.starts_with('.') &&
         !std::filesystem::is_directory(path, ignored)) {
       if (format != nullptr && format != own)
@@ -63,15 +63,15 @@ Result<FileBytes> open_frame(const InputOptions& options, const std::string& pat
   return error;
 }
 
-// Holds a frame other than the first.
+// A frame other than the first.
 struct ReadFrame {
   Result<std::vector<float>> positions = std::vector<float>();
   std::vector<float> velocities = {};
-  std::uint64_t bytes = 0;  // size of its file, unless it was counted elsewhere
+  std::uint64_t bytes = 0;  // size of its file, unless it was already counted
 };
 
-// Reads a frame; of_first has the faces and the origin of the first one. `faces` are the faces of the first frame if
-// their text can be compared; `shaded` gets the normals of the frame if they are wanted.
+// Reads a frame; of_first has the faces and the origin of the first frame. `faces` are the faces of the first frame if
+// their text can be compared; `shaded` gets the normals of the frame if they are requested.
 ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
                      const ObjFaces* faces, ReadMotion* shaded, const Motion& of_first, const std::string& first_name) {
   const Result<FileBytes> file = open_frame(options, path, place);
@@ -100,8 +100,7 @@ std::optional<ObjFaces> faces_of(const std::string& path, std::string_view bytes
   return ObjFaces(bytes, positions);
 }
 
-// Returns the size of all files together, or nothing if one of them is missing, or cannot be read again, such as a
-// pipe.
+// Returns the total size of the files, or nothing if one of them is missing or cannot be read again, like a pipe.
 std::optional<std::uint64_t> bytes_of(const std::vector<std::string>& files, const std::vector<std::size_t>& frames) {
   std::uint64_t bytes = 0;
   for (const std::size_t k : frames) {
@@ -162,8 +161,8 @@ Result<std::vector<double>> find_times(const std::vector<std::string>& files, co
   return std::move(found.times);
 }
 
-// Chooses the files that are examined if the first one has no more digits than float32: the last one, which is the
-// likeliest to have moved, and others evenly between.
+// Selects the files that are examined if the first one has no more digits than float32: the last one, which most likely
+// has moved, and others evenly in between.
 std::vector<std::string> files_that_tell_digits(const std::vector<std::string>& files,
                                                 const std::vector<std::size_t>& frames) {
   constexpr std::size_t kMost = 32;
@@ -212,14 +211,13 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   motion.topology = std::move(first.value().topology);
   keep(std::move(first.value().positions), std::move(first.value().velocities));
 
-  // Read the frames that follow, as many at a time as there are threads. Frames come one by one from a resolver, which
-  // may not be safe to call from several threads, and also if the normals of a frame are read only if the one before
-  // had some.
+  // Reads the remaining frames, as many at a time as there are threads. Frames are read one by one from a resolver,
+  // which may not be thread-safe, and also if the normals of a frame are read only if the previous frame had some.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;
-  // Equal text can only be used with positions as they stand in the file.
+  // The text can only be compared if positions are used exactly as in the file.
   if (!keeps_normals && motion.origin == Origin{})
     faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
   while (motion.keyframes.size() < total) {

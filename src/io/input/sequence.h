@@ -1,4 +1,4 @@
-/// Reads sequences: several mesh files of one topology as the keyframes of one motion. Private to io.
+/// Reads sequences: several mesh files with the same topology as the keyframes of a motion. Private to io.
 #ifndef CHRONORMAL_IO_INPUT_SEQUENCE_H_
 #define CHRONORMAL_IO_INPUT_SEQUENCE_H_
 
@@ -10,24 +10,24 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the files that the options stand for, for a folder all its meshes. Does not open them. `notes` gets a
-/// sentence if listed files were sorted. Errors: from find_input_files(), and from sort_as_sequence()
-/// (io/input/numbering.h); kInvalidInput for a folder without meshes, or with files of two formats.
+/// Returns the files that the options name; for a folder, all its meshes. Does not open them. `notes` gets a sentence
+/// if listed files were sorted. Errors: those of find_input_files() and sort_as_sequence() (io/input/numbering.h);
+/// kInvalidInput for a folder without meshes, or with files of two formats.
 [[nodiscard]] Result<std::vector<std::string>> find_frames(const InputOptions& options,
                                                            std::vector<std::string>* notes = nullptr);
 
-/// Reads the files that the options choose as keyframes; each takes the name of its file. Beside the first file, no
-/// more files are open at a time than there are threads, and one topology is kept. The result is valid
+/// Reads the files that the options select as keyframes, which get the names of their files. Besides the first file, at
+/// most one file for each thread is open at a time, and only one topology is kept. The result is valid
 /// (motion/motion.h).
 ///
 /// The names of the files give the times (times_of_files() of io/input/numbering.h). Errors: kUsage for a frame rate if
-/// names are times in seconds; errors of opening and of the readers, with the frame in the place ("frame 3
-/// (walk_3.obj), line 17"); kInvalidInput for fewer than two files, and if vertex count or faces differ from frame 0.
+/// names are times in seconds; those of opening and of the readers, with the frame in the place ("frame 3 (walk_3.obj),
+/// line 17"); kInvalidInput for fewer than two files, and if vertex count or faces differ from frame 0.
 [[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
-/// Does this, except that the files of keyframes after the first are read when the stream asks for them, with the
-/// errors of each file. All files are read at once if they are small (InputOptions::kept_bytes), if one is no regular
-/// file, and if the options keep the normals of all and the first file stores some.
+/// Reads the same sequence as a stream: the files of keyframes after the first are read on demand, and their errors are
+/// reported then. All files are read at once if they are small (InputOptions::kept_bytes), if one is not a regular
+/// file, or if the options keep the normals of all keyframes and the first file has some.
 [[nodiscard]] Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
 }  // namespace chronormal::inline internal

@@ -42,7 +42,7 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
   while (!code && entries != fs::recursive_directory_iterator{}) {
     const std::string path = entries->path().string(), name = entries->path().filename().string();
     const Format* const own = target_format(name);
-    std::error_code ignored;  // a broken link is no file
+    std::error_code ignored;  // a broken link is not a file
     if (name.starts_with('.')) {
       entries.disable_recursion_pending();
     } else if (own != nullptr && !fs::is_directory(path, ignored) && !is_same_file(path, base)) {
@@ -72,7 +72,8 @@ std::string keyframe_name(const std::string& path) {
   return (is_packed_target ? stem.stem() : stem).string();
 }
 
-// Asks for the positions of a keyframe, beside the existing ones: a target of one line has as many as any other.
+// Checks the limit for the positions of another keyframe, in addition to the existing ones: a target of one line takes
+// as much memory as any other.
 Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {
   const std::uint64_t keyframes = read.motion.keyframes.size() + 1, vertices = read.motion.topology.vertex_count();
   const Expansion expansion(options.max_expansion, read.bytes_read);
@@ -119,7 +120,7 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
       files, [&](const std::string& file) { return file == base || (!options.resolve && is_same_file(file, base)); });
   if (files.empty()) return invalid_input(place_of(base), "there is no target besides the base itself");
 
-  // Take normals only from the base: viewers that show targets have no normals for them.
+  // Reads normals only from the base: viewers that compute targets from positions use no others.
   InputOptions of_base = options;
   if (of_base.shading != KeepShading::kNone) of_base.shading = KeepShading::kFirst;
   const std::size_t total = 1 + files.size();

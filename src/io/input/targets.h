@@ -8,7 +8,7 @@
 /// A target is a mesh with the faces of the base (.obj, .ply), or deltas that are added to it
 /// (io/mesh/make_human_target.h). Inputs are files and patterns as in io/input.h, and folders: all targets in a folder
 /// and its subfolders, sorted by path with numbers as numbers. Names that begin with a dot and links to folders are
-/// skipped. The file of the base itself is skipped wherever it comes among the inputs, so that it may lie in the folder
+/// skipped. The file of the base itself is skipped wherever it comes among the inputs, so that it may be in the folder
 /// of its targets.
 #ifndef CHRONORMAL_IO_INPUT_TARGETS_H_
 #define CHRONORMAL_IO_INPUT_TARGETS_H_
@@ -18,9 +18,9 @@
 
 namespace chronormal::inline internal {
 
-/// Reads the base and the targets of the options. A keyframe takes the name of its file without the extensions
+/// Reads the base and the targets of the options. A keyframe gets the name of its file without the extensions
 /// ("blink"). The result is valid (motion/motion.h). Only one file is open at a time; memory is 12 bytes per vertex for
-/// each target, however few vertices it moves.
+/// each target, even if it moves few vertices.
 ///
 /// Errors: kFailed for files that are missing or cannot be read; kInvalidInput of the readers, for a mesh whose vertex
 /// count or faces differ from the base's, for a folder without targets, or with targets of several formats, and if

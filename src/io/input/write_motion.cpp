@@ -1,4 +1,4 @@
-// Writes motions as files: one that holds everything, or one for each keyframe.
+// Writes motions as files: one file for the whole motion, or one for each keyframe.
 #include <cassert>
 #include <cstdint>
 #include <string_view>
@@ -64,7 +64,7 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
   for (const std::string& name : names.value()) {
     if (Status status = check_output(name, force); !status) return status;
   }
-  // No file gets its name before all keyframes were read, since they may come from files of these names.
+  // No file gets its final name before all keyframes were read, since they may come from files with these names.
   std::vector<OutputFile> files;
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     if (Status status = stream.hold(k, k); !status) return status;
@@ -72,7 +72,7 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
     assert(coordinates.size() == 3 * motion.topology.vertex_count());
     const auto positions = VectorView<const float>::packed(coordinates.data(), motion.topology.vertex_count());
     const std::string bytes = format.write_mesh(motion.topology, positions, motion.origin);
-    // Keyframes take about as many bytes each, so the first one tells before anything is written.
+    // Keyframes have similar sizes, so the first one predicts the total before anything is written.
     const std::uint64_t all = std::uint64_t{bytes.size()} * motion.keyframes.size();
     if (Status status = k == 0 ? expansion.check(all, pattern) : Success{}; !status) return status;
     Result<OutputFile> file = OutputFile::create(names.value()[k], force);

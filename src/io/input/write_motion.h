@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Does the same within the expansion of the input: a file for each keyframe repeats all faces.
-/// Errors: also those of expansion.check().
+/// Writes the motion in the same way within the expansion of the input, since a file for each keyframe repeats all
+/// faces. Errors: also those of expansion.check().
 [[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion,
                                   bool weld = true);
 

@@ -38,7 +38,7 @@ bool is_number(std::string_view text) {
 
 // Returns whether a number is beyond the range of double. A number that is too small is not: it counts as 0.
 bool overflows(std::string_view number) {
-  constexpr std::size_t kMostDigits = 308;  // the largest double has one more
+  constexpr std::size_t kMostDigits = 308;  // the largest double has one digit more
   const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
   if (exponent_at == number.size() && number.size() <= kMostDigits) return false;
   double value = 0;
@@ -54,12 +54,12 @@ bool overflows(std::string_view number) {
   std::int64_t exponent = 0;
   if (!digits.empty() && from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
     return digits.front() != '-';
-  // An exponent beyond the number of digits of the text decides alone.
+  // An exponent beyond the number of digits of the text alone decides the magnitude.
   constexpr std::int64_t kFar = std::int64_t{1} << 40;
   return std::clamp(exponent, -kFar, kFar) + (point - first) > 0;
 }
 
-// Holds what a walk over text finds before anything is built from it.
+// The facts that a scan of the text finds before a tree is built.
 struct Scan {
   std::size_t too_deep = std::string_view::npos;  // first byte that is nested deeper than allowed
   struct Number {
@@ -97,11 +97,12 @@ Scan scan_json(std::string_view text) {
   return result;
 }
 
-// Builds the tree as the parser walks the text, without the items that are taken. (The library's own parser with a
-// callback walks over all siblings at the end of every object.)
+// Builds the tree while the parser goes through the text, without the items that are taken. (The library's own parser
+// with a callback goes through all siblings at the end of every object.)
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  // infinities has the numbers beyond double, which stand as null in the text, by how many nulls come before them.
+  // Makes a builder. `infinities` has the numbers beyond double, which are null in the text, keyed by the number of
+  // nulls before them.
   TreeBuilder(const JsonItems& items, const std::vector<Scan::Number>& infinities)
       : items_(items), infinities_(infinities) {}
 
@@ -199,7 +200,7 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
   }
   if (text.starts_with(kByteOrderMark))  // the library would skip it too
     return invalid_input(binary::place(name, offset), "this is no JSON: a second byte order mark");
-  // JSON never has a zero byte. The parser complains about it; a sparse file may have a terabyte of them.
+  // JSON never contains a zero byte. The parser would complain about each; a sparse file may have a terabyte of them.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) text = text.substr(0, zero + 1);
   const Scan scan = scan_json(text);
   if (scan.too_deep != std::string_view::npos)

@@ -1,8 +1,8 @@
 /// Reads JSON from outside, with a place for every complaint. Private to io.
 ///
 /// A JsonView is a value of a document and its JSON pointer (RFC 6901). Its getters check type and range. The first
-/// complaint of a document is kept in a JsonComplaint, and after it every getter returns its fallback. So a parser
-/// reads one entity without branches, and asks once whether all went well.
+/// complaint of a document is kept in a JsonComplaint, and afterwards every getter returns its fallback. So a parser
+/// reads an entity without branches, and checks once in the end whether there was a complaint.
 #ifndef CHRONORMAL_IO_JSON_JSON_H_
 #define CHRONORMAL_IO_JSON_JSON_H_
 
@@ -23,20 +23,20 @@ namespace chronormal::inline internal {
 /// The deepest allowed nesting of arrays and objects; glTF itself needs about ten levels.
 inline constexpr std::size_t kDeepestJson = 256;
 
-/// Takes the objects of a long list while it is parsed, so that they need no memory: every object in the array `key` of
-/// the root is given to `take` with its index, and dropped. Other items stay in the array.
+/// Removes the objects of a long list while it is parsed, so that they need no memory: every object in the array `key`
+/// of the root is passed to `take` with its index, and dropped. Other items stay in the array.
 struct JsonItems {
   std::string_view key;
   std::function<void(std::size_t index, const nlohmann::json& item)> take;
 };
 
 /// Parses UTF-8 text (a byte order mark is allowed) that begins at byte `offset` of the file `name`. Numbers beyond
-/// double become infinity, about which a JsonView complains when it is asked for them. Errors: kInvalidInput with the
-/// place "NAME, byte N": no JSON, or nested deeper than kDeepestJson (found before anything is built).
+/// double become infinity, about which a JsonView complains when they are read. Errors: kInvalidInput with the place
+/// "NAME, byte N" for text that is not JSON or is nested deeper than kDeepestJson (checked before a tree is built).
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& name, std::size_t offset,
                                                 const JsonItems& items);
 
-/// Keeps the first thing that was wrong in a document.
+/// The first fault of a document.
 class JsonComplaint {
  public:
   explicit JsonComplaint(std::string name) : name_(std::move(name)) {}
@@ -66,8 +66,7 @@ class JsonView {
   /// Returns whether the object has this member. Values that are not objects have none.
   [[nodiscard]] bool has(const char* key) const { return find(key) != nullptr; }
 
-  /// Returns a member that is an object or an array of at least one item, as a view, or nothing if it is missing, or
-  /// after a complaint.
+  /// Returns a member that is a non-empty object or array, as a view; nothing if it is missing, or after a complaint.
   [[nodiscard]] std::optional<JsonView> object(const char* key) const;
   [[nodiscard]] std::optional<JsonView> array(const char* key) const;
 
@@ -78,19 +77,19 @@ class JsonView {
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  /// Return a whole number from 0 to most; 4.0 is one, as glTF demands.
+  /// Return an integer from 0 to `most`; 4.0 counts as an integer, as glTF demands.
   [[nodiscard]] std::optional<std::size_t> find_count(const char* key, std::size_t most) const;
   [[nodiscard]] std::size_t count(const char* key, std::size_t most, std::size_t fallback) const;
   [[nodiscard]] std::size_t required_count(const char* key, std::size_t most) const;
-  /// Return an index below count, and complain otherwise: "there are only N WHAT".
+  /// Return an index below `count`, and complain otherwise: "there are only N WHAT".
   [[nodiscard]] std::optional<std::size_t> find_index(const char* key, std::size_t count, const char* what) const;
   [[nodiscard]] std::optional<std::size_t> required_index(const char* key, std::size_t count, const char* what) const;
-  /// Returns the value itself as an index.
+  /// Returns the value of this view as an index.
   [[nodiscard]] std::optional<std::size_t> as_index(std::size_t count, const char* what) const;
   [[nodiscard]] bool flag(const char* key) const;
   [[nodiscard]] std::string text(const char* key) const;
   [[nodiscard]] std::string required_text(const char* key) const;
-  /// Return the value itself as text or as a finite number.
+  /// Return the value of this view as text or as a finite number.
   [[nodiscard]] std::string as_text() const;
   [[nodiscard]] double as_number() const;
 

@@ -12,7 +12,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
-// Longer runs of blanks are not repeated before what is added, so that a file does not grow by a megabyte for every
+// Longer runs of blanks are not repeated before added values, so that a file does not grow by a megabyte for every
 // number.
 constexpr std::size_t kMostBlanks = 256;
 
@@ -20,7 +20,7 @@ std::size_t skip_blanks(std::string_view text, std::size_t at) {
   return std::min(text.find_first_not_of(kBlanks, at), text.size());
 }
 
-// Returns the end of the string whose quotation mark is at `at`.
+// Returns the end of the string whose opening quotation mark is at `at`.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   for (++at; text[at] != '"'; ++at) {
     if (text[at] == '\\') ++at;
@@ -81,7 +81,7 @@ std::optional<std::size_t> to_index(std::string_view token) {
 // An item of an array or a member of an object.
 struct JsonText::Member {
   std::string_view key;   // with its quotation marks; empty in arrays
-  std::string_view text;  // text of the value, in the node's text or as it was added
+  std::string_view text;  // text of the value, either a part of the node's text or an added text
   bool added = false, replaced = false;
   std::unique_ptr<Node> value;  // set if a pointer led to it
 };
@@ -89,7 +89,7 @@ struct JsonText::Member {
 struct JsonText::Node {
   explicit Node(std::string_view value) : text(value) {}
 
-  // Takes an array or an object apart.
+  // Splits an array or an object into its parts.
   void expand();
   [[nodiscard]] bool is_object() const noexcept { return text.front() == '{'; }
   [[nodiscard]] bool is_container() const noexcept { return is_object() || text.front() == '['; }
@@ -140,7 +140,7 @@ std::string decode_json_string(std::string_view quoted) {
     }
     std::uint32_t code = hexadecimal(quoted.substr(i + 1, 4));
     i += 4;
-    // A character beyond the first 65536 takes two of these codes.
+    // A character beyond the first 65536 is written as two of these codes.
     if (code >= 0xD800 && code < 0xDC00 && i + 6 < quoted.size()) {
       code = 0x10000 + ((code - 0xD800) << 10) + (hexadecimal(quoted.substr(i + 3, 4)) - 0xDC00);
       i += 6;
@@ -270,7 +270,7 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
     }
     if (!node.is_object())
       return error("the array has " + std::to_string(node.members.size()) + " items, and no item " + token);
-    // Missing levels are made together.
+    // Adds all missing levels together.
     std::string made = append ? std::string("[").append(value).append("]") : std::move(value);
     for (std::size_t k = tokens->size() - 1; k > i; --k) made = JsonObject().add((*tokens)[k], made).text();
     add_member(node, token, std::move(made));

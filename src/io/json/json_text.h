@@ -1,17 +1,17 @@
 /// Changes JSON text, and leaves every byte between the changes as it is. Private to io.
 ///
 /// A value is found by its JSON pointer (RFC 6901), and its replacement is spliced into the text, so that numbers,
-/// blanks and the order of members elsewhere stay as somebody wrote them:
+/// blanks and the order of members elsewhere do not change:
 ///
 ///     JsonText json(R"({ "a": [1, 2], "n": 1e400 })");
 ///     json.append("/a", "3");
-///     json.set("/b/c", "true");                         // b is made
+///     json.set("/b/c", "true");                         // b is added
 ///     join(json.pieces());                              // { "a": [1, 2, 3], "n": 1e400, "b": {"c":true} }
 ///
-/// Names     may be escaped in the text ("a" is "\u0061"); of members with the same name, the last counts.
+/// Names     may be escaped in the text ("a" is "\u0061"); if several members have the same name, the last one is used.
 /// Order     each change works on the result of the earlier ones: a value that was set can be changed again.
-/// Style     an added value takes the blanks of the last sibling, so that an indented list stays indented.
-/// Cost      containers are taken apart once, when the first pointer leads through them.
+/// Style     an added value gets the same blanks as the last sibling, so that an indented list stays indented.
+/// Cost      containers are split into parts once, when the first pointer leads through them.
 #ifndef CHRONORMAL_IO_JSON_JSON_TEXT_H_
 #define CHRONORMAL_IO_JSON_JSON_TEXT_H_
 
@@ -34,7 +34,7 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 /// string.
 [[nodiscard]] std::string decode_json_string(std::string_view quoted);
 
-/// Returns the names in a pointer, or nothing if it is no pointer.
+/// Returns the names in a pointer, or nothing if it is not a valid pointer.
 [[nodiscard]] std::optional<std::vector<std::string>> split_json_pointer(std::string_view pointer);
 
 /// Returns the pointer to a member of the value at a pointer.
@@ -51,7 +51,8 @@ struct JsonMember {
 
 class JsonText {
  public:
-  /// text must be JSON that parse_json() accepts, a byte order mark included, and must outlive this.
+  /// Takes a text, which must be JSON that parse_json() accepts, possibly with a byte order mark, and must outlive
+  /// this.
   explicit JsonText(std::string_view text);
   JsonText(JsonText&&) noexcept;
   JsonText& operator=(JsonText&&) noexcept;
@@ -59,20 +60,21 @@ class JsonText {
   JsonText& operator=(const JsonText&) = delete;
   ~JsonText();
 
-  /// Returns the text of a value, or nothing if there is none. Nothing may have been changed
+  /// Returns the text of a value, or nothing if there is none. Must be called before any change
   [[nodiscard]] std::optional<std::string_view> find(std::string_view pointer);
   /// Returns the members of an object or the items of an array, in their order; none for other values or if the pointer
   /// leads nowhere. Nothing may have been changed
   [[nodiscard]] std::vector<JsonMember> members(std::string_view pointer);
 
-  /// Replaces a value, or adds it as a member, and makes objects that are missing on the way. value must be JSON.
-  /// Errors: kInvalidInput with the pointer as the place, if it is no pointer, leads through a value that is neither
-  /// object nor array, or to an item that an array does not have; then nothing is changed.
+  /// Replaces a value, or adds it as a member with missing objects in between. `value` must be JSON. Errors, after
+  /// which nothing has changed: kInvalidInput, with the pointer as the place, if it is not a valid pointer, or leads
+  /// through a value that is neither object nor array, or to an item that an array does not have.
   [[nodiscard]] Status set(std::string_view pointer, std::string value);
-  /// Adds a value to the end of an array, which is made if it is missing. Errors: as for set(); the value is no array.
+  /// Appends a value to an array, which is added if it is missing. Errors: those of set(); kInvalidInput if the
+  /// existing value is not an array.
   [[nodiscard]] Status append(std::string_view pointer, std::string value);
 
-  /// Returns what was replaced or added, sorted; for values added together, only the outermost.
+  /// Returns the sorted pointers of replaced and added values; for values that were added together, only the outermost.
   [[nodiscard]] std::vector<std::string> pointers() const;
   /// Returns the text with its changes, in pieces that live as long as this and the source.
   [[nodiscard]] std::vector<std::string_view> pieces() const;
@@ -90,7 +92,7 @@ class JsonText {
 
   std::string_view text_;
   std::unique_ptr<Node> root_;
-  std::deque<std::string> kept_;  // text of changes; they stay where they are
+  std::deque<std::string> kept_;  // texts of changes, at fixed addresses
 };
 
 /// Joins the pieces of a text.

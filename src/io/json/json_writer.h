@@ -3,8 +3,8 @@
 ///
 ///     edit.append("/meshes/0/primitives/0/targets", JsonObject().add("POSITION", 7).add("NORMAL", 9).text());
 ///
-/// A whole document is an nlohmann::ordered_json instead. That cannot hold what must stay as it is: a number that
-/// somebody wrote as 4.0, or a data URI of a gigabyte that is needed once.
+/// Whole documents are nlohmann::ordered_json instead. A document tree, however, cannot keep a number as it was
+/// written, such as 4.0, and would store a data URI of a gigabyte that is needed only once.
 #ifndef CHRONORMAL_IO_JSON_JSON_WRITER_H_
 #define CHRONORMAL_IO_JSON_JSON_WRITER_H_
 
@@ -17,15 +17,15 @@ namespace chronormal::inline internal {
 /// Returns a string as JSON. text must be UTF-8.
 [[nodiscard]] std::string quote_json(std::string_view text);
 
-/// Returns a number as JSON: the fewest digits that read back to the same float, or to the same double. The number must
-/// be finite
+/// Returns a number as JSON, with the fewest digits that read back as the same float or double. The number must be
+/// finite
 [[nodiscard]] std::string json_number(float value);
 [[nodiscard]] std::string json_number(double value);
 
 /// Builds an object, member by member.
 class JsonObject {
  public:
-  /// Adds a member whose value is JSON already.
+  /// Adds a member whose value is already JSON.
   JsonObject& add(std::string_view name, std::string_view json);
   JsonObject& add(std::string_view name, std::size_t value) { return add(name, std::to_string(value)); }
 

@@ -1,5 +1,5 @@
-/// Handles positions far from the origin, such as surveys have: a float32 keeps 24 bits, most of which are the same for
-/// all vertices there. A common origin is subtracted in double before positions are rounded, and writers add it again
+/// Handles positions far from the origin, as in surveys: a float32 keeps 24 bits, most of which are equal for all
+/// vertices there. A common origin is subtracted in double before positions are rounded, and writers add it again
 /// (Motion::origin). Private to io.
 #ifndef CHRONORMAL_IO_MESH_FAR_ORIGIN_H_
 #define CHRONORMAL_IO_MESH_FAR_ORIGIN_H_
@@ -15,9 +15,9 @@ namespace chronormal::inline internal {
 
 using Origin = std::array<double, 3>;
 
-/// Finds the point to count positions (V, 3) from if that saves four bits or more: if they are farther from (0, 0, 0)
-/// than 16 times their extent. It is near their middle, and a multiple of a power of two of about that extent, so that
-/// subtracting it does not round. Returns (0, 0, 0) otherwise.
+/// Finds the origin to subtract from positions (V, 3) if that saves at least four bits, that is, if they are farther
+/// from (0, 0, 0) than 16 times their extent. The origin is near their middle, and a multiple of a power of two of
+/// about that extent, so that subtracting it does not round. Returns (0, 0, 0) otherwise.
 template <class Real>
 [[nodiscard]] Origin far_origin(std::span<const Real> positions) {
   constexpr double kFar = 16, kBeside = 4;

@@ -18,10 +18,10 @@ namespace {
 
 using scan::NumberFault;
 
-// Calls inflateInit2(), and ends what it began.
+// Calls inflateInit2(), and inflateEnd() in the destructor.
 struct Inflater {
   z_stream stream{};
-  bool is_ready = ::inflateInit2(&stream, 16 + MAX_WBITS) == Z_OK;  // 16 stands for gzip only
+  bool is_ready = ::inflateInit2(&stream, 16 + MAX_WBITS) == Z_OK;  // 16 means gzip only
 
   Inflater() = default;
   Inflater(const Inflater&) = delete;
@@ -50,7 +50,7 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
       stream.avail_in = static_cast<uInt>(part.size());
       handed_over += part.size();
     }
-    // There is room for one byte more than allowed, so that an excess can be seen.
+    // There is room for one byte more than allowed, so that an excess is detected.
     if (done == text.size()) text.resize(std::min(most + 1, std::max(kFirstRoom, 2 * done)));
     const auto room = static_cast<uInt>(std::min(text.size() - done, kMostAtOnce));
     stream.next_out = reinterpret_cast<Bytef*>(text.data() + done);
@@ -63,7 +63,8 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
                    " bytes, which no target of this base needs");
     if (code == Z_OK) continue;
     if (code == Z_MEM_ERROR) throw std::bad_alloc();
-    if (code == Z_BUF_ERROR) return error("the gzip data end early");  // there was room, so it wants more input
+    // There is room for output, so the input is incomplete.
+    if (code == Z_BUF_ERROR) return error("the gzip data end early");
     if (code != Z_STREAM_END) {
       std::string message = "the gzip data are damaged";
       if (stream.msg != nullptr) message.append(" (").append(stream.msg).append(")");

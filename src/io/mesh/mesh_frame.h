@@ -1,4 +1,4 @@
-/// One mesh from one file: a keyframe of a sequence, a target, or the faces of a cache.
+/// A mesh from one file: a keyframe of a sequence, a target, or the faces for a cache.
 #ifndef CHRONORMAL_IO_MESH_MESH_FRAME_H_
 #define CHRONORMAL_IO_MESH_MESH_FRAME_H_
 
@@ -11,25 +11,25 @@
 
 namespace chronormal::inline internal {
 
-/// Holds the result of a mesh reader: at least one vertex and one face, and finite positions.
+/// The result of a mesh reader: at least one vertex and one face, and finite positions.
 struct MeshFrame {
   Topology topology;
   std::vector<float> positions;  ///< (V, 3), V = topology.vertex_count()
 
-  /// Says that positions count from the origin that the reader was given, and that the file has more digits than
-  /// float32 would have kept without it.
+  /// True if the given origin was subtracted from positions, and the file has more digits than float32 would have kept
+  /// without that.
   bool has_more_digits = false;
   /// A sentence for each kind of part that was skipped.
   std::vector<std::string> notes = {};
 
-  /// (V, 3): the velocity of each vertex, in length units per second, if it is asked for and the file has it.
+  /// (V, 3): the velocity of each vertex, in length units per second, if it is requested and the file has it.
   std::vector<float> velocities = {};
 
   // The next members say how the file shades its mesh, if that is asked for.
   /// The smoothing group of each face, numbered from 1 in the order in which the file names them; 0 for none. Empty if
   /// the file has no groups.
   std::vector<std::uint32_t> group_of_face = {};
-  /// (corners, 3): the normal of each corner as the file has it, of any length, and (0, 0, 0) for a corner without one.
+  /// (corners, 3): the normal of each corner as in the file, not normalised, and (0, 0, 0) for a corner without one.
   /// Empty if no corner of the file has a normal.
   std::vector<float> normal_of_corner = {};
 };

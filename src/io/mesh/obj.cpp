@@ -24,8 +24,8 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
   return bytes;
 }
 
-// Takes the next word of a statement, which is empty at its end or where a comment begins. Inside a word, # is not a
-// comment: 1.#QNAN is a number that some programs write, and must not be read as 1.
+// Removes and returns the next word of a statement, which is empty at its end or before a comment. Inside a word, #
+// does not begin a comment: some programs write the number 1.#QNAN, which must not be read as 1.
 std::string_view take_word(std::string_view& line) {
   const std::string_view word = scan::take_word(line);
   if (!word.starts_with('#')) return word;
@@ -40,15 +40,15 @@ bool has_comment(std::string_view line) {
   return false;
 }
 
-// Holds the shading of the faces that were read so far.
+// The shading of the faces that were read so far.
 struct Shading {
   std::vector<float> normals;                   // (vn, 3)
   std::vector<std::uint32_t> normal_of_corner;  // its index plus 1; 0 for none
-  bool has_normals = false;                     // whether some corner has one
+  bool has_normals = false;                     // true if some corner has a normal
   std::map<std::string, std::uint32_t, std::less<>> groups;
   std::vector<std::uint32_t> group_of_face;
   std::uint32_t group = 0;                               // group of the faces that follow
-  bool has_groups = false;                               // whether there was an s
+  bool has_groups = false;                               // true if there was a statement `s`
   std::size_t unknown_normals = 0, nameless_groups = 0;  // corners, and s without a word
 
   [[nodiscard]] std::size_t normal_count() const { return normals.size() / 3; }
@@ -134,7 +134,7 @@ Result<MeshFrame> ObjReader::read() {
   };
   note(dropped_faces_, " face has", " faces have", " fewer than three corners: left out");
   if (shading_ == nullptr) return mesh;
-  // Normals may come after the faces that name them.
+  // Normals may come after the faces that refer to them.
   for (std::uint32_t& index : shading_->normal_of_corner) {
     if (index > shading_->normal_count()) {
       index = 0;
@@ -211,7 +211,7 @@ Status ObjReader::read_vertex(std::string_view numbers) {
   return Success{};
 }
 
-// Reads a coordinate, and counts it from the origin.
+// Reads a coordinate, and subtracts the origin.
 NumberFault ObjReader::read_coordinate(std::string_view word, std::size_t axis, float& coordinate) {
   if (!is_far_) return scan::parse_float(word, coordinate);
   double value = 0, last_digit = 0;
@@ -221,8 +221,8 @@ NumberFault ObjReader::read_coordinate(std::string_view word, std::size_t axis, 
   return fault;
 }
 
-// Takes a corner that is a positive index of digits alone. Returns 0 if the next word is no such corner; the line then
-// stays as it is.
+// Removes a corner that is a positive index of digits alone. Returns 0 if the next word is not such a corner; the line
+// then does not change.
 std::int64_t take_plain_corner(std::string_view& line) {
   constexpr std::ptrdiff_t kMostDigits = 9;
   const char* at = line.data();
@@ -261,7 +261,7 @@ Status ObjReader::read_face(std::string_view corners) {
   return Success{};
 }
 
-// Reads one of v, v/vt, v//vn, v/vt/vn.
+// Reads a corner in one of the forms v, v/vt, v//vn, v/vt/vn.
 Status ObjReader::read_corner(std::string_view word) {
   const std::size_t first_slash = word.find('/');
   std::int64_t index = 0;
@@ -311,7 +311,7 @@ Status ObjReader::read_normal(std::string_view numbers) {
   return Success{};
 }
 
-// Reads a smoothing group. Groups are told apart by their words; 01 is 1.
+// Reads a smoothing group. Groups are distinguished by their words, except that 01 is 1.
 Status ObjReader::read_group(std::string_view line) {
   const std::string_view word = take_word(line);
   shading_->has_groups = true;
@@ -362,7 +362,7 @@ void append_vectors(std::string& text, std::string_view keyword, VectorView<cons
   }
 }
 
-// Appends the faces. If normal_of_corner is empty, corners are vertices alone.
+// Appends the faces. If normal_of_corner is empty, corners have only vertices.
 void append_faces(std::string& text, const Topology& topology, std::span<const std::uint32_t> normal_of_corner) {
   std::size_t corner = 0;
   for (std::size_t f = 0; f < topology.face_count(); ++f) {

@@ -10,9 +10,9 @@
 /// later. Texture indices must be integers and are left out. So is every other statement (vt, vp, g, o, usemtl, mtllib,
 /// l, p, and unknown words). Lines end in LF, CRLF or CR; a byte order mark is skipped.
 ///
-/// The shading of the mesh is left out too, unless it is asked for by read_obj_shading():
+/// The shading of the mesh is only read by read_obj_shading():
 ///
-///     vn 0 0 1               a normal, counted as vertices are; f names it after the last slash
+///     vn 0 0 1               a normal, counted as vertices are; f refers to it after the last slash
 ///     s 1                    a smoothing group, for the faces that follow: a number or a name; off and 0 are none
 ///
 /// Shapes     V = vertices; positions are (V, 3).
@@ -32,15 +32,15 @@
 
 namespace chronormal::inline internal {
 
-/// Reads the mesh of an OBJ file; name is its name for messages.
+/// Reads the mesh of an OBJ file; `name` is for messages.
 ///
 /// Errors: kInvalidInput with the place "NAME, line N": coordinates that are missing, not numbers, joined to something
 /// else, not finite or too large for float32 (too small becomes 0); the index 0 and indices without a vertex; a file
-/// without vertices or without faces. Messages count vertices, faces and corners from 0, and quote indices as the file
-/// has them. A file that was cut off inside its last number, or between two faces, is still an OBJ file: it is read as
-/// the mesh that it describes. Faces of fewer than 3 corners are left out, with a note that counts them. Positions
-/// count from the origin.
-/// Cost: one pass; memory in proportion to the numbers in the file, whatever the indices say.
+/// without vertices or without faces. Messages count vertices, faces and corners from 0, and quote indices as in the
+/// file. A file that was cut off inside its last number, or between two faces, is still an OBJ file: it is read as the
+/// mesh that it describes. Faces of fewer than 3 corners are left out, with a note that counts them. The origin is
+/// subtracted from positions. Cost: one pass; memory in proportion to the numbers in the file, independent of the
+/// values of indices.
 [[nodiscard]] Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name, const Origin& origin = {});
 
 /// Reads the mesh of an OBJ file and its shading. Faces before the first s are in no smoothing group.
@@ -48,7 +48,7 @@ namespace chronormal::inline internal {
 /// A corner with the normal index 0, or an index without a vn, has no normal, and faces after an s without a word are
 /// in no group; a note counts each of these.
 ///
-/// Errors: from read_obj(), and vn that are not three finite numbers, reported in the same way.
+/// Errors: those of read_obj(), and normals (vn) that are not three finite numbers, reported in the same way.
 [[nodiscard]] Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name,
                                                  const Origin& origin = {});
 

@@ -9,7 +9,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Holds the part of a file before its first face.
+// The part of a file before its first face.
 struct Head {
   std::vector<float> positions;
   std::size_t end = 0;  // start of the line of the first face

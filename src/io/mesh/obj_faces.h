@@ -1,5 +1,5 @@
-/// Reads OBJ files of one sequence that repeat the same faces byte by byte, as most programs write them. The text of
-/// the faces is compared, and not read again.
+/// Quickly reads OBJ files of a sequence that repeat the same faces byte by byte, as most programs write them: the text
+/// of the faces is only compared.
 #ifndef CHRONORMAL_IO_MESH_OBJ_FACES_H_
 #define CHRONORMAL_IO_MESH_OBJ_FACES_H_
 
@@ -19,14 +19,14 @@ class ObjFaces {
   /// Takes a file that read_obj() accepts, and the positions that read_obj() returned. bytes must stay valid.
   ObjFaces(std::string_view bytes, const std::vector<float>& positions);
 
-  /// Returns the positions of another file, if it has as many vertices before its first face, and the same text from
-  /// there on: read_obj() would return these positions, and the faces of the first file. Returns nothing for any other
-  /// file, and for one that needs more care: if numbers are wrong or too many, statements go over several lines, or
-  /// there is a byte order mark or no LF.
+  /// Returns the positions of another file if it has the same number of vertices before its first face, and the same
+  /// text from there on: read_obj() would return these positions, and the faces of the first file. Returns nothing for
+  /// any other file, and for unusual files: with wrong or additional numbers, with statements over several lines, with
+  /// a byte order mark, or without LF.
   [[nodiscard]] std::optional<std::vector<float>> positions_of(std::string_view bytes) const;
 
  private:
-  std::string_view text_;       // empty where no text can be compared with it
+  std::string_view text_;       // empty if the text of faces cannot be compared
   std::size_t before_ = 0;      // the number of coordinates before it
   std::vector<float> further_;  // the coordinates of vertices within it
 };

@@ -25,8 +25,8 @@ using ply::Property;
 using ply::Role;
 using ply::Scalar;
 
-// A source hands out the values of the body one after the other, in either encoding. Its functions return false if the
-// value is missing or malformed; message() and place() then say what is wrong and where.
+// A source returns the values of the body in order, for one of the encodings. Its functions return false if a value is
+// missing or malformed; message() and place() then describe the fault and its place.
 
 class AsciiSource {
  public:
@@ -77,7 +77,7 @@ class AsciiSource {
   [[nodiscard]] const std::string& message() const { return message_; }
 
  private:
-  // Takes the next word. A row may go on in the next line.
+  // Removes and returns the next word. A row may continue in the next line.
   std::string_view take() {
     while (next_.empty() && lines_.next()) {
       row_ = lines_.line();
@@ -97,7 +97,7 @@ class AsciiSource {
   scan::Lines lines_;
   std::size_t header_lines_;
   std::string_view row_;   // rest of the line after next_
-  std::string_view next_;  // the word that take() returns; empty at the end of the line
+  std::string_view next_;  // the next result of take(); empty at the end of the line
   std::string message_;
 };
 
@@ -166,7 +166,7 @@ class BinarySource {
     return bit_cast<T>(raw);
   }
 
-  // Reads one value into whole or, for the types of fractions, into real.
+  // Reads a value into `whole`, or for floating-point types into `real`.
   [[nodiscard]] bool load(Scalar type, std::int64_t& whole, double& real) {
     if (ply::byte_size(type) > bytes_left()) return fail_at_end();
     switch (type) {
@@ -252,8 +252,8 @@ class BodyReader {
 
   [[nodiscard]] Status read_element(std::size_t e) {
     const Element& element = header_.elements[e];
-    if (element.properties.empty()) return Success{};  // takes no space, whatever the count
-    // The count is in proportion to the size of the file.
+    if (element.properties.empty()) return Success{};  // takes no bytes, whatever the count
+    // The count is limited by the size of the file.
     if (e == header_.vertex_element) positions_.reserve(3 * static_cast<std::size_t>(element.count));
     if (e == header_.face_element) faces_.reserve_triangles(static_cast<std::size_t>(element.count));
     for (std::uint64_t row = 0; row < element.count; ++row) {
@@ -264,7 +264,7 @@ class BodyReader {
     return Success{};
   }
 
-  // Checks that the file can hold all elements, before the first is read.
+  // Checks that the file is large enough for all elements, before the first one is read.
   [[nodiscard]] Status check_counts() const {
     std::uint64_t left = source_.bytes_left();
     for (const Element& element : header_.elements) {
@@ -310,7 +310,7 @@ class BodyReader {
     return true;
   }
 
-  // Reads a coordinate, and counts it from the origin.
+  // Reads a coordinate, and subtracts the origin.
   [[nodiscard]] bool read_coordinate(const Property& property, float& coordinate) {
     if (!is_far_) return source_.coordinate(property.type, coordinate);
     double value = 0, last_digit = 0;
@@ -382,7 +382,7 @@ Result<MeshFrame> read_body(std::string_view bytes, const std::string& name, con
   return BodyReader<BinarySource>(bytes, name, header, has_velocities, origin).read();
 }
 
-// Writes the numbers of a file, one after the other, in one of the encodings.
+// Writes the numbers of a file in order, in one of the encodings.
 class RowWriter {
  public:
   RowWriter(std::string& bytes, PlyEncoding encoding)

@@ -2,7 +2,7 @@
 ///
 ///     ply
 ///     format ascii 1.0
-///     comment lines of comment and obj_info may stand anywhere
+///     comment lines of comment and obj_info may be anywhere
 ///     element vertex 3                         elements in any order
 ///     property float x                         x, y, z of any scalar type; other properties are skipped
 ///     property float y
@@ -15,7 +15,7 @@
 ///     0 1 0
 ///     3 0 1 2
 ///
-/// Elements other than vertex and face are skipped, but must be there. Anything after the last element is left out.
+/// Elements other than vertex and face are skipped, but must be complete. Data after the last element are ignored.
 /// Header lines end in LF, CRLF or CR. Scalar types: char uchar short ushort int uint float double, and int8 uint8
 /// int16 uint16 int32 uint32 float32 float64. double is rounded to float32, after the origin was subtracted.
 ///
@@ -36,22 +36,22 @@ namespace chronormal::inline internal {
 
 enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 
-/// Reads the mesh of a PLY file; name is its name for messages.
+/// Reads the mesh of a PLY file; `name` is for messages.
 ///
 /// Errors: kInvalidInput with the place "NAME, line N" (header, ascii) or "NAME, byte N" (binary), followed by element
 /// and row if they are known ("cube.ply, byte 310, face 17"): a header that breaks the grammar or declares something
 /// twice; no vertices, no x, y, z, or no faces with vertex_indices; triangle strips; counts for which there are too few
-/// bytes (refused before memory is taken); data that end early; coordinates that are not numbers, not finite or too
-/// large for float32; indices without a vertex; in ascii, a row that ends inside a line, with numbers after it. Faces of
-/// fewer than 3 corners are left out, with a note that counts them. In ascii, a row may go over several lines. A file
-/// cut off anywhere before its end is an error, with one exception: the last number of an ascii file may lose digits
-/// and still be a number.
+/// bytes (refused before memory is allocated); data that end early; coordinates that are not numbers, not finite or too
+/// large for float32; indices without a vertex; in ascii, a row that ends inside a line, with numbers after it. Faces
+/// of fewer than 3 corners are left out, with a note that counts them. In ascii, a row may continue over several lines.
+/// A file cut off anywhere before its end is an error, with one exception: the last number of an ascii file may lose
+/// digits and still be a number.
 /// Cost: one pass; memory in proportion to the size of the file.
 [[nodiscard]] Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name, const Origin& origin = {});
 
 /// Reads a mesh with the velocities of vertices: vx, vy, vz or velocity_x, velocity_y, velocity_z, the first of these
-/// that the vertices have, of any scalar type. A file must have all three of them or none. Errors: errors of
-/// read_ply(); kInvalidInput if only some exist, if one is a list, and for velocities that are not numbers, not finite
+/// that the vertices have, of any scalar type. A file must have all three of them or none. Errors: those of read_ply();
+/// kInvalidInput if only some of the three exist, if one is a list, and for velocities that are not numbers, not finite
 /// or too large for float32.
 [[nodiscard]] Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name,
                                                 const Origin& origin = {});
@@ -62,8 +62,8 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding,
                                     const Origin& origin = {});
 
-/// Holds what a file has beside positions and faces, each if it is not empty: normals, as properties float nx, ny, nz,
-/// and after them a number that programs can show in colours, as a property float quality.
+/// Data of a file besides positions and faces, each if it is not empty: normals, as properties float nx, ny, nz, and a
+/// number that programs can show as colours, as a property float quality.
 struct PlyProperties {
   VectorView<const float> of_vertices;                           ///< one for each vertex, after x, y, z
   VectorView<const float> of_faces;                              ///< one for each face, after its indices

@@ -187,7 +187,7 @@ Status HeaderReader::assign_role(Property& property) {
   return Success{};
 }
 
-// Checks that everything that a mesh needs is there.
+// Checks that the elements and properties of a mesh exist.
 Status HeaderReader::check_elements() {
   header_.vertex_element = header_.face_element = kNone;
   bool has_strips = false;
@@ -219,12 +219,12 @@ Status HeaderReader::check_elements() {
 
 Result<Header> read_header(std::string_view bytes, const std::string& name) {
   constexpr std::size_t kLongest = std::size_t{16}
-                                   << 20;  // of comments, mostly: a file that is no PLY may go on for long
+                                   << 20;  // mostly of comments: a file that is not PLY may have no end of its header
   return HeaderReader(bytes.substr(0, kLongest), name).read();
 }
 
 Result<bool> assign_velocities(Header& header, const std::string& name) {
-  // Particle and simulation codes write the first names; exporters of attributes add the axis to the name "velocity".
+  // Particle and simulation codes use the first names; exporters of attributes append the axis to the name "velocity".
   constexpr std::array<std::array<std::string_view, 3>, 2> kNames = {
       {{"vx", "vy", "vz"}, {"velocity_x", "velocity_y", "velocity_z"}}};
   std::vector<Property>& properties = header.elements[header.vertex_element].properties;

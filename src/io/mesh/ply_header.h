@@ -45,17 +45,17 @@ struct Header {
   std::vector<Element> elements;  ///< in the order of the file
   std::size_t vertex_element = 0;
   std::size_t face_element = 0;
-  char separator = '\n';       ///< what ends a line
+  char separator = '\n';       ///< the character that ends a line
   std::size_t body_begin = 0;  ///< byte after the header
   std::size_t line_count = 0;  ///< lines of the header
 };
 
 /// Reads and checks the header. Afterwards there is one element vertex with the scalars x, y, z, and one element face
-/// with the list vertex_indices of an integer type, both with a count above 0. Views point into bytes. Errors: as for
-/// read_ply(), with the place "NAME, line N".
+/// with the list vertex_indices of an integer type, both with a count above 0. Views point into `bytes`. Errors: those
+/// of read_ply(), with the place "NAME, line N".
 [[nodiscard]] Result<Header> read_header(std::string_view bytes, const std::string& name);
 
-/// Gives the velocities of vertices their roles, if there are any. Returns whether there are. Errors: as for
+/// Assigns the roles of velocities to properties. Returns true if there are velocities. Errors: those of
 /// read_moving_ply(), with the place "NAME, header".
 [[nodiscard]] Result<bool> assign_velocities(Header& header, const std::string& name);
 

@@ -25,8 +25,8 @@ constexpr std::size_t kNearVertices = 4096;  // 128 KiB of points in double
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
 constexpr double kLargestAngle = 8e-7;  // error of double, before the rounding of the result
 constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLargestAngle};
-// Float32 terms promise 1e-6 rad if their bound is at most this multiple of 2^-24 |n(w)|: 14 roundings, and what the
-// rounding of the result adds.
+// Float32 terms guarantee 1e-6 rad if their bound is at most this multiple of 2^-24 |n(w)|: 14 roundings, plus the
+// rounding of the result.
 constexpr UnitLimits kLimitsOfTerms = {kSmallestSquare, kLargestSquare, 14};
 
 // Costs in nanoseconds, fitted to a grid of 15,000 vertices with up to 100 targets, on one core of epyc-zen3-2cores of
@@ -38,9 +38,9 @@ constexpr double kFinishedElement = 5.5;  // making a result of length 1 from th
 constexpr double kMovedVertex = 1.7;      // moving it by a target, and back again
 constexpr double kPathPoint = 1.8;        // a point of the path around an element
 constexpr double kWrittenElement = 5;     // writing the result from the sum over its path
-constexpr double kWholeInFloat32 = 0.4;   // the share of the time that the whole mesh takes in double
+constexpr double kWholeInFloat32 = 0.4;   // share of the time that the whole mesh takes in double
 
-// Returns which part of an ascending list lies inside a range of indices.
+// Returns the part of an ascending list that is inside a range of indices.
 IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   if (list.empty() || list.back() < range.first || list.front() >= range.end()) return {};
   const auto place = [list](std::size_t index) {
@@ -51,8 +51,8 @@ IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   return {first, end - first};
 }
 
-// Returns how many elements are made from points, if points are taken four elements at a time as on every machine.
-// Elements that nobody asked for but that share such a group are counted too.
+// Returns the number of elements that are computed from points in groups of four, as on every machine. Elements that
+// were not requested but are in the same group count, too.
 std::size_t lanes_of(const IndexBits& elements) {
   std::size_t count = 0;
   for (const std::uint64_t word : elements.words()) {
@@ -127,8 +127,8 @@ void restore_points(const BlendInput& source, BlendPose& pose, Threads threads) 
   pose.has_points = false;
 }
 
-// Makes the normals of a range of elements at the weights of a pose. It only writes results, so that threads can share
-// a pose.
+// Computes the normals of a range of elements at the weights of a pose. It only writes results, so threads can share a
+// pose.
 class Call {
  public:
   Call(const BlendInput& source, const BlendPose& pose) : source_(source), pose_(pose) {}
@@ -151,7 +151,7 @@ class Call {
     return done_;
   }
 
-  // Returns the normal of a large face, which each of its corners asks for.
+  // Returns the normal of a large face, which each of its corners needs.
   [[nodiscard]] BlendedFace make_face(std::size_t f) const {
     const auto face = source_.set.topology.face(f);
     struct Edge {
@@ -255,8 +255,8 @@ class Call {
     for (std::size_t i = 0; i < elements.count; ++i) result.set(i, {units[3 * i], units[3 * i + 1], units[3 * i + 2]});
   }
 
-  // Does what unit_normals_of_rings() does for a few elements whose points nobody has blended. It blends the points of
-  // their paths, four elements at a time, as the kernel takes them.
+  // Computes the same normals as unit_normals_of_rings(), for a few elements whose points are not blended yet. Blends
+  // the points of their paths, four elements at a time, in the layout of the kernel.
   std::uint64_t make_rings(std::uint64_t elements, std::size_t first_word, std::size_t word,
                            const VectorView<float>& result) const {
     constexpr std::size_t kLanes = 4;
@@ -282,7 +282,7 @@ class Call {
           row[0] = p.x, row[1] = p.y, row[2] = p.z, row[3] = 0;
         }
       }
-      // Describe one slice, in the place of this one among the slices of the tile.
+      // Describes one slice as if it were at its place among the slices of the tile.
       std::size_t first_row[kTileElements / kRingLanes + 1] = {};
       std::fill(std::begin(first_row) + static_cast<std::ptrdiff_t>(word * kSlicesOfWord + slice) + 1,
                 std::end(first_row), row_count);
@@ -328,8 +328,8 @@ class Call {
       noise += face.noise;
       ++count;
     });
-    // Each addition is within u of the sum of absolute normals. They are at most twice the products that make_face()
-    // counts 13 times.
+    // The error of each addition is within u times the sum of absolute normals, which are at most twice the products
+    // that make_face() counts 13 times.
     noise *= 1 + count / 6;
     const double square = dot(n, n);
     if (square >= kSmallestSquare && square <= kLargestSquare && square > noise * noise) {
@@ -337,7 +337,7 @@ class Call {
       if (noise * noise > kLargestAngle * kLargestAngle * square) ++done_.uncertain_elements;
       return;
     }
-    // The normal is very small, very large, nothing but rounding, or not finite.
+    // The normal is very small, very large, only rounding error, or not finite.
     const double largest = max_abs(n);
     if (sum_abs(n) <= std::numeric_limits<double>::max() && largest > noise) {
       result.set(place, to_float(unit(n)));

@@ -1,4 +1,4 @@
-/// Evaluation of BlendNormals: one part is done once for some weights, the other for each range of elements.
+/// Evaluation of BlendNormals: one part is computed once for some weights, the other for each range of elements.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds what an evaluation reads.
+/// The data that an evaluation reads.
 struct BlendInput {
   const BlendSet& set;
   const NormalGroups* groups;  ///< nullptr: the elements are faces
@@ -32,7 +32,7 @@ BlendChoice choose_path(const BlendInput& input, std::span<const double> weights
 BlendChoice set_weights(const BlendInput& input, std::span<const double> weights, BlendPose& pose, Threads threads);
 
 /// Writes the normals of a range of elements, and returns the counts of this range. Any thread may call it.
-/// elements.first must be a multiple of 64, result must have as many elements as the range
+/// elements.first must be a multiple of 64, and `result` must have as many elements as the range
 BlendEvaluation evaluate(const BlendInput& input, const BlendPose& pose, IndexRange elements,
                          VectorView<float> result) noexcept;
 

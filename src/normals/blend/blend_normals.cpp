@@ -110,7 +110,7 @@ std::vector<BlendEvaluation> BlendNormals::unit_normals(std::span<const double> 
   assert(weights.size() == results.size() * targets);
   std::vector<BlendEvaluation> done(results.size());
   const BlendInput source = parts_->source();
-  // Each thread takes every `hands`-th row, with its own pose.
+  // Each thread computes every `hands`-th row, with its own pose.
   const std::size_t hands = threads == Threads::kOne ? 1 : std::min(thread_count(), results.size());
   std::vector<BlendPose> poses;
   for (std::size_t hand = 1; hand < hands; ++hand) poses.emplace_back(set(), parts_->shape());

@@ -1,4 +1,5 @@
-/// Memory of BlendNormals beside its terms: the normals of the base, and what all elements share at some weights.
+/// Memory of BlendNormals in addition to its terms: the normals of the base, and data at some weights that all elements
+/// share.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_SCRATCH_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_SCRATCH_H_
 
@@ -24,7 +25,7 @@ struct BlendShape {
 struct BlendBase {
   std::vector<double> sums;  ///< n_b and its bound in the unit of blend_storage.h: four numbers for each element
   std::vector<float> units;  ///< unit normals, three numbers for each element
-  IndexBits zeros;           ///< elements whose unit is (0, 0, 0)
+  IndexBits zeros;           ///< elements whose unit normal is (0, 0, 0)
   double reach = 0;          ///< the largest absolute coordinate
 };
 
@@ -37,7 +38,7 @@ struct BlendedFace {
   double noise = 0;
 };
 
-/// Holds the weights that are set, and what they move.
+/// The current weights, and the points that they move.
 struct BlendPose {
   BlendPose(const BlendSet& set, const BlendShape& shape);
 
@@ -47,9 +48,9 @@ struct BlendPose {
   bool has_points = false;            ///< whether points are at the weights; otherwise they are at the base
   std::vector<BlendedFace> large;     ///< large_faces() of the storage, if has_points
   std::vector<double> points;         ///< rows of vertices
-  AlignedArray<float> float_points;   ///< rows of vertices in float32; empty if nobody asks for them
+  AlignedArray<float> float_points;   ///< rows of vertices in float32; empty if not requested
   IndexBits touched;                  ///< elements that active targets touch
-  IndexBits again;                    ///< elements that are made from positions
+  IndexBits again;                    ///< elements that are computed from positions
   std::vector<std::uint32_t> active;  ///< targets
   std::vector<bool> is_active;
 };

@@ -1,4 +1,4 @@
-// Lists the terms of a set of targets, decides which of them are worth their memory, and makes them.
+// Lists the terms of a set of targets, decides which of them are worth their memory, and computes them.
 #include "normals/blend/blend_storage.h"
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Threads work on at most 1 / kShareOfWork of all terms at once while they make them, unless one term takes more.
+// Threads work on at most 1 / kShareOfWork of all terms at a time while computing them, unless a single term is larger.
 constexpr std::size_t kShareOfWork = 8;
 
 constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);  // bytes of an element
 constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kBlendLanes * sizeof(float);
 
-// Bounds are a little larger than needed, so that they hold in spite of their rounding to float32, and for values near
-// the end of its range.
+// Bounds are slightly enlarged, so that they hold despite their rounding to float32, and for values near the end of its
+// range.
 constexpr double kMargin = 1 + 0x1p-20, kSmallestBound = 0x1p-120;
 
 std::size_t bytes_of(const StoredTerm& term) {
@@ -168,7 +168,7 @@ void BlendStorage::fill() {
   }
 }
 
-// The linear term stays in memory while the square one is made, so the work counts twice.
+// The linear term stays in memory while the square term is computed, so the work counts twice.
 std::size_t BlendStorage::work_of(const StoredTarget& target) const {
   return 2 * terms_.term_bytes(target.moved_faces, target.moved_corners);
 }

@@ -1,4 +1,4 @@
-/// The terms of a quadratic form in the weights, as BlendNormals keeps them: float32, sparse, and as many as fit.
+/// The terms of a quadratic form in the weights, as BlendNormals stores them: in float32, sparse, and as many as fit.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
 
@@ -19,9 +19,9 @@ namespace chronormal::inline internal {
 /// The most points of a path around an element.
 inline constexpr std::size_t kMostRingPoints = 64;
 
-/// Holds coefficients at some elements: A and C_ii for a target, C_ij for a pair. A coefficient is `scale` times the
-/// four lanes that are stored, x y z and a bound: the length of the error of x y z is at most kFloatUnitRoundoff times
-/// the bound. All bounds are in this unit.
+/// The coefficients at some elements: A and C_ii for a target, C_ij for a pair. A coefficient is `scale` times the four
+/// lanes that are stored, x y z and a bound: the length of the error of x y z is at most kFloatUnitRoundoff times the
+/// bound. All bounds are in this unit.
 struct StoredTerm {
   bool is_stored = false;
   double scale = 1;
@@ -52,7 +52,7 @@ class BlendStorage {
 
   /// Makes the terms that are to be stored.
   void fill();
-  /// Must be called after a target was appended to the set. Makes its terms.
+  /// Computes the terms of a target that was just appended to the set. Must be called after each one.
   void target_added();
 
   [[nodiscard]] std::span<const StoredTarget> targets() const noexcept { return targets_; }

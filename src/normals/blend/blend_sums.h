@@ -19,7 +19,7 @@ namespace chronormal::inline internal {
 /// Faces of at most this many corners need no memory on the heap.
 inline constexpr std::size_t kSmallFace = 4;
 
-/// Holds vectors at the corners of a face.
+/// The vectors at the corners of a face.
 class CornerVectors {
  public:
   explicit CornerVectors(std::size_t count) : count_(count) {

@@ -1,4 +1,4 @@
-// Computes the terms of n(w) face by face in double, and adds them up for the elements that they lie around.
+// Computes the terms of n(w) face by face in double, and adds them up for the elements around which the faces are.
 #include "normals/blend/blend_terms.h"
 
 #include <algorithm>
@@ -17,8 +17,9 @@ using Indices = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
 constexpr std::size_t kTermsTogether = 1024;
-constexpr std::size_t kFewFaces = 100000;  // so few faces that keeping what each adds takes little memory
-constexpr std::size_t kFarApart = 16;      // faces lie so far apart on average that a table of all between is too large
+// Number of faces up to which storing the contribution of each takes little memory.
+constexpr std::size_t kFewFaces = 100000;
+constexpr std::size_t kFarApart = 16;  // faces lie so far apart on average that a table of all between is too large
 
 Indices common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
   Indices result;
@@ -31,14 +32,14 @@ void make_set(Indices& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-// Finds which faces lie around each vertex.
+// Finds the faces around each vertex.
 class FacesOfVertices {
  public:
   explicit FacesOfVertices(const Topology& topology) : topology_(topology) {}
 
   // Returns the faces around any of these vertices, ascending.
   [[nodiscard]] Indices around(std::span<const std::uint32_t> vertices) {
-    // If there are many vertices, look through the whole mesh, which takes less memory than sorting.
+    // For many vertices, goes through the whole mesh, which takes less memory than sorting.
     constexpr std::size_t kFew = 16;
     if (vertices.size() > topology_.vertex_count() / kFew) return among_all(vertices);
     if (offsets_.empty()) list();
@@ -171,7 +172,7 @@ void BlendTerms::for_faces_of(std::uint32_t element, const Body& body) const {
 
 Indices BlendTerms::elements_of(std::span<const std::uint32_t> faces) const {
   Indices elements;
-  // Marks take a bit for each element, sorting takes 32 bits for each corner.
+  // Marks take a bit for each element, and sorting takes 32 bits for each corner, so the cheaper one is used.
   if (faces.size() > size() / 64) {
     std::vector<bool> is_one(size());
     std::size_t count = 0;

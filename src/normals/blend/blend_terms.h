@@ -4,11 +4,11 @@
 ///
 /// A face has the vector area n(p) = B(p, p), where B is bilinear in its corners. Then A_i = B(b, d_i) + B(d_i, b),
 /// C_ii = B(d_i, d_i) and C_ij = B(d_i, d_j) + B(d_j, d_i). Elements are sums of faces. A_i is zero if target i moves
-/// no corner of the element's faces, and C_ij unless both targets move the same face, so terms are sparse. Their sizes
-/// follow from counts alone: pair_elements().
+/// no corner of the element's faces, and C_ij unless both targets move the same face, so terms are sparse.
+/// pair_elements() returns their sizes without computing them.
 ///
 /// Units      lengths squared, in double; lengths of the sums are twice the area.
-/// Order      sums run in the order of NormalGroups: the same bits on every number of threads.
+/// Order      sums are in the order of NormalGroups, so the bits are the same for every number of threads.
 /// Ownership  the set and the groups must outlive this. Call target_added() after a target was added to the set.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_TERMS_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_TERMS_H_
@@ -25,7 +25,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds the elements where a coefficient is not zero, ascending, and its values there.
+/// The elements whose coefficient is not zero, ascending, and their coefficients.
 struct BlendTerm {
   std::vector<std::uint32_t> elements;
   std::vector<Vec3d> values;
@@ -34,15 +34,15 @@ struct BlendTerm {
 
 class BlendTerms {
  public:
-  /// Tells of the faces of a set, or of the elements of groups. Lists the faces that each target moves. set must be
-  /// valid (motion/motion.h) and groups those of its topology. O(corners + sizes of targets, log).
+  /// Lists the faces that each target moves, for the faces of a set, or for the elements of groups. The set must be
+  /// valid (motion/motion.h), and the groups must belong to its topology. O(corners + sizes of targets, log).
   explicit BlendTerms(const BlendSet& set) : BlendTerms(set, nullptr) {}
   BlendTerms(const BlendSet& set, const NormalGroups& groups) : BlendTerms(set, &groups) {}
 
   /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept;
 
-  /// Returns n_b of all elements. Its list `elements` is empty, which stands for all of them in order.
+  /// Returns n_b of all elements. Its list `elements` is empty, which means all elements in order.
   [[nodiscard]] BlendTerm base_term() const;
   /// Returns the values of base_term() only.
   [[nodiscard]] std::vector<Vec3d> base() const { return base_term().values; }
@@ -55,9 +55,9 @@ class BlendTerms {
   /// cores.
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
 
-  /// Gives linear() and pair() element by element, so that nobody has to hold all of it. It holds at most 4 bytes for
-  /// each vertex of the mesh and target, and what faces add: faces of more than 4 corners, and all faces if they are
-  /// 100,000 or fewer. O(faces that target i moves) to make.
+  /// Computes linear() and pair() element by element, so that the whole term need not be in memory. Keeps at most 4
+  /// bytes for each vertex of the mesh and of the target, and the contributions of faces: of faces with more than 4
+  /// corners, and of all faces if there are at most 100,000. The constructor is O(faces that target i moves).
   class Term;
   [[nodiscard]] Term linear_by_element(std::size_t i) const;
   [[nodiscard]] Term pair_by_element(std::size_t i, std::size_t j) const;
@@ -79,16 +79,16 @@ class BlendTerms {
     friend bool operator==(const PairCount&, const PairCount&) = default;
   };
   [[nodiscard]] std::vector<PairCount> pair_elements(std::size_t i) const;
-  /// Returns the pairs of all targets, each only with later ones.
+  /// Returns the pairs of all targets; each target only with later ones.
   [[nodiscard]] std::vector<std::vector<PairCount>> pair_elements() const;
 
-  /// Must be called after a target was appended to the set. O(corners).
+  /// Updates the lists for a target that was just appended to the set. Must be called after each one. O(corners).
   void target_added();
 
   /// Returns the memory that is kept, in bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// Return the most memory that a call takes for a while, results included: linear() and pair() over so many faces and
-  /// corners; base_term(); and pair_elements() with so many pairs in the results.
+  /// Return the largest temporary memory of a call, including results: of linear() and pair() for some numbers of faces
+  /// and corners; of base_term(); and of pair_elements() with a given number of pairs in the results.
   [[nodiscard]] std::size_t term_bytes(std::size_t faces, std::size_t corners) const noexcept;
   [[nodiscard]] std::size_t base_bytes() const noexcept;
   [[nodiscard]] std::size_t counting_bytes(std::size_t pairs) const noexcept;
@@ -120,7 +120,7 @@ class BlendTerms::Term {
  private:
   friend class BlendTerms;
 
-  // Holds a vector and a bound of its rounding error.
+  // A vector and a bound of its rounding error.
   struct Rounded {
     Vec3d value;
     double noise = 0;
@@ -132,10 +132,10 @@ class BlendTerms::Term {
 
     const BlendTarget* target;
     std::uint32_t first = 0;
-    std::vector<std::uint32_t> of_vertices;  // from its first vertex on; empty if they lie far apart
+    std::vector<std::uint32_t> of_vertices;  // from its first vertex on; empty if its vertices are too scattered
   };
 
-  // Makes the term of one target, or of two.
+  // Makes the term of one target, or of two targets.
   Term(const BlendTerms& terms, std::size_t i);
   Term(const BlendTerms& terms, std::size_t i, std::size_t j, std::span<const std::uint32_t> faces);
 
@@ -143,7 +143,7 @@ class BlendTerms::Term {
   // Computes once what all its faces add, if they are dense enough to be found at once. Uses all threads.
   void keep_all(std::span<const std::uint32_t> faces);
   [[nodiscard]] Rounded at(std::uint32_t element) const;
-  // Finds what a face adds. Returns false if it is not moved.
+  // Computes the contribution of a face. Returns false if the face is not moved.
   [[nodiscard]] bool of_face(std::uint32_t face, Rounded& result) const;
   [[nodiscard]] bool find_face(std::uint32_t face, Rounded& result) const;
 
@@ -151,11 +151,12 @@ class BlendTerms::Term {
   Places first_;
   std::optional<Places> second_;
   bool is_linear_;
-  std::vector<std::uint32_t> large_faces_;  // ascending: they would take too long for each of their elements
+  // In ascending order; computing these again for each of their elements would take too long.
+  std::vector<std::uint32_t> large_faces_;
   std::vector<Rounded> of_large_faces_;
-  std::vector<Rounded> of_all_faces_;       // empty where they are not kept
-  std::uint32_t first_face_ = 0;            // the first of these faces
-  std::vector<std::uint32_t> face_places_;  // places in of_all_faces_ of the faces from there on
+  std::vector<Rounded> of_all_faces_;       // empty if contributions are not kept
+  std::uint32_t first_face_ = 0;            // the first face of of_all_faces_
+  std::vector<std::uint32_t> face_places_;  // indices into of_all_faces_ for the faces from that one on
 };
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-/// Sets of indices as bits: dense ones to work in, and sparse ones to keep.
+/// Sets of indices as bits: dense sets for computing, and sparse sets for storage.
 #ifndef CHRONORMAL_NORMALS_BLEND_INDEX_BITS_H_
 #define CHRONORMAL_NORMALS_BLEND_INDEX_BITS_H_
 
@@ -18,7 +18,7 @@ inline constexpr std::size_t kBitsOfWord = 64;
   return (count + kBitsOfWord - 1) / kBitsOfWord;
 }
 
-/// Holds the words of a set that are not zero.
+/// The words of a set that are not zero.
 struct SparseBits {
   std::vector<std::uint32_t> places;  ///< ascending
   std::vector<std::uint64_t> masks;
@@ -41,7 +41,7 @@ class IndexBits {
     return (words_[i / kBitsOfWord] >> (i % kBitsOfWord) & 1) != 0;
   }
 
-  /// Adds 0 ... count - 1.
+  /// Adds the indices 0 ... count - 1.
   void fill(std::size_t count) noexcept {
     for (std::size_t i = 0; i < words_.size(); ++i) {
       const std::size_t first = i * kBitsOfWord, left = count > first ? count - first : 0;

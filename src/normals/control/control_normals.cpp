@@ -24,7 +24,7 @@ struct Edge {
   Vec3d from, to;
 };
 
-// Returns the direction at an end of the segment, where nothing is rounded: the first control normal from there that is
+// Returns the direction at an end of the segment, which needs no rounding: the first control normal from there that is
 // not zero.
 UnitNormal first_direction(const Vec3d& at_end, const Vec3d& middle, const Vec3d& other) noexcept {
   if (at_end != Vec3d{}) return {unit(at_end), Direction::kRegular};
@@ -93,7 +93,7 @@ UnitNormal unit_normal_at(const ControlNormals& normals, double time) noexcept {
   const double size = s * s * max_abs(n0) + 2 * t * s * max_abs(m) + t * t * max_abs(n1);
   if (max_abs(n) > kEvaluationError * size) return {unit(n), Direction::kRegular};
 
-  // Where n(t) = 0, the curve near t is (x - t) n'(t) + (x - t)^2 c2.
+  // If n(t) = 0, the curve near t is (x - t) n'(t) + (x - t)^2 c2.
   const double largest = maximum_number(max_abs(n0), maximum_number(max_abs(m), max_abs(n1)));
   const Vec3d half_derivative = s * (m - n0) + t * (n1 - m);
   if (max_abs(half_derivative) > kEvaluationError * largest) {

@@ -1,4 +1,4 @@
-/// n(t) of one element without any rounding, to decide cases in which double cannot.
+/// n(t) of an element without any rounding, for cases that double cannot decide.
 ///
 /// The control normals of a face are sums of products of its coordinates, which are floats or sums of a few
 /// (motion/segment_end.h). The control normals of a group are sums of these, so all are integers times 2^-298
@@ -6,13 +6,13 @@
 ///
 ///     n(t) = n0 + t (2m - 2 n0 + t (n0 - 2m + n1))                             (eq. 5 in powers of t)
 ///
-/// is one more such integer. Where t is a quotient of differences of doubles (LocalTime), n(t) is such an integer over
-/// the square of the divisor. So it is known, and not estimated, whether n(t) is zero and which way it points. This
-/// takes about a microsecond for each t, hundreds of times as long as in double, so it stands behind a filter: double
-/// decides wherever a bound on the rounding error is small against |n(t)|.
+/// is one more such integer. If t is a quotient of differences of doubles (LocalTime), n(t) is such an integer divided
+/// by the square of the divisor. So the zeros and the direction of n(t) are known exactly. This takes about a
+/// microsecond for each t, hundreds of times longer than in double, so it is only used behind a filter: double decides
+/// if the bound of its rounding error is small relative to |n(t)|.
 ///
-/// No edges are formed: the products of neighbouring corners add up to the vector area (the shoelace formula), and the
-/// distance from the origin does not matter to integers.
+/// No edges are formed: the products of neighbouring corners add up to the vector area (the shoelace formula), and for
+/// integers the distance from the origin does not matter.
 #ifndef CHRONORMAL_NORMALS_CONTROL_EXACT_CURVE_H_
 #define CHRONORMAL_NORMALS_CONTROL_EXACT_CURVE_H_
 
@@ -60,16 +60,16 @@ class ExactCurve {
   using Coefficient = WideInteger<kDigits>;
   using CoefficientVector = std::array<Coefficient, 3>;
 
-  /// Makes the curve of one polygon, which is given by its vertices, or of several faces, whose normals it adds up.
+  /// Makes the curve of a polygon, given by its vertices, or of several faces, whose normals are summed.
   [[nodiscard]] static ExactCurve of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
   [[nodiscard]] static ExactCurve of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept;
 
-  /// Adds another curve. The bits are the ones that of_faces() gives for both at once.
+  /// Adds another curve. The bits are the same as from of_faces() for both at once.
   void add(const ExactCurve& other) noexcept;
 
-  /// Reads what append_to() has written.
+  /// Reads numbers that append_to() has written.
   [[nodiscard]] static ExactCurve of_kept(const std::int32_t* kept) noexcept;
-  /// Appends the numbers that make up this curve, as few as hold it: some 40 for coordinates of one size.
+  /// Appends the numbers of this curve, as few as necessary: about 40 for coordinates of similar magnitude.
   void append_to(std::vector<std::int32_t>& kept) const;
 
   /// Returns the control normals, each component rounded once or twice.
@@ -77,7 +77,7 @@ class ExactCurve {
   /// Returns n(t), each component rounded a few times. t is a local_time()
   [[nodiscard]] Vec3d normal_at(const LocalTime& t) const noexcept;
   /// Returns the middle control normal of the part [s, t] of the curve, rounded in the same way. It is the blossom of n
-  /// at (s, t), which is n(t) for s = t. Both are doubles, and are local_time()s
+  /// at (s, t), which is n(t) for s = t. Both arguments must be doubles from local_time()
   [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
   /// Returns n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
   [[nodiscard]] UnitNormal unit_normal_at(const LocalTime& t) const noexcept;
@@ -85,7 +85,7 @@ class ExactCurve {
   static constexpr std::size_t kValueDigits = 50;  // both factors t together have 2 (53 + 200) bits
   using Value = std::array<WideInteger<kValueDigits>, 3>;
   [[nodiscard]] Value integers_at(const UnitFraction& t) const noexcept;
-  /// Returns base, where all coordinates are multiples of 2^(base - 149).
+  /// Returns `base`; all coordinates are multiples of 2^(base - 149).
   [[nodiscard]] unsigned base() const noexcept { return base_; }
   /// Returns the coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, settled: integers of one unit, a power of two.
   [[nodiscard]] std::array<CoefficientVector, 3> in_powers() const noexcept;

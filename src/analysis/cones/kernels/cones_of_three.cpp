@@ -1,7 +1,7 @@
-// The smallest cone around three unit vectors is that of the widest pair if the third vector lies in it, that is, if
-// their triangle has no acute angle there; otherwise it goes through all three, around the centre of the triangle's
-// circle. Its axis is found in float32, and the cone is then made wide enough for the rounded axis: its sine is the
-// largest sine of the angles between the axis and the three vectors, plus, with u = 2^-24,
+// The smallest cone around three unit vectors is the cone of the widest pair if it contains the third vector, that is,
+// if the triangle has no acute angle at the third vector. Otherwise the cone goes through all three, around the
+// circumcentre of the triangle. Its axis is found in float32, and the cone is then made wide enough for the rounded
+// axis: its sine is the largest sine of the angles between the axis and the three vectors, plus, with u = 2^-24,
 //     2^-20 of itself, for the lengths of axis and vectors, the root and the quotient
 //     5 u: a vector loses 2 u to float32, and a cross product of unit vectors 2.5 u
 //     the relative error of a vector, which is the sine of the angle of that error

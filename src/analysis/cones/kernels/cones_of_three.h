@@ -35,14 +35,14 @@ struct Restriction {
 inline constexpr std::size_t kConesPerFlags = 16;
 
 /// Writes the cone around the three vectors of each element; each vector is within `share` of its length. Flags
-/// elements with a vector that is zero, not finite, or below 2^-1022 or above 2^1023: their cones mean nothing. Bit i
-/// of flags[b] is element 16 b + i.
-/// result must have room for `count` cones, flags for one number for every 16 elements begun
+/// elements with a vector that is zero, not finite, or below 2^-1022 or above 2^1023: their cones have no meaning. Bit
+/// i of flags[b] is element 16 b + i. `result` must have room for `count` cones, and `flags` for one number per 16
+/// elements, rounded up
 void cones_of_three(const ControlNormals* normals, std::size_t count, double share, NormalCone* result,
                     std::uint16_t* flags) noexcept;
 
-/// Does the same for parts of segments. It also flags elements with a restricted control normal whose relative error is
-/// above kLargestUnknown.
+/// Writes the cones of parts of segments in the same way. Also flags elements with a restricted control normal whose
+/// relative error is above kLargestUnknown.
 void cones_of_parts(const ControlNormals* normals, std::size_t count, const Restriction& part, NormalCone* result,
                     std::uint16_t* flags) noexcept;
 

@@ -1,7 +1,7 @@
 /// The kernel of dense linear algebra: sums of outer products of rows.
 ///
-/// Every sum runs over the rows in their order, and each step is rounded by itself, so that the result has the same
-/// bits on every instruction set.
+/// Every sum is over the rows in order, and each operation is rounded separately, so the result has the same bits on
+/// every instruction set.
 #ifndef CHRONORMAL_ANALYSIS_FITS_KERNELS_PRODUCTS_H_
 #define CHRONORMAL_ANALYSIS_FITS_KERNELS_PRODUCTS_H_
 
@@ -20,7 +20,7 @@ struct StridedMatrix {
 ///
 ///     sums[i][j] += sum over r of a[r][i] b[r][j]
 ///
-/// a and b must have as many rows as each other, the elements of a row of b must lie side by side, and sums must not
+/// `a` and `b` must have equally many rows, the elements of a row of `b` must be contiguous, and `sums` must not
 /// overlap them. Cost: one multiplication and one addition for each a[r][i] b[r][j]
 void add_products(const StridedMatrix& a, const StridedMatrix& b, float* sums, std::size_t stride) noexcept;
 

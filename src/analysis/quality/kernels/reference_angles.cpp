@@ -24,7 +24,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Triangles lie in groups of eight, as many as there are doubles in the widest vector: value k of triangle i of a group
+// Triangles are stored in groups of eight, the number of doubles in the widest vector: value k of triangle i of a group
 // is at k * kGroup + i.
 constexpr std::size_t kGroup = 8, kValues = 20;
 // Equals the constant kDoubtfulShare in reference_normals.cpp.
@@ -41,7 +41,7 @@ HWY_INLINE Real3 load3(const double* first) {
   return {Real::load(first), Real::load(first + kGroup), Real::load(first + 2 * kGroup)};
 }
 
-// Returns the normals of as many triangles as there are lanes, each divided by its largest component.
+// Returns the normals of one triangle per lane, each divided by its largest component.
 HWY_INLINE Real3 NormalOf(const double* group, Real s, Real t) {
   const Real3 a1 = load3(group), b0 = load3(group + 3 * kGroup), b1 = load3(group + 6 * kGroup),
               c0 = load3(group + 9 * kGroup), c1 = load3(group + 12 * kGroup);

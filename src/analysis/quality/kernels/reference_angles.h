@@ -1,7 +1,7 @@
 /// Reference normals of triangles at many times, and the angles between exact normals and others, in lanes of double.
 ///
-/// Both return the bits of their scalar forms: reference_normals() of analysis/quality.h, but for its length, and
-/// portable::atan2(|n x u|, n . u).
+/// Results have the same bits as the scalar functions: reference_normals() of analysis/quality.h, except for its
+/// length, and portable::atan2(|n x u|, n . u).
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
 
@@ -19,12 +19,12 @@ namespace chronormal::inline internal {
 /// pass over contiguous memory.
 class ReferenceTriangles {
  public:
-  /// Takes faces of a segment, which must all be triangles. The arrays that the segment views must outlive the object,
+  /// Takes faces of a segment, which must all be triangles. The arrays behind the segment must outlive the object,
   /// which reads them again if double is not accurate enough.
   ReferenceTriangles(const Segment& segment, IndexRange faces);
 
-  /// Writes n(t) of each face divided by its largest component, and (0, 0, 0) where reference_normals() does.
-  /// result must have one element per face; t in [0, 1]
+  /// Writes n(t) of each face divided by its largest component, and (0, 0, 0) if reference_normals() does. result must
+  /// have one element per face; t in [0, 1]
   void normals(double t, std::span<Vec3d> result) const noexcept;
 
  private:
@@ -33,11 +33,12 @@ class ReferenceTriangles {
   std::vector<double> edges_;  // in groups of lanes, 20 values per triangle
 };
 
-/// Values that stand for an angle if there is none.
+/// Values in place of an angle if there is none.
 inline constexpr double kNoExactNormal = -1, kNoNormal = -2;
 
-/// Writes the angle between each exact normal, of any length, and the normal rendered: kNoExactNormal if the exact one
-/// is zero, or else kNoNormal if the other is zero or not finite. Fastest if the largest component of exact normals is
+/// Writes the angle between each exact normal, which need not be a unit vector, and the rendered normal: kNoExactNormal
+/// if the exact one is zero, or else kNoNormal if the rendered one is zero or not finite. Fastest if the largest
+/// component of exact normals is
 /// 1. All three must have the same size.
 void angles_to_exact(std::span<const Vec3d> exact, VectorView<const float> shown, std::span<double> angles) noexcept;
 

@@ -1,5 +1,5 @@
-// Computes the normals of moving triangles and the angles of an audit in lanes. Operations come in the order of the
-// scalar functions, so that the bits are the same.
+// Computes the normals of moving triangles and the angles of an audit in lanes. Operations have the same order as in
+// the scalar functions, so the bits are the same.
 #include "analysis/quality/kernels/shown_angles.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -18,7 +18,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Triangles lie in groups of eight, as many as there are doubles in the widest vector: value k of triangle i of a group
+// Triangles are stored in groups of eight, the number of doubles in the widest vector: value k of triangle i of a group
 // is at k * kTriangles + i. The values are x, y, z of each corner, first of all at the start and then at the end.
 constexpr std::size_t kTriangles = 8, kPositionValues = 18;
 
@@ -63,8 +63,7 @@ void TriangleNormals(const float* groups, std::size_t count, double t, Triangles
   }
 }
 
-// Each row is added to a sum of four numbers at once. The sums are then transposed to columns, as many at a time as
-// there are lanes.
+// Adds four numbers of a row at once. The sums are then transposed to columns, one element per lane.
 void SumsAround(const TrianglesInMotion::Normal* normals, const std::uint32_t* faces,
                 std::span<const std::uint32_t> ends, PlanesOf4& sums) {
   alignas(64) double rows[kDoubleLanes][4];
@@ -103,7 +102,7 @@ struct Scaled {
     vector = {v.x / divisor, v.y / divisor, v.z / divisor};
     length = sqrt(dot(vector, vector));
   }
-  // The operations are those of unit() and length() in core/vec3.h.
+  // Uses the operations of unit() and length() in core/vec3.h in the same order.
   [[nodiscard]] HWY_INLINE Real3 unit() const {
     return (Real(1.0) / select(length == Real(0.0), Real(1.0), length)) * vector;
   }
@@ -138,7 +137,7 @@ void ShownAngles(const ShownElements& elements, double time, std::span<double> d
                Real::load(right.w.data() + i), rounding, t)
         .store(degrees.data() + i);
   }
-  // The rest is computed one element at a time, in all lanes.
+  // The remaining elements are computed one at a time, with equal values in all lanes.
   const auto all3 = [](const PlanesOf4& planes, std::size_t k) HWY_ATTR {
     return Real3{Real(planes.x[k]), Real(planes.y[k]), Real(planes.z[k])};
   };

@@ -1,7 +1,7 @@
 /// Computes for every vertex and sample of an audit, in lanes of double, the normals of moving triangles, and the
 /// angles between the true normals and the rendered ones.
 ///
-/// All functions return the bits of their scalar forms: sums from left to right, twice_vector_area() of positions
+/// All results have the same bits as the scalar functions: sums from left to right, twice_vector_area() of positions
 /// interpolated in double, and angle_between() of the results of unit() and lerp() of core/vec3.h.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_SHOWN_ANGLES_H_
@@ -50,7 +50,7 @@ struct PlanesOf4 {
 void sums_around(const std::vector<TrianglesInMotion::Normal>& normals, std::span<const std::uint32_t> faces,
                  std::span<const std::uint32_t> ends, PlanesOf4& sums);
 
-/// Values that stand for an error if there is none.
+/// Values in place of an error if there is none.
 inline constexpr double kNotLit = -1, kNotJudged = -2;
 
 /// The rendered and the true normals of some elements at a sample between two keyframes.
@@ -66,8 +66,9 @@ struct ShownElements {
 /// All planes must have as many elements as the result; no number may be infinite or NaN.
 void shown_angles(const ShownElements& elements, double t, std::span<double> degrees) noexcept;
 
-/// Writes the angles between pairs of vectors of any length, times a factor: in degrees, or 1 for radians. The angle is
-/// 0 if one vector is zero. All three must have the same size; no number may be infinite or NaN.
+/// Writes the angles between pairs of vectors, which need not be unit vectors, times a factor: degrees per radian, or 1
+/// for radians. The angle is 0 if one vector is zero. All three must have the same size; no number may be infinite or
+/// NaN.
 void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> angles,
                      double per_radian = kDegreesPerRadian) noexcept;
 

@@ -1,4 +1,5 @@
-/// Takes a glance at sixteen faces between two keyframes, which proves for almost all of them that nothing is unusual.
+/// Proves for sixteen faces between two keyframes, with little work, that nothing unusual happens. The proof succeeds
+/// for almost all faces.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 

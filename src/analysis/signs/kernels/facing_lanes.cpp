@@ -1,6 +1,6 @@
 // Computes coefficients by dot products in double, roots of quadratics in closed form, and roots of cubics by Newton's
-// method, starting from a quadratic. A bracket counts only if the values at its ends are beyond the bound on different
-// sides, so it does not matter how the root was found.
+// method, starting from a quadratic. A bracket is only accepted if the values at its ends certainly have different
+// signs, so the way of finding the root does not matter.
 #include "analysis/signs/kernels/facing_lanes.h"
 
 #include <algorithm>
@@ -106,8 +106,8 @@ struct Guess {
   Doubles root, slope;  // slope: without its sign
 };
 
-// Returns the only root in [0, 1] of a quadratic that is positive at 0 and negative at 1: with s = t / (1 - t), the
-// root of p2 s^2 + 2 p1 s + p0, in the form in which nothing cancels.
+// Returns the only root in [0, 1] of a quadratic that is positive at 0 and negative at 1. With s = t / (1 - t) it is
+// the root of p2 s^2 + 2 p1 s + p0, by the formula that does not cancel.
 HWY_INLINE Doubles RootOfQuadratic(Doubles p0, Doubles p1, Doubles p2) {
   const Doubles w = hn::Add(p1, hn::CopySign(hn::Sqrt(hn::Sub(hn::Mul(p1, p1), hn::Mul(p0, p2))), p1));
   const auto is_negative = hn::Lt(w, hn::Zero(kDoubles));
@@ -129,8 +129,8 @@ HWY_INLINE Guess OnlyRoot(const Doubles (&p)[4]) {
   const Doubles middle =
       hn::Mul(hn::Set(kDoubles, 0.25), hn::Sub(hn::Mul(three, hn::Add(p[1], p[2])), hn::Add(p[0], p[3])));
   Doubles t = RootOfQuadratic(p[0], middle, p[3]), slope = zero;
-  // Each lane stops by itself, so that none depends on its neighbours. Lanes that have not converged are left to
-  // CertainRoots.
+  // Each lane stops independently, so its result does not depend on its neighbours. Lanes that have not converged are
+  // left to CertainRoots.
   auto is_done = hn::Lt(one, zero);
   for (int i = 0; i < kMostSteps && !hn::AllTrue(kDoubles, is_done); ++i) {
     const Doubles value = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Add(hn::Mul(a3, t), a2), t), a1), t), p[0]);
@@ -168,7 +168,7 @@ template <std::size_t M>
 HWY_INLINE void SingleRootsOf(std::size_t at, SingleRoots& roots) {
   constexpr double kRoundings = 46;  // as in CertainRoots
   const Doubles zero = hn::Zero(kDoubles), one = hn::Set(kDoubles, 1);
-  // A polynomial that is negative at 0 is multiplied by -1, so that each of them falls from positive to negative.
+  // A polynomial that is negative at 0 is multiplied by -1, so that all of them go from positive to negative.
   const Doubles sign = hn::CopySign(one, hn::Load(kDoubles, roots.p[0] + at));
   Doubles p[M], size = zero;
   for (std::size_t k = 0; k < M; ++k) {

@@ -27,12 +27,13 @@ struct alignas(64) FacingWays {
 /// Bernstein coefficients of f, each times its binomial coefficient: three for a direction, four for an eye.
 struct alignas(64) FacingCoefficients {
   double values[4][kFacingBlock];
-  double bounds[4][kFacingBlock];  ///< the error of each, by control normals within 2^-26 of the exact ones
-  double reach[kFacingBlock];      ///< the sum of the absolute components of the way to the viewer, the larger one
-  int signs[kFacingBlock];         ///< 1 or -1 if all coefficients are beyond their bounds on that side; else 0
+  /// Error bounds of the coefficients, for control normals within 2^-26 of the exact ones.
+  double bounds[4][kFacingBlock];
+  double reach[kFacingBlock];  ///< the sum of the absolute components of the way to the viewer, the larger one
+  int signs[kFacingBlock];     ///< 1 or -1 if all coefficients are beyond their bounds on that side; else 0
 };
 
-/// count <= kFacingBlock
+/// Computes the coefficients for a viewer in a direction. count <= kFacingBlock
 void facing_of_direction(const ControlNormals* normals, std::size_t count, const Vec3d& way,
                          FacingCoefficients& result) noexcept;
 void facing_of_eye(const ControlNormals* normals, std::size_t count, const FacingWays& ways,
@@ -43,7 +44,7 @@ struct alignas(64) SingleRoots {
   double p[4][kFacingBlock];   ///< the coefficients of each: three, or four
   double error[kFacingBlock];  ///< the error of each coefficient, without the rounding of later operations
   double lower[kFacingBlock], upper[kFacingBlock];
-  int before[kFacingBlock];  ///< the sign below the only root; 0 if finding all roots takes more
+  int before[kFacingBlock];  ///< the sign before the only root; 0 if the lane could not find all roots
 };
 
 /// Finds the only root of each polynomial that certainly has just one, as CertainRoots does; it leaves the others to

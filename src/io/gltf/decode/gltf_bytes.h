@@ -23,16 +23,16 @@ namespace chronormal::inline internal::gltf {
 /// Returns one number as glTF defines it (section 3.6.2.2 of the specification): normalised integers are fractions.
 [[nodiscard]] double load_number(const char* at, Component component, bool normalized) noexcept;
 
-/// Holds the bytes of a buffer view, from the file, or decompressed and shared by all that hold it.
+/// The bytes of a buffer view, either in the file, or decompressed and shared by all users.
 struct View {
   std::string_view bytes;
   std::shared_ptr<const std::string> owner;  ///< nullptr if they are in the file
 };
 
-/// Decompressed views are kept for later use, up to this many bytes in all.
+/// The largest total size of decompressed views that are kept for later use.
 inline constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20;
 
-/// Says where an asset and its files are.
+/// The place of an asset and its files.
 struct Origin {
   std::string name;                     ///< name for messages
   std::optional<std::string> folder;    ///< folder of its files; none for standard input
@@ -41,9 +41,9 @@ struct Origin {
   Expansion expansion;        ///< limit of memory for the asset itself
   FileResolver resolve = {};  ///< finds its files; empty for the file system
 
-  /// Returns the path that a relative URI stands for (io/gltf/gltf_uri.h); place is for messages.
+  /// Returns the path of a relative URI (io/gltf/gltf_uri.h); `place` is for messages.
   [[nodiscard]] Result<std::string> path_of(std::string_view uri, const std::string& place) const;
-  /// Opens what path_of() found; place is for messages.
+  /// Opens a path from path_of(); `place` is for messages.
   [[nodiscard]] Result<FileBytes> open(const std::string& path, const std::string& place) const;
 };
 
@@ -52,16 +52,16 @@ class Bytes {
   /// The model must outlive this, and so must the BIN chunk.
   Bytes(const Model& model, Origin origin) : model_(model), origin_(std::move(origin)) {}
 
-  /// Returns the bytes of a buffer, at least as many as it declares. Errors: there are none, or too few; the file
-  /// cannot be read.
+  /// Returns the bytes of a buffer, at least as many as it declares. Errors: the buffer has no bytes or too few; the
+  /// file cannot be read.
   [[nodiscard]] Result<std::string_view> buffer(std::size_t index);
 
   /// Returns the bytes of a view, decompressed if necessary.
   [[nodiscard]] Result<View> view(std::size_t index);
 
   /// Returns the numbers of an accessor that parse_model() has checked, count x components of them. Normalised integers
-  /// become fractions (f = c / 127, at least -1, and so on), others their value. Errors: from the buffer; numbers
-  /// that are not finite; sparse indices that do not ascend.
+  /// become fractions (f = c / 127, at least -1, and so on), and other integers keep their value. Errors: those of the
+  /// buffer; numbers that are not finite; sparse indices that do not ascend.
   [[nodiscard]] Result<std::vector<float>> floats(std::size_t accessor);
 
   /// Returns the numbers of an accessor as times of keys, which must ascend from 0 or more.
@@ -70,11 +70,11 @@ class Bytes {
   /// Returns the numbers of an accessor as indices, each of which must be below vertex_count.
   [[nodiscard]] Result<std::vector<std::uint32_t>> indices(std::size_t accessor, std::size_t vertex_count);
 
-  /// Returns how much memory the asset may ask for. The files of its buffers count once each, as far as they can be
-  /// opened.
+  /// Returns the limit of memory that the asset may cause. The files of its buffers count once each, as far as they can
+  /// be opened.
   [[nodiscard]] const Expansion& expansion();
 
-  /// Gives memory back that holds what was read of buffers in separate files.
+  /// Releases memory that holds parts of buffers in separate files.
   void release() const noexcept;
 
   [[nodiscard]] std::string place(std::string_view pointer) const;
@@ -98,7 +98,7 @@ class Bytes {
   std::map<std::size_t, std::string> embedded_;                      // by buffer: decoded data URIs
   std::map<std::size_t, std::shared_ptr<const std::string>> views_;  // by view: decompressed
   std::size_t kept_bytes_ = 0;                                       // in views_
-  std::optional<Expansion> expansion_;                               // set when it was first asked for
+  std::optional<Expansion> expansion_;                               // set at the first call of expansion()
 };
 
 }  // namespace chronormal::inline internal::gltf

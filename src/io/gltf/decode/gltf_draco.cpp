@@ -71,8 +71,8 @@ Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& a
   return Success{};
 }
 
-// Returns how many faces the compressed mesh declares, or nothing if that cannot be found out. The library takes memory
-// for them before it reads any.
+// Returns the number of faces that the compressed mesh declares, or nothing if it cannot be determined. The library
+// allocates memory for the faces before it reads any.
 std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
   draco::DracoHeader header;
   if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return std::nullopt;
@@ -95,7 +95,7 @@ std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
   return count(is_varint) ? count(is_varint) : std::nullopt;
 }
 
-// Decodes a mesh of as many vertices as its accessors declare.
+// Decodes a mesh with as many vertices as its accessors declare.
 Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::size_t vertex_count,
                                                  const Expansion& expansion, const std::string& place) {
   constexpr std::uint64_t kBytesPerFace = 64;  // the library's tables, and ours

@@ -17,15 +17,15 @@
 namespace chronormal::inline internal::gltf {
 
 /// Decodes triangles, positions and, if they are wanted and present, normals and tangents. The accessors of the
-/// primitive say what the numbers mean; it must have draco. Errors: kInvalidInput at place: broken bytes, no triangles,
-/// another number of vertices than the accessors declare, an attribute that is missing or of another type; more faces
-/// than expansion allows, which is asked first.
+/// primitive, which must have `draco`, define the types of the numbers. Errors: kInvalidInput at `place` for invalid
+/// bytes, no triangles, a number of vertices other than the accessors declare, an attribute that is missing or of
+/// another type, and more faces than the limit of expansion allows, which is checked first.
 [[nodiscard]] Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model,
                                                 const PrimitiveSource& source, bool with_shading,
                                                 const Expansion& expansion, const std::string& place);
 
-/// Decodes some attributes of a mesh of so many vertices, each with an id in it, in the order of vertices of
-/// decode_draco(). Errors: as for decode_draco(); errors of an attribute are at place_of(n)
+/// Decodes some attributes of a mesh with a given number of vertices, each by its id in the mesh, in the vertex order
+/// of decode_draco(). Errors: those of decode_draco(); errors of an attribute are at place_of(n)
 [[nodiscard]] Result<std::vector<std::vector<float>>> decode_draco_attributes(
     std::string_view bytes, const Model& model, std::size_t vertex_count, std::span<const AttributeSource> attributes,
     const Expansion& expansion, const std::string& place, const std::function<std::string(std::size_t n)>& place_of);

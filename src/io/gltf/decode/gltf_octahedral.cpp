@@ -15,7 +15,7 @@ template <class T>
 void decode_element(char* element) noexcept {
   constexpr std::endian kOrder = std::endian::little;
   const auto load = [&](std::size_t i) { return static_cast<float>(binary::load<T>(element + i * sizeof(T), kOrder)); };
-  // Every line is one rounding in float, in the order of the decoder in browsers.
+  // Every line rounds once in float, in the order of the decoder in browsers.
   float x = load(0), y = load(1);
   const float z = load(2) - (std::fabs(x) + std::fabs(y));
 

@@ -2,14 +2,14 @@
 /// numbers.
 ///
 /// Layout     an element is x, y, one, w: signed integers of 8 or 16 bits, 4 or 8 bytes in all, little endian. x and y
-///            are the place of the normal on an octahedron unfolded to a square, as fractions of `one`, which itself
-///            says how many bits they have: (12, -3, 127, w) or (193, -51, 2047, w). The result is the normal, of
-///            length 127 or 32767, in the place of the first three; w stays. An element without a direction (0, 0, 0,
-///            w) stays as it is.
-/// Precision  the extension leaves the last digit open. Here it is the digit of the decoder that browsers run: npm
-///            meshoptimizer, compiled for SIMD, bit for bit. Its other decoders differ from that in one 16-bit number
-///            of 2,000 and in no 8-bit number; Debian's library takes a reciprocal square root of 12 bits for 8-bit
-///            numbers, which differs from one processor to another.
+///            are the position of the normal on an octahedron that is unfolded to a square, as fractions of `one`,
+///            which thereby tells the number of bits: (12, -3, 127, w) or (193, -51, 2047, w). The result is the
+///            normal, with length 127 or 32767, in place of the first three numbers; w does not change. An element
+///            without a direction (0, 0, 0, w) does not change either.
+/// Precision  the extension leaves the last digit open. Here it equals, bit for bit, the digit of the decoder in
+///            browsers: npm meshoptimizer, compiled for SIMD. Meshoptimizer's other decoders differ in one 16-bit
+///            number of 2,000 and in no 8-bit number; Debian's library uses a reciprocal square root of 12 bits for
+///            8-bit numbers, which differs between processors.
 /// Threads    pure.
 ///
 /// Private to io.

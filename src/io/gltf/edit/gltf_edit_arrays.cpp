@@ -30,7 +30,7 @@ std::string bytes_of(std::span<const float> values) {
   return bytes;
 }
 
-// Holds the facts about an array that one pass over its values finds.
+// The facts about an array that one pass over its values finds.
 struct ArraySurvey {
   std::array<float, 3> least{}, most{};  // bounds of each component
   std::size_t used = 0, last_used = 0;   // elements that are not zero
@@ -84,8 +84,8 @@ ArraySurvey survey_array(std::span<const float> values, std::size_t components) 
   return all;
 }
 
-// Returns a bound of each component, as JSON. Readers compare it in double with what they find in the array, so its
-// digits must read back as a double.
+// Returns a bound of each component as JSON. Readers compare it in double with the values of the array, so its digits
+// must read back as the same double.
 std::string bound_json(std::span<const float> bounds) {
   std::string json = "[";
   for (std::size_t c = 0; c < bounds.size(); ++c)
@@ -271,7 +271,7 @@ NewArrays::Json NewArrays::json(std::size_t buffer, std::uint64_t offset, std::s
     view.add("buffer", buffer);
     if (offset > 0) view.add("byteOffset", std::to_string(offset));
     view.add("byteLength", std::to_string(size));
-    // Vertex attributes that share a view need a stride, and other arrays must have none.
+    // Views with several vertex attributes need a stride, and other views must not have one.
     if (of_vertices) view.add("byteStride", 3 * sizeof(float)).add("target", kArrayBuffer);
     result.views.push_back(view.text());
     offset += size;

@@ -17,8 +17,8 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Returns how many bytes an array of floats takes, as the shorter of a dense and a sparse one. Of `count` items `used`
-/// are not zero, the last of them at `last_used`. An array of zeros takes none.
+/// Returns the number of bytes of an array of floats, dense or sparse, whichever is shorter. Of `count` items `used`
+/// are not zero, the last of them at `last_used`. An array of zeros takes no bytes.
 [[nodiscard]] std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t count,
                                           std::size_t components);
 
@@ -33,8 +33,9 @@ class NewArrays {
   /// index.
   std::size_t add(std::span<const float> values, std::size_t components, const GltfVectors& options);
 
-  /// Stores a table of scalars row by row: fill(row, values) writes one row over zeros. Never more than a few rows are
-  /// in memory beside the spool. The table has bytes even for zeros, no bounds, and is not compared with other arrays.
+  /// Stores a table of scalars row by row: fill(row, values) writes one row over zeros. At most a few rows are in
+  /// memory in addition to the spool. The table has bytes even for zeros, has no bounds, and is not compared with other
+  /// arrays.
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
@@ -42,17 +43,17 @@ class NewArrays {
   /// No array may be added after that. order must have each index once
   void put_in_order(std::span<const std::size_t> order);
 
-  /// Takes the spool out, so that it can be cleared and used again.
+  /// Moves the spool out, so that it can be cleared and used again.
   [[nodiscard]] Spool take_spool() && { return std::move(spool_); }
 
-  /// Returns whether all bytes could be put aside. Errors: from Spool.
+  /// Returns success if all bytes could be stored. Errors: those of Spool.
   [[nodiscard]] const Status& status() const noexcept { return spool_.status(); }
 
   [[nodiscard]] std::size_t count() const noexcept { return arrays_.size(); }
   /// Returns the number of all bytes, a multiple of 4.
   [[nodiscard]] std::uint64_t byte_count() const noexcept;
   [[nodiscard]] std::size_t view_count() const noexcept;
-  /// Gives all bytes to take, in the order of the buffer, and forgets them. Errors: from Spool::give_away().
+  /// Passes all bytes to `take`, in the order of the buffer, and forgets them. Errors: those of Spool::give_away().
   [[nodiscard]] Status give_away(const Spool::Take& take);
   /// Returns all bytes, in the order of the buffer, as views, which live as long as this. The spool must be in memory
   [[nodiscard]] std::vector<std::string_view> pieces() const;
@@ -73,7 +74,7 @@ class NewArrays {
 
     bool operator==(const Array&) const = default;
   };
-  // Holds the bytes of an array, each part padded to a multiple of 4.
+  // The bytes of an array, each part padded to a multiple of 4.
   struct Encoded {
     Array array;
     std::string_view dense;       // the values, or `swapped` if the machine has another byte order
@@ -84,7 +85,7 @@ class NewArrays {
     Encoded() = default;
     Encoded(Encoded&&) = delete;  // views would not follow
   };
-  // Holds the place of these bytes in the spool, one part after the other from `at` on.
+  // The place of these bytes in the spool, where the parts are consecutive from `at` on.
   struct Stored {
     Array array;
     std::uint64_t at = 0, dense = 0, indices = 0, values = 0;

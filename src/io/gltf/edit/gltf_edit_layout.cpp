@@ -31,7 +31,7 @@ const char* media_type_of(std::string_view bytes) {
   return nullptr;
 }
 
-// Appends the pieces as base64, as if they were one.
+// Appends the joined pieces as base64.
 void append_base64(std::string& text, const std::vector<std::string_view>& pieces) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::size_t size = 0;
@@ -126,7 +126,7 @@ Result<GlbPieces> EditLayout::file() const {
   return chronormal::lay_out_glb(json, bin_, document_.chunks.rest, target_.name);
 }
 
-// Finds the images that are files beside the source.
+// Finds the images that are in files beside the source.
 Status EditLayout::find_images() {
   const Origin& origin = document_.bytes.origin();
   const std::size_t count = document_.source.members("/images").size();
@@ -164,8 +164,7 @@ Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   return Success{};
 }
 
-// Finds the arrays that the changes leave unused in buffers that the result holds itself, for which holds(buffer) is
-// true.
+// Finds the arrays that become unused by the changes, in buffers inside the result, for which holds(buffer) is true.
 template <class Holds>
 Status EditLayout::leave_out_unused(const Holds& holds) {
   if (!document_.without_unused) return Success{};
@@ -194,8 +193,8 @@ Status EditLayout::lay_out_glb() {
   }
   const std::uint64_t array_bytes = document_.arrays.byte_count();
   const bool grows = array_bytes > 0 || !images_.empty();
-  // A .gltf file becomes one with a BIN chunk. A GLB stays as it is if possible; if its BIN chunk gets more bytes, that
-  // must be its buffer 0.
+  // A .gltf file gets a BIN chunk. A GLB does not change if possible; if its BIN chunk gets more bytes, this chunk must
+  // be its buffer 0.
   const bool must_move =
       !buffers.empty() && (!document_.is_glb || (target_.stands_alone && any_file) || (grows && !is_bin(0)));
   const auto is_held = [&](std::size_t i) { return is_bin(i) || (must_move && buffers[i].uri); };
@@ -274,7 +273,7 @@ Status EditLayout::move_buffers() {
   return Success{};
 }
 
-// Moves a buffer view, or the extension of one. offset is its new start in its buffer; none if it is as in the source.
+// Moves a buffer view, or its extension. `offset` is its new start in the buffer, or nothing if it does not change.
 Status EditLayout::move_view(const std::string& pointer, const std::vector<Moved>& moved,
                              std::optional<std::size_t> offset) {
   const std::vector<JsonMember> members = document_.source.members(pointer);

@@ -1,4 +1,5 @@
-/// Lays an edited glTF document out as a file: decides which bytes go where, and says so in its JSON. Private to io.
+/// Lays out an edited glTF document as a file: decides the places of all bytes, and updates the JSON accordingly.
+/// Private to io.
 #ifndef CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_LAYOUT_H_
 #define CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_LAYOUT_H_
 
@@ -21,7 +22,7 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Holds what is written. All of it must outlive the layout.
+/// The document to write. All of it must outlive the layout.
 struct EditedDocument {
   const Model& model;
   Bytes& bytes;
@@ -35,13 +36,13 @@ struct EditedDocument {
 struct LayoutTarget {
   std::string name;           ///< name for messages
   bool glb = false;           ///< the container
-  bool stands_alone = false;  ///< references to files beside the source would lead nowhere
-  bool with_bytes = true;     ///< false if only pointers are wanted: data URIs are left empty
+  bool stands_alone = false;  ///< true if references to files beside the source would be invalid
+  bool with_bytes = true;     ///< false if only pointers are needed: data URIs are left empty
 };
 
 class EditLayout {
  public:
-  /// changed is the JSON of the document with its changes, to which this adds.
+  /// Makes a layout. `changed` is the JSON of the document with its changes, to which this adds.
   EditLayout(const EditedDocument& document, LayoutTarget target, JsonText changed)
       : document_(document), target_(std::move(target)), json_(std::move(changed)) {}
   EditLayout(EditLayout&&) noexcept = default;
@@ -64,7 +65,7 @@ class EditLayout {
     const char* media_type = "";
     std::string_view bytes;
   };
-  // Says where a buffer of the source is now.
+  // The present place of a buffer of the source.
   struct Moved {
     std::size_t buffer = 0, offset = 0;
   };
@@ -92,7 +93,7 @@ class EditLayout {
   std::optional<std::vector<std::string_view>> bin_;
   std::size_t bin_size_ = 0;
   UnusedArrays unused_;                   // after leave_out_unused()
-  std::vector<JsonMember> first_buffer_;  // after move_buffers(): what buffer 0 was
+  std::vector<JsonMember> first_buffer_;  // after move_buffers(): the members of the former buffer 0
   std::string other_buffers_;             // after move_buffers(): each with a comma before it
   std::vector<Image> images_;
   std::deque<FileBytes> files_;

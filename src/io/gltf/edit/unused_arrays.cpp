@@ -126,7 +126,7 @@ std::optional<std::vector<Part>> parts_of(const Model& model, const Accessor& ac
   return parts;
 }
 
-// Returns the ranges in ascending order, joined so that they do not touch.
+// Returns the ranges in ascending order, with touching ranges joined.
 std::vector<Range> joined(std::vector<Range> ranges) {
   std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });
   std::vector<Range> result;
@@ -140,7 +140,7 @@ std::vector<Range> joined(std::vector<Range> ranges) {
   return result;
 }
 
-// Takes some ranges out of others. The result has ranges whose sizes are multiples of kRangeAlignment.
+// Subtracts some ranges from others. The sizes of the resulting ranges are multiples of kRangeAlignment.
 std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const std::vector<Range>& without) {
   std::vector<Range> result;
   auto other = without.begin();
@@ -159,7 +159,7 @@ std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const st
   return result;
 }
 
-// Tells where a byte is found after some ranges were left out.
+// The new places of bytes after some ranges were left out.
 class Moved {
  public:
   explicit Moved(const std::vector<Range>& ranges) : ranges_(ranges) {
@@ -215,7 +215,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
   };
   const Result<Json> source = parse(before), edited = parse(after);
   if (!source || !edited || !has_known_extensions_only(edited.value())) return {};
-  // Nobody knows what arrays that could not be read refer to, so leave nothing out.
+  // Arrays that could not be read may refer to anything, so nothing is left out.
   const auto has_fault = [](const auto& array) { return array.fault.has_value(); };
   if (std::any_of(model.accessors.begin(), model.accessors.end(), has_fault) ||
       std::any_of(model.views.begin(), model.views.end(), has_fault))
@@ -239,7 +239,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
     if (!found) return {};
     parts[a] = std::move(*found);
     const bool is_dead = was[a] && !is[a];
-    // A view of interleaved arrays stays whole: three.js reads as many strides as there are elements.
+    // A view of interleaved arrays is kept completely, since three.js reads as many strides as there are elements.
     if (const std::optional<std::size_t> view = model.accessors[a].view; view && !is_dead)
       is_whole[*view] = is_whole[*view] || model.views[*view].stride.value_or(0) > model.accessors[a].element_size();
     if (is_dead && !parts[a].empty()) unused_accessors.push_back(a);
@@ -268,7 +268,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
     std::vector<Range>& ranges = result.ranges[b];
     if (sizes[b]) ranges = aligned_difference(joined(std::move(unused[b])), joined(std::move(used[b])));
     if (result.bytes_of(b) > 0 && result.bytes_of(b) == sizes[b]) {
-      ranges.front().begin = kRangeAlignment;  // so it is one range
+      ranges.front().begin = kRangeAlignment;  // the view is then a single range
       if (ranges.front().begin == ranges.front().end) ranges.clear();
     }
     moved.emplace_back(ranges);

@@ -1,15 +1,14 @@
 /// Finds the arrays of a glTF file to which nothing refers after an edit. Private to io.
 ///
 ///     unused    accessors that the source refers to and the edited document does not: from primitives, targets,
-///               samplers and skins. Accessors that nothing referred to before are not ours, and stay.
-///     left out  bytes of buffers that the result holds itself (the BIN chunk, data URIs, files that it takes in), if
-///               they belong to such accessors and to nothing else; the bytes behind them move towards the front of the
-///               buffer by whole multiples of 4, so that every number stays aligned
+///               samplers and skins. Accessors that were already unused in the source stay.
+///     left out  bytes of buffers inside the result (the BIN chunk, data URIs, included files), if they belong only to
+///               such accessors; later bytes move to the front of the buffer by multiples of 4, so that every number
+///               stays aligned
 ///
 /// Indices stay: an unused accessor becomes one of a single zero, and a buffer view of unused accessors a view of one
-/// byte. So a buffer of nothing but unused arrays keeps its first four bytes.
-/// An extension may refer to accessors and views in places that only its author knows. So a file keeps all its bytes
-/// unless all of its extensions are known to refer to none.
+/// byte. So a buffer with only unused arrays keeps its first four bytes. An unknown extension may refer to accessors
+/// and views anywhere, so a file keeps all its bytes unless all of its extensions are known not to.
 #ifndef CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 #define CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 
@@ -31,7 +30,7 @@ struct UnusedArrays {
   };
 
   std::vector<std::vector<Range>> ranges;  ///< ranges of each buffer, ascending and apart; empty if nothing is left out
-  std::vector<std::size_t> view_offsets;   ///< new start of each view in its buffer; empty as well
+  std::vector<std::size_t> view_offsets;   ///< new start of each view in its buffer; empty if no view moves
   /// Pointers, and the values that they need once these bytes are left out.
   std::vector<std::pair<std::string, std::string>> changes;
 

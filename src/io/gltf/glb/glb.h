@@ -22,11 +22,11 @@
 
 namespace chronormal::inline internal {
 
-/// Holds views of the file.
+/// Views of the parts of the file.
 struct GlbChunks {
   std::string_view json;
   std::size_t json_offset = 0;          ///< byte at which the JSON begins
-  std::optional<std::string_view> bin;  ///< none if there is no BIN chunk
+  std::optional<std::string_view> bin;  ///< nothing if there is no BIN chunk
   std::string_view rest;                ///< further chunks, with their headers
 };
 
@@ -40,18 +40,18 @@ struct GlbChunks {
 /// the file's, chunks that do not lie inside it, no JSON chunk first. Bytes after the declared length are refused.
 [[nodiscard]] Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name);
 
-/// Holds the headers and the padding around the chunks of a file. A file has one JSON chunk and at most one BIN chunk.
+/// The headers and the padding around the chunks of a file. A file has a JSON chunk and at most one BIN chunk.
 struct GlbFrame {
   std::string before_json, behind_json, behind_bin;  ///< headers, and the padding of the chunk before
   std::uint64_t size = 0;                            ///< size of the file
 };
 
-/// Frames chunks of so many bytes. bin_size: none for no BIN chunk. rest_size: size of further chunks, with their
-/// headers. Errors: kInvalidInput with the name as the place, for a file of 4 GiB or more.
+/// Makes the frame for chunks of these sizes. bin_size is empty without a BIN chunk; rest_size is the size of further
+/// chunks with their headers. Errors: kInvalidInput with the name as the place, for a file of 4 GiB or more.
 [[nodiscard]] Result<GlbFrame> frame_glb(std::uint64_t json_size, std::optional<std::uint64_t> bin_size,
                                          std::uint64_t rest_size, const std::string& name);
 
-/// Holds a file in pieces: views of the chunks and of the frame around them, which stays where it is when this is
+/// A file in pieces: views of the chunks and of the frame around them. The frame's memory stays in place when this is
 /// moved.
 struct GlbPieces {
   std::unique_ptr<const GlbFrame> frame;

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Accessor 0 and buffer view 0 belong to the triangles; arrays follow.
+// Accessor 0 and buffer view 0 belong to the triangles; arrays come after them.
 constexpr std::size_t kTriangles = 0, kFirstArray = 1;
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// A new GLB file of one primitive, made of arrays and a JSON document.
+/// Builds a new GLB file with one primitive from arrays and a JSON document.
 ///
 ///     GlbBuilder builder(most_bytes);
 ///     const std::size_t triangles = builder.set_triangles(corners, vertex_count);
@@ -6,8 +6,8 @@
 ///     builder.document()["meshes"] = ...;         // names accessors by index
 ///     Result<std::string> file = builder.finish();
 ///
-/// The builder writes the members asset, buffers, bufferViews and accessors; the rest is up to the caller. Memory: the
-/// triangles, the document, and what the spool takes. Private to io and workflow.
+/// The builder writes the members asset, buffers, bufferViews and accessors; the caller writes the rest. Memory: the
+/// triangles, the document, and the spool. Private to io and workflow.
 #ifndef CHRONORMAL_IO_GLTF_GLB_GLB_BUILDER_H_
 #define CHRONORMAL_IO_GLTF_GLB_GLB_BUILDER_H_
 
@@ -36,14 +36,14 @@ class GlbBuilder {
  public:
   /// Takes bytes that follow the bytes that it took before, of a file that has file_size bytes in the end.
   using Take = std::function<Status(std::string_view bytes, std::size_t file_size)>;
-  /// Returns a Take that puts the bytes into `file`, which must outlive it.
+  /// Returns a Take that appends the bytes to `file`, which must outlive it.
   [[nodiscard]] static Take gather_in(std::string& file);
 
-  /// A GLB counts its bytes in 32 bits.
+  /// The largest size of a GLB, which stores its size in 32 bits.
   static constexpr std::size_t kMostBytes = 0xFFFFFFFF;
 
-  /// Makes a file of at most this many bytes, and never more than kMostBytes. Its arrays are put aside in the spool
-  /// until the file is put together, since the JSON that says where they lie comes first.
+  /// Makes a file of at most this many bytes, and never more than kMostBytes. Its arrays are stored in the spool until
+  /// the file is assembled, since the JSON with their places comes first.
   explicit GlbBuilder(std::optional<std::size_t> most_bytes = {}, Spool spool = {});
 
   /// Sets the corners of the triangles, in 16 bits if that is enough for the vertices. Returns their accessor.
@@ -57,22 +57,22 @@ class GlbBuilder {
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
-  /// Numbers the accessors of arrays anew: the one that was order[i] becomes the i-th after the triangles, and bytes
-  /// get this order too. Nothing may be added after that. order must have each accessor of an array once
+  /// Renumbers the accessors of arrays: the accessor order[i] becomes the i-th after the triangles, and bytes get the
+  /// same order. Nothing may be added afterwards. `order` must contain each accessor of an array once
   void put_in_order(std::span<const std::size_t> order);
 
-  /// Takes the spool out, so that it can be cleared and used again.
+  /// Moves the spool out, so that it can be cleared and used again.
   [[nodiscard]] Spool take_spool() && { return std::move(arrays_).take_spool(); }
 
-  /// Returns whether all arrays could be put aside. Errors: from the spool.
+  /// Returns success if all arrays could be stored. Errors: those of the spool.
   [[nodiscard]] const Status& status() const noexcept { return arrays_.status(); }
   /// Returns the bytes of the arrays so far.
   [[nodiscard]] std::uint64_t byte_count() const noexcept { return indices_.size() + arrays_.byte_count(); }
   [[nodiscard]] std::size_t most_bytes() const noexcept { return most_bytes_; }
   [[nodiscard]] nlohmann::ordered_json& document() noexcept { return document_; }
 
-  /// Puts the file together, gives its bytes to take and forgets them. Returns how many there are. Errors:
-  /// kInvalidInput if there would be too many, before take gets any; errors of the spool and of take.
+  /// Assembles the file, passes its bytes to `take` and forgets them. Returns their number. Errors: kInvalidInput if
+  /// there would be too many, before `take` gets any; those of the spool and of `take`.
   [[nodiscard]] Result<std::size_t> finish(const Take& take);
   /// Puts the file together in memory.
   [[nodiscard]] Result<std::string> finish();

@@ -13,8 +13,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Version 1 had two factors for each extra target: the indices of targets, or "base", which is 1 minus the sum of the
-// weights of all targets that are not extra ones.
+// Version 1 had two factors for each correction target: the indices of targets, or "base", which is 1 minus the sum of
+// the weights of all other targets.
 constexpr std::size_t kVersion = 2, kVersionOfFactors = 1;
 
 // Returns the items of an array that may be missing or empty. Returns none after a complaint.
@@ -28,7 +28,7 @@ std::vector<JsonView> items_of(const JsonView& view, const Json& value, const ch
   return items;
 }
 
-// Returns whether a term is an array of so many items, and complains otherwise.
+// Returns true if a term is an array with this number of items, and complains otherwise.
 bool is_term(const JsonView& term, const Json& value, std::size_t size, const char* form) {
   if (value.is_array() && value.size() == size) return true;
   term.complain(std::string("a term is ") + form);
@@ -50,7 +50,7 @@ void read_terms(const JsonView& item, const Json& value, std::size_t target_coun
   }
 }
 
-// Reads the terms of two factors, where own are the targets that are not extra ones.
+// Reads the terms of two factors; `own` are the targets that are not correction targets.
 void read_factors(const JsonView& item, const Json& value, std::size_t target_count,
                   const std::vector<std::size_t>& own, GltfExtraTarget& extra) {
   const std::optional<JsonView> factors = item.array("factors");
@@ -74,7 +74,7 @@ void read_factors(const JsonView& item, const Json& value, std::size_t target_co
   }
 }
 
-// Checks that extra targets ascend, and follow from none of themselves.
+// Checks that correction targets ascend, and that none depends on another one.
 void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtraTarget>& extras) {
   const auto is_extra = [&](std::size_t i) {
     const auto found = std::lower_bound(extras.begin(), extras.end(), i,

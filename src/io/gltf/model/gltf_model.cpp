@@ -20,7 +20,7 @@ constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // JSON
 constexpr std::array<std::string_view, 5> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
                                                          "KHR_meshopt_compression", "KHR_draco_mesh_compression",
                                                          "KHR_animation_pointer"};
-// Extensions of these families say how a surface looks and what it means, not where it is.
+// Extensions of these families describe the appearance or the meaning of a surface, not its geometry.
 constexpr std::array<std::string_view, 10> kHarmlessFamilies = {
     "KHR_materials_",       "KHR_texture_",     "EXT_texture_",  "KHR_lights_punctual",
     "EXT_mesh_features",    "EXT_structural_",  "EXT_instance_", "CESIUM_primitive_outline",
@@ -100,7 +100,7 @@ Result<Model> Parser::parse(const nlohmann::json& document) {
 void Parser::parse_asset(const JsonView& root) {
   const std::optional<JsonView> asset = root.object("asset");
   if (!asset) return root.complain("asset", "there is no asset: this is not a glTF 2.0 file");
-  // A file may ask for a later minor version than the one it was written for; only 2.0 is known.
+  // A file may require a later minor version than the one it was written for; only 2.0 is supported.
   const std::string version = asset->required_text("version"), least = asset->text("minVersion");
   if (!version.starts_with("2.")) asset->complain("version", "only glTF 2.0 can be read");
   if (!least.empty() && least != "2.0") asset->complain("minVersion", "only glTF 2.0 can be read");
@@ -113,7 +113,7 @@ void Parser::parse_asset(const JsonView& root) {
 void Parser::check_required(const JsonView& root) {
   const std::optional<JsonView> required = root.array("extensionsRequired");
   if (!required) return;
-  // Extensions of what is read may change it: a primitive, its mesh, and everything that holds bytes.
+  // Extensions of a part that is read may change its meaning: of a primitive, its mesh, and everything with bytes.
   const auto is_extended = [](const nlohmann::json& value, const std::string& extension) {
     if (!value.is_object()) return false;
     // Points and lines are not read.
@@ -313,7 +313,7 @@ void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
 }
 
 void Parser::parse_transform(const JsonView& item, std::size_t index) {
-  // Reads an array that must have `count` numbers. Returns false if there is none.
+  // Reads an array that must have `count` numbers. Returns false if it is missing.
   const auto read = [&](const char* key, std::size_t count, double* result) {
     const std::optional<JsonView> array = item.array(key);
     if (!array) return false;

@@ -1,8 +1,8 @@
 /// The JSON of a glTF file as structs, with references checked, from which its bytes are read. Private to io.
 ///
-/// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h; this half says where each of their
-/// arrays lies. "What is read is checked": a buffer view is checked against its buffer, and an accessor that a
-/// primitive or a sampler names is checked against its buffer view; other accessors only have to be well-formed.
+/// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h; this half has the places of their
+/// arrays. Parts that are read are checked: a buffer view against its buffer, and an accessor that a primitive or a
+/// sampler names against its buffer view; other accessors only have to be well-formed.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
 
@@ -40,7 +40,7 @@ struct Compression {
 
   std::size_t buffer = 0, offset = 0, length = 0;  ///< the compressed bytes
   std::size_t stride = 0, count = 0;               ///< the elements
-  /// Tells whether it is by KHR_meshopt_compression, whose bytes may be of a later version than can be decoded.
+  /// True for KHR_meshopt_compression, whose bytes may have a later version than can be decoded.
   bool is_khr = false;
   Mode mode = Mode::kAttributes;
   Filter filter = Filter::kNone;
@@ -50,7 +50,7 @@ struct BufferView {
   std::size_t buffer = 0, offset = 0, length = 0;
   std::optional<std::size_t> stride;
   std::optional<Compression> compression;
-  std::optional<Error> fault = {};  ///< why it cannot be read; an error only when it is needed
+  std::optional<Error> fault = {};  ///< reason why it cannot be read; becomes an error only when it is needed
 };
 
 struct Sparse {
@@ -67,12 +67,12 @@ struct Accessor {
   std::size_t components = 1;  ///< numbers in an element: 1 for SCALAR, 3 for VEC3
   bool is_matrix = false, normalized = false;
   std::optional<Sparse> sparse;
-  std::optional<Error> fault = {};  ///< why it cannot be read; an error only when it is needed
+  std::optional<Error> fault = {};  ///< reason why it cannot be read; becomes an error only when it is needed
 
   [[nodiscard]] std::size_t element_size() const noexcept { return components * component_size(component); }
 };
 
-/// Holds indices of accessors.
+/// The indices of accessors.
 struct Attributes {
   std::optional<std::size_t> position, normal, tangent;
 };
@@ -86,7 +86,7 @@ struct Draco {
 /// An attribute of a primitive.
 struct AttributeSource {
   std::size_t accessor = 0;
-  std::optional<std::size_t> draco = {};  ///< its id in the compressed mesh, if that holds it
+  std::optional<std::size_t> draco = {};  ///< its id in the compressed mesh, if that contains it
 };
 
 /// A set of JOINTS_n and WEIGHTS_n.
@@ -109,7 +109,7 @@ struct SkinSource {
   std::optional<Error> fault;                ///< why the skin cannot be read
 };
 
-/// A channel that drives one weight.
+/// A channel that drives a single weight.
 struct ElementSource {
   std::size_t target = 0, input = 0, output = 0;  ///< input, output: accessors
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
@@ -119,8 +119,8 @@ struct ElementSource {
 
 struct TrackSource {
   std::size_t sampler = 0, input = 0, output = 0;  ///< input, output: accessors
-  /// If every weight has its own channel, these channels, ascending by target; input and output then belong to the
-  /// first. Weights without a channel stay at rest.
+  /// If every weight has its own channel: these channels, in the order of targets; `input` and `output` then belong to
+  /// the first one. Weights without a channel keep their constant value.
   std::vector<ElementSource> elements = {};
   std::vector<double> rest = {};
 };
@@ -151,7 +151,7 @@ struct Model {
   std::vector<GltfMesh> meshes;
   std::vector<std::vector<PrimitiveSource>> sources;  ///< beside meshes[m].primitives
   std::vector<GltfNode> nodes;
-  std::vector<std::pair<std::size_t, Placement>> placements;  ///< nodes that have one, in their order
+  std::vector<std::pair<std::size_t, Placement>> placements;  ///< nodes with a placement, in order
   std::vector<SkinSource> skins;
   std::vector<GltfAnimation> animations;
   std::vector<std::vector<TrackSource>> track_sources;  ///< beside animations[a].tracks
@@ -162,16 +162,16 @@ struct Model {
 
 /// Returns the place of a node in its parent, as the file has it. O(log nodes).
 [[nodiscard]] Placement placement_of(const Model& model, std::size_t node) noexcept;
-/// Returns a place as a transform.
+/// Returns a placement as a transform.
 [[nodiscard]] AffineTransform transform_of(const Placement& placement) noexcept;
 
 /// Returns the JSON pointer of a primitive.
 [[nodiscard]] std::string primitive_pointer(std::size_t mesh, std::size_t primitive);
 
-/// Parses a document, whose JSON begins at byte `offset` of the file. file_bytes is the size of the file, which bounds
-/// how many elements an accessor without a buffer view may have. A fault in a part that the others do not need becomes
-/// a note of the model, or an error if is_strict. Errors: kInvalidInput, with name and JSON pointer as the place, or
-/// name and byte if it is no JSON.
+/// Parses a document, whose JSON begins at byte `offset` of the file. file_bytes is the size of the file, which limits
+/// the elements of an accessor without a buffer view. A fault in a part that no other part needs becomes a note of the
+/// model, or an error if is_strict. Errors: kInvalidInput, with the name and a JSON pointer as the place, or the name
+/// and a byte offset if the text is not JSON.
 [[nodiscard]] Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset,
                                         std::size_t file_bytes, bool is_strict);
 

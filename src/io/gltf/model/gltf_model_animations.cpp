@@ -64,7 +64,7 @@ Parser::Driven Parser::pointed_to(const JsonView& target) {
     all.push_back(n);
     if (model_.nodes[n].weights.empty()) driven.nodes.push_back(n);
   }
-  // If all nodes have their own weights, no node shows the weights of the mesh.
+  // If all nodes have their own weights, no node uses the weights of the mesh.
   if (driven.nodes.empty() && !all.empty()) driven.nodes.push_back(all.front());
   return driven;
 }
@@ -112,7 +112,7 @@ void Parser::parse_animation(const JsonView& item) {
   if (complaint_.first()) return;
   const bool has_channels = understands([&] { parse_channels(item, animation, sources); });
   if (complaint_.first()) return;
-  // Equal numbers mean equal weights only with the same interpolation, for as many targets.
+  // The same accessors give the same weights only with the same interpolation and number of targets.
   std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
   for (std::size_t t = 0; t < sources.size(); ++t) {
     GltfTrack& track = animation.tracks[t];

@@ -16,7 +16,7 @@
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// Weights of an expression beyond this are taken for errors and ignored.
+// Weights of an expression beyond this are treated as errors and ignored.
 constexpr double kLargestBind = 100;
 
 constexpr std::size_t kAnyId = ~std::uint32_t{0};
@@ -46,8 +46,8 @@ void Parser::parse_mesh(const JsonView& item) {
   mesh.weights = parse_weights(item);
   if (!mesh.weights.empty()) check_weights(item.pointer(), mesh.weights, mesh.target_count);
   mesh.weights.resize(mesh.target_count, 0.0);
-  // Names are a convention, not part of the format, so names that do not fit are no fault. Older versions of UniVRM
-  // write them into each primitive.
+  // Target names are a convention, not part of the format, so names that do not fit are not a fault. Older versions of
+  // UniVRM write them into each primitive.
   for (const char* const place : {"/extras/targetNames", "/primitives/0/extras/targetNames"}) {
     const nlohmann::json::json_pointer pointer(item.pointer() + place);
     if (!mesh.target_names.empty() || !document_->contains(pointer)) continue;
@@ -151,7 +151,7 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
     const JsonView target = targets->item(k);
     if (!target.is_object()) return;
     if (target.size() == 0) note(target, "a target moves at least one attribute: this one moves nothing");
-    if (target.size() == 0 || !source.base.position) {  // none of it is read
+    if (target.size() == 0 || !source.base.position) {  // nothing of this target is read
       source.targets.emplace_back();
       primitive.targets.emplace_back();
       continue;
@@ -395,7 +395,7 @@ void Parser::parse_expressions(const nlohmann::json& root) {
     if (!binds.is_array()) return;
     for (const nlohmann::json& bind : binds) {
       if (!bind.is_object() || !bind.contains("weight") || !bind["weight"].is_number()) continue;
-      // Version 0 names the mesh, and weights in percent; version 1 names one of its nodes, and weights from 0 to 1.
+      // Version 0 names the mesh, with weights in percent; version 1 names one of its nodes, with weights from 0 to 1.
       const auto node = whole_below(bind, "node", model_.nodes.size());
       auto mesh = whole_below(bind, "mesh", model_.meshes.size());
       if (node && model_.nodes[*node].mesh) mesh = *model_.nodes[*node].mesh;

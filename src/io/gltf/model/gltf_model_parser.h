@@ -21,7 +21,7 @@ class Parser {
   Parser(const std::string& name, std::size_t file_bytes, bool is_strict)
       : complaint_(name), file_bytes_(file_bytes), is_strict_(is_strict) {}
 
-  /// Parses a node, which may come before everything else.
+  /// Parses a node, possibly before all other parts.
   void parse_node(std::size_t index, const nlohmann::json& value);
   /// Parses the rest, and checks nodes against it.
   Result<Model> parse(const nlohmann::json& document);
@@ -76,9 +76,10 @@ class Parser {
   }
 
   void parse_asset(const JsonView& root);
-  /// Finds where the file uses unknown extensions that it requires, and notes the ones that do not change what is read.
+  /// Finds unknown extensions that the file requires: complains about them, or adds a note if they do not change the
+  /// parts that are read.
   void check_required(const JsonView& root);
-  /// Notes the faults of buffer views and accessors that nothing has asked for.
+  /// Adds notes on the faults of buffer views and accessors that are not used.
   void note_faults();
   /// Returns, for each node, whether it or a node below carries a mesh, or a skin depends on it.
   [[nodiscard]] std::vector<bool> nodes_that_place_meshes() const;
@@ -90,7 +91,7 @@ class Parser {
   void parse_transform(const JsonView& item, std::size_t index);
   void check_nodes(const JsonView& root);
   void connect_nodes();
-  /// Gives meshes without a mark of a bake the mark of a node that carries them, or of the node above that.
+  /// Gives meshes without a mark of a bake the mark of a node with the mesh, or of the node above that.
   void read_marks_of_nodes();
   /// Returns the member "weights" of a mesh or node, or nothing if there is none.
   static std::vector<double> parse_weights(const JsonView& item);
@@ -117,14 +118,15 @@ class Parser {
   void check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what);
 
   void parse_animation(const JsonView& item);
-  /// Reads the channels that drive weights, and skips the ones that cannot be understood.
+  /// Reads the channels that drive weights, and skips channels that cannot be understood.
   void parse_channels(const JsonView& item, GltfAnimation& animation, std::vector<TrackSource>& sources);
-  /// Says what a channel drives: all weights of some nodes, or one of them. There are no nodes if it is something else.
+  /// The weights that a channel drives: all weights of some nodes, or one of them. There are no nodes if it drives
+  /// something else.
   struct Driven {
     std::vector<std::size_t> nodes = {};
     std::optional<std::size_t> target = {};
   };
-  /// Returns what a pointer of KHR_animation_pointer drives.
+  /// Returns the weights to which a pointer of KHR_animation_pointer refers.
   Driven pointed_to(const JsonView& target);
   /// A channel of a single weight, with the weight's index.
   struct LoneWeight {
@@ -132,10 +134,11 @@ class Parser {
   };
   void parse_track(const JsonView& animation, std::size_t channel_index, std::size_t node, GltfAnimation& result,
                    std::vector<TrackSource>& sources);
-  /// Puts the channels of single weights of a node together as one track.
+  /// Assembles the channels of single weights of a node into one track.
   void assemble_track(const JsonView& animation, std::size_t node, const std::vector<LoneWeight>& weights,
                       GltfAnimation& result, std::vector<TrackSource>& sources);
-  /// Reads and checks the sampler of a channel, which gives a key so many elements. Returns false after a complaint.
+  /// Reads and checks the sampler of a channel with a given number of elements per key. Returns false after a
+  /// complaint.
   bool parse_sampler(const JsonView& animation, std::size_t channel_index, Use use, std::size_t per_key,
                      GltfTrack& track, TrackSource& source);
   /// Reads the channels that move nodes.
@@ -150,7 +153,7 @@ class Parser {
   bool quantized_ = false;
   Model model_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> children_;  // parent and child
-  std::vector<std::pair<std::uint32_t, Error>> misplaced_;         // nodes whose place cannot be read
+  std::vector<std::pair<std::uint32_t, Error>> misplaced_;         // nodes whose placement cannot be read
   nlohmann::json marked_;                                          // extras.chronormal of nodes, each at its pointer
 };
 

@@ -57,7 +57,7 @@ int hexadecimal(char c) {
 std::optional<std::string> decode_percent(std::string_view uri) {
   std::string path;
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    // Exporters that encode nothing leave a percent sign as it is.
+    // Exporters that do not encode leave percent signs unchanged.
     const bool is_code =
         uri[i] == '%' && uri.size() - i >= 3 && hexadecimal(uri[i + 1]) >= 0 && hexadecimal(uri[i + 2]) >= 0;
     if (!is_code) {
@@ -90,8 +90,8 @@ Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place)
   return fs::path(*relative);
 }
 
-// Returns the file of a path, or if there is none, the one that a person means by it: as the URI has it, without
-// decoding, or a name in the same folder that is the same in another form of Unicode.
+// Returns the file of a path. If it does not exist, returns the file that was probably meant: the URI without decoding,
+// or a name in the same folder that is equal in another Unicode form.
 fs::path existing(const fs::path& path, const fs::path& literal) {
   std::error_code code;
   if (fs::exists(path, code)) return path;

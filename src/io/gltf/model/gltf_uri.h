@@ -1,7 +1,7 @@
 /// Finds the bytes behind the URI of a glTF buffer: in the URI itself (data:...;base64,), or in a file. Private to io.
 ///
-/// The file must be a regular one inside the folder of the asset, whatever the URI says (percent-encoded, .., links): a
-/// model from a stranger must not read /etc/passwd or wait for a device.
+/// The file must be a regular file inside the folder of the asset, also if the URI is percent-encoded or has .., and
+/// after following links: an untrusted model must not read /etc/passwd or wait for a device.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_URI_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_URI_H_
 
@@ -14,22 +14,22 @@
 
 namespace chronormal::inline internal {
 
-/// Returns whether the URI holds the bytes itself.
+/// Returns true if the URI contains the bytes itself.
 [[nodiscard]] bool is_data_uri(std::string_view uri) noexcept;
 
-/// Decodes a data URI of which at least `least` bytes are wanted. Errors: kInvalidInput at place: not base64 (RFC
-/// 4648), another media type than a buffer may have (application/octet-stream, application/gltf-buffer), too few bytes.
+/// Decodes a data URI that must have at least `least` bytes. Errors: kInvalidInput at `place`: not base64 (RFC 4648),
+/// another media type than a buffer may have (application/octet-stream, application/gltf-buffer), too few bytes.
 [[nodiscard]] Result<std::string> decode_data_uri(std::string_view uri, std::size_t least, const std::string& place);
 
-/// Returns the path that a relative URI stands for. folder is the asset's, or none if it has none (standard input).
-/// Errors: kInvalidInput at place: no file of that name, a device, a broken percent code; unless external files are
-/// allowed, also an absolute path, another scheme, and everything outside the folder.
+/// Returns the path of a relative URI. `folder` is the asset's, or nothing for the standard input. Errors:
+/// kInvalidInput at `place`: no file of that name, a device, a broken percent code; unless external files are allowed,
+/// also an absolute path, another scheme, and everything outside the folder.
 [[nodiscard]] Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                    bool allow_external, const std::string& place);
 
-/// Returns the name of the file that a relative URI stands for, if files are found by their names and not in a file
-/// system: the folder and the URI as one path, without "." and "..". Errors: as for resolve_file_uri(), and a URI that
-/// leads out of the folder.
+/// Returns the name of the file for a relative URI, if files are found by their names and not in a file system: the
+/// folder and the URI joined to a path, without "." and "..". Errors: those of resolve_file_uri(), and a URI that leads
+/// out of the folder.
 [[nodiscard]] Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                 const std::string& place);
 

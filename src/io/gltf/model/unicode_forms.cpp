@@ -193,7 +193,8 @@ void take_apart(char32_t c, std::u32string& result) {
   result += found->mark;
 }
 
-// Returns the characters of UTF-8, taken apart. A byte that belongs to none stands for itself, beyond all characters.
+// Returns the characters of a UTF-8 text, decomposed. A byte that is not valid UTF-8 becomes a number beyond all
+// characters.
 std::u32string parts_of(std::string_view text) {
   constexpr char32_t kBytes = 0x200000;
   std::u32string result;

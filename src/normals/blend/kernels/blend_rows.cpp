@@ -1,4 +1,4 @@
-// Adds to rows one by one, and makes unit normals in lanes of double, one element per lane.
+// Adds scaled rows to rows one by one, and computes unit normals in lanes of double, one element per lane.
 #include "normals/blend/kernels/blend_rows.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ void AddPairRows(std::span<const std::uint32_t> elements, const float* coefficie
   }
 }
 
-// Loads three floats as x y z 0, without reading what follows them.
+// Loads three floats as x y z 0, without reading beyond them.
 HWY_INLINE DoubleRow LoadLastThree(const float* from) {
   const float row[kBlendLanes] = {from[0], from[1], from[2], 0};
   return LoadDoubleRow(row);
@@ -113,7 +113,7 @@ HWY_INLINE Doubles Squared(Doubles v) { return hn::Mul(v, v); }
 HWY_INLINE std::uint32_t WriteUnit(const Doubles3& n, Doubles error, std::size_t first, std::uint32_t elements,
                                    const UnitLimits& limits, const VectorView<float>& result) {
   const Doubles square = Dot(n, n);
-  // All of these comparisons are false for NaN.
+  // These comparisons are false for NaN.
   const auto is_usual = hn::And(hn::Ge(square, hn::Set(kDoubles, limits.smallest_square)),
                                 hn::Le(square, hn::Set(kDoubles, limits.largest_square)));
   const Doubles most = hn::Mul(hn::Set(kDoubles, limits.largest_error * limits.largest_error), square);
@@ -147,7 +147,7 @@ std::uint64_t UnitNormalsOfRows(std::uint64_t elements, std::size_t place, const
                                 const VectorView<float>& result) {
   return ForLanesOfWord(elements, [&](std::size_t lane, std::uint32_t bits) HWY_ATTR {
     const std::size_t first = kBitsOfWord * place + lane;
-    // There are no rows after the last element.
+    // No rows may be read after the last element.
     const std::size_t last = result.count - 1;
     const DoubleColumns n =
         ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowAt(rows, std::min(first + i, last)); });
@@ -184,7 +184,7 @@ std::uint64_t UnitNormalsOfRings(const RingSlices& slices, std::uint64_t element
       indices += kRingLanes;
       return ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowAt(points, row[i]); }).xyz;
     };
-    // A NaN in an edge makes the sum NaN, so it does not matter what `largest` makes of it.
+    // A NaN in an edge makes the sum NaN, so the value of `largest` does not matter then.
     const Doubles3 centre = next_row();
     Doubles3 before = next_row();
     const auto largest_of = [](const Doubles3& v) HWY_ATTR { return LargerAbs(LargerAbs(v.x, v.y), v.z); };

@@ -1,4 +1,4 @@
-/// The inner loops of BlendNormals, on rows of four doubles. They add up terms, move points, and make unit normals.
+/// The inner loops of BlendNormals, on rows of four doubles. They add up terms, move points, and compute unit normals.
 ///
 /// A row is x y z and a fourth number. In a sum of terms this is a bound, in units of kFloatUnitRoundoff; in a point it
 /// is 0. Every loop gives the same bits on all instruction sets.
@@ -32,25 +32,27 @@ void move_points(std::span<const std::uint32_t> vertices, const float* deltas, d
 /// Puts a range of points back to the base, (V, 3). base must not end before the last of them
 void reset_points(std::span<const float> base, IndexRange vertices, double* points) noexcept;
 
-/// Move and reset points in float32, which are rows of four floats.
+/// Move points in float32, which are rows of four floats, and reset them.
 void move_points(std::span<const std::uint32_t> vertices, const float* deltas, float weight, float* points) noexcept;
 void reset_points(std::span<const float> base, IndexRange vertices, float* points) noexcept;
 
-/// Says which rows become unit normals.
+/// The conditions for computing the unit normal of a row.
 struct UnitLimits {
   double smallest_square, largest_square;  ///< limits of n . n
   double largest_error;                    ///< largest allowed error of n, relative to |n|
 };
 
-/// Writes the unit normals of the elements whose bits are set in word `place` of all, from one row per element, whose
-/// fourth component is its error. Returns the bits of the elements beyond the limits, for which nothing is written.
+/// Writes the unit normals of the elements whose bits are set; `elements` is word number `place` of the set. Each
+/// element has a row, whose fourth component is its error. Returns the bits of the elements beyond the limits, for
+/// which nothing is written.
 std::uint64_t unit_normals_of_rows(std::uint64_t elements, std::size_t place, const double* rows,
                                    const UnitLimits& limits, VectorView<float> result) noexcept;
 
-/// Does this from the points on the path around each element. `moved` bounds the error of an edge from the rounding of
-/// its points, or of the distance between two of them. Let u = 2^-53, c the number of points of the longest of sixteen
-/// paths with the centre, and m the largest component of the edges e from the centre and of half the distances d
-/// between neighbours whose products e x d are added up. Then the error is at most the one of a polygon with c corners,
+/// Computes the unit normals from the points on the path around each element. `moved` bounds the error of an edge from
+/// the rounding of its points, or of the distance between two points. Let u = 2^-53, c the number of points of the
+/// longest of sixteen paths with the centre, and m the largest component of the edges e from the centre and of half the
+/// distances d between neighbours whose products e x d are added up. Then the error is at most the one of a polygon
+/// with c corners,
 ///
 ///     u (10 + c) (c - 2) (3 m)^2 + moved (3 m (2 c - 3) + c moved)
 ///

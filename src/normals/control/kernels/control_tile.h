@@ -1,16 +1,15 @@
-/// Sixteen elements on their way into NormalCurves, from a kernel that makes control normals to the one that packs
-/// them.
+/// Sixteen elements that one kernel computes and another kernel packs into NormalCurves.
 ///
 ///     normals     n0.x of 16 elements, n0.y of 16, n0.z, m.x, m.y, m.z, n1.x, n1.y, n1.z
 ///     magnitude   for each element, at least the sum of the absolute products that went into any one component
 ///     degree      for each element, as degree() in control_normals.h finds it
 ///
-/// Tiles that are made entirely in float32 have bounds on the errors of components as `magnitude`, and may have a
-/// smaller `degree`. The error then counts the loss from leaving out m, or m and n1.
+/// In tiles that are computed entirely in float32, `magnitude` bounds the errors of components, and `degree` may be
+/// smaller. The bound then includes the error of leaving out m, or m and n1.
 ///
 /// All other tiles are computed in double and rounded once. A component that is smaller than the rounding error of its
-/// products (far below 2^-26 of `magnitude`) may be noise here. The reader must not trust it, and asks for the element
-/// in double instead, where noise is zero. Lanes beyond the last element repeat it.
+/// products (far below 2^-26 of `magnitude`) may be noise in such a tile. The reader must not trust it, and computes
+/// the element in double instead, where noise becomes zero. Lanes beyond the last element repeat it.
 #ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_
 #define CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_
 

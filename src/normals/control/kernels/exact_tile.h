@@ -1,4 +1,4 @@
-/// Control normals of sixteen faces in double, from which tiles and sums are made.
+/// Control normals of sixteen faces in double, from which tiles and sums are computed.
 #ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_
 #define CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_
 
@@ -11,19 +11,19 @@
 
 namespace chronormal::inline internal {
 
-/// Holds planes as ControlTile does, with the bits of face_control_normals().
+/// Planes as in ControlTile, with the bits of face_control_normals().
 struct alignas(64) ExactTile {
   double normals[9][kTile];
   float magnitude[kTile];
 };
 
-/// Holds sixteen elements like BoundedNormals: control normals in double, with bounds on their errors.
+/// Sixteen elements like BoundedNormals: control normals in double, with bounds on their errors.
 struct BoundedTile : ExactTile {
   double errors[3][kTile];     ///< bound of the error of any component of n0, m and n1
   std::uint32_t left_out = 0;  ///< bits of elements that are left to others
 };
 
-/// Holds sixteen faces with the longest of their edges from the first corner.
+/// Sixteen faces with the length of the longest of their edges from the first corner.
 struct EdgedTile : ExactTile {
   /// Bounds every component of such an edge at either end of the segment; infinity if a face is no triangle.
   float longest[kTile];
@@ -38,14 +38,14 @@ inline constexpr double kErrorAbove = 0x1p-47;
 /// Returns a float that is not less than a magnitude, and 0 for 0.
 [[nodiscard]] float magnitude_above(double magnitude) noexcept;
 
-/// Writes one face into one lane, whatever its corners.
+/// Writes one face into one lane, with any number of corners.
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept;
 
 /// A control normal above this share of the magnitude of a triangle is hardly touched by rounding (kLargestRounding).
 inline constexpr double kCertainAbove = 0x1p-22;
 
-/// Writes one triangle into one lane. Sets to zero what is nothing but rounding, and makes control normals of integers
-/// if double is not enough. Keeps the magnitude if it is finite.
+/// Writes one triangle into one lane. Sets components to zero that are only rounding error, and computes control
+/// normals in integers if double is not enough. Keeps the magnitude if it is finite.
 void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
                           ExactTile& tile) noexcept;
 

@@ -23,9 +23,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Sets the degrees to 2, and returns true if float32 alone shows that they are. The error of float32 in n0 - 2 m + n1
-// is below 2^-20 of the largest component. This is far above the tolerance of degree(), but so is the term itself in
-// most motions.
+// Sets the degrees to 2 and returns true if float32 alone proves that they are. The error of float32 in n0 - 2 m + n1
+// is below 2^-20 of the largest component, which is far above the tolerance of degree(); but in most motions the term
+// itself is larger.
 HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
   const Floats share = hn::Set(kFloats, 0x1p-19f), smallest_size = hn::Set(kFloats, 0x1p-100f);
   bool all = true;
@@ -43,20 +43,20 @@ HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
   return all;
 }
 
-// Returns the relative error of a sum of so many products in float32, as a share of the absolute products in it
-// (docs/theory.md, section 13). It counts the roundings of a product, and of its way into the sum.
+// Returns the error of a sum of this many products in float32, relative to the absolute products (docs/theory.md,
+// section 13). It includes the roundings of a product and of its additions to the sum.
 HWY_INLINE Floats RoundingsInFloat(std::size_t products) {
   return hn::Set(kFloats, 0x1p-24f * static_cast<float>(products + 5));
 }
 
-// Holds the control normals of one vector of lanes in float32.
+// The control normals of one vector of lanes in float32.
 struct FloatControlLanes {
   Lanes3 n0, m, n1;
 };
 
 // Stores control normals in float32, with the error of their components as magnitude. The degree is 0 if all three are
-// the same, and 2 if the curve bends by more than eight errors. If it bends by less the degree is 1: taking it as
-// straight adds an error of a quarter of the bend, and a little for roundings.
+// the same, and 2 if the curve bends by more than eight errors. If it bends by less, the degree is 1, and the error
+// increases by a quarter of the bend and some roundings.
 HWY_INLINE void StoreInFloat(const FloatControlLanes& c, Floats error, std::size_t lane, ControlTile& tile) {
   std::size_t k = 0;
   for (const Lanes3* v : {&c.n0, &c.m, &c.n1}) {

@@ -1,10 +1,10 @@
 // Computes the control normals of sixteen triangles at a time, in double.
 //
-// Included once for each instruction set, as lanes-inl.h. The operations are the ones of polygon_control_normals() in
-// the same order, so that the values have the same bits.
+// This file is included once for each instruction set, like lanes-inl.h. The operations are those of
+// polygon_control_normals() in the same order, so the values have the same bits.
 //
 // Positions in rows, as (n, 3), are loaded point by point, 16 bytes each, and transposed in registers. The 16 bytes of
-// the last point would end beyond its array, so triangles with that point are loaded in another way.
+// the last point would end beyond its array, so triangles with that point are loaded differently.
 
 #include "simd/highway-inl.h"
 
@@ -47,15 +47,16 @@ HWY_INLINE auto MaxAbs(const V& a, const V& b, const V& c) {
 }
 HWY_INLINE Doubles MinAbs(const Doubles3& v) { return SmallerAbs(SmallerAbs(v.x, v.y), v.z); }
 
-// Says how points are loaded: 16 bytes of a row whose first three floats are x y z, where rows are packed, have both
-// ends side by side, or have any stride; 12 bytes of any row; or one coordinate after the other, whatever the layout.
+// Selects how points are loaded: as 16 bytes of a row whose first three floats are x y z, for rows that are packed,
+// have both ends side by side, or have any stride; as 12 bytes of any row; or one coordinate after the other, for any
+// layout.
 enum class PointAccess { kPacked, kEnds, kRow, kLastRow, kAny };
 
 constexpr std::size_t kEndsStride = kScatteredBytes / sizeof(float);
 
 constexpr bool LoadsRows(PointAccess access) { return access < PointAccess::kLastRow; }
 
-// Returns the access that works for all points, except perhaps the last one.
+// Returns the access that works for all points, except perhaps for the last one.
 HWY_INLINE PointAccess AccessOf(const Segment& segment) {
   const auto is_rows = [](const VectorView<const float>& points) {
     return points.stride >= 3 && points.y == points.x + 1 && points.z == points.x + 2;
@@ -68,7 +69,7 @@ HWY_INLINE PointAccess AccessOf(const Segment& segment) {
   return both_are(kEndsStride) ? PointAccess::kEnds : PointAccess::kRow;
 }
 
-// Returns the distance from one point to the next in floats, as a constant if it is known.
+// Returns the distance between two points in floats, as a constant if it is known.
 template <PointAccess kAccess>
 HWY_INLINE std::size_t StrideOf(const VectorView<const float>& points) {
   if constexpr (kAccess == PointAccess::kPacked) return 3;
@@ -99,13 +100,13 @@ HWY_INLINE Floats LoadPoints(const VectorView<const float>& points, const std::u
 }
 #endif
 
-// Holds the positions of the triangles of one vector of lanes at both ends.
+// The positions of the triangles of one vector of lanes at both ends.
 struct TriangleLanes {
   Lanes3 a0, b0, c0, a1, b1, c1;
 };
 
-// Loads the positions of one vertex of each lane at both ends. The vertex of the next lane stands kStep further on.
-// Both ends are loaded together, so that every index is read once.
+// Loads the positions of one vertex of each lane at both ends. The vertex of the next lane is kStep entries later. Both
+// ends are loaded together, so that every index is read once.
 template <PointAccess kAccess, std::size_t kStep>
 HWY_INLINE void LoadBothEnds(const Segment& segment, const std::uint32_t* vertices, Lanes3& from, Lanes3& to) {
 #if HWY_TARGET == HWY_SCALAR
@@ -137,7 +138,7 @@ HWY_INLINE TriangleLanes LoadTriangles(const Segment& segment, const std::uint32
 HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1);
   const Floats f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
-  // Take a little more than twice the product, for its rounding, and a tiny number in case it underflows.
+  // Uses slightly more than twice the product, for its rounding, plus a tiny number in case it underflows.
   const Floats tiny = hn::Min(hn::Min(e, f), hn::Set(kFloats, std::numeric_limits<float>::min()));
   return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-19f), hn::Mul(e, f)), tiny);
 }
@@ -190,8 +191,8 @@ HWY_INLINE void StoreErrors(const Lanes3& magnitudes, double (*errors)[kTile], s
   hn::Store(e.z, kDoubles, errors[2] + lane);
 }
 
-// Turns -0 into 0. Makes every triangle anew that has a component that may be noise, or a vector in which noise may be
-// more than a little.
+// Turns -0 into 0. Recomputes every triangle with a component that may be only noise, or with a vector in which noise
+// may be significant.
 HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t* corners, ExactTile& tile) {
   const Doubles zero = hn::Zero(kDoubles);
   for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
@@ -218,7 +219,7 @@ HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t
   }
 }
 
-// Holds what a tile has beside its normals: the errors of a BoundedTile, or the longest edges of an EdgedTile.
+// The data of a tile besides its normals: the errors of a BoundedTile, or the longest edges of an EdgedTile.
 struct TileExtras {
   double (*errors)[kTile] = nullptr;
   float* longest = nullptr;
@@ -263,7 +264,7 @@ HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std
     body(AccessConstant<PointAccess::kAny>());
     return false;
   }
-  constexpr std::uint32_t kFar = 1u << 14;  // positions: more than a cache near the core holds
+  constexpr std::uint32_t kFar = 1u << 14;  // number of positions that exceed a cache near the core
   const hn::RebindToUnsigned<FloatTag> tag;
   auto highest = hn::LoadU(tag, corners), lowest = highest;
   for (std::size_t i = kLanes; i < 3 * kTile; i += kLanes) {
