@@ -30,13 +30,13 @@ inline constexpr double kPi = 3.14159265358979323846;
   return {w, u0 - w, cross(axis, u0), angle};
 }
 
-/// Returns the angle by which v lies behind the start of the arc, counter-clockwise about its axis, in [0, 2 pi).
+/// Returns the angle from the start of the arc to v, counter-clockwise about the axis of the arc, in [0, 2 pi).
 [[nodiscard]] inline double angle_along(const Arc& arc, const Vec3d& v) {
   const double angle = portable::atan2(dot(arc.q, v), dot(arc.p, v));
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
-/// Holds the circles through u0 and u1, given by one angle: axis(phi) = cos(phi) pole + sin(phi) bisector        (eq.
+/// The circles through u0 and u1, given by one angle: axis(phi) = cos(phi) pole + sin(phi) bisector        (eq.
 /// 6)
 struct CircleFamily {
   Vec3d u0, u1;
@@ -101,7 +101,7 @@ inline void put_arc(double* c, const Arc& arc) {
   c[9] = arc.angle;
 }
 
-/// Holds what every policy on arcs at uniform speed shares; a policy adds fit().
+/// The parts that all policies on arcs at uniform speed share; a policy adds fit().
 struct UniformArc {
   [[nodiscard]] std::size_t plane_count() const { return kArcPlanes; }
 

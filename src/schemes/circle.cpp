@@ -1,8 +1,8 @@
-// The circle through three exact normals u0, u(1/2), u1. It gives the frames that interpolate best, in closed form
-// (docs/theory.md, section 4.7).
+// The circle through three exact normals u0, u(1/2), u1. This circle gives the frames that interpolate best, in closed
+// form (docs/theory.md, section 4.7).
 //
 //   circle         at constant speed
-//   circle:timed   meets the middle normal at t = 1/2 as well: t is replaced by r t / ((1-r)(1-t) + r t), where r is
+//   circle:timed   reaches the middle normal at t = 1/2 as well: t is replaced by r t / ((1-r)(1-t) + r t), where r is
 //                  the share of the arc that lies before the middle; monotone for every r in (0, 1)
 //
 // If the three normals do not span a circle (u1 = u0, or the middle one is equal or opposite to an end), both fall back
@@ -34,7 +34,7 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
     const double middle_angle = angle_along(arc, middle);
     if (0 < middle_angle && middle_angle < arc.angle) return {arc, middle_angle / arc.angle};
   }
-  // A turn that float32 cannot show is no loss; every other case is a stated fallback.
+  // A turn that float32 cannot show is no loss, so it does not count as a fallback; every other case does.
   constexpr double kInvisibleTurn = 1e-7;
   if (maximum_number(length(to_end), length(to_middle)) > kInvisibleTurn) element.use_fallback();
   const CircleFamily circles(u0, u1);

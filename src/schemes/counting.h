@@ -1,5 +1,5 @@
-/// A scalar that counts the operations on it. Instantiating a scheme's own evaluation with it gives the operations of
-/// one evaluation, so the figures cannot drift from the code.
+/// A scalar that counts the operations on it. The evaluation of a scheme, instantiated with this scalar, counts its own
+/// operations, so the figures cannot differ from the code.
 #ifndef CHRONORMAL_SCHEMES_COUNTING_H_
 #define CHRONORMAL_SCHEMES_COUNTING_H_
 
@@ -10,7 +10,7 @@
 
 namespace chronormal::inline internal {
 
-/// Comparisons and changes of sign are free. Branches are taken as the values decide.
+/// A scalar whose comparisons and changes of sign are free. Branches depend on the values.
 class Counting {
  public:
   Counting() = default;

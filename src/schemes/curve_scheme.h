@@ -1,4 +1,4 @@
-/// The frame that most schemes share: coefficients are fitted per element in double, kept as float32 in blocks, and
+/// The class that most schemes share. Coefficients are fitted per element in double, kept as float32 in blocks, and
 /// evaluated by one of the formulas of kernels/formulas-inl.h.
 ///
 /// A scheme of this kind is a *policy*: a small class that has only its own parts,
@@ -11,7 +11,7 @@
 ///
 ///     void shared(double t, float* values) const         what all elements have in common at t, as the formula asks
 ///
-/// and if certify() shall bound the errors of a sum, and the weights that shared() rounds to float32 are polynomials,
+/// and if certify() is to bound the errors of a sum, and the weights that shared() rounds to float32 are polynomials,
 ///
 ///     WeightBasis basis() const                          these polynomials; may be std::optional
 ///
@@ -20,7 +20,7 @@
 ///
 ///     bool needs_faces = true
 ///
-/// and if elements are fitted faster together,
+/// and if elements are faster to fit together,
 ///
 ///     void begin(const ElementBlock& block)              reads all elements before they are fitted
 ///
@@ -68,8 +68,8 @@ class ElementMotion {
   [[nodiscard]] const UnitNormal& start() const { return start_; }
   [[nodiscard]] const UnitNormal& end() const { return end_; }
 
-  /// Returns the exact unit normal inside. A collapse exactly there counts as a fallback, which takes the limit from
-  /// before.
+  /// Returns the exact unit normal inside the segment. A collapse exactly there counts as a fallback, and the result is
+  /// the limit from before.
   [[nodiscard]] Vec3d node(double t) {
     const Vec3d exact = block_.exact ? unit(block_.exact(index_, t)) : Vec3d{};
     if (exact != Vec3d{}) return exact;
@@ -78,7 +78,7 @@ class ElementMotion {
     return u.vector;
   }
 
-  /// Says that this element got a stated fallback.
+  /// Records that this element got a stated fallback.
   void use_fallback() { used_fallback_ = true; }
   [[nodiscard]] bool used_fallback() const { return used_fallback_; }
 
@@ -100,7 +100,7 @@ inline void put_vector(double* c, std::size_t k, const Vec3d& v) {
   c[3 * k + 2] = v.z;
 }
 
-/// Holds values of elements in blocks (kernels/curve_kernels.h) while they are made.
+/// A store for values of elements in blocks (kernels/curve_kernels.h) while they are computed.
 class BlockedValues {
  public:
   BlockedValues() = default;
@@ -113,7 +113,7 @@ class BlockedValues {
     std::fill_n(values_.data(), size(), 0.0f);
   }
 
-  /// Puts one value per plane of element i.
+  /// Stores one value per plane of element i.
   void put(std::size_t i, std::span<const double> values) noexcept {
     assert(values.size() == plane_count_);
     float* to = values_.data() + offset(i);
@@ -284,7 +284,7 @@ class CurveScheme final : public Scheme {
     }
   }
 
-  // The example is a face that turns from +x to +y, so that no formula takes a short cut.
+  // The example is a face that turns from +x to +y, so that no formula takes a shortcut.
   [[nodiscard]] std::vector<float> example_coefficients() const {
     const ControlNormals turning{{1, 0, 0}, {0.7, 0.6, 0.2}, {0, 1, 0}};
     const Segment segment = example_segment();

@@ -1,5 +1,5 @@
-/// The data of a scheme for a block, as it evaluates them, for code that must know a scheme as a curve and not by
-/// samples.
+/// The data of a scheme for a block, as the scheme evaluates them, for code that must know a scheme as a curve instead
+/// of through samples.
 #ifndef CHRONORMAL_SCHEMES_FITTED_CURVES_H_
 #define CHRONORMAL_SCHEMES_FITTED_CURVES_H_
 
@@ -12,7 +12,7 @@
 
 namespace chronormal::inline internal {
 
-/// Reads the coefficients of one element, which lies in a block.
+/// The coefficients of one element in a block.
 struct ElementCoefficients {
   const float* first;
 
@@ -26,8 +26,8 @@ struct ElementCoefficients {
   return {blocks.values + i / kBlock * kBlock * blocks.plane_count + i % kBlock};
 }
 
-/// Holds a formula, the coefficients of a block, which are valid until the scheme is prepared anew, and the weights if
-/// the formula is a sum. Other formulas are evaluated with their shared_values().
+/// A formula, the coefficients of a block, which are valid until the scheme is prepared again, and the weights if the
+/// formula is a sum. Other formulas are evaluated with their shared_values().
 struct FittedCurves {
   Formula formula = Formula::kSum;
   CoefficientBlocks coefficients;

@@ -8,8 +8,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Holds the edges at the first corner of a face: e to the next corner, f to the previous one. For a polygon they are
-// taken within the plane of its vector area.
+// The edges at the first corner of a face: e to the next corner, f to the previous corner. For a polygon, the edges are
+// projected into the plane of its vector area.
 struct FaceEdges {
   Vec3d e, f;
 };
@@ -66,8 +66,8 @@ std::optional<FramePair> matrix_frames(const ElementMotion& element) {
   const double square = dot(e0, e0);
   if (square == 0) return std::nullopt;
 
-  // binormal0 = normal x tangent is f0 without its part along e0, so M takes it to the same combination of f1 and e1.
-  // The paper prints tangent1 = n1 x b1, which with b = n x t would be a left-handed frame.
+  // binormal0 = normal x tangent is f0 without its part along e0, so M maps it to the same combination of f1 and e1.
+  // The paper prints tangent1 = n1 x b1, which would be a left-handed frame with b = n x t.
   const Vec3d binormal = unit(within_plane(f1 - (dot(e0, f0) / square) * e1, element.end().vector));
   if (binormal == Vec3d{}) return std::nullopt;
   const Vec3d& u1 = element.end().vector;
@@ -76,7 +76,7 @@ std::optional<FramePair> matrix_frames(const ElementMotion& element) {
 
 std::optional<FramePair> edge_frames(const ElementMotion& element) {
   const EdgeMotion edges = edges_of(element);
-  // An edge of no length has the direction in which it starts to grow, or in which it shrinks away.
+  // An edge of length zero has the direction in which it starts to grow, or in which it shrinks to zero.
   const Vec3d& u0 = element.start().vector;
   const Vec3d& u1 = element.end().vector;
   const Vec3d start = edges.start.e == Vec3d{} ? within_plane(edges.e_delta, u0) : edges.start.e;
@@ -148,7 +148,8 @@ Rotation shorter_rotation(const FramePair& frames) {
       v = {c2.x + c0.z, c1.z + c2.y, 1 + 2 * c2.z - trace};
       break;
   }
-  // Both q and -q are this rotation; w >= 0 is the shorter arc. At exactly half a turn v decides, the same every time.
+  // Both q and -q are this rotation; w >= 0 gives the shorter arc. At exactly half a turn, v decides, so that the
+  // choice is always the same.
   if (w < 0) {
     w = -w;
     v = -v;

@@ -1,8 +1,8 @@
-/// The frames that a face can be given, and the rotation between two of them (section 2.5 of the paper).
+/// The frames that a face can have, and the rotation between two frames (section 2.5 of the paper).
 ///
 /// A frame F = (tangent, binormal, normal) is an orthonormal, right-handed triple with binormal = normal x tangent. The
-/// paper asks which F0 and F1 make quaternion slerp interpolate normals best; each function here is one answer. They
-/// return nothing if their construction fails (singular M, an edge of no length).
+/// paper asks which F0 and F1 make quaternion slerp interpolate normals best; each function here is one answer. The
+/// functions return nothing if their construction fails (singular M, an edge of no length).
 #ifndef CHRONORMAL_SCHEMES_FRAMES_H_
 #define CHRONORMAL_SCHEMES_FRAMES_H_
 
@@ -32,7 +32,7 @@ struct FramePair {
 
 /// A rotation about an axis.
 struct Rotation {
-  Vec3d axis;        ///< unit length, or zero where nothing turns
+  Vec3d axis;        ///< unit length, or zero if nothing turns
   double angle = 0;  ///< radians
 };
 /// Returns the rotation that takes F0 to F1, by at most half a turn.

@@ -1,7 +1,8 @@
 // Lagrange interpolation through the exact unit normals at K + 1 equidistant nodes, then normalised: linear is K = 1,
 // quadratic 2, cubic 3 (section 2.2 of the paper).
 //
-// The weights L_k(t) are the same for all elements and are made once per t, in double; an element is a weighted sum.
+// The weights L_k(t) are the same for all elements and are computed once per t, in double; an element is a weighted
+// sum.
 
 #include <array>
 #include <cmath>

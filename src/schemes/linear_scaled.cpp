@@ -1,6 +1,6 @@
 // Linear interpolation with one end scaled: u0 + t (s u1 - u0) has the same ends for every s > 0, and the best s makes
-// it run faster where the normal does (docs/theory.md, section 4.8). It is the best that a viewer can do that only adds
-// one delta. s is found per element by a search over its logarithm.
+// the curve faster where the true normal is faster (docs/theory.md, section 4.8). A viewer that only adds one delta can
+// do no better. The best s is found per element by a search over its logarithm.
 
 #include "core/portable_math.h"
 #include "schemes/makers.h"
@@ -35,7 +35,7 @@ class ScaledLinear {
     constexpr std::size_t kGrid = 25;
     std::array<double, kGrid + 1> points;
     for (std::size_t i = 0; i < kGrid; ++i)
-      points[i] = kRange * (2.0 * static_cast<double>(i) / (kGrid - 1) - 1);  // s = 1 is among them
+      points[i] = kRange * (2.0 * static_cast<double>(i) / (kGrid - 1) - 1);  // s = 1 is among the points
     // An element of degree 1 is met exactly by the ratio of its areas.
     const double areas = length(element.control_normals().n1) / length(element.control_normals().n0);
     points[kGrid] = std::isnormal(areas) ? std::clamp(portable::log(areas), -kRange, kRange) : 0;

@@ -1,4 +1,4 @@
-/// Makers of the schemes, one for each file of this folder or more. scheme.cpp finds them by name.
+/// The functions that create schemes, one or more for each file of this folder. scheme.cpp finds them by name.
 #ifndef CHRONORMAL_SCHEMES_MAKERS_H_
 #define CHRONORMAL_SCHEMES_MAKERS_H_
 

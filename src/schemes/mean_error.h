@@ -13,8 +13,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the angle between unit vectors whose difference has this squared length, with an error below 1e-8 rad. It
-/// takes a polynomial instead of the arc sine, since a search asks for it hundreds of times per element.
+/// Returns the angle between unit vectors whose difference has this squared length, with an error below 1e-8 rad. The
+/// function uses a polynomial instead of the arc sine, since a search calls it hundreds of times per element.
 [[nodiscard]] inline double angle_of_squared_chord(double square) noexcept {
   // The angle is 2 asin(sqrt(y)), y = square / 4, and asin(sqrt(y)) = pi/2 - asin(sqrt(1 - y)) in the upper half.
   const double y = std::min(0.25 * square, 1.0);
@@ -32,7 +32,7 @@ namespace chronormal::inline internal {
   return upper ? kPi - 2 * half : 2 * half;
 }
 
-/// Holds the exact unit normals of one element at equidistant interior t. (At the ends, schemes are exact.)
+/// The exact unit normals of one element at equidistant interior t. (At the ends, schemes are exact.)
 class ExactSamples {
  public:
   explicit ExactSamples(const ControlNormals& normals) {
@@ -49,7 +49,7 @@ class ExactSamples {
 
   /// Returns the mean angle between the exact normal and the arc, over t.
   [[nodiscard]] double mean_error(const Arc& arc) const {
-    // The position on the arc advances by a rotation of (cos, sin), so there is no sine inside the loop.
+    // The position on the arc advances by a rotation of (cos, sin), so the loop has no sine.
     const double step_cosine = portable::cos(arc.angle / intervals_), step_sine = portable::sin(arc.angle / intervals_);
     double cosine = 1, sine = 0, sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {

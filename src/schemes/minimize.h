@@ -10,7 +10,7 @@
 
 namespace chronormal::inline internal {
 
-/// Evaluates f at every point, then narrows the lowest local minima by golden section. Returns the best x seen, which
+/// Evaluates f at every point, then refines the lowest local minima by golden section. Returns the best x seen, which
 /// is never worse than the best point given. points must ascend; at most 64 of them
 template <class F>
 [[nodiscard]] double minimize(std::span<const double> points, F f) {

@@ -1,6 +1,6 @@
-// The t-variant cross product, eq. 5, which is exact. Random access does the work of NormalCurves
-// (normals/normal_curves.h). Sequential access goes as in the paper: two additions per component and step, in float32,
-// started anew at anchors.
+// The t-variant cross product, eq. 5, which is exact. Random access works like NormalCurves (normals/normal_curves.h).
+// Sequential access works as in the paper, with two additions per component and step, in float32, and starts again at
+// anchors.
 
 #include <algorithm>
 #include <vector>
@@ -17,7 +17,7 @@ namespace {
 // An element that shrinks by more than this must not be played, since the error of the state is absolute
 // (docs/theory.md, section 4.9).
 constexpr double kMaxShrinkage = 4;
-// Between these sizes, squares of normals and of their differences are normal numbers of float32.
+// Between these sizes, squares of normals and of their differences are normal (not subnormal) numbers of float32.
 constexpr double kSmallestPlayed = 0x1p-50, kLargestPlayed = 0x1p50;
 
 // Returns whether the drift of an element stays within the stated bound.
@@ -29,7 +29,7 @@ bool can_be_played(const ControlNormals& c) {
   return stays_above(n, kMaxShrinkage, {longest, longest, longest});
 }
 
-// Returns control normals as blocks of curves hold them: rounded, and with the middle halfway if n(t) is linear.
+// Returns control normals as blocks of curves store them: rounded, and with the middle halfway if n(t) is linear.
 ControlNormals rounded(const ControlNormals& c) {
   const Vec3d n0 = to_double(to_float(c.n0)), n1 = to_double(to_float(c.n1));
   return {n0, degree(c) == 2 ? to_double(to_float(c.m)) : 0.5 * (n0 + n1), n1};

@@ -2,9 +2,9 @@
 //
 // All pairs of frames are described by one angle phi (eq. 6), so the best is found by a search over one variable per
 // face. If a face turns mildly, the search starts from the circle through the exact normal in the middle
-// (kernels/optimal_arcs.h). Otherwise it takes a grid, the frames that are known by construction, and golden section in
-// the lowest valleys. The result has the smallest mean angular error over t that any quaternion slerp on the shorter
-// arc can have, within 0.2 percent.
+// (kernels/optimal_arcs.h). Otherwise the search starts from a grid and the frames that are known by construction, and
+// uses golden section in the lowest valleys. The mean angular error of the result over t is within 0.2 percent of the
+// smallest that any quaternion slerp on the shorter arc can have.
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 // The t-variant cross product with its normalisation in the formula (eq. 3 of the paper): three quadratics over the
 // square root of one quartic, |n(t)|^2, whose coefficients are prepared. At run time this saves a sum of squares, but
-// reads five more coefficients. The direction is the one of `polynomial`, without its evaluation in double where n(t)
-// is small.
+// reads five more coefficients. The direction is that of `polynomial`, without the evaluation in double where n(t) is
+// small.
 
 #include "chronormal/core/polynomial.h"
 #include "schemes/curve_scheme.h"
@@ -10,7 +10,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Relative to control normals of length 1, this is below float32's rounding, and its square is well above zero.
+// Relative to control normals of length 1, this length is below the rounding of float32, and its square is well above
+// zero.
 constexpr double kVanishingLength = 1e-7;
 
 class Rational {
@@ -21,7 +22,8 @@ class Rational {
     const ControlNormals& exact = element.control_normals();
     const double largest = maximum_number(length(exact.n0), maximum_number(length(exact.m), length(exact.n1)));
     const double scale = 1 / largest;
-    // An end that (almost) vanishes keeps its direction, at a length that only counts where nothing else does.
+    // An end that (almost) vanishes keeps its direction, with a length that only matters where the other control
+    // normals vanish too.
     const auto end = [scale](const Vec3d& n, const UnitNormal& u) {
       const Vec3d scaled = scale * n;
       return length(scaled) > kVanishingLength ? scaled : kVanishingLength * u.vector;

@@ -1,6 +1,6 @@
-// The cross product, computed again at every t: eq. 1 on the vertices at t, then eq. 2. It runs normals/recompute.h,
-// and counts its formula: interpolating the two edges instead of the three vertices gives the same normal, costs less,
-// and keeps its digits far from the origin.
+// The cross product, computed again at every t: eq. 1 on the vertices at t, then eq. 2. The scheme runs
+// normals/recompute.h, and counts the operations of its formula. Interpolating two edges instead of three vertices
+// gives the same normal, costs less, and stays precise far from the origin.
 
 #include "chronormal/normals/recompute.h"
 #include "normals/curves/curve_elements.h"

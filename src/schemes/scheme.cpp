@@ -31,7 +31,7 @@ constexpr std::array kDescriptions = {
     SchemeDescription{"circle:timed", "the same circle, meeting the middle at t = 1/2"},
 };
 
-// Holds "family:parameter" in its two parts; the parameter may be empty.
+// The two parts of "family:parameter". The parameter may be empty.
 struct Name {
   std::string_view family, parameter;
 

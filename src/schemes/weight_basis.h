@@ -1,5 +1,4 @@
-/// The weights of a sum of vectors as polynomials in t, which a certificate must know of a scheme beside its
-/// coefficients.
+/// The weights of a sum of vectors as polynomials in t. A certificate needs them besides the coefficients of a scheme.
 #ifndef CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
 #define CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
 
@@ -32,12 +31,12 @@ void restrict_in_place(std::span<T> p, double a, double b) {
 
 class WeightBasis {
  public:
-  /// Beyond this degree, Lagrange weights are so large that float32 shows nothing but rounding.
+  /// Beyond this degree, Lagrange weights are so large that the result in float32 is mere rounding.
   static constexpr std::size_t kMostDegree = 27;
   using Coefficients = std::array<double, kMostDegree + 1>;
 
-  /// Takes the Bernstein coefficients of each weight. This makes the weights 1 - t and t, and eased ones 1 - 3 t^2 + 2
-  /// t^3 and 3 t^2 - 2 t^3:
+  /// Creates a basis from the Bernstein coefficients of each weight. Two examples are the weights 1 - t and t, and the
+  /// eased weights 1 - 3 t^2 + 2 t^3 and 3 t^2 - 2 t^3:
   ///     WeightBasis(1, {{1, 0}, {0, 1}})        WeightBasis(3, {{1, 1, 0, 0}, {0, 0, 1, 1}})
   /// degree must be in [1, kMostDegree]
   WeightBasis(std::size_t degree, std::vector<Coefficients> weights);
@@ -49,11 +48,12 @@ class WeightBasis {
   [[nodiscard]] const Coefficients& weight(std::size_t k) const noexcept { return weights_[k]; }
   /// Returns a number that is at least the sum of the |weights| at any t.
   [[nodiscard]] double most_weight() const noexcept { return most_weight_; }
-  /// Returns the error of a curve through unit vectors whose Bernstein coefficients are made and cut in double.
+  /// Returns the error of a curve through unit vectors whose Bernstein coefficients are computed and split in double.
   [[nodiscard]] double conversion_error() const noexcept { return conversion_error_; }
 
  private:
-  // largest_sum is the largest sum of the |coefficients| of all weights at one place, without any cancellation in them.
+  // largest_sum is the largest sum of the |coefficients| of all weights at one place, without any cancellation in the
+  // weights.
   WeightBasis(std::size_t degree, std::vector<Coefficients> weights, double largest_sum);
 
   std::size_t degree_;

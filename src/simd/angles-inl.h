@@ -1,8 +1,8 @@
-// Finds the angle of a vector in lanes of double, with the bits of portable::atan2() for y >= 0. It also has the type
-// Real, in which formulas are written as for one number.
+// Finds the angle of a vector in lanes of double, with the bits of portable::atan2() for y >= 0. This file also defines
+// the type Real, with which formulas look the same as for one number.
 //
 // This file is included once for each instruction set, as lanes-inl.h is. The polynomial is Highway's for the arc
-// tangent on [0, 1], in the same order but never fused, as core/portable_math has it for one number.
+// tangent on [0, 1], in the same order but never fused, like core/portable_math for one number.
 
 #include "simd/highway-inl.h"
 
@@ -21,12 +21,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Holds one double of each of kDoubleLanes elements. Every operation is one IEEE operation on each of them.
+// One double of each of kDoubleLanes elements. Every operation is one IEEE operation on each of them.
 struct Real {
   Doubles v;
 
   Real() = default;
-  // Both constructors convert implicitly on purpose: a formula with lanes and numbers reads as it does with double.
+  // Both constructors convert implicitly on purpose, so that a formula with lanes and numbers reads like a formula with
+  // double.
   HWY_INLINE Real(Doubles of_v) : v(of_v) {}                      // NOLINT(google-explicit-constructor)
   HWY_INLINE Real(double value) : v(hn::Set(kDoubles, value)) {}  // NOLINT(google-explicit-constructor)
   static HWY_INLINE Real load(const double* from) { return hn::LoadU(kDoubles, from); }
@@ -38,7 +39,7 @@ struct Real {
   friend HWY_INLINE Real operator/(Real a, Real b) { return hn::Div(a.v, b.v); }
 };
 
-// Says for which elements a condition holds.
+// The elements for which a condition holds.
 struct RealMask {
   hn::Mask<DoubleTag> m;
 
@@ -55,7 +56,7 @@ HWY_INLINE Real select(RealMask mask, Real a, Real b) { return hn::IfThenElse(ma
 HWY_INLINE bool any(RealMask mask) { return !hn::AllFalse(kDoubles, mask.m); }
 HWY_INLINE Real sqrt(Real a) { return hn::Sqrt(a.v); }
 HWY_INLINE Real absolute(Real a) { return hn::Abs(a.v); }
-// The result is b if one of them is NaN.
+// The result is b if a or b is NaN.
 HWY_INLINE Real larger_of(Real a, Real b) { return select(a > b, a, b); }
 HWY_INLINE Real smaller_of(Real a, Real b) { return select(a < b, a, b); }
 // Tells whether the sign bit is set, also for -0.
@@ -76,7 +77,7 @@ HWY_INLINE Real dot(const Real3& a, const Real3& b) { return a.x * b.x + a.y * b
 HWY_INLINE Real3 cross(const Real3& a, const Real3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-// Follows core/vec3.h: if a component is NaN, the others count.
+// Like core/vec3.h, the function ignores components that are NaN.
 HWY_INLINE Real max_abs(const Real3& a) {
   const Real x = absolute(a.x), y = absolute(a.y), z = absolute(a.z);
   const Real largest = larger_of(z, larger_of(y, x));

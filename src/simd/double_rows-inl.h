@@ -1,7 +1,7 @@
-// A row of four doubles is a vector x y z with a fourth number, and stands anywhere in memory. Rows are added to one by
-// one, or a row for each lane becomes columns.
+// A row of four doubles is a vector x y z with a fourth number, at any place in memory. Code adds to rows one by one,
+// or turns one row for each lane into columns.
 //
-// Included once for each instruction set, as lanes-inl.h is.
+// This file is included once for each instruction set, as lanes-inl.h is.
 
 #include "simd/highway-inl.h"
 
@@ -21,7 +21,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// A row takes one register if that holds four doubles, else two, or four if Highway is plain C++.
+// A row takes one register if a register holds four doubles, else two, or four if Highway is plain C++.
 inline constexpr std::size_t kRowStep = kDoubleLanes < 4 ? kDoubleLanes : 4;
 using DoubleRowTag = hn::CappedTag<double, kRowStep>;
 
@@ -64,7 +64,7 @@ struct DoubleColumns {
   Doubles w;
 };
 
-// Makes columns whose lane i is from the row at row(i).
+// Returns columns whose lane i is from the row at row(i).
 template <class RowOf>
 HWY_INLINE DoubleColumns ColumnsOfDoubles(const RowOf& row) {
 #if HWY_TARGET == HWY_SCALAR

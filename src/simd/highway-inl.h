@@ -1,8 +1,8 @@
-/// The operations that kernels are written with: Google Highway, or, if the build does without it
-/// (CHRONORMAL_HIGHWAY=OFF, and the two files of tools/two_files.py), the part of it that they use, in plain C++. Both
-/// give the same bits.
+/// The operations that kernels are written with: Google Highway, or, if the build does not use Highway
+/// (CHRONORMAL_HIGHWAY=OFF, and the two files of tools/two_files.py), the part of Highway that the kernels use, in
+/// plain C++. Both give the same bits.
 #ifdef CHRONORMAL_HIGHWAY
-// Include highway.h each time, since it is for a different instruction set each time.
+// highway.h is included every time, since each inclusion is for a different instruction set.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 #else

@@ -1,8 +1,8 @@
 // The special cases of instruction sets. Every raw intrinsic of the library is in this file, beside the operations of
-// Highway that give the same bits on all other targets. Today they are for AVX-512, whose permutations and masked loads
-// need fewer instructions than what Highway makes of general shuffles.
+// Highway that give the same bits on all other targets. Today all special cases are for AVX-512, whose permutations and
+// masked loads need fewer instructions than Highway's general shuffles.
 //
-// Included once for each instruction set, as lanes-inl.h.
+// This file is included once for each instruction set, like lanes-inl.h.
 
 #include "simd/highway-inl.h"
 
@@ -55,12 +55,12 @@ HWY_INLINE std::uint32_t BitsOf(Tag tag, hn::Mask<Tag> mask) {
 template <bool kStream>
 HWY_INLINE void StorePacked(const Lanes3& v, float* to) {
 #if HWY_TARGET == HWY_AVX3
-  // Take two permutations per vector instead of the generic ones by 128-bit pieces.
+  // Two permutations per vector replace the generic ones by 128-bit pieces.
   const auto index = [](int a0, int a1, int a2, int b0, int b1, int b2, int c0, int c1, int c2, int d0, int d1, int d2,
                         int e0, int e1, int e2, int f0) HWY_ATTR {
     return _mm512_setr_epi32(a0, a1, a2, b0, b1, b2, c0, c1, c2, d0, d1, d2, e0, e1, e2, f0);
   };
-  // Place the lanes of x and y first (y counts from 16), then the lanes of z in the gaps (z counts from 16).
+  // The lanes of x and y are placed first (y counts from 16), then the lanes of z in the gaps (z counts from 16).
   const __m512i xy0 = index(0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5);
   const __m512i xy1 = index(21, 0, 6, 22, 0, 7, 23, 0, 8, 24, 0, 9, 25, 0, 10, 26);
   const __m512i xy2 = index(0, 11, 27, 0, 12, 28, 0, 13, 29, 0, 14, 30, 0, 15, 31, 0);
@@ -151,7 +151,7 @@ HWY_INLINE void StoreTwoColumns(Doubles a, Doubles b, double* to, std::size_t st
 template <class ColumnOf>
 HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_t stride) {
 #if HWY_TARGET == HWY_AVX3
-  // Join pairs, fours, and eights of neighbours.
+  // Neighbours are joined in pairs, fours, and eights.
   __m512d even[4], odd[4];  // of rows 0 2 4 6 and 1 3 5 7, the columns 2 i and 2 i + 1
   for (std::size_t i = 0; i < 4; ++i) {
     even[i] = _mm512_unpacklo_pd(column(2 * i).raw, column(2 * i + 1).raw);
@@ -181,7 +181,8 @@ HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_
 template <std::size_t kStride>
 HWY_INLINE void LoadColumns(const double* from, Doubles (&column)[kStride]) {
 #if HWY_TARGET == HWY_AVX3
-  // Make eight columns by pairs, fours and eights of rows, as StoreEightColumns does, and the others one by one.
+  // Eight columns are built from pairs, fours and eights of rows, as in StoreEightColumns, and the other columns one by
+  // one.
   __m512d even[4], odd[4];  // of rows 2 i and 2 i + 1, the columns 0 2 4 6 and 1 3 5 7
   for (std::size_t i = 0; i < 4; ++i) {
     const __m512d first = _mm512_loadu_pd(from + 2 * i * kStride),

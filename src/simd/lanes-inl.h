@@ -1,8 +1,8 @@
 // The parts that kernels share: vectors of lanes with their operations, and blocks of 16 elements whatever the lanes.
 //
-// Included once for each instruction set, inside no namespace; see evaluate.cpp for the frame of a kernel file. Every
-// operation here is one IEEE operation or a selection, so that all instruction sets give the same bits: no fused
-// multiply-add, no approximate reciprocal, and sums in a fixed order.
+// This file is included once for each instruction set, outside of any namespace; evaluate.cpp shows the frame of a
+// kernel file. Every operation here is one IEEE operation or a selection, so that all instruction sets give the same
+// bits: no fused multiply-add, no approximate reciprocal, and sums in a fixed order.
 
 #include "simd/highway-inl.h"
 
@@ -66,7 +66,8 @@ HWY_INLINE LanesOf3<V> Cross(const LanesOf3<V>& a, const LanesOf3<V>& b) {
 // Returns v scaled to length 1, bit for bit as normalized() in normals/curves/curve_elements.h. v must not be zero
 HWY_INLINE Lanes3 Normalized(const Lanes3& v) { return Scale(hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(Dot(v, v))), v); }
 
-// Returns the nearest integers, the even one of two: adding 1.5 * 2^23 leaves them in the lowest bits. |v| < 2^22
+// Returns the nearest integers, and the even one of two equally near. Adding 1.5 * 2^23 leaves the integers in the
+// lowest bits. |v| < 2^22
 HWY_INLINE Ints RoundToInt(Floats v) {
   const Floats large = hn::Set(kFloats, 12582912.0f);
   return hn::Sub(hn::BitCast(kInts, hn::Add(v, large)), hn::BitCast(kInts, large));

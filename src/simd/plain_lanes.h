@@ -1,10 +1,10 @@
-/// The operations of Google Highway that kernels use, in plain C++ for any compiler. They are vectors of 16 bytes and
-/// parts of them: the vector extensions of GCC and Clang, for which the compiler finds SSE2, NEON or SIMD128, and loops
-/// over arrays for any other compiler. Names and meanings are Highway's, and are described at
+/// The operations of Google Highway that kernels use, in plain C++ for any compiler. The types are vectors of 16 bytes
+/// and parts of vectors. With GCC and Clang, they are vector extensions, which the compiler maps to SSE2, NEON or
+/// SIMD128; with any other compiler, they are loops over arrays. Names and meanings are Highway's, and are described at
 /// https://google.github.io/highway/en/master/quick_reference.html
 ///
 /// Bits       as Highway's on every instruction set: each operation is one IEEE operation, or a choice of lanes
-/// Target     there is one, HWY_PLAIN, and nothing is dispatched
+/// Target     HWY_PLAIN is the only one, and nothing is dispatched
 #ifndef CHRONORMAL_SIMD_PLAIN_LANES_H_
 #define CHRONORMAL_SIMD_PLAIN_LANES_H_
 
@@ -19,7 +19,8 @@
 #error "chronormal promises bits, and -ffast-math takes them: compile it without"
 #endif
 
-// Only here are instructions used by name. Compilers do not find them by themselves without flags.
+// This is the only place that uses instructions by name. Compilers do not find these instructions by themselves without
+// flags.
 #if defined(__GNUC__) && defined(__SSE2__)
 #include <emmintrin.h>
 #define CHRONORMAL_PLAIN_SSE2 1
@@ -201,7 +202,7 @@ struct Vector {
 template <class D>
 using Vec = Vector<typename D::Lane, D::kLanes>;
 
-// Holds lanes of bits that are all set, or all clear.
+// Lanes whose bits are all set, or all clear.
 template <class T, std::size_t kCount>
 struct MaskOf {
   Raw<Integer<T>, kCount> raw;

@@ -42,7 +42,7 @@ template <int kHalf>
 HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
   return {ToDouble<kHalf>(v.x), ToDouble<kHalf>(v.y), ToDouble<kHalf>(v.z)};
 }
-// Highway's plain C++ rounds what is beyond the range of float to the largest float, while all other targets and
+// Highway's plain C++ rounds values beyond the range of float to the largest float, while all other targets and
 // static_cast give infinity.
 #undef CHRONORMAL_DEMOTE_CLAMPS
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128

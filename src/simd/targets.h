@@ -1,5 +1,5 @@
-/// The instruction set on which the kernels run. It is chosen at run time, the widest that the machine has. Tests and
-/// benchmarks go through all of them; results are the same bits on each.
+/// The instruction set on which the kernels run. It is chosen at run time, and is the widest that the machine has.
+/// Tests and benchmarks try all of them; results have the same bits on each.
 #ifndef CHRONORMAL_SIMD_TARGETS_H_
 #define CHRONORMAL_SIMD_TARGETS_H_
 

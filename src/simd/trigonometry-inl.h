@@ -1,7 +1,8 @@
 // Sine, cosine and arc tangent over any scalar: one float, or a vector of them.
 //
-// Included once for each instruction set, inside no namespace. A scalar S is made from a float, has + - * / and
-// comparisons that give a mask, and beside them, found by its arguments,
+// This file is included once for each instruction set, outside of any namespace. A scalar S is constructed from a
+// float, has + - * / and comparisons that give a mask, and these functions, which the compiler finds by their
+// arguments:
 //
 //     select(mask, a, b)      a where the mask holds, b elsewhere
 //     absolute(a), larger_of(a, b), smaller_of(a, b)
@@ -44,8 +45,8 @@ HWY_INLINE float next_bits(float s) { return bit_cast<float>(bit_cast<std::uint3
 
 template <class S>
 HWY_INLINE SinCos<S> sin_cos(const S& x) {
-  // Bring x to r in [-pi/4, pi/4] with x = quarter * pi/2 + r. Splitting pi/2 into two parts, the first of 8 bits,
-  // keeps r exact to 1e-10. Adding 3 * 2^22 rounds to an integer, and leaves it in the lowest bits.
+  // The argument x is reduced to r in [-pi/4, pi/4] with x = quarter * pi/2 + r. Splitting pi/2 into two parts, the
+  // first of 8 bits, keeps r exact to 1e-10. Adding 3 * 2^22 rounds to an integer, and leaves it in the lowest bits.
   const S shift(12582912.0f);
   const S shifted = x * S(0.636619772f) + shift;
   const S quarter = shifted - shift;
@@ -61,7 +62,7 @@ HWY_INLINE SinCos<S> sin_cos(const S& x) {
 
 template <class S>
 HWY_INLINE S upper_angle(const S& y, const S& x) {
-  // Compute atan of a quotient in [0, 1], folded once more at tan(pi/8), then unfold it by octant.
+  // The code computes atan of a quotient in [0, 1], folded once more at tan(pi/8), then unfolds the result by octant.
   const S zero(0.0f);
   const S ax = absolute(x), larger = larger_of(y, ax), smaller = smaller_of(y, ax);
   const auto steep = y > ax;

@@ -1,7 +1,7 @@
 /// Sine, cosine and arc tangent in float32, from plain arithmetic.
 ///
-/// The standard library's functions differ from machine to machine in the last bit; the ones here give the same bits
-/// everywhere and have no branch. src/simd/trigonometry-inl.h has them for vectors of lanes, with the same text and the
+/// The standard library's functions differ from machine to machine in the last bit; the functions here give the same
+/// bits everywhere and have no branch. src/simd/trigonometry-inl.h has the same formulas for vectors of lanes, with the
 /// same bits. The polynomials interpolate at Chebyshev nodes (own fit).
 #ifndef CHRONORMAL_SIMD_TRIGONOMETRY_H_
 #define CHRONORMAL_SIMD_TRIGONOMETRY_H_

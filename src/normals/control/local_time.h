@@ -1,4 +1,4 @@
-/// The one rule for which local t a call gets.
+/// The only rule that turns the t of a call into a local t of a segment.
 #ifndef CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 #define CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 
@@ -8,7 +8,8 @@
 
 namespace chronormal::inline internal {
 
-/// A smaller t counts as 0, so that t^2 times the smallest product of two floats is far above the smallest double.
+/// A smaller t counts as 0, so that t^2 times the smallest product of two floats is still far above the smallest
+/// double.
 inline constexpr double kSmallestTime = 0x1p-200;
 
 /// Returns t in [0, 1]: a t outside is moved to the nearer end. NaN stays NaN, which stands for no time at all.

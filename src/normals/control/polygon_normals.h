@@ -1,4 +1,4 @@
-/// Control normals of one polygon, without vectors of lanes, for cases that the kernels leave out.
+/// The control normals of one polygon, computed without vectors of lanes, for cases that the kernels leave out.
 #ifndef CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 #define CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 
@@ -16,7 +16,7 @@ namespace chronormal::inline internal {
 /// stay far below the errors of float32 evaluation.
 inline constexpr double kDegreeTolerance = 0x1p-28;
 
-/// If rounding of double may be a larger share of a control normal, the control normal is made of integers.
+/// If rounding of double may be a larger share of a control normal, the control normal is computed from integers.
 inline constexpr double kLargestRounding = 0x1p-26;
 
 /// Holds control normals in double, and a bound of the error of any component of each.
@@ -45,7 +45,7 @@ struct BoundedNormals {
   }
 };
 
-struct PolygonNormals : BoundedNormals {  ///< the normals as face_control_normals() writes them
+struct PolygonNormals : BoundedNormals {  ///< the normals, as face_control_normals() writes them
   double magnitude = 0;  ///< the largest sum of absolute products of any component, of both products in m
 };
 

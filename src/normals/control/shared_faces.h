@@ -1,10 +1,11 @@
 /// The faces of a segment for elements that share them. A polygon of n corners is around n vertices. If each of these
-/// added up its corners anew, time would grow with the square of n. So the results for faces of many corners are kept.
+/// vertices added up all corners again, time would grow with the square of n. So the results for faces of many corners
+/// are kept.
 ///
 ///     a polygon of 32,000 corners   computed once, and looked up by its 32,000 vertices
 ///     a triangle, a quadrilateral   computed by each of their corners, which costs less than looking them up
 ///
-/// The bits are the same as if each face were computed wherever it is asked for. Private.
+/// Results have the same bits as if each face were computed for every element that needs it. Private.
 #ifndef CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_
 #define CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_
 
@@ -22,8 +23,8 @@
 
 namespace chronormal::inline internal {
 
-/// Keeps values of faces of many corners. Several threads may ask at once. A value for which there is no memory is not
-/// kept.
+/// A store for values of faces with many corners. Several threads may request values at once. A value for which there
+/// is no memory is not kept.
 template <class Value>
 class LargeFaceValues {
  public:
@@ -42,7 +43,7 @@ class LargeFaceValues {
     try {
       const std::lock_guard lock(mutex_);
       values_.emplace(face, value);
-    } catch (const std::bad_alloc&) {  // the next caller makes it anew
+    } catch (const std::bad_alloc&) {  // the next caller computes the value again
     }
     return value;
   }
@@ -54,8 +55,7 @@ class LargeFaceValues {
   mutable std::map<std::uint32_t, Value> values_;
 };
 
-/// Gives the control normals of faces, and exact sums of them. The positions of the segment must not change. Threads:
-/// pure.
+/// The control normals of faces, and exact sums of them. The positions of the segment must not change. Threads: pure.
 class SharedFaces {
  public:
   explicit SharedFaces(const Segment& segment) noexcept : segment_(segment) {}
@@ -67,7 +67,7 @@ class SharedFaces {
     return normals_.of(topology, face, [&] { return polygon_control_normals(segment_, topology.face(face)); });
   }
 
-  /// Returns the exact curve of one face, or of the sum of several.
+  /// Returns the exact curve of one face, or of the sum of several faces.
   [[nodiscard]] ExactCurve exact(std::uint32_t face) const noexcept {
     const Topology& topology = *segment_.topology;
     return curves_.of(topology, face, [&] { return ExactCurve::of_polygon(segment_, topology.face(face)); });

@@ -27,7 +27,7 @@ Quaternion normalised(const Quaternion& q) { return weighted_sum(1 / std::sqrt(d
 
 Quaternion slerp(const Quaternion& from, Quaternion to, double t) {
   if (dot4(from, to) < 0) to = weighted_sum(-1, to, 0, to);
-  // Take the angle from chord and diagonal, so that small angles keep their digits.
+  // Computing the angle from chord and diagonal keeps the digits of small angles.
   const Quaternion chord = weighted_sum(1, to, -1, from), diagonal = weighted_sum(1, to, 1, from);
   const double angle = 2 * portable::atan2(std::sqrt(dot4(chord, chord)), std::sqrt(dot4(diagonal, diagonal)));
   if (angle < kSmallAngle) return normalised(weighted_sum(1 - t, from, t, to));

@@ -1,5 +1,6 @@
 /// Proofs by Bernstein coefficients that n(t) of one element stays long enough for float32, or for double
-/// (docs/theory.md, section 5). kernels/certify.h does it for sixteen elements, with the same operations.
+/// (docs/theory.md, section 5). kernels/certify.h proves the same for sixteen elements at a time, with the same
+/// operations.
 #ifndef CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_
 #define CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_
 
@@ -43,7 +44,7 @@ template <std::size_t M>
 /// Returns the length of a vector that has been scaled, so that its square stays in range if the vector does.
 [[nodiscard]] inline double scaled_length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-/// Below this size, the scale itself would leave the range of double.
+/// Below this size, the scale itself would be outside the range of double.
 inline constexpr double kSmallestMesh = 0x1p-900;
 /// This is added to a length if each control normal has its own exponent, since exponents go no lower.
 inline constexpr double kSmallestScale = 0x1p-30;
@@ -67,7 +68,7 @@ inline constexpr double kSmallestScale = 0x1p-30;
   return std::nullopt;
 }
 
-/// Control normals in double with a relative error of at most this in each component are good enough for float32.
+/// Control normals in double whose components have at most this relative error are precise enough for float32.
 inline constexpr double kLargestShare = 0x1p-30;
 
 /// Returns the share of sum w_k max_abs(c_k) above which the largest component of n(t) in double must be for n(t) to
@@ -79,8 +80,8 @@ inline constexpr double kDeterminantRounding = 0x1p-44;
 inline constexpr double kSmallestLength = 0x1p-400;      ///< squares of larger lengths stay in range
 inline constexpr double kSmallestProvenShare = 0x1p-20;  ///< its square is far above the rounding of the proof
 
-/// Returns whether n(t) stays above that share at every t, so that double suffices. Mostly one determinant shows it:
-/// n(t) never leaves the plane of the three control normals, nor gets nearer to zero than that plane is.
+/// Returns true if n(t) stays above that share at every t, so that double suffices. One determinant usually shows this:
+/// n(t) never leaves the plane of the three control normals, and is never nearer to zero than that plane.
 [[nodiscard]] inline bool stays_certain(const ControlNormals& c, double certain) {
   const double largest = largest_component(c);
   if (largest == 0) return true;

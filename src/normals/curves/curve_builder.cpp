@@ -1,4 +1,4 @@
-// Makes curves in parts, in one go on all threads or in slices on one, and puts the parts one after the other.
+// Builds curves in parts, in one go on all threads or in slices on one thread, and puts the parts one after the other.
 #include "normals/curves/curve_builder.h"
 
 #include <algorithm>
@@ -22,9 +22,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns how many elements a thread makes at a time: few enough that their blocks stay in a cache until they are
-// moved, and that all threads are busy to the end. It depends on the size alone, and so is the same for any number of
-// threads.
+// Returns how many elements a thread processes at a time: few enough that their blocks stay in a cache until they are
+// moved, and that all threads are busy to the end. The number depends on the size alone, and so is the same for any
+// number of threads.
 std::size_t part_size(std::size_t size) {
   constexpr std::size_t kParts = 16;
   const std::size_t chunks = (size / kParts + kChunk - 1) / kChunk;
@@ -35,7 +35,7 @@ std::size_t part_size(std::size_t size) {
 // cache miss, this halves the misses.
 class EndsSideBySide {
  public:
-  // Uses the given memory if it is large enough. Nothing is copied yet.
+  // Uses the given memory if it is large enough. This copies nothing yet.
   EndsSideBySide(const Segment& segment, AlignedArray<float> memory)
       : ends_(std::move(memory)), from_(segment), segment_(segment) {
     const std::size_t count = segment.from.count;
@@ -75,7 +75,7 @@ class Build {
     curves_.size = size;
     curves_.keeps_lengths = limits_.with_lengths;
     if (size == 0) return;
-    // Reserve room for the largest result; memory that is not written costs nothing.
+    // Room is reserved for the largest result, since memory that is not written costs nothing.
     if (curves_.blocks.capacity() < whole() * kWorst) {
       curves_.blocks = {};
       curves_.blocks = AlignedBytes(whole() * kWorst);
@@ -86,7 +86,7 @@ class Build {
 
   [[nodiscard]] std::size_t chunk_count() const { return block_count(curves_.size, kChunk); }
 
-  // Makes the next `count` chunks.
+  // Builds the next `count` chunks.
   template <class Source>
   void make_chunks(Source& source, std::size_t count) {
     for (; count > 0; --count) {
@@ -103,8 +103,8 @@ class Build {
     }
   }
 
-  // Makes all parts. Each thread has its own source, and memory near it. The place of a part is known when all parts
-  // before it are made; then the thread that made the part copies it there.
+  // Builds all parts. Each thread has its own source, and memory near itself. The place of a part is known once all
+  // parts before it are built; then the thread that built the part copies it there.
   template <class MakeSource>
   void make_parts(const MakeSource& make_source) {
     constexpr std::size_t kNotKnown = ~std::size_t{0};
@@ -128,7 +128,7 @@ class Build {
           end_at(0);  // no thread may wait for a part that will not come
           throw;
         }
-        // Every earlier part has been begun by some thread.
+        // Some thread has begun every earlier part.
         if (p > 0) ends[p - 1].wait(kNotKnown);
         std::byte* const to = curves_.blocks.data() + (p > 0 ? ends[p - 1].load() : 0);
         end_at(static_cast<std::size_t>(to - curves_.blocks.data()) + parts_[p].bytes);
@@ -156,7 +156,7 @@ class Build {
     to.insert(to.end(), more.begin(), more.end());
   }
 
-  // Adds the next part, whose blocks are already in place.
+  // Appends the next part, whose blocks are already in place.
   void join(const CurvePart& made) {
     for (const CurveData::Run& run : made.runs) {
       if (!curves_.runs.empty() && curves_.runs.back().kind == run.kind) {
@@ -186,7 +186,7 @@ class Build {
   std::size_t part_;  // elements
   std::vector<CurvePart> parts_;
   std::size_t next_ = 0, bytes_ = 0;    // the next part to be added, and the bytes of the parts before
-  std::optional<PartBuilder> builder_;  // builds that part, if parts are made one after the other
+  std::optional<PartBuilder> builder_;  // builds the current part, if parts are built one after the other
 };
 
 template <class MakeSource>
@@ -251,8 +251,8 @@ CurveData build_curves(const Segment& segment, const NormalGroups& groups, const
   return build_curves(segment, &groups, options, threads, reuse);
 }
 
-// There are two steps: copying both ends of each vertex side by side, only for meshes in no order, and making the
-// curves.
+// The work has two steps: copying both ends of each vertex side by side, only for meshes whose vertices are in no
+// order, and building the curves.
 struct CurveSlices::State {
   State(const Segment& of_segment, const NormalGroups* of_groups, const CurveOptions& options, CurveData* reuse)
       : segment(of_segment),

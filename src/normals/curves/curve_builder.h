@@ -1,9 +1,10 @@
-/// Makes curves: control normals, sixteen at a time, into blocks of the fewest bytes.
+/// Builds curves: packs control normals, sixteen at a time, into blocks of the fewest bytes.
 ///
 ///     source --tiles--> how precise each must be --> runs of blocks of one kind --> packed, one after the other
 ///
-/// Elements go by chunks of 32 tiles, which stay in cache from the first step to the last. Several threads may make
-/// parts of 4 to 32 chunks at once. The ends of the parts do not depend on the threads, and so neither do the bits.
+/// Elements are processed in chunks of 32 tiles, which stay in cache from the first step to the last. Several threads
+/// may build parts of 4 to 32 chunks at once. The ends of the parts do not depend on the threads, and so neither do the
+/// bits.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 
@@ -19,7 +20,7 @@
 
 namespace chronormal::inline internal {
 
-/// Makes the curves of elements whose control normals already exist.
+/// Builds the curves of elements whose control normals already exist.
 [[nodiscard]] CurveData build_curves(std::span<const ControlNormals> normals, const CurveOptions& options);
 
 /// Makes the curves of all faces of a segment, or of all elements of the groups. If `reuse` is not nullptr, these
@@ -29,7 +30,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, CurveData* reuse);
 
-/// Builds the same curves, bit for bit, on one thread in slices, for MeshNormals::prepare(). The segment and the groups
+/// The same curves, bit for bit, built on one thread in slices, for MeshNormals::prepare(). The segment and the groups
 /// must outlive the object.
 class CurveSlices {
  public:
@@ -38,7 +39,7 @@ class CurveSlices {
   CurveSlices& operator=(const CurveSlices&) = delete;
   ~CurveSlices();
 
-  /// Does this share of the work, or what is left of it. Returns whether all is done.
+  /// Does this share of the work, or the rest of the work if less is left. Returns true if all work is done.
   bool advance(double share);
   /// Does the rest of the work, and returns the curves. It may be called once.
   [[nodiscard]] CurveData finish();

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(kCountedTogether == kChunk);
 
-// Reads the faces of a segment, and keeps their control normals in double when tiles are made of them.
+// A reader for the faces of a segment, which keeps their control normals in double when it writes tiles.
 class KeptFaces : public FaceNormals {
  public:
   KeptFaces(const Segment& segment, IndexRange faces, std::span<EdgedTile> kept)
@@ -70,7 +70,7 @@ void CurveCount::add(const CurveCount& next) noexcept {
 std::size_t CurveCount::bytes(std::size_t size) const noexcept {
   const std::size_t filling = runs == 0 ? 0 : (kTile - size % kTile) % kTile;
   const std::size_t unused = filling == 0 ? 0 : filling * bytes_of(last);
-  // Indices count as 8 bytes on every machine, so that reports do not change on machines of 32 bits.
+  // Indices count as 8 bytes on every machine, so that reports are the same on 32-bit machines.
   constexpr std::size_t kIndex = 8, kRun = 4 * kIndex, kExact = 2 * kIndex;
   static_assert(sizeof(std::size_t) != kIndex ||
                 (sizeof(CurveData::Run) == kRun && sizeof(CurveData::ExactElement) == kExact));

@@ -1,4 +1,4 @@
-/// Counts how many bytes NormalCurves take, and how many of their elements are flagged, without making them.
+/// Counts how many bytes NormalCurves take, and how many of their elements are flagged, without building them.
 ///
 ///     CurveCount count = count_curves(segment, {0, 1024}, exact);
 ///     count.add(count_curves(segment, {1024, 1024}, exact));          // ... and so on to the last face
@@ -18,7 +18,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds the sizes of the curves of some neighbouring elements.
+/// The sizes of the curves of some neighbouring elements.
 struct CurveCount {
   std::size_t block_bytes = 0, runs = 0, flagged = 0, exact = 0, digits = 0;
   bool has_exponents = false;
@@ -28,16 +28,16 @@ struct CurveCount {
 
   /// Adds the elements that follow.
   void add(const CurveCount& next) noexcept;
-  /// Returns the bytes of the curves of `size` elements in all, as NormalCurves::bytes() counts them.
+  /// Returns how many bytes the curves of `size` elements take in all, as NormalCurves::bytes() counts them.
   [[nodiscard]] std::size_t bytes(std::size_t size) const noexcept;
 };
 
-/// Ranges of elements that are counted together begin at a multiple of this.
+/// Ranges of elements that are counted together begin at a multiple of this number.
 inline constexpr std::size_t kCountedTogether = 512;
 
 /// Counts the sizes of exact curves of some faces, and writes their control normals and longest edges, sixteen faces
-/// each. faces.first must be a multiple of kCountedTogether. faces.end() must be one too or the end of all faces,
-/// unless there are no faces. exact must have ceil(faces.count / 16) elements
+/// each. faces.first must be a multiple of kCountedTogether. faces.end() must also be such a multiple or the end of all
+/// faces, unless there are no faces. exact must have ceil(faces.count / 16) elements
 [[nodiscard]] CurveCount count_curves(const Segment& segment, IndexRange faces, std::span<EdgedTile> exact);
 
 }  // namespace chronormal::inline internal

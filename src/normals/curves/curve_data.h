@@ -1,5 +1,5 @@
-/// The data of NormalCurves: elements in blocks of 16, in runs of neighbouring blocks of one kind, and beside them the
-/// elements that float32 cannot carry.
+/// The data of NormalCurves: elements in blocks of 16, in runs of neighbouring blocks of one kind, and, stored
+/// separately, the elements for which float32 does not suffice.
 ///
 ///     build_curves (curve_builder.h) --CurveData--> NormalCurves, MeshNormals
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_
@@ -19,14 +19,14 @@
 namespace chronormal::inline internal {
 
 struct CurveData {
-  /// Holds neighbouring blocks of one kind.
+  /// Neighbouring blocks of one kind.
   struct Run {
     std::size_t first_block = 0;
     std::size_t block_count = 0;
     std::size_t offset = 0;  ///< first byte of the first block in `blocks`
     BlockKind kind = BlockKind::kUnit;
 
-    /// Returns the elements of these blocks. Only the first `count` elements of the curves exist.
+    /// Returns the elements of these blocks, limited to the first `count` elements, which are all that the curves have.
     [[nodiscard]] IndexRange elements(std::size_t count) const noexcept {
       const std::size_t first = first_block * kTile, end = first + block_count * kTile;
       return {first, (end < count ? end : count) - first};
@@ -38,7 +38,7 @@ struct CurveData {
   std::array<std::size_t, 3> degree_counts{};
   AlignedBytes blocks;
   std::vector<Run> runs;
-  std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty where all are 0
+  std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty if all exponents are 0
   FlaggedElements flagged;              ///< the elements that are evaluated in double
   /// Names a flagged element for which double does not suffice at every t; elements are in ascending order. `digits` is
   /// the place in exact_digits at which the ExactCurve of the element begins.

@@ -1,4 +1,4 @@
-/// One element of a curve of normals, over any scalar. It spells out, for a scalar that counts operations, what the
+/// One element of a curve of normals, over any scalar. With a scalar that counts operations, this code counts what the
 /// kernels do to sixteen elements at a time.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
@@ -9,7 +9,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds the weights of n0, m, n1 in eq. 5, which all elements share at one t. They are made in double and rounded to
+/// The weights of n0, m, n1 in eq. 5, which all elements share at one t. They are computed in double and rounded to
 /// float32.
 template <class S>
 struct QuadraticWeights {
@@ -27,7 +27,7 @@ template <class S>
   return w.w0 * n0 + w.w1 * m + w.w2 * n1;
 }
 
-/// Holds a quadratic at one of equidistant t, with its first and second forward difference.
+/// A quadratic at one of several equidistant t, with its first and second forward difference.
 template <class S>
 struct QuadraticState {
   Vec3<S> n, first, second;

@@ -1,6 +1,6 @@
-/// One evaluation of prepared curves, for anything that has CurveData. It passes over the runs of blocks
-/// (curve_data.h), hands each to the kernel as a whole, and then writes the flagged elements over the result in double.
-/// outputs.h lists the forms of results. Nothing here allocates or throws.
+/// One evaluation of prepared curves, for any class that has CurveData. The evaluation goes over the runs of blocks
+/// (curve_data.h), passes each run to the kernel as a whole, and then overwrites the flagged elements of the result in
+/// double. outputs.h lists the forms of results. Nothing here allocates or throws.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_EVALUATION_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_EVALUATION_H_
 
@@ -38,7 +38,8 @@ inline std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t
 }
 
 /// Calls write(element, xyz, count) for neighbouring flagged elements of a range, with their normals at t in double.
-/// Then calls settle(index, element) for the elements that double cannot carry; `index` counts flagged elements.
+/// Then calls settle(index, element) for the elements for which double does not suffice; `index` counts flagged
+/// elements.
 template <class Write, class Settle>
 void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, const Write& write,
                  const Settle& settle) {
@@ -84,7 +85,7 @@ std::size_t write_flagged_range(const CurveData& curves, IndexRange range, const
   return without_direction;
 }
 
-/// Writes the elements of a range at one t, in one pass over their blocks. Returns how many have no direction.
+/// Writes the elements of a range at one t, in one pass over their blocks. Returns how many elements have no direction.
 /// range.first must be a multiple of kTile
 template <class Output>
 std::size_t evaluate_range(const CurveData& curves, IndexRange range, const LocalTime& t, const CurveWeights& weights,

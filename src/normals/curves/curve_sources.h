@@ -1,11 +1,12 @@
-/// The sources of control normals for curves. Each writes tiles for the quick test, and what a closer look needs.
+/// The sources of control normals for curves. Each source writes tiles for the quick test, and the values that a closer
+/// examination needs.
 ///
 ///     write(elements, tiles)   sixteen by sixteen, in double, rounded to float32
 ///     write(elements, tiles, bounded)   also writes the values before rounding, and bounds of their errors
 ///     write_in_float(elements, tiles)   entirely in float32, with bounds on the errors, if has_float() is true; not
 ///                              every source has these two
 ///     in_double(i)             one element, and bounds of its errors
-///     exact(i)                 one element without any rounding, if there are positions to make it from
+///     exact(i)                 one element without any rounding, if there are positions to compute it from
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
 
@@ -27,7 +28,7 @@
 
 namespace chronormal::inline internal {
 
-/// Puts the elements of a source into tiles one by one.
+/// Writes the elements of a source into tiles one by one.
 template <class Source>
 void put_each(const Source& source, IndexRange elements, std::span<BoundedTile> bounded) {
   for (std::size_t i = 0; i < bounded.size() * kTile; ++i)
@@ -44,7 +45,7 @@ class GivenNormals {
       const ControlNormals& c = normals_[elements.first + std::min(i, elements.count - 1)];
       ControlTile& tile = tiles[i / kTile];
       put(tile, i % kTile, c);
-      // Given values count as exact: there are no products whose rounding could matter.
+      // Given values count as exact, since no products were rounded for them.
       tile.magnitude[i % kTile] = static_cast<float>(largest_component(c));
       tile.degree[i % kTile] = degree(c);
     }
@@ -53,7 +54,7 @@ class GivenNormals {
     write(elements, tiles);
     put_each(*this, elements, bounded);
   }
-  // Given control normals are the truth, whatever they were made from.
+  // Given control normals count as true, whatever they were computed from.
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return {normals_[i], {}}; }
 
  private:

@@ -1,5 +1,5 @@
-// Evaluates NormalCurves in one pass over the runs of blocks (curve_data.h). Each run is handed to the kernel as a
-// whole; then the flagged elements are written over the result in double. outputs.h lists the forms of results.
+// Evaluates NormalCurves in one pass over the runs of blocks (curve_data.h). Each run is passed to the kernel as a
+// whole; then the flagged elements of the result are overwritten in double. outputs.h lists the forms of results.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -25,10 +25,11 @@
 namespace chronormal {
 namespace {
 
-// A thread takes this many elements at a time; fewer are not shared out.
+// A thread takes this many elements at a time. Work on fewer elements is not shared between threads.
 constexpr std::size_t kPiece = 8192;
-// All of many t are evaluated for this many elements before the next ones: as many as stay in the nearest cache. If
-// results go past the caches, there are more, so that each of the streams is long.
+// If there are many t, this many elements are evaluated at all of them before the next elements: as many elements as
+// stay in the nearest cache. If results bypass the caches, the number is larger, so that each stream of results is
+// long.
 constexpr std::size_t kManyTimes = 1024, kManyTimesLarge = 8192;
 
 std::size_t many_times_step(MemoryAccess access) { return access.stream ? kManyTimesLarge : kManyTimes; }
@@ -40,7 +41,7 @@ float clamped_to_float(double value) {
 
 Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_to_float(v.y), clamped_to_float(v.z)}; }
 
-// Returns whether double is certain of the direction of n(t), or that there is none, if the control normals are exact.
+// Returns true if double is certain of the direction of n(t), or that n(t) has none, if the control normals are exact.
 bool has_certain_direction(const ControlNormals& c, double t) {
   const double s = 1 - t;
   const double size = s * s * max_abs(c.n0) + 2 * t * s * max_abs(c.m) + t * t * max_abs(c.n1);
@@ -54,7 +55,7 @@ std::size_t write_zeros(std::size_t size, const Output& output) {
   return size;
 }
 
-// Calls body(range) over all elements, on one thread as a whole or on all threads in pieces. Returns the sum of the
+// Calls body(range) for all elements, on one thread as a whole or on all threads in pieces. Returns the sum of the
 // results.
 template <class Body>
 std::size_t over_pieces(std::size_t size, Threads threads, Body body) {
@@ -137,7 +138,7 @@ const CurveData& NormalCurves::data() const noexcept {
   return none;
 }
 
-// Gives reused curves data if they have none: curves of no elements have none, but they can still hold memory.
+// Gives data to reused curves that have none: curves of no elements have no data, but can still hold memory.
 CurveData* NormalCurves::data_of(NormalCurves* reuse) {
   if (reuse == nullptr) return nullptr;
   if (!reuse->data_) reuse->data_ = std::make_unique<CurveData>();

@@ -1,4 +1,4 @@
-/// The forms in which results leave NormalCurves, each behind the same two calls.
+/// The forms in which NormalCurves returns results. Each form has the same two functions.
 ///
 ///     write(span, weights, first)   writes the unit normals of a span of blocks, which begins with element `first`
 ///     set(i, v)                     writes the normal of one element
@@ -107,7 +107,7 @@ struct AnyOutput {
 template <class Set>
 AnyOutput(WorkingSet, Set) -> AnyOutput<Set>;
 
-/// Sets the elements from `first` on, with xyz as (count, 3).
+/// Writes the normals of the elements from `first` on, with xyz as (count, 3).
 template <class Output>
 void set_run(const Output& output, std::size_t first, const float* xyz, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) output.set(first + i, Vec3f{xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});

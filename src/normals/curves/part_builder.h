@@ -29,7 +29,7 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kChunkTiles = 32;
 inline constexpr std::size_t kChunk = kChunkTiles * kTile;
-inline constexpr std::size_t kWrittenTiles = 4;  // written by one call of a source
+inline constexpr std::size_t kWrittenTiles = 4;  // number of tiles that one call of a source writes
 
 inline constexpr std::size_t kShortestRun = 4;  // blocks
 
@@ -44,7 +44,7 @@ inline ControlNormals scaled(double scale, const ControlNormals& c) {
 // A flagged element has these values in its block, whatever the kind of the block.
 inline constexpr ControlNormals kPlaceHolder{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
 
-// Holds the precision and the degree that a block must be able to hold.
+// The precision and the degree that a block must be able to hold.
 struct Need {
   Precision precision = Precision::k11;
   int degree = 0;
@@ -60,7 +60,7 @@ struct NeedRun {
   Need need;
 };
 
-// Joins runs that are too short to pay into a neighbour that can hold them.
+// Joins a run that is too short to be worth its overhead to a neighbouring run that can hold its elements.
 inline std::vector<NeedRun> runs_of(std::span<const Need> needs) {
   std::vector<NeedRun> runs;
   const auto append = [](std::vector<NeedRun>& to, const NeedRun& run) {
@@ -96,7 +96,7 @@ inline std::vector<NeedRun> runs_of(std::span<const Need> needs) {
   return runs;
 }
 
-// Holds the part that one thread makes at a time.
+// The part that one thread builds at a time.
 struct CurvePart {
   IndexRange elements;
   std::byte* begin = nullptr;  // start of its blocks; nullptr if they are only counted
@@ -105,10 +105,10 @@ struct CurvePart {
   FlaggedElements flagged;
   std::vector<CurveData::ExactElement> exact;
   std::vector<std::int32_t> exact_digits;
-  std::vector<std::int16_t> exponents;  // empty, or one for each of its blocks
+  std::vector<std::int16_t> exponents;  // empty, or one exponent for each block
   std::array<std::size_t, 3> degree_counts{};
 
-  // Takes the memory of a part that is no longer needed, and whose flagged elements have been taken.
+  // Reuses the memory of a part that is no longer needed, and whose flagged elements have been taken.
   void take_memory(CurvePart& done) {
     const auto take = [](auto& to, auto& from) {
       to = std::move(from);
@@ -120,11 +120,11 @@ struct CurvePart {
   }
 };
 
-// Holds the result of examining one element that the quick test in float32 did not settle.
+// The result of examining one element that the quick test in float32 left open.
 struct Examined {
-  ControlNormals normals;              // in double, as precise as its direction needs
-  std::optional<Precision> precision;  // none if it is flagged
-  double certain = 0;                  // if it is flagged, the share above which double has a direction
+  ControlNormals normals;              // control normals in double, as precise as the direction needs
+  std::optional<Precision> precision;  // none if the element is flagged
+  double certain = 0;                  // if the element is flagged, the share above which double has a direction
   bool needs_exact = false;            // flagged, and n(t) is not above that share at every t
 };
 
@@ -134,8 +134,8 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   Examined result;
   result.normals = rounded.normals;
   double share = rounded.largest_share();
-  // Control normals that a caller gave are exact by definition, since there are no positions from which better ones
-  // could be computed.
+  // Control normals that a caller gave are exact by definition, since there are no positions from which better control
+  // normals could be computed.
   constexpr bool kHasExact = !std::is_same_v<Source, GivenNormals>;
   if constexpr (kHasExact) {
     if (!(share <= kLargestShare)) {
@@ -149,8 +149,8 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   return result;
 }
 
-// Holds what a tolerance asks of blocks: whether they keep lengths, and how precise elements must be, in tiles that are
-// made in double and, if the tolerance allows it, in float32.
+// The requirements that follow from a tolerance: whether blocks keep lengths, and how precise elements must be, in
+// tiles that are computed in double and, if the tolerance allows it, in float32.
 struct BuildLimits {
   explicit BuildLimits(double tolerance)
       : with_lengths(!(tolerance > kExactTolerance)),
@@ -168,8 +168,8 @@ concept WritesInFloat = requires(const Source& source, std::span<ControlTile> ti
   source.write_in_float(IndexRange{}, tiles);
 };
 
-// Decides whether float32 is tried for the next tiles. After a vain try it is left alone for a while, and after another
-// one for twice as long.
+// The decision whether the next tiles are tried in float32. After a failed try, float32 is not tried for a while, and
+// after another failure for twice as long.
 class FloatTrials {
  public:
   [[nodiscard]] bool is_tried() {
@@ -191,7 +191,7 @@ class PartBuilder {
  public:
   PartBuilder(CurvePart& part, const BuildLimits& limits) : part_(part), limits_(limits), tiles_(kChunkTiles) {}
 
-  // Makes the next chunk of the part. Returns whether there are more.
+  // Builds the next chunk of the part. Returns true if there are more chunks.
   template <class Source>
   bool make_chunk(Source& source) {
     const IndexRange elements{part_.elements.first + made_, std::min(kChunk, part_.elements.count - made_)};
@@ -233,7 +233,7 @@ class PartBuilder {
     return {elements.first + first, std::min(count * kTile, elements.count - first)};
   }
 
-  // Makes a few tiles, and finds what a block needs to hold each of them.
+  // Computes a few tiles, and finds what a block needs to hold each of them.
   template <class Source>
   void add_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles, Need* needs) {
     std::array<TileSummary, kWrittenTiles> summaries;
@@ -256,12 +256,13 @@ class PartBuilder {
     }
   }
 
-  // Writes a few tiles, and summarizes them: in float32 if that may do, and in double what it does not do for.
+  // Writes a few tiles and summarizes them, in float32 if that may suffice, and in double where float32 does not
+  // suffice.
   template <class Source>
   void write_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles,
                    std::span<TileSummary> summaries) {
-    // If the last tiles had to be examined, the next ones probably will be too, so ask for bounds now, when they are
-    // cheap.
+    // If the last tiles had to be examined, the next tiles probably will be too, so bounds are requested now, while
+    // they are cheap.
     const bool with_bounds = std::exchange(is_examined_, false);
     has_bounds_ = 0;
     const auto in_double = [&](std::size_t first, std::size_t count) {
@@ -293,8 +294,8 @@ class PartBuilder {
   }
 
   // Prefetches the memory that the blocks of some tiles will go to, as many bytes as the blocks of the last chunk took.
-  // It arrives while tiles are computed. Only a little is prefetched at a time, since the core would wait if more were
-  // requested than can be in flight.
+  // The memory arrives while tiles are computed. Only a little is prefetched at a time, since the core would wait if it
+  // requested more lines than can be in flight.
   void fetch_destination(std::size_t tile, std::size_t count) const {
 #if defined(__GNUC__)
     if (part_.begin == nullptr) return;
@@ -305,8 +306,9 @@ class PartBuilder {
 #endif
   }
 
-  // Examines in double the elements of tile k that the quick test did not settle: sixteen at a time, and then one by
-  // one what is left. Returns the bits of the flagged ones, and corrects degrees that come out differently.
+  // Examines in double the elements of tile k that the quick test left open: first sixteen at a time, and then the
+  // remaining elements one by one. Returns the bits of the flagged elements, and corrects degrees that turn out
+  // differently.
   template <class Source>
   std::uint32_t examine(Source& source, IndexRange elements, std::size_t k, ControlTile& tile, Need& need,
                         TileSummary& summary) {
@@ -331,7 +333,7 @@ class PartBuilder {
     return examine_alone(source, elements, uncertain & ~known.known, tile, need, summary);
   }
 
-  // Examines some elements of a tile one by one, and adds all of its flagged ones, including the ones with
+  // Examines some elements of a tile one by one, and adds all flagged elements of the tile, including those with
   // certificates.
   template <class Source>
   std::uint32_t examine_alone(Source& source, IndexRange elements, std::uint32_t asked, ControlTile& tile, Need& need,
@@ -353,7 +355,8 @@ class PartBuilder {
       }
     });
     if (out_of_range) flagged |= rescale(source, elements, flagged, tile, alone);
-    // The block now holds the new values, which may move or bend where the earlier sums, mere rounding, did not.
+    // The block now holds the new values, which may move or bend where the earlier sums, which were mere rounding, did
+    // not.
     for (std::size_t lane = 0; lane < kTile; ++lane) {
       if (alone[lane]) summary.set_degree(lane, degree(alone[lane]->normals));
     }
@@ -377,7 +380,7 @@ class PartBuilder {
     return flagged;
   }
 
-  // Adds neighbours that are flagged, as they lie beside their certificates.
+  // Adds neighbouring flagged elements, which are stored beside their certificates.
   void add_known(std::size_t first, std::size_t lane, std::size_t count) {
     std::array<std::size_t, kTile> numbers;
     for (std::size_t i = 0; i < count; ++i) numbers[i] = first + lane + i;
@@ -403,7 +406,7 @@ class PartBuilder {
   }
 
   // Gives a tile its own exponent, for which all its unflagged elements must be examined. Returns the elements that are
-  // too small for it beside the others.
+  // too small for that exponent beside the others.
   template <class Source>
   std::uint32_t rescale(const Source& source, IndexRange elements, std::uint32_t flagged, ControlTile& tile,
                         std::array<std::optional<Examined>, kTile>& alone) {
@@ -444,8 +447,8 @@ class PartBuilder {
   FloatTrials float_;
   std::array<BoundedTile, kWrittenTiles> bounded_;  // of the tiles that are being added
   TileCertificates certificates_;                   // of the tile that is being examined
-  std::uint32_t has_bounds_ = 0;                    // bits of the tiles that have one
-  bool is_examined_ = false;                        // whether one of them was, sixteen elements at a time
+  std::uint32_t has_bounds_ = 0;                    // bits of the tiles that have bounds
+  bool is_examined_ = false;                        // whether one of the tiles was examined, sixteen elements at a time
   std::size_t chunk_bytes_ = 0;                     // of the last chunk
 };
 

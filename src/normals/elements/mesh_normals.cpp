@@ -1,8 +1,9 @@
-// Implements MeshNormals. An element has a normal of its own, an output shows one. If every output is the element with
-// its number, kernels write straight to the caller's memory. If outputs share elements, they are walked in order, and
-// the tiles of elements that they show are evaluated when they are first met, into slots on the stack that hold the
-// last thousand elements: neighbours in a mesh show neighbours, so each tile is evaluated about once. A range of
-// outputs is the same walk over a part. It needs only the stack, which is why any thread may do it.
+// Implements MeshNormals. An element has its own normal, and an output shows the normal of an element. If every output
+// is the element with its number, kernels write straight to the caller's memory. If outputs share elements, the code
+// walks over the outputs in order, and evaluates a tile of elements when an output first shows one of them. The tiles
+// go into slots on the stack, which hold the last thousand elements. Neighbouring outputs show neighbouring elements,
+// so each tile is evaluated about once. For a range of outputs, the walk covers only that part. The walk needs only the
+// stack, so any thread may do it.
 #include "chronormal/normals/mesh_normals.h"
 
 #include <algorithm>
@@ -80,7 +81,7 @@ bool are_the_outputs(const NormalGroups& groups) {
 
 // ---- values in tiles on the stack ----------------------------------------------------------------------------------
 
-// Holds vectors as x y z.
+// Vectors as x y z.
 struct Vectors {
   template <std::size_t kCount>
   struct Array {
@@ -91,7 +92,7 @@ struct Vectors {
     [[nodiscard]] Vec3f operator[](std::size_t i) const { return {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}; }
   };
 };
-// Holds values of four bytes each.
+// Values of four bytes each.
 template <class Encoded>
 struct Words {
   template <std::size_t kCount>
@@ -102,7 +103,7 @@ struct Words {
   };
 };
 
-// Names the values of which a form of results consists.
+// The type of the values that a form of results consists of.
 template <class Output>
 struct ValuesOf {
   using type = Vectors;
@@ -143,9 +144,10 @@ PackedOutput form_of(const VectorView<float>& view) { return {view, MemoryAccess
 OctahedralOutput form_of(std::span<Octahedral> view) { return {view, MemoryAccess{}}; }
 Rgb10A2Output form_of(std::span<Rgb10A2> view) { return {view, MemoryAccess{}}; }
 
-// Evaluates a segment at one t.
+// An evaluation of a segment at one t.
 struct AtTime {
-  // As large as the bits of write_tile() allow: to begin an evaluation takes as long as to evaluate some elements.
+  // The number is as large as the bits of write_tile() allow, since beginning an evaluation takes as long as evaluating
+  // some elements.
   static constexpr std::size_t kTileElements = 64;
   template <class Output>
   using Values = typename ValuesOf<Output>::type;
@@ -161,7 +163,8 @@ struct AtTime {
   std::size_t write(IndexRange elements, const Output& output) const noexcept {
     return evaluate_range(curves, elements, t, weights, output);
   }
-  // Writes elements to memory that begins with the first of them. Returns the bits of the ones that have no direction.
+  // Writes elements to memory that begins with the first of them. Returns the bits of the elements that have no
+  // direction.
   template <class View>
   std::uint64_t write_tile(IndexRange elements, const View& view) const noexcept {
     const std::size_t zeros = evaluate_range(curves, elements, t, weights, Shifted{form_of(view), elements.first});
@@ -276,8 +279,8 @@ std::size_t write_shared(const Source& source, std::span<const std::uint32_t> el
 
 // ---- vertex buffers ------------------------------------------------------------------------------------------------
 
-// Returns the control normals of one element of exact curves. (Constant and straight elements get them as they were
-// packed.)
+// Returns the control normals of one element of exact curves. (For constant and straight elements, these are the
+// control normals as they were packed.)
 ControlNormals control_normals_of(const CurveData& curves, std::size_t element) {
   const auto& flagged = curves.flagged.numbers;
   const auto at = std::lower_bound(flagged.begin(), flagged.end(), element);
@@ -356,7 +359,7 @@ struct MeshNormals::Parts {
     options.elements.group_of_face = group_of_face;
     options.elements.normal_of_corner = VectorView<const float>::packed(normal_of_corner);
   }
-  // Another object of the same mesh, without positions.
+  // Creates another object of the same mesh, without positions.
   Parts(const Parts& other, std::shared_ptr<const Topology> of_mesh)
       : mesh(std::move(of_mesh)),
         options(other.options),
@@ -425,7 +428,7 @@ struct MeshNormals::Parts {
     return outputs.count;
   }
 
-  // Writes outputs at a time, or zeros if the time is NaN or there is no segment.
+  // Writes outputs at one time, or zeros if the time is NaN or there is no segment.
   template <class Output>
   std::size_t write(const LocalTime& t, IndexRange outputs, const Output& output) const noexcept {
     if (std::isnan(t.t) || curves.size == 0) return write_zeros(outputs, output);
@@ -438,11 +441,12 @@ struct MeshNormals::Parts {
 
   std::shared_ptr<const Topology> mesh;  // of all objects that another() has made
   MeshNormalsOptions options;
-  std::vector<std::uint32_t> group_of_face;    // kept until it is decided which outputs share a normal
-  std::vector<float> normal_of_corner;         // kept until then, too
-  std::shared_ptr<const NormalGroups> groups;  // of all such objects, as soon as they are known; none for faces
-  bool shares = false;                         // whether an output is not the element with its number
-  CurveData curves, spare;                     // the present segment, and memory for the next
+  std::vector<std::uint32_t> group_of_face;  // kept until the outputs that share a normal are known
+  std::vector<float> normal_of_corner;       // kept until then, too
+  // Shared by all such objects, as soon as the groups are known; none for faces.
+  std::shared_ptr<const NormalGroups> groups;
+  bool shares = false;      // whether an output is not the element with its number
+  CurveData curves, spare;  // the present segment, and memory for the next
   double fit_bound = 0;
   Segment next;
   bool has_next = false;

@@ -29,8 +29,8 @@ namespace chronormal::inline internal {
   return faces;
 }
 
-/// Holds disjoint sets by union-find with path halving. The smaller index becomes the root, so that the roots do not
-/// depend on the order in which sets were joined.
+/// Disjoint sets by union-find with path halving. The smaller index becomes the root, so that roots do not depend on
+/// the order in which sets were joined.
 class CornerSets {
  public:
   explicit CornerSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }

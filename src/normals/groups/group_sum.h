@@ -17,7 +17,7 @@
 
 namespace chronormal::inline internal {
 
-/// Adds up faces, with zero for what is nothing but rounding.
+/// The sum of the control normals of faces, with zero in place of mere rounding.
 class ControlNormalsSum {
  public:
   void add(const ControlNormals& face) noexcept {
@@ -52,12 +52,12 @@ class ControlNormalsSum {
 }
 
 /// Returns the control normals of an element. Each is within 2^-24 of its length of the exact one, and zero only if the
-/// exact one is. If faces cancel so far that the rounding of double could be more than 2^-26, they are made of
-/// integers. Pure. of_faces must have face_control_normals() of all faces
+/// exact one is zero. If faces cancel so far that the rounding of double could be more than 2^-26, the control normals
+/// are computed from integers. Pure. of_faces must have face_control_normals() of all faces
 [[nodiscard]] inline BoundedNormals settled_group_normals(const SharedFaces& faces, const NormalGroups& groups,
                                                           std::span<const ControlNormals> of_faces,
                                                           std::size_t element) noexcept {
-  // Each face is within 2^-26 of its length, and adding them up rounds far less.
+  // Each face is within 2^-26 of its length, and the additions round far less.
   constexpr double kOfFace = kLargestRounding + 0x1p-40, kMostCancelled = 4;
   ControlNormalsSum sum;
   std::array<double, 3> sizes{};
@@ -74,7 +74,7 @@ class ControlNormalsSum {
   return result;
 }
 
-/// Writes group_control_normals() of normal_groups.h for a range of elements, for callers that ask for one range after
+/// Writes group_control_normals() of normal_groups.h for a range of elements, for callers that request one range after
 /// the other.
 void group_control_normals(const SharedFaces& faces, const NormalGroups& groups,
                            std::span<const ControlNormals> of_faces, IndexRange elements,

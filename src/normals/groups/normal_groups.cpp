@@ -26,7 +26,7 @@ constexpr double kCreaseRounding = 1e-6;
 constexpr std::size_t kMostFacesAtSmoothEdge = 16;
 
 // Returns the faces in an order that follows from their vertices alone. Faces with the same vertices in the same order
-// may be in any order, since their normals have the same bits.
+// may come in any order, since their normals have the same bits.
 std::vector<std::uint32_t> faces_by_vertices(const Topology& topology) {
   std::vector<std::uint32_t> order(topology.face_count());
   std::iota(order.begin(), order.end(), 0U);
@@ -47,14 +47,14 @@ std::vector<Vec3d> unit_face_normals(const Segment& still) {
   return normals;
 }
 
-// An edge from the point in question to another one, as seen by one corner.
+// An edge from the examined point to another point, as seen by one corner.
 struct Spoke {
   std::uint32_t to, corner;
 
   friend bool operator<(const Spoke& a, const Spoke& b) { return a.to != b.to ? a.to < b.to : a.corner < b.corner; }
 };
 
-// One direction that a file stores around a point, and one corner that has it.
+// One direction that a file stores around a point, and one corner that has this direction.
 struct StoredNormal {
   Vec3d direction;
   std::uint32_t corner;
@@ -66,8 +66,8 @@ struct StoredNormal {
   }
 };
 
-// Joins the corners of all directions that are within `chord` of each other. It joins equal ones first, since there may
-// be many.
+// Joins the corners of all directions that are within `chord` of each other. Equal directions are joined first, since
+// there may be many of them.
 void join_close_directions(std::vector<StoredNormal>& normals, double chord, CornerSets& sets) {
   std::sort(normals.begin(), normals.end());
   std::size_t distinct = 0;
@@ -168,7 +168,7 @@ Result<NormalGroups> NormalGroups::by_crease_angle(const Motion& motion, const P
   const Listing around = corners_of_points(topology, points);
   std::vector<Spoke> spokes;
   for (std::uint32_t p = 0; p < points.count; ++p) {
-    // Every corner sees two edges, to the vertices before and after it in its face.
+    // Every corner has two edges, to the vertices before and after it in its face.
     spokes.clear();
     for (const std::uint32_t c : around.of(p)) {
       const auto face = topology.face(face_of_corner[c]);

@@ -1,5 +1,5 @@
-// Orders the faces around an element so that each joins the one before, and lays the paths of sixteen elements side by
-// side.
+// Orders the faces around an element so that each face adjoins the previous one, and stores the paths of sixteen
+// elements side by side.
 #include "normals/groups/rings.h"
 
 #include <algorithm>
@@ -11,10 +11,11 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kMostSearched = 64;  // pieces of a path; in longer paths, nothing looks for the next piece
-using Path = std::vector<std::uint32_t>;   // the first point is the centre
+// Limit on the pieces of a path; in longer paths, pieces are not put in order.
+constexpr std::size_t kMostSearched = 64;
+using Path = std::vector<std::uint32_t>;  // the first point is the centre
 
-// Makes the paths around elements, one after the other.
+// A builder of the paths around elements, one after the other.
 class PathMaker {
  public:
   PathMaker(const Topology& topology, const NormalGroups& groups, std::size_t most_points)
@@ -46,7 +47,7 @@ class PathMaker {
     return path_;
   }
 
-  // Returns whether the last path stands for one of more points than the limit.
+  // Returns true if the last path replaces a path that has more points than the limit.
   [[nodiscard]] bool is_left_out() const { return is_left_out_; }
 
  private:
@@ -56,7 +57,7 @@ class PathMaker {
     std::size_t first, last;  // of points_
   };
 
-  // Makes a path that adds nothing, in place of one that is too long.
+  // Returns a path that adds nothing, in place of a path that is too long.
   const Path& no_path() {
     is_left_out_ = true;
     path_.resize(1);
@@ -64,8 +65,8 @@ class PathMaker {
     return path_;
   }
 
-  // Makes the path as next_piece() and append() would, for a few triangles around one vertex: each of them is a piece
-  // of two points. Returns false, with only the centre in the path, for triangles around several vertices.
+  // Builds the path as next_piece() and append() would, for a few triangles around one vertex, where each triangle is a
+  // piece of two points. Returns false, with only the centre in the path, for triangles around several vertices.
   bool make_of_triangles(std::span<const std::uint32_t> corners) {
     std::array<std::uint32_t, kMostTriangles> from, to;
     const std::uint32_t* const vertices = topology_.corners().data();
@@ -104,7 +105,7 @@ class PathMaker {
     return true;
   }
 
-  // Adds the corners of a face that follow this one, or all of them back to it if this corner is not the centre.
+  // Adds the corners of a face that follow this corner, or all corners back to this one if it is not the centre.
   void add_piece(std::size_t corner, std::span<const std::uint32_t> face) {
     const std::size_t first = points_.size();
     const std::size_t at = corner - static_cast<std::size_t>(face.data() - topology_.corners().data());
@@ -114,7 +115,7 @@ class PathMaker {
     pieces_.push_back({first, points_.size() - 1});
   }
 
-  // Adds a piece to the path. The path goes through the centre if the piece does not join the last one.
+  // Adds a piece to the path. The path goes through the centre if the piece does not adjoin the last piece.
   void append(const Piece& piece) {
     std::size_t from = piece.first;
     if (path_.size() > 1 && path_.back() == points_[from]) {
@@ -125,7 +126,7 @@ class PathMaker {
     for (; from <= piece.last; ++from) path_.push_back(points_[from]);
   }
 
-  // Returns a piece that joins the last one, or else a piece that no other leads to, or else any.
+  // Returns a piece that adjoins the last piece, or else a piece that no other piece leads to, or else any piece.
   [[nodiscard]] std::size_t next_piece() const {
     const auto start = [this](std::size_t piece) { return points_[pieces_[piece].first]; };
     for (std::size_t i = 0; i < pieces_.size() && path_.size() > 1; ++i) {
@@ -149,8 +150,8 @@ class PathMaker {
 
 }  // namespace
 
-// Asks path_of(element) for the centre and the path of each element twice: first for the length, so that no memory is
-// taken that is not kept.
+// Calls path_of(element) for the centre and the path of each element twice; the first call is for the length only, so
+// that no excess memory is allocated.
 template <class PathOf>
 Rings::Rings(std::size_t count, const PathOf& path_of) {
   first_row_.reserve(1 + (count + kRingLanes - 1) / kRingLanes);
@@ -185,7 +186,7 @@ Rings Rings::of_groups(const Topology& topology, const NormalGroups& groups, std
   std::vector<std::uint32_t> left_out;
   Rings rings(groups.size(), [&](std::size_t e) -> const Path& {
     const Path& path = paths.make(e);
-    // Paths are asked for twice in ascending order.
+    // Paths are requested twice, in ascending order.
     if (paths.is_left_out() && (left_out.empty() || left_out.back() < e))
       left_out.push_back(static_cast<std::uint32_t>(e));
     return path;

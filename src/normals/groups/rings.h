@@ -1,8 +1,8 @@
-/// The points around elements as paths, sixteen elements at a time, for kernels that go along them in lanes.
+/// The points around elements as paths, sixteen elements at a time, for kernels that follow the paths in lanes.
 ///
 /// A normal is a sum over a path of points p around a centre c: n = sum (p[i] - c) x (p[i + 1] - c). The centre of a
 /// polygon is its first corner, and its path consists of the other corners; the path of a vertex consists of its
-/// neighbours in turn. Every second point belongs to two of these products, which can be joined into one:
+/// neighbours in turn. Every second point belongs to two of these products, which can be joined into one product:
 ///
 ///     (p[i - 1] - c) x (p[i] - c) + (p[i] - c) x (p[i + 1] - c) = (p[i] - c) x (p[i + 1] - p[i - 1])
 ///
@@ -16,7 +16,7 @@
 ///
 /// Paths follow from the topology and the groups alone, and so does the order of every sum. Each corner of a large
 /// polygon has a path around it, so the paths together grow with the square of its corners. A caller that has another
-/// way to the normals of such elements gives a limit, and gets a path without any area for them.
+/// way to compute the normals of such elements gives a limit, and gets a path without any area for each of them.
 #ifndef CHRONORMAL_NORMALS_GROUPS_RINGS_H_
 #define CHRONORMAL_NORMALS_GROUPS_RINGS_H_
 
@@ -33,8 +33,8 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kRingLanes = 16;  // elements of a slice
 
-/// Shows slices as kernels read them: rows of kRingLanes indices. Slice s has the rows first_row[s] to first_row[s +
-/// 1]; there are at least two.
+/// The slices as kernels read them: rows of kRingLanes indices. Slice s has the rows first_row[s] to first_row[s + 1];
+/// there are at least two rows.
 struct RingSlices {
   const std::uint32_t* indices = nullptr;
   const std::size_t* first_row = nullptr;
@@ -73,7 +73,7 @@ class Rings {
   std::vector<std::uint32_t> left_out_;
 };
 
-/// Holds the paths around the elements of some groups, made when they are first asked for.
+/// The paths around the elements of some groups, built when they are first requested.
 struct RingsOfGroups {
   std::once_flag once;
   Rings rings;
@@ -82,9 +82,9 @@ struct RingsOfGroups {
 /// The most points of a path that rings_around() has.
 inline constexpr std::size_t kMostPathPoints = 64;
 
-/// Returns the paths of up to kMostPathPoints around the elements of groups. The groups and their copies keep them: 4
-/// bytes for each point of the longest of sixteen paths, 33 bytes per vertex of a grid. Any number of threads may ask
-/// for them. Throws std::bad_alloc.
+/// Returns the paths of up to kMostPathPoints around the elements of groups. The groups and their copies keep the
+/// paths, which take 4 bytes for each point of the longest of sixteen paths, or 33 bytes per vertex of a grid. Any
+/// number of threads may request them. Throws std::bad_alloc.
 [[nodiscard]] const Rings& rings_around(const Topology& topology, const NormalGroups& groups);
 
 }  // namespace chronormal::inline internal

@@ -74,7 +74,7 @@ struct PointCorner {
 }  // namespace
 
 std::vector<BackToBack> find_backs(std::size_t count, const LoopOf& loop_of) {
-  // Few polygons share their set of points with another one, and only these are examined.
+  // Few polygons share their set of points with another polygon, and only these few are examined.
   std::vector<std::uint32_t> loop, numbers(count), sorted;
   for (std::uint32_t i = 0; i < count; ++i) {
     loop.clear();
@@ -148,7 +148,7 @@ void keep_sides_apart(const Topology& topology, Points& points) {
     is_taken[p] = true;
   }
   if (!any) return;
-  // Find the sheets whose points are all shared.
+  // Sheets are pairs of polygons that share all their points.
   const std::vector<BackToBack> found = find_backs(topology.face_count(), [&](std::uint32_t f, auto& loop) {
     for (const std::uint32_t v : topology.face(f)) {
       loop.push_back(point_of[v]);

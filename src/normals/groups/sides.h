@@ -2,15 +2,16 @@
 ///
 /// A cape, a flag or a card of hair is often modelled twice, once for each side: every face has a *back*, a face with
 /// the same points the other way round. Their normals cancel, so a point of both sides has no direction. The sides are
-/// two surfaces; at a point where they meet, this tells which faces belong together.
+/// two surfaces. At a point where they meet, this code decides which faces belong together.
 ///
-///     together    two faces with an edge from the point in common, along which one leaves it and the other comes to it
+///     together    two faces with an edge from the point in common, along which one face leaves the point and the other
+///                 comes to it
 ///     apart       a face and its back
 ///
 /// Sides are the sets of faces that are together, as long as no two in a set are apart. A face that touches no set (of
 /// another sheet at the same point) joins the first set that it is not apart from. A point has two sides only if all of
-/// its faces have their backs: where walls of two boxes lie against each other, the faces around the rim still say how
-/// it looks.
+/// its faces have their backs: where walls of two boxes touch each other, the faces around the rim still determine how
+/// the point looks.
 ///
 /// Threads    pure
 #ifndef CHRONORMAL_NORMALS_GROUPS_SIDES_H_
@@ -30,20 +31,21 @@ namespace chronormal::inline internal {
 
 inline constexpr std::uint32_t kNoFace = 0xFFFFFFFF;
 
-/// Two polygons, by number, of which each is the back of the other; the smaller number first.
+/// A pair of polygons, by number, of which each is the back of the other; the smaller number comes first.
 using BackToBack = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Writes the points of the corners of polygon i, in order around it.
 using LoopOf = std::function<void(std::uint32_t i, std::vector<std::uint32_t>& loop)>;
 
-/// Returns the polygons of `count` that lie back to back, ascending. Each is the back of at most one. A polygon that
-/// comes to a point twice, or has an empty loop, has none. O(n log n), and few bytes for each polygon.
+/// Returns the polygons of `count` that are back to back, in ascending order. Each polygon is the back of at most one
+/// other. A polygon that visits a point twice, or has an empty loop, has no back. O(n log n), with a few bytes for each
+/// polygon.
 [[nodiscard]] std::vector<BackToBack> find_backs(std::size_t count, const LoopOf& loop_of);
 
 /// An edge from or to the point that belongs to a node, to a neighbour.
 struct SideEdge {
   std::uint32_t node = 0, neighbour = 0;
-  bool leaves = false;  ///< whether the face of the node goes along it from the point, not to it
+  bool leaves = false;  ///< whether the face of the node goes along the edge from the point, not to it
 };
 
 /// Returns the side of each node at one point, numbered in the order of their first nodes. apart are pairs of different

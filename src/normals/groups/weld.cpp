@@ -1,5 +1,5 @@
-// Finds vertices that coincide in all keyframes. It sorts them by place in one keyframe after the other; if they are
-// many, it first splits them by a hash of their place, on all cores.
+// Finds vertices that coincide in all keyframes. The vertices are sorted by place in one keyframe after the other; a
+// large number of vertices is first split by a hash of the place, on all cores.
 #include "normals/groups/weld.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace chronormal {
 namespace {
 
-// Returns a key that gives coordinates a total order, in which -0 and 0 are the same.
+// Returns a key that gives coordinates a total order in which -0 equals 0.
 std::uint32_t key(float coordinate) { return bit_cast<std::uint32_t>(coordinate + 0.0F); }
 
 // The place of a vertex in the total order. Vertices of separate bodies are never equal.
@@ -40,7 +40,7 @@ void split_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::
   }
 }
 
-// A vertex and a hash of its place. Vertices at one place have the same hash, and few others do.
+// A vertex and a hash of its place. Vertices at one place have the same hash, and few other vertices do.
 struct Hashed {
   std::uint32_t hash = 0, vertex = 0;
 

@@ -1,4 +1,4 @@
-/// Welds vertices, and shows what weld_coincident() finds on its way. Private to normals and workflow.
+/// Welds vertices, and returns what weld_coincident() finds in between. Private to normals and workflow.
 #ifndef CHRONORMAL_NORMALS_GROUPS_WELD_H_
 #define CHRONORMAL_NORMALS_GROUPS_WELD_H_
 
@@ -9,7 +9,7 @@
 namespace chronormal::inline internal {
 
 struct WeldedPoints {
-  Points always;    ///< weld_coincident(): vertices that coincide in all keyframes are one point
+  Points always;    ///< vertices that coincide in all keyframes are one point, as in weld_coincident()
   Points at_start;  ///< vertices that coincide in keyframe 0 are one point
 };
 

@@ -1,5 +1,5 @@
-// Interpolates all positions at t into rows that a vector loads at once, and then goes along the paths around sixteen
-// elements at a time (groups/rings.h). The paths are made once, from the topology alone.
+// Interpolates all positions at t into rows that one vector load reads, and then follows the paths around sixteen
+// elements at a time (groups/rings.h). The paths are built once, from the topology alone.
 
 #include "chronormal/normals/recompute.h"
 
@@ -63,7 +63,7 @@ std::size_t FloatRecompute::Parts::unit_normals(VectorView<const float> from, Ve
       const IndexRange some{range.first / kRingLanes, (range.count + kRingLanes - 1) / kRingLanes};
       zeros += ring_unit_normals(ring_points, rings.view(), some, part, stream);
     }
-    // Make what was written past the caches visible to other threads.
+    // The flush makes results that bypassed the caches visible to other threads.
     if (stream) hwy::FlushStream();
   });
   return zeros;

@@ -29,7 +29,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kFaceBatch = 1024;  // room for the doubtful ones on the stack
+constexpr std::size_t kFaceBatch = 1024;  // room for doubtful faces on the stack
 constexpr std::size_t kFaceBlock = 16;
 constexpr std::size_t kBlockOfVertices = 16384;
 constexpr std::size_t kGroupBatch = 256;                      // elements whose faces must be in the window at once
@@ -38,15 +38,15 @@ constexpr std::size_t kWindowSamples = 64;
 constexpr std::size_t kSmallestPart = 4096;  // elements that are worth a thread
 constexpr std::size_t kMostParts = 64;
 
-// Holds n(t) in double from the positions, and a bound of its error.
+// The vector n(t) in double from the positions, and a bound of its error.
 struct NormalAtTime {
   Vec3d n;
   double error = 0;
 };
 
-// Computes n(t) with a bound. Edges, and both products of each component after them, are within 10 u of the absolute
-// products, and each triangle of a fan adds a rounding. No test can tell 10 from 5: the bound is for roundings that all
-// go the same way, and climbing from 60 triangles finds no error above 3.4 u of these products.
+// Computes n(t) with a bound. Edges, and both products of each component, are within 10 u of the absolute products, and
+// each triangle of a fan adds a rounding. The bound holds even if all roundings go the same way, so no test can tell 10
+// from 5; a search by hill climbing from 60 triangles finds no error above 3.4 u of these products.
 NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTime& time) {
   const auto face = segment.topology->face(f);
   const double s = time.rest, t = time.t;
@@ -71,14 +71,14 @@ NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTi
 constexpr double kLargestNormal = 0x1p100;  // in float32, with room for sums
 
 FaceNormal rounded(const NormalAtTime& normal) {
-  // Take a little more, for the rounding of the bound.
+  // The factor is a little above 1, for the rounding of the bound.
   const double error = 1.01 * (length(normal.n) + normal.error / kFloatUnitRoundoff);
   if (!(error <= kLargestNormal)) return {0, 0, 0, std::numeric_limits<float>::infinity()};
   const Vec3f n = to_float(normal.n);
   return {n.x, n.y, n.z, static_cast<float>(error)};
 }
 
-// Holds what the kernel makes of a triangle, to the last bit.
+// The result of the kernel for a triangle, to the last bit.
 struct QuickNormal {
   Vec3f n, unit;
   float error = 0;
@@ -137,7 +137,7 @@ FaceNormal face_normal(const Segment& segment, std::size_t f, const LocalTime& t
   return rounded(normal_at_time(segment, f, t));
 }
 
-// Returns the direction of a sum of faces: in double if the rounding turns it by no more than 2^-23 = 1.2e-7 rad, and
+// Returns the direction of a sum of faces, in double if rounding turns the sum by no more than 2^-23 = 1.2e-7 rad, and
 // else from make_exact().
 template <class MakeExact>
 UnitNormal unit_normal_of(const NormalAtTime& normal, const LocalTime& t, const MakeExact& make_exact) {
@@ -159,7 +159,7 @@ UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, const Loca
   return fine_unit_normal(segment, f, t);
 }
 
-// Holds everything that elements share in one evaluation.
+// All values that elements share in one evaluation.
 struct FacesAtTime {
   explicit FacesAtTime(const Segment& segment) : faces(segment) {}
 
@@ -179,7 +179,7 @@ UnitNormal unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& g
     sum.error += normal.error;
     magnitude += sum_abs(normal.n);
   }
-  // Each addition rounds by at most u of what is added up.
+  // Each addition rounds by at most u times the summed magnitudes.
   sum.error += kUnitRoundoff * static_cast<double>(groups.faces(element).size()) * magnitude;
   return unit_normal_of(sum, t, [&] { return shared.faces.exact_sum(groups.faces(element)); });
 }
@@ -201,7 +201,7 @@ UnitNormal quick_unit_normal_of_group(const FacesAtTime& shared, const NormalGro
   return unit_normal_of_group(shared, groups, element, t);
 }
 
-// Returns the faces of neighbouring elements, which lie one after the other in NormalGroups.
+// Returns the faces of neighbouring elements, which are contiguous in NormalGroups.
 std::span<const std::uint32_t> faces_of(const NormalGroups& groups, IndexRange elements) {
   const auto first = groups.faces(elements.first), last = groups.faces(elements.end() - 1);
   return {first.data(), last.data() + last.size()};
@@ -226,7 +226,7 @@ bool is_packed(const VectorView<const float>& points) {
   return points.stride == 3 && points.y == points.x + 1 && points.z == points.x + 2;
 }
 
-// Holds what a NormalRecompute keeps for its calls.
+// The memory that a NormalRecompute keeps for its calls.
 struct Scratch {
   bool vertices_are_near = true;  // whether vertices of neighbouring faces are neighbours in memory
   AlignedArray<float> pairs;      // x y z _ of both ends of each vertex, or empty
@@ -234,10 +234,10 @@ struct Scratch {
   AlignedBytes normals;           // normals of faces, for groups
 };
 
-// Makes one evaluation.
+// One evaluation.
 class Call {
  public:
-  // Evaluates faces, without scratch. Element `first` goes to result[0].
+  // Evaluates faces, without scratch memory. Element `first` goes to result[0].
   Call(const Segment& segment, const LocalTime& t, VectorView<float> result, std::size_t first)
       : segment_(segment), shared_(segment), t_(t), result_(result), first_(first) {
     const Topology& topology = *segment.topology;
@@ -280,8 +280,8 @@ class Call {
     std::size_t zeros = 0;
     FaceNormal* const normals = normals_ + part * window_;
     FaceWindow window{window_};
-    // The credit counts faces that may be written to the window, so that elements that jump to and fro cost no more
-    // than a few times the work of computing each face alone.
+    // The credit is the number of faces that may be written to the window. It limits the cost of elements that jump to
+    // and fro to a few times the work of computing each face alone.
     std::size_t credit = 2 * window_;
     for (std::size_t e = elements.first; e < elements.end(); e += kGroupBatch) {
       const IndexRange batch{e, std::min(kGroupBatch, elements.end() - e)};
@@ -302,7 +302,7 @@ class Call {
   }
 
  private:
-  // Makes what was written past the caches visible to other threads.
+  // Makes results that bypassed the caches visible to other threads.
   void finish() const {
     if (stream_) hwy::FlushStream();
   }
@@ -371,7 +371,7 @@ class Call {
     return zeros;
   }
 
-  // Evaluates one by one the elements whose faces are too far from each other for the window.
+  // Evaluates one by one the elements whose faces are too far apart for the window.
   std::size_t scattered_groups(IndexRange elements) const {
     std::size_t zeros = 0;
     for (std::size_t e = elements.first; e < elements.end(); ++e)
@@ -385,7 +385,7 @@ class Call {
   LocalTime t_;
   VectorView<float> result_;
   std::size_t first_;
-  bool by_kernel_;  // otherwise one by one
+  bool by_kernel_;  // if false, elements are evaluated one by one
   bool stream_;
   MovingTriangles triangles_;
   FaceNormal* normals_ = nullptr;
@@ -438,7 +438,7 @@ NormalRecompute::Parts::Parts(const Segment& of_segment, const NormalGroups* of_
 
 std::size_t NormalRecompute::Parts::unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) {
   if (size() == 0) return 0;
-  // Take the same blocks for any number of threads.
+  // The blocks are the same for any number of threads.
   const auto in_blocks = [threads](std::size_t count, std::size_t block, const auto& body) {
     if (threads == Threads::kOne || count <= block)
       body(IndexRange{0, count});

@@ -16,7 +16,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds the vertices of one corner: its own, and the ends of its two edges.
+/// The vertices of one corner: its own, and the ends of its two edges.
 struct CornerVertices {
   std::uint32_t here, next, previous;
 };

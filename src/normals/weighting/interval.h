@@ -1,4 +1,4 @@
-/// Intervals that contain the exact result of every operation, whatever was rounded.
+/// Intervals that contain the exact result of every operation, regardless of rounding.
 ///
 /// Each bound of a result is moved outwards by more than its rounding error: by 2^-51 of itself, which is at least two
 /// units in the last place, and by the smallest double, for results that underflow. (One unit would do if both operands
@@ -69,7 +69,7 @@ struct Interval {
 }
 
 /// Returns the angles of the vectors (x, y) with y >= 0, from the angle of a point inside and the largest difference of
-/// the others. The arc tangent of core/portable_math.h is taken to be right to 16 eps.
+/// the other points from it. The arc tangent of core/portable_math.h is assumed to be within 16 eps of the true value.
 [[nodiscard]] inline Interval angle_of(const Interval& y, const Interval& x) noexcept {
   if (!y.finite() || !x.finite()) return Interval::whole();
   const double my = std::fmax(0.5 * (y.low + y.high), 0.0), mx = 0.5 * (x.low + x.high);

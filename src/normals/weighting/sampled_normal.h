@@ -1,4 +1,5 @@
-/// The weighted normal of one element at one t, and the length that it would have by area, from which fits are made.
+/// The weighted normal of one element at one t, and the length that it would have with weights by area. Fits are
+/// computed from these samples.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_SAMPLED_NORMAL_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_SAMPLED_NORMAL_H_
 

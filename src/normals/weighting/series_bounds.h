@@ -37,8 +37,8 @@ inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
   return result;
 }
 
-/// Bounds the remainder of a series: the interval holds its value at every point of [c - half, c + half]. The
-/// coefficients of the series `around` hold for every center in that interval.
+/// Bounds the remainder of a series: the interval holds the value of the remainder at every point of [c - half, c +
+/// half]. The coefficients of the series `around` hold for every center in that interval.
 [[nodiscard]] inline Interval remainder(const Series<kTerms>& around, double half) noexcept {
   Interval power = Interval::point(1);
   for (std::size_t k = 1; k < kTerms; ++k) power = half * power;
@@ -55,7 +55,7 @@ inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
   return least - (1 + 0x1p-50) * (remainder(around, half).magnitude() + slack);
 }
 
-/// Returns an upper bound of the length of a vector, in the same way.
+/// Returns an upper bound of the length of a vector from the same two series.
 [[nodiscard]] inline double largest_length_over(const VectorSeries<kTerms>& here, const VectorSeries<kTerms>& around,
                                                 double half, double slack) noexcept {
   const auto x = bernstein(here[0], half), y = bernstein(here[1], half), z = bernstein(here[2], half);

@@ -11,7 +11,7 @@
 
 namespace chronormal::inline internal {
 
-/// Writes weighted_normals_at() of weighting.h, for callers that ask for one range after the other.
+/// Writes weighted_normals_at() of weighting.h, for callers that request one range after the other.
 void weighted_normals_at(const SharedFaces& shared, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 

@@ -22,15 +22,15 @@ namespace {
 constexpr std::size_t kFitBlock = 64;
 
 constexpr std::size_t kSamples = 16;      // number of samples of the error, to compare the bound with
-constexpr double kTightness = 2;          // a bound of this multiple of the largest sample is close enough
+constexpr double kTightness = 2;          // a bound of up to this multiple of the largest sample is tight enough
 constexpr double kFineEnough = 1e-9;      // radians
 constexpr int kDeepest = 20;              // halvings of the segment
 constexpr std::size_t kMostPieces = 256;  // per element
 
-// Holds the control normals of a face as intervals that contain the exact ones.
+// The control normals of a face as intervals that contain the exact ones.
 struct IntervalNormals {
   std::array<std::array<Interval, 3>, 3> control;  // n0, m, n1
-  bool area = false;                               // whether there is any at any time, but for rounding
+  bool area = false;                               // whether the corner has any area at any time, beyond rounding
 };
 
 struct IntervalEdge {
@@ -122,7 +122,7 @@ Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, 
   const Series<kTerms - 1> speed =
       product<kTerms - 1>(numerator, power<kTerms - 1>(lengths, -1, reciprocal(lengths[0])));
 
-  // Integrate, from the angle at the centre.
+  // The integration starts from the angle at the centre.
   const Interval y_here = square_root(square(c[0][0]) + square(c[1][0]) + square(c[2][0]));
   Series<kTerms> angle;
   angle[0] = angle_of(y_here, x_here[0]);
@@ -136,8 +136,8 @@ struct CoarseAngle {
   double middle, radius;
 };
 
-// Returns the angle between two edges about all centre + around where it is not smooth: near 0 and near pi by its
-// tangent.
+// Returns the angle between two edges over all of centre + around, where the angle is not smooth: near 0 and near pi it
+// is computed from its tangent.
 CoarseAngle coarse_angle(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
   const VectorSeries<3> c = shifted(cross_product<3>(e, f), around);
   const Interval x = shifted(dot_product<3>(e, f), around)[0];
@@ -149,8 +149,8 @@ CoarseAngle coarse_angle(const VectorSeries<2>& e, const VectorSeries<2>& f, con
   return {low + (high - low) / 2, (high - low) / 2 + 1e-15};
 }
 
-// Holds what a corner adds, about the centre and about all of the piece. The true value may differ by a vector of
-// length `slack`.
+// The term of a corner as a series, about the centre and about all of the piece. The true value may differ by a vector
+// of length `slack`.
 struct TermSeries {
   VectorSeries<kTerms> here, around;
   double slack = 0;
@@ -199,7 +199,7 @@ TermSeries term_series(const Segment& segment, const IntervalNormals& of_face, c
           slack};
 }
 
-// Holds everything about one element that bounds need.
+// All values of one element that bounds need.
 struct Element {
   const Segment* segment;
   std::span<const IntervalNormals> of_faces;
@@ -262,8 +262,8 @@ struct Element {
     return (1 + 0x1p-48) * portable::atan2((1 + 0x1p-50) * sine, (1 - 0x1p-50) * cosine);
   }
 
-  // Returns the bound over the whole segment. Halves pieces until their bounds are close to `goal`. If the shortest
-  // piece has no bound, there is none.
+  // Returns the bound over the whole segment. Pieces are halved until their bounds are close to `goal`. If the shortest
+  // piece has no bound, the result is no bound.
   [[nodiscard]] double bound_over_segment(double goal) const {
     struct Piece {
       double t0, t1;
@@ -292,8 +292,8 @@ struct Element {
   }
 };
 
-// Returns whether all corners are of one face, whose direction the sum then has. The weights of a triangle vanish only
-// with its area; for other polygons, this is true only of uniform weights.
+// Returns true if all corners belong to one face, whose direction the sum then has. The weights of a triangle vanish
+// only with its area; for other polygons, the result is true only for uniform weights.
 bool is_direction_of_one_face(const Segment& segment, std::span<const std::uint32_t> faces, Weighting weighting) {
   if (faces.empty()) return false;
   for (const std::uint32_t face : faces) {

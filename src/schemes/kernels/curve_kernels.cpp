@@ -24,7 +24,7 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 enum class Layout { kPacked, kPackedPastCaches, kPlanes };
 
-// Says where the normals of whole blocks go.
+// The place for the normals of whole blocks.
 struct BlockResult {
   float *x, *y, *z;
   Layout layout;
@@ -58,7 +58,7 @@ HWY_INLINE void PrefetchBlock(const float* block, std::size_t plane_count) {
 template <class F>
 HWY_NOINLINE void EvaluateBlocks(const CoefficientBlocks& curves, std::size_t first_block, std::size_t block_count,
                                  const SharedValues& shared, const BlockResult& result_of_caller) {
-  // Copy both, so that the compiler sees that no store changes them.
+  // Both are copied, so that the compiler sees that no store changes them.
   const BlockResult result = result_of_caller;
   const SharedValues common = shared;
 

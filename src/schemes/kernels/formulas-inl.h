@@ -1,7 +1,8 @@
-// The formulas of schemes, each written once: Lanes runs it, Counting counts it (scalars-inl.h).
+// The formulas of schemes. Each is written once: Lanes runs the formula, and Counting counts its operations
+// (scalars-inl.h).
 //
-// A formula is a class of static functions, templates on the scalar S, and of the number of planes that it reads (0:
-// all that there are):
+// A formula is a class with static functions, which are templates on the scalar S, and with the number of planes that
+// it reads (0 means all planes):
 //
 //     kPlanes, kStatePlanes
 //     Triple<S> evaluate(const Coefficients<S>& c, const float* shared)    returns the unit normals at one t; `shared`
@@ -77,7 +78,7 @@ struct RationalQuadratic {
         S(weights[0]) * vector_of(c, 0) + S(weights[1]) * vector_of(c, 1) + S(weights[2]) * vector_of(c, 2);
     S square = S(weights[3]) * c[9];
     for (std::size_t k = 1; k < 5; ++k) square = square + S(weights[3 + k]) * c[9 + k];
-    // Below this share of the largest coefficient the quartic has lost its digits; measure n instead.
+    // Below this share of the largest coefficient, the quartic has too few correct digits, so n is measured instead.
     const auto has_digits = square > S(0.1f);
     const Triple<S> u = (S(1.0f) / sqrt(select(has_digits, square, S(1.0f)))) * n;
     if (!any(!has_digits)) return u;
@@ -87,8 +88,8 @@ struct RationalQuadratic {
 };
 
 // Returns (sine, cosine) of the current angle, and advances it by a step. The state holds (cos, sin) of the angle on
-// the arc, and of the angle of one step. A rotation per step is used instead of the Chebyshev recurrence x' = 2
-// cos(step) x - x'', which needs no sine but loses digits a hundred times faster.
+// the arc, and of the angle of one step. The code rotates at each step. The Chebyshev recurrence x' = 2 cos(step) x -
+// x'' would need no sine, but loses digits a hundred times faster.
 template <class S>
 HWY_INLINE SinCos<S> advance_turn(const State<S>& state) {
   const S cosine = state[0], sine = state[1], step_cosine = state[2], step_sine = state[3];
@@ -137,7 +138,7 @@ struct CircleArc {
   }
 };
 
-// Evaluates an arc whose share in plane 10 is passed at t = 1/2.
+// Evaluates an arc that passes the share in plane 10 at t = 1/2.
 struct TimedCircleArc {
   static constexpr std::size_t kPlanes = 11;
 
@@ -181,7 +182,7 @@ HWY_INLINE Triple<S> slerp_at(const Triple<S>& a, const Triple<S>& b, const S& t
   return select(opposite, far, chord);
 }
 
-// Takes slerp in place of every linear interpolation of de Casteljau's triangle, over all vectors that there are.
+// Uses slerp in place of every linear interpolation of de Casteljau's triangle, over all vectors of the element.
 struct SphericalDeCasteljau {
   static constexpr std::size_t kPlanes = 0;
 

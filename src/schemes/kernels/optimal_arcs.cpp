@@ -3,7 +3,7 @@
 //     tan(beta)^2 = tan(h)^2 + y^2,  y = tan(h) tan(phi),
 //
 // and on a small part of the sphere its middle is g = y / (1 + sqrt(1 + y^2)) half chords away from the chord. The
-// search is for g: positions along the arc are nearly linear in it, up to half a turn, where it is 1.
+// search is for g, since positions along the arc are nearly linear in g, up to half a turn, where g = 1.
 #include "schemes/kernels/optimal_arcs.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -53,7 +53,7 @@ HWY_INLINE Real angle_of_chord(Real square) {
   return Real(2.0) * sqrt(z) * series;
 }
 
-// Searches for one element in each lane.
+// A search for one element in each lane.
 struct Search {
   Real3 u0, pole, bisector;
   Real cosine, tangent;  // cosine and tangent of half the angle between the ends
@@ -78,7 +78,7 @@ struct Search {
   }
 };
 
-// Holds three arcs in ascending order, and their errors.
+// Three arcs in ascending order, and their errors.
 struct Bracket {
   Real low, middle, high;
   Real at_low, at_middle, at_high;
@@ -93,7 +93,7 @@ struct Bracket {
 
 HWY_INLINE Real3 unit(const Real3& v) { return (Real(1.0) / sqrt(dot(v, v))) * v; }
 
-// Returns tan(phi) of the best arcs, and NaN if it is not known.
+// Returns tan(phi) of the best arcs, and NaN for an unknown best arc.
 HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) {
   const Real zero(0.0), one(1.0), none(std::numeric_limits<double>::quiet_NaN());
   // The lengths must have squares that neither overflow nor vanish.

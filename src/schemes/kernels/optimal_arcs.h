@@ -1,13 +1,13 @@
-/// Finds the arc with the least mean error, which quaternion:optimal looks for, for many elements at a time.
+/// Finds the arc with the least mean error for many elements at a time, for the scheme quaternion:optimal.
 ///
 /// The arcs from u0 to u1 that turn by at most half a turn are one family (eq. 6). As a function of how far the middle
 /// of an arc is from the great circle, in half chords, the mean error is nearly convex, and the circle through the
 /// exact normal in the middle is nearly the best arc. So a search starts with three arcs around that circle, and
-/// continues with parabolas until convexity shows that hardly anything is left to gain.
+/// continues with parabolas until convexity shows that a better arc could gain hardly anything.
 ///
-/// This is true if the element turns mildly: by less than a radian over the segment and by 0.15 between neighbouring
-/// samples, with an arc of less than 150 degrees, and a normal that vanishes nowhere. Other elements are left to a
-/// search over the whole family.
+/// The search works if the element turns mildly: by less than a radian over the segment and less than 0.15 radians
+/// between neighbouring samples, with an arc of less than 150 degrees, and a normal that vanishes nowhere. Other
+/// elements are left to a search over the whole family.
 #ifndef CHRONORMAL_SCHEMES_KERNELS_OPTIMAL_ARCS_H_
 #define CHRONORMAL_SCHEMES_KERNELS_OPTIMAL_ARCS_H_
 

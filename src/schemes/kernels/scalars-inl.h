@@ -1,8 +1,8 @@
 // The types in which the formulas of schemes are written: a scalar S, vectors of three of it, and the planes of an
 // element.
 //
-// S is Lanes, which runs, or Counting, which counts, so that each formula is written once. Included once for each
-// instruction set, inside no namespace.
+// S is Lanes, which computes, or Counting, which counts operations, so that each formula is written once. This file is
+// included once for each instruction set, outside of any namespace.
 
 #include "simd/highway-inl.h"
 
@@ -22,11 +22,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The number of elements that are evaluated at a time is two vectors. If a formula is a long chain of operations, as a
-// sine is, a processor cannot look far enough ahead to keep busy with one vector after the other.
+// A step evaluates as many elements as two vectors hold. If a formula is a long chain of operations, such as a sine, a
+// processor cannot look far enough ahead to stay busy with one vector after the other.
 inline constexpr std::size_t kStep = 2 * kLanes;
 
-// Holds one number of each of kStep elements. Every operation is one IEEE operation on each of them.
+// One number of each of kStep elements. Every operation is one IEEE operation on each number.
 struct Lanes {
   Floats low, high;
 
@@ -49,7 +49,7 @@ struct Lanes {
   friend HWY_INLINE Lanes sqrt(const Lanes& a) { return {hn::Sqrt(a.low), hn::Sqrt(a.high)}; }
 };
 
-// Says for which elements a condition holds. Counting has bool.
+// The elements for which a condition holds. Counting has bool instead.
 struct LanesMask {
   hn::Mask<FloatTag> low, high;
 };
@@ -70,7 +70,7 @@ HWY_INLINE Lanes select(const LanesMask& mask, const Lanes& a, const Lanes& b) {
 HWY_INLINE bool any(const LanesMask& mask) { return !hn::AllFalse(kFloats, hn::Or(mask.low, mask.high)); }
 HWY_INLINE bool any(bool mask) { return mask; }
 
-// See simd/trigonometry-inl.h for what these must do.
+// simd/trigonometry-inl.h documents what these functions must do.
 HWY_INLINE Lanes absolute(const Lanes& a) { return {hn::Abs(a.low), hn::Abs(a.high)}; }
 HWY_INLINE Lanes larger_of(const Lanes& a, const Lanes& b) { return {hn::Max(a.low, b.low), hn::Max(a.high, b.high)}; }
 HWY_INLINE Lanes smaller_of(const Lanes& a, const Lanes& b) { return {hn::Min(a.low, b.low), hn::Min(a.high, b.high)}; }
@@ -123,7 +123,7 @@ HWY_INLINE Triple<Lanes> select(const LanesMask& mask, const Triple<Lanes>& a, c
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// Reads the coefficients of the elements that are being evaluated, one value per plane.
+// A reader for the coefficients of the current elements, one value per plane.
 template <class S>
 struct Coefficients {
   const S* first;
@@ -132,7 +132,7 @@ struct Coefficients {
   HWY_INLINE S operator[](std::size_t plane) const { return first[plane]; }
 };
 
-// Reads and writes, one value per plane, what changes from step to step while a curve is played.
+// The values that change from step to step while a curve is played, one value per plane.
 template <class S>
 struct State {
   S* first;

@@ -1,4 +1,4 @@
-// Holds the parts that audits of glTF files and audits of sequences share.
+// The parts that audits of glTF files and audits of sequences share.
 #include "chronormal/workflow/audit.h"
 
 #include <algorithm>
@@ -25,7 +25,8 @@ double end_of_fine_bin(std::size_t bin) noexcept {
 
 constexpr std::array<std::string_view, 6> kRules = {"gltf", "lerp", "nlerp", "slerp", "step", "flat"};
 
-// Tells whether two shards may belong to one audit: they judge the same vertices at the same samples by the same rule.
+// Returns true if two shards may belong to one audit, that is, if they judge the same vertices at the same samples by
+// the same rule.
 bool are_of_one(const Audit& a, const Audit& b) {
   const auto same_subject = [](const AuditSubject& one, const AuditSubject& other) {
     return one.kind == other.kind && one.weighting == other.weighting && one.segments == other.segments &&
@@ -89,7 +90,7 @@ WorseRespects find_worse(const MotionError& after, const MotionError& before) no
   // The average may also grow because fewer samples are judged, once deltas that were only rounding are gone.
   const bool is_farther =
       after.mean() > before.mean() + kMean && after.sum > before.sum + kMean * static_cast<double>(after.judged);
-  // Rounding may tear one edge in a hundred that was close to torn before.
+  // Rounding may tear one in a hundred of the edges that were close to torn before.
   const bool is_torn = after.samples > 0 && before.samples > 0 && after.torn_edges() > 1.01 * before.torn_edges() + 0.5;
   return {after.unlit > before.unlit, is_farther, after.worst > before.worst + kWorst, is_torn};
 }
@@ -118,7 +119,7 @@ void FineBins::add(const FineBins& other) {
   }
   if (added > 0) bins_.reserve(before + added);  // no more than needed
   bins_.resize(before + added, Bin(0, 0));
-  // Merges from the end, so that no bin is overwritten before it is read.
+  // Merging starts at the end, so that no bin is overwritten before it is read.
   for (std::size_t to = bins_.size(), from = other.bins_.size(); from > 0;) {
     const Bin& bin = other.bins_[from - 1];
     --to;
@@ -210,7 +211,7 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
 
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error) {
   constexpr std::size_t kEdgeBlock = 4096;
-  // If both ends of an edge are within half of the least tear, the edge is not torn. Most edges are skipped so.
+  // If both ends of an edge are within half of the least tear, the edge is not torn. This test skips most edges.
   constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // less a margin for rounding
   std::vector<std::uint8_t> is_far(part.vertices_of_edges());
   std::size_t far = 0;
@@ -239,7 +240,7 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
 
 std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments, std::size_t fewest) noexcept {
   if (options.samples) return *options.samples;
-  // The number is odd, so that the middle is one of the samples.
+  // The number is odd, so that one sample is in the middle.
   return std::clamp(kAuditSamplesOfAll / std::max<std::size_t>(1, segments) | 1U, fewest, kAuditSamples);
 }
 

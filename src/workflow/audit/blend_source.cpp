@@ -13,7 +13,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 2048;
-constexpr std::ptrdiff_t kManyTargets = 8;  // adding up their deltas takes longer than interpolating two ends
+// From this many morph targets on, adding up deltas takes longer than interpolating two ends.
+constexpr std::ptrdiff_t kManyTargets = 8;
 
 }  // namespace
 
@@ -81,7 +82,7 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   return true;
 }
 
-// Places both ends of a segment. If the segment starts where the last one ended, reuses that end.
+// Computes both ends of a segment. If the segment starts where the last one ended, reuses that end.
 void BlendSource::place_ends(std::size_t segment) {
   if (!ends_) ends_ = SegmentEnds{};
   std::vector<double> start = weights(segment, 0), end = weights(segment, 1);
@@ -221,7 +222,7 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
 // Returns the weights of the placed moment and of the next ones in its segment.
 std::vector<std::vector<double>> BlendSource::now_and_next() const {
   std::vector<std::vector<double>> result = {now_};
-  // There may be a million samples, so the search starts near t_: samples are evenly spaced, so none after t_ lies
+  // There may be a million samples, so the search starts near t_. Samples are evenly spaced, so no sample after t_ is
   // before this one.
   auto i = static_cast<std::size_t>(t_ * static_cast<double>(samples_));
   while (i < samples_ && time_of_sample(i, samples_) <= t_) ++i;

@@ -286,8 +286,8 @@ HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std
 }
 
 // Calls body(access, corners) for the triangles first ... first + 15, with the access that they allow as a constant and
-// their 48 vertices. Triangles from `end` on repeat the one before. If vertices are far from each other, prefetches the
-// ones that come soon. first < end
+// their 48 vertices. Triangles from `end` on repeat the last one. If vertices are far from each other, prefetches the
+// vertices of the next triangles. first < end
 template <class Body>
 HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                               const Body& body) {

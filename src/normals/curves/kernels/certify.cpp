@@ -27,7 +27,7 @@ HWY_INLINE Doubles AllOf(double value) { return hn::Set(kDoubles, value); }
 HWY_INLINE Doubles LargestOf(const Doubles3& v) { return LargerAbs(LargerAbs(v.x, v.y), v.z); }
 HWY_INLINE bool None(DoubleMask mask) { return hn::AllFalse(kDoubles, mask); }
 
-// Hold a quadratic of vectors and one of numbers, by their Bernstein coefficients.
+// A quadratic of vectors and a quadratic of numbers, both by their Bernstein coefficients.
 struct Vectors {
   Doubles3 n0, m, n1;
 };
@@ -80,7 +80,7 @@ HWY_INLINE Quartic Square(const Vectors& n) {
   return Square([&at](std::size_t i, std::size_t j) HWY_ATTR { return Dot(at[i], at[j]); });
 }
 
-// Returns the lanes among `open` in which ratio |n(t)| >= limit(t) at every t.
+// Returns the lanes of `open` in which ratio |n(t)| >= limit(t) at every t.
 HWY_INLINE DoubleMask StaysAbove(const Quartic& n_square, double ratio, const Quartic& limit_square, DoubleMask open) {
   if (None(open)) return open;
   const Doubles ratio_square = AllOf(ratio * ratio);
@@ -98,8 +98,8 @@ inline constexpr Instant kInstants[] = {
     {{9.0 / 16, 6.0 / 16, 1.0 / 16}, {81.0 / 256, 108.0 / 256, 54.0 / 256, 12.0 / 256, 1.0 / 256}},
     {{1.0 / 16, 6.0 / 16, 9.0 / 16}, {1.0 / 256, 12.0 / 256, 54.0 / 256, 108.0 / 256, 81.0 / 256}}};
 
-// Compares |n(t)| with its limits at a few instants, which is far cheaper than a proof. A proof cannot succeed if n(t)
-// is too short at one of them.
+// A comparison of |n(t)| with its limits at a few instants, which is far cheaper than a proof. A proof cannot succeed
+// if n(t) is too short at one of these instants.
 class Glance {
  public:
   HWY_INLINE Glance(const Quartic& n_square, const Doubles (&length_square)[3]) {
@@ -142,7 +142,7 @@ HWY_INLINE Numbers LengthsOf(const Vectors& n, const Quartic& n_square) {
   return {hn::Sqrt(n_square.at[0]), ScaledLength(n.m), hn::Sqrt(n_square.at[4])};
 }
 
-// Does what stays_certain() does, for control normals that are scaled to 1.
+// Computes what stays_certain() computes, for control normals that are scaled to 1.
 HWY_INLINE DoubleMask StaysCertain(const Vectors& n, const Quartic& n_square, Doubles certain, DoubleMask open) {
   const Doubles share = hn::Mul(AllOf(4), certain);
   const Doubles height = hn::Abs(Dot(n.n0, Cross(n.m, n.n1)));
@@ -181,7 +181,7 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const Vectors given{VectorAt(tile, 0, lane), VectorAt(tile, 3, lane), VectorAt(tile, 6, lane)};
   const Doubles size0 = LargestOf(given.n0), size_m = LargestOf(given.m), size1 = LargestOf(given.n1);
   const Doubles largest = hn::Max(hn::Max(size0, size_m), size1);
-  // The larger of two numbers need not be NaN if one of them is, but a sum is.
+  // The larger of two numbers need not be NaN if one of them is NaN, but their sum is NaN.
   const Doubles3 sums = (given.n0 + given.m) + given.n1;
   const Doubles sum = hn::Add(hn::Add(sums.x, sums.y), sums.z);
   const auto in_range =

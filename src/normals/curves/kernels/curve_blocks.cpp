@@ -8,13 +8,13 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kLargestWeight = 32767;
-// Control normals of 32767 times weights of this sum stay in the range of int32.
+// Control normals of 32767 times weights with this sum stay in the range of int32.
 constexpr double kLargestSum = 65532;
 
 std::int32_t pair_of(std::int32_t low, std::int32_t high) { return (low & 0xFFFF) | (high * 65536); }
 
-// Returns integers in the ratios of the weights. Only ratios count for a direction, so of some scales the one that
-// rounds least is taken.
+// Returns integers in the ratios of the weights. A direction depends on ratios only, so the function tries some scales
+// and takes the one that rounds least.
 template <std::size_t kCount>
 std::array<std::int32_t, kCount> integer_weights(const std::array<double, kCount>& weights) {
   constexpr int kTrials = 16, kStep = 256;

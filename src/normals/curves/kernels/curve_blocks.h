@@ -51,7 +51,7 @@ enum class BlockKind : int {
 /// Says how precisely the elements of a block are kept, whatever their degree.
 enum class Precision : std::uint8_t { k11, k16, kScaled16, k32 };
 
-/// The degree of a block in which all elements are flagged.
+/// The degree of a block whose elements are all flagged.
 inline constexpr int kNoDegree = -1;
 
 /// Returns the kind for elements of a degree. with_lengths asks for lengths if all are of degree 0.
@@ -72,14 +72,14 @@ inline constexpr int kNoDegree = -1;
 }
 
 // Blocks are scaled so that no component is above 2^50, and no end that counts is below 2^-52. Then |n(t)|^2 stays in
-// the range of float32; the worst |n(t)| is 2^-53 / 64.
+// the range of float32, since the smallest |n(t)| is 2^-53 / 64.
 inline constexpr int kLargestExponent = 50;
 inline constexpr double kLargestComponent = 0x1p50;
 inline constexpr double kSmallestEnd = 0x1p-52;
 
 inline constexpr int kMaxScaleExponent = 31;
 
-/// Holds what all elements share at one t, in the form that each kind needs.
+/// The values that all elements share at one t, in the form that each kind needs.
 struct CurveWeights {
   float linear[2];              ///< weights of n0, n1
   float quadratic[3];           ///< weights of n0, m, n1

@@ -1,4 +1,4 @@
-// Unpacks blocks of curves, evaluates them in lanes, and writes unit normals in the layout that the caller wants.
+// Unpacks blocks of curves, evaluates them in lanes, and writes unit normals in the layout that the caller requested.
 #include "normals/curves/kernels/evaluate.h"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "normals/curves/kernels/evaluate.cpp"
 #include "simd/foreach_target-inl.h"
-// This must come after foreach_target, so that it is compiled for one instruction set at a time.
+// This header must come after foreach_target, so that it is compiled for one instruction set at a time.
 #include "simd/highway-inl.h"
 
 #include "simd/intrinsics-inl.h"
@@ -17,8 +17,8 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 constexpr std::size_t kPrefetchStep = 64;
 
-// Each struct is a kind of block: its weights in registers, and how `direction` makes kLanes vectors from the lanes at
-// `lane`. Results have unit length only if kUnitLength.
+// Each struct is a kind of block. It has the weights in registers, and `direction` computes kLanes vectors from the
+// lanes at `lane`. Results have unit length only if kUnitLength.
 
 struct Unit {
   static constexpr bool kUnitLength = true;
@@ -67,8 +67,8 @@ struct Quadratic32 {
 };
 
 #if HWY_TARGET == HWY_SCALAR
-// On this target a lane of 32 bits cannot be taken for two of 16, so the halves of a pair are handled one after the
-// other.
+// This target cannot reinterpret a lane of 32 bits as two lanes of 16, so the halves of a pair are processed one after
+// the other.
 using Shorts = Ints;
 
 HWY_INLINE Shorts PairSet(std::int32_t pair) { return hn::Set(kInts, pair); }
@@ -134,7 +134,7 @@ struct Quadratic16 {
             PairSum(zero, LoadPairs(p + kTile), ends, middle_xy, high),
             PairSum(zero, LoadPairs(p + 2 * kTile), ends, middle_z, low)};
   }
-  Shorts ends, low, high;  // m stands in the low half of its pair, or in the high one
+  Shorts ends, low, high;  // m is in the low half of its pair, or in the high half
 };
 
 struct Scaled16 {
@@ -158,7 +158,7 @@ struct Scaled16 {
     return hn::ConvertTo(kFloats, hn::ShiftRight<16>(hn::ShiftLeft<16>(pair)));
   }
   HWY_INLINE static Floats High(Ints pair) { return hn::ConvertTo(kFloats, hn::ShiftRight<16>(pair)); }
-  // Returns 2^-e for the lowest five bits e, by the exponent field of a float, in which 127 stands for 2^0.
+  // Returns 2^-e for the lowest five bits e, by way of the exponent field of a float, in which 127 stands for 2^0.
   HWY_INLINE static Floats PowerOfTwo(Ints exponent) {
     const Ints e = hn::And(exponent, hn::Set(kInts, kMaxScaleExponent));
     return hn::BitCast(kFloats, hn::ShiftLeft<23>(hn::Sub(hn::Set(kInts, 127), e)));
@@ -178,8 +178,9 @@ struct Quadratic11 {
     const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
     return {Component(p), Component(p + kTile), Component(p + 2 * kTile)};
   }
-  // The ends stand in the upper 11 bits of their halves, which is 32 times their value. The two halves of m, moved
-  // there, are 2048 times their value. The 16 of m comes first, so that no partial sum leaves the range.
+  // The ends are in the upper 11 bits of their halves, which makes them 32 times their value. The two parts of m, moved
+  // there, are 2048 times their value. The part of m from the 16-bit halves is added first, so that no partial sum is
+  // outside the range.
   HWY_INLINE Floats Component(const std::int32_t* p) const {
     const Shorts words = LoadPairs(p);
     return PairSum(start, hn::And(words, mask), ends, ShiftHalvesLeft11(words), middle);
@@ -189,7 +190,7 @@ struct Quadratic11 {
   Ints start;
 };
 
-// Each struct says where results go, kLanes vectors at a time.
+// Each struct defines where results go, kLanes vectors at a time.
 
 template <bool kPastCaches>
 struct Accesses {
@@ -268,7 +269,8 @@ template <class Kind, class To>
 HWY_NOINLINE void WholeBlocks(const BlockSpan& span, const CurveWeights& weights, To to) {
   const Kind kind(weights);
   const std::size_t ahead = to.ahead;
-  const std::byte* const blocks = span.blocks;  // a copy, since stores might change what is behind a reference
+  // A copy, since the compiler assumes that stores might change an object behind a reference.
+  const std::byte* const blocks = span.blocks;
   const std::size_t block_count = span.elements / kTile;
   for (std::size_t b = 0; b < block_count; ++b) {
     const std::byte* const block = blocks + b * kTile * Kind::kBytes;
@@ -310,9 +312,9 @@ void ByAccess(const BlockSpan& span, const CurveWeights& w, bool stream, std::si
   return ByKind(span, w, To<false>{{ahead}, to...});
 }
 
-// Holds the elements of the last block if only `part` of them exist.
+// The elements of the last block if only `part` of them exist.
 struct Tail {
-  BlockSpan block;  // the block as if it were whole
+  BlockSpan block;  // the block as if it were full
   std::size_t first, part;
 };
 

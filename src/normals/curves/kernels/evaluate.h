@@ -11,7 +11,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds neighbouring blocks of one kind, the last of which may be filled in part.
+/// Neighbouring blocks of one kind, the last of which may be partly filled.
 struct BlockSpan {
   const std::byte* blocks = nullptr;
   BlockKind kind = BlockKind::kUnit;
@@ -54,7 +54,7 @@ struct Rgb10A2Result {
   MemoryAccess access = {};
 };
 
-/// Returns the place of the results from element `count` on.
+/// Returns the place for the results from element `count` on.
 inline PackedResult behind(const PackedResult& result, std::size_t count) {
   return {result.xyz + 3 * count, result.access};
 }

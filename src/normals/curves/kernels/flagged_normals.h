@@ -1,5 +1,5 @@
-/// Unit normals in double, a few at a time, for the elements that float32 cannot carry. Elements that double cannot
-/// carry either are handed back.
+/// Unit normals in double, a few at a time, for the elements for which float32 does not suffice. Elements for which
+/// double does not suffice either are returned to the caller.
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_FLAGGED_NORMALS_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_FLAGGED_NORMALS_H_
 
@@ -16,15 +16,15 @@
 
 namespace chronormal::inline internal {
 
-/// Holds an element times a power of two, so that its largest component is at least 1 and below 4, and n(t) is in the
-/// range of float32.
+/// An element times a power of two, so that its largest component is at least 1 and below 4, and n(t) is in the range
+/// of float32.
 struct FlaggedNormals {
   ControlNormals normals;
-  /// n(t) has a direction if its largest component is above the quadratic with these control values. Each is the share
-  /// smallest_certain() of a control normal, and enough for float32 to hold the square of n(t). It is infinite if the
-  /// element cannot be scaled.
+  /// n(t) has a direction if its largest component is above the quadratic with these control values. Each value is the
+  /// share smallest_certain() of a control normal, and large enough for float32 to hold the square of n(t). A value is
+  /// infinite if the element cannot be scaled.
   std::array<float, 3> limits{};
-  std::int16_t exponent = 0;  ///< the element is 2^exponent times what is stored
+  std::int16_t exponent = 0;  ///< the stored value is the element times 2^-exponent
 
   /// Scales control normals whose n(t) has a direction if its largest component is above the share `certain` of sum w_k
   /// max_abs(c_k) (certificate.h).
@@ -57,7 +57,7 @@ struct alignas(64) FlaggedTile {
 /// Limits are rounded up, and none is below the least.
 inline constexpr double kLimitUp = 1 + 0x1p-20, kLeastLimit = 0x1p-50;
 
-/// Holds the unit normals of a tile.
+/// The unit normals of a tile.
 struct alignas(64) FlaggedUnits {
   float xyz[3 * kTile];     ///< (kTile, 3)
   std::uint32_t uncertain;  ///< bit i: n(t) of element i is not certain

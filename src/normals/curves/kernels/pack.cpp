@@ -28,20 +28,20 @@ struct LaneTests {
   std::uint32_t certain = 0, fits11 = 0, fits16 = 0, moving = 0, bending = 0;
 };
 
-// Holds three control normals of a piece of each curve, and their lengths.
+// Three control normals of a piece of each curve, and their lengths.
 struct Piece {
   Lanes3 n0, m, n1;
   Floats l0, lm, l1;
 };
 
-// Holds what the quartics of a piece show: whether n(t) stays long enough for float32, and if so a lower bound of
+// The result of testing the quartics of a piece: whether n(t) stays long enough for float32, and if so a lower bound of
 // |n(t)|^2.
 struct PieceTest {
   hn::Mask<FloatTag> certain;
   Floats shortest_square;
 };
 
-// Halves are examined down to this depth if the whole piece shows nothing.
+// If a test of the whole piece is inconclusive, halves are tested down to this depth.
 inline constexpr int kPieceDepth = 2;
 
 HWY_INLINE Floats Middle(Floats a, Floats b) { return hn::Mul(hn::Set(kFloats, 0.5f), hn::Add(a, b)); }
@@ -73,7 +73,7 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
     if (hn::AllFalse(kFloats, open)) return whole;
     const Lanes3 a = Middle(p.n0, p.m), b = Middle(p.m, p.n1), c = Middle(a, b);
     const Floats la = Middle(p.l0, p.lm), lb = Middle(p.lm, p.l1), lc = Middle(la, lb);
-    // Both halves end here, so neither helps a lane that is too short here.
+    // Both halves end at this point, so halving does not help a lane that is too short here.
     open = hn::And(open, hn::Ge(hn::Mul(sum_ratio_square, Dot(c, c)), hn::Mul(lc, lc)));
     if (hn::AllFalse(kFloats, open)) return whole;
     const PieceTest before = TestPiece<kDepth - 1>({p.n0, a, c, p.l0, la, lc}, open, enough);
@@ -94,7 +94,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
   const Floats largest = hn::Max(hn::Max(MaxAbs(n0), MaxAbs(m)), MaxAbs(n1));
   const auto in_range = hn::And(hn::Ge(largest, smallest_largest), hn::Le(largest, largest_largest));
 
-  // Scale by a power of two into [1, 2), so that fourth powers stay in range.
+  // Values are scaled by a power of two into [1, 2), so that fourth powers stay in range.
   const Ints exponent = hn::And(hn::BitCast(kInts, largest), hn::Set(kInts, 0x7F800000));
   const Floats scale = hn::BitCast(kFloats, hn::Sub(hn::Set(kInts, 0x7F000000), exponent));
   n0 = Scale(scale, n0);
@@ -124,7 +124,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
 
   const auto unknown = hn::AndNot(certain, in_range);
   if (!hn::AllFalse(kFloats, unknown)) {
-    // Eleven bits are hardly ever enough for such elements, unless the tolerance is large.
+    // Eleven bits rarely suffice for such elements, unless the tolerance is large.
     const Floats fewest = hn::Set(kFloats, 3.0f);
     const auto try11 = hn::Ge(square11, fewest), try16 = hn::Gt(square16, hn::Zero(kFloats));
     const Floats wanted = hn::IfThenElse(try11, square11, square16);
@@ -256,7 +256,8 @@ HWY_INLINE Ints ExponentBelow(Floats largest, const Lanes3& c) {
   const auto field = [](Floats v) HWY_ATTR { return hn::ShiftRight<23>(hn::BitCast(kInts, v)); };
   const Floats own = MaxAbs(c);
   const Ints difference = hn::Sub(field(largest), field(own));
-  // Take one less if the digits of own are above the digits of largest, so that own 2^e does not exceed largest.
+  // The exponent is one less if the digits of own are above the digits of largest, so that own 2^e does not exceed
+  // largest.
   const auto fraction = [](Floats v) HWY_ATTR { return hn::And(hn::BitCast(kInts, v), hn::Set(kInts, 0x7FFFFF)); };
   const Ints one_less = hn::VecFromMask(kInts, hn::Gt(fraction(own), fraction(largest)));
   const Ints exponent = hn::Add(difference, one_less);
@@ -344,7 +345,7 @@ namespace chronormal::inline internal {
 
 PrecisionLimits PrecisionLimits::for_tolerance(double radians) noexcept {
   constexpr double kSqrt3 = 1.7320508075688772;
-  // Turn a chord into its angle, and leave some of the tolerance for the rounding of float32 itself.
+  // A chord is turned into its angle, and some of the tolerance is left for the rounding of float32 itself.
   const double error = 0.99 * (std::fmin(radians, kLargestTolerance) - 5e-7);
 
   PrecisionLimits limits;

@@ -20,23 +20,23 @@ struct PrecisionLimits {
   /// The limits of sum w_k |c_k| / |n(t)| for kScaled16 and k32.
   double sum_ratio_scaled16 = 0, sum_ratio32 = 0;
 
-  /// The limit of `magnitude` / |n(t)|, where `magnitude` is at least the largest component. In tiles that were made in
-  /// double, noise is below 2^-45 of it (12 u for a face, and u for each of up to 100 that are added), so it turns n(t)
-  /// by less than 2^-24, and no control normal is below 2^-21 of the largest.
+  /// The limit of `magnitude` / |n(t)|, where `magnitude` is at least the largest component. In tiles that were
+  /// computed in double, noise is below 2^-45 of the magnitude (12 u for a face, and u for each of up to 100 faces that
+  /// are added). So noise turns n(t) by less than 2^-24, and no control normal is below 2^-21 of the largest.
   double largest_magnitude = 0x1p21;
 
-  /// Above this tolerance, in radians, the difference of a chord and its angle would matter.
+  /// Above this tolerance, in radians, the difference between a chord and its angle would matter.
   static constexpr double kLargestTolerance = 0.2;
   [[nodiscard]] static PrecisionLimits for_tolerance(double radians) noexcept;
-  /// Returns the limits for tiles that were made in float32, where `magnitude` is a bound on the error of a component.
-  /// That error may take a small part of the tolerance, and the blocks get the rest. Returns nothing if the tolerance
-  /// is too small for that.
+  /// Returns the limits for tiles that were computed in float32, where `magnitude` is a bound on the error of a
+  /// component. That error may take a small part of the tolerance, and the blocks get the rest. Returns nothing if the
+  /// tolerance is too small for float32.
   [[nodiscard]] static std::optional<PrecisionLimits> for_float_tiles(double radians) noexcept;
 };
 
-/// Holds what the quick test shows of a tile.
+/// The result of the quick test of a tile.
 struct TileSummary {
-  std::uint32_t uncertain = 0;           ///< bit i: element i must be looked at in double
+  std::uint32_t uncertain = 0;           ///< bit i is set if element i must be examined in double
   std::uint32_t moving = 0;              ///< bit i: its degree is 1 or 2
   std::uint32_t bending = 0;             ///< bit i: its degree is 2
   Precision precision = Precision::k11;  ///< suffices for all other elements
@@ -49,8 +49,8 @@ struct TileSummary {
 };
 
 /// Finds the elements for which some operations in float32 show that they stay long enough: all three control normals
-/// lie within some 70 degrees of n0 + 2 m + n1, or eq. 11 holds for the curve, its halves or its quarters. They must
-/// also be well above the noise of their products and within the range of float32.
+/// are within about 70 degrees of n0 + 2 m + n1, or eq. 11 holds for the curve, its halves or its quarters. The
+/// elements must also be well above the noise of their products and within the range of float32.
 void summarize_tiles(std::span<const ControlTile> tiles, const PrecisionLimits& limits,
                      std::span<TileSummary> summaries) noexcept;
 

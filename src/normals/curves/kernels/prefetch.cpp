@@ -1,4 +1,4 @@
-// Takes the times of trials, and finds the distance with the shortest median.
+// Records the times of trials, and finds the distance with the shortest median.
 #include "normals/curves/kernels/prefetch.h"
 
 #include <algorithm>
@@ -8,7 +8,8 @@ namespace chronormal::inline internal {
 
 std::optional<std::size_t> PrefetchRule::next() noexcept {
   const std::size_t all = kTrials * distances_;
-  // Several threads may pass the first line at once, and each takes a number here. Later threads do not count on.
+  // Several threads may pass the first line at once, and each of them takes a number here. Later threads do not
+  // increase the counter.
   if (trials_.load(std::memory_order_relaxed) >= all) {
     if (calls_.fetch_add(1, std::memory_order_relaxed) % kCallsBetween != kCallsBetween - 1) return std::nullopt;
     trials_.store(0, std::memory_order_relaxed);
@@ -47,7 +48,8 @@ class Rules {
   PrefetchRule& operator[](WorkingSet set) noexcept { return rules_[static_cast<std::size_t>(set)]; }
 
  private:
-  // In near caches, a trial may meet curves that something else has pushed out, and would then prefetch too far ahead.
+  // In small caches, a trial may find that other data has evicted the curves, and would then choose to prefetch too far
+  // ahead.
   std::array<PrefetchRule, kWorkingSets> rules_ = {PrefetchRule(1), PrefetchRule(2), PrefetchRule(), PrefetchRule()};
 };
 

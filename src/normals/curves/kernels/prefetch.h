@@ -1,10 +1,11 @@
-/// Finds out, on the machine where it runs, how far ahead an evaluation should prefetch its curves, or whether at all.
+/// Measures, on the machine where the program runs, how far ahead an evaluation should prefetch its curves, and whether
+/// it should prefetch at all.
 ///
-/// Cores differ: one works best when it prefetches 8 KiB or more ahead, another 2 KiB, and a third needs no help and
-/// loses a third of its speed to prefetches. So the first passes over a working set try several distances in turn, with
-/// 128 KiB of curves each time. From then on, all threads use the distance that was fastest in the median. Now and then
-/// the trials are repeated, since other work of the machine may have decided them, and changes. Results do not depend
-/// on it.
+/// Cores differ. One core is fastest if it prefetches 8 KiB or more ahead, another if it prefetches 2 KiB ahead, and a
+/// third needs no help and loses a third of its speed to prefetches. So the first passes over a working set try several
+/// distances in turn, with 128 KiB of curves each time. From then on, all threads use the distance that was fastest in
+/// the median. Now and then the trials are repeated, since other work on the machine may have influenced them, and that
+/// work changes. Normals do not depend on the distance.
 ///
 ///     a span   [2 KiB][none][4 KiB][8 KiB][16 KiB] the rest at the best so far    until each has had its trials
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_PREFETCH_H_
@@ -32,27 +33,27 @@ class PrefetchRule {
   static constexpr std::size_t kTrialBytes = std::size_t{128} << 10;                      // bytes of curves in a trial
   static constexpr std::size_t kCallsBetween = 1024;  // calls of next() without a trial before trials are repeated
 
-  /// Makes a rule that tries the first few of these distances.
+  /// Creates a rule that tries the first few of these distances.
   explicit PrefetchRule(std::size_t distances = kDistances.size()) noexcept : distances_(distances) {}
 
-  /// Returns the best distance so far, or the first one if none was tried.
+  /// Returns the best distance so far, or the first distance if none was tried.
   [[nodiscard]] std::size_t best() const noexcept { return best_.load(std::memory_order_relaxed); }
   /// Returns the number of the distance to try next, or nothing if the trials are over for a while.
   [[nodiscard]] std::optional<std::size_t> next() noexcept;
-  /// Takes the time per byte of a trial with the distance of this number.
+  /// Records the time per byte of a trial with the distance of this number.
   void take(std::size_t distance, float nanoseconds_per_byte) noexcept;
 
-  /// Calls evaluate(first, count, ahead) for all elements, in order: for parts of whole tiles with which distances are
-  /// tried, as long as there are trials left, and then for the rest at the best distance.
+  /// Calls evaluate(first, count, ahead) for all elements, in order. As long as trials are left, the first calls get
+  /// parts of whole tiles, with the distances to try; then one call gets the rest, with the best distance.
   template <class Evaluate>
   void over(std::size_t elements, std::size_t bytes_of_element, const Evaluate& evaluate);
 
  private:
   std::size_t distances_;
-  std::atomic<std::size_t> trials_ = 0;  // trials that were given out
+  std::atomic<std::size_t> trials_ = 0;  // number of trials that threads have taken
   std::atomic<std::size_t> calls_ = 0;   // calls that found no trial
   std::atomic<std::size_t> best_ = kDistances[0];
-  // Holds the trials of each distance in nanoseconds per byte; 0 if one is not over yet.
+  // The trials of each distance in nanoseconds per byte. The value is 0 while a trial is not finished.
   std::array<std::array<std::atomic<float>, kTrials>, kDistances.size()> times_ = {};
   std::array<std::atomic<std::size_t>, kDistances.size()> counts_ = {};
 };
@@ -74,8 +75,9 @@ void PrefetchRule::over(std::size_t elements, std::size_t bytes_of_element, cons
   if (first < elements) evaluate(first, elements - first, best());
 }
 
-/// Returns a rule of this process. There is one for each working set of curves along straight lines, and of curves
-/// along paths. Small sets always take 2 KiB, and medium ones take 2 KiB or none.
+/// Returns a rule of this process. There is one rule for each working set, separately for curves along straight lines
+/// and for curves along paths. Small sets always prefetch 2 KiB ahead, and medium sets choose between 2 KiB and no
+/// prefetch.
 [[nodiscard]] PrefetchRule& prefetch_of_curves(WorkingSet set) noexcept;
 [[nodiscard]] PrefetchRule& prefetch_of_paths(WorkingSet set) noexcept;
 

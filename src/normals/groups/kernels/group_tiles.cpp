@@ -33,7 +33,7 @@ namespace chronormal::inline internal {
 // The rounding error of a sum over a path of up to kMostPathPoints is below half of this share of its magnitude.
 inline constexpr float kSumErrorAbove = 0x1p-43f;
 
-// Holds everything that a kernel reads.
+// All inputs of a kernel.
 struct RingInput {
   const Segment& segment;
   const NormalGroups& groups;
@@ -41,12 +41,12 @@ struct RingInput {
   bool fetch;
 };
 
-// Holds both ends of a point of each lane: from.x of sixteen, from.y, from.z, to.x, to.y, to.z.
+// Both ends of a point of each lane, stored as from.x of sixteen lanes, then from.y, from.z, to.x, to.y, to.z.
 struct alignas(64) PointColumns {
   float at[6][kTile];
 };
 
-// Writes the sum that group_control_normals() makes into one lane of both tiles, with zero for what is nothing but
+// Writes the sum that group_control_normals() computes into one lane of both tiles, with zero in place of mere
 // rounding.
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               ExactTile& exact, ControlTile& tile) noexcept;
@@ -112,7 +112,7 @@ HWY_INLINE void StoreColumns(const Doubles3& v, double (*to)[kTile], std::size_t
   hn::Store(v.z, kDoubles, to[2] + lane);
 }
 
-// Holds n0, n1 and twice m of a path.
+// The values n0, n1 and twice m of a path.
 struct RingSum {
   Doubles3 n0, m, n1;
 
@@ -154,8 +154,8 @@ HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, s
   };
   const auto distance = [&](std::size_t a, std::size_t b)
                             HWY_ATTR { return MaxAbs(at(a, 0) - at(b, 0), at(a, 1) - at(b, 1)); };
-  // Take a little more than twice the products, for their rounding and the rounding of their sum, and a tiny number in
-  // case one of them underflows.
+  // The factor is a little more than twice the products, for their rounding and the rounding of their sum; a tiny
+  // number is added in case one of them underflows.
   const Floats factor = hn::Set(kFloats, 2.0f + 0x1p-17f);
   const Floats tiny = hn::Set(kFloats, std::numeric_limits<float>::min());
   Floats sum = hn::Zero(kFloats);
@@ -168,8 +168,8 @@ HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, s
   return sum;
 }
 
-// Stores bounds on the errors of a sum over a path, for half of the lanes: 4 u of every product, and one u for each
-// addition; twice that is taken for safety.
+// Stores bounds on the errors of a sum over a path, for half of the lanes. The errors are 4 u of every product and u
+// for each addition; the bound is twice their sum for safety.
 HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::size_t lane, double (*errors)[kTile]) {
   const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
     const auto& plane = points[r].at + 3 * end;
@@ -179,7 +179,7 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
   };
   const auto distance = [&](std::size_t a, std::size_t b, std::size_t end) HWY_ATTR {
     const auto d = at(a, end) - at(b, end);
-    // Take a little more, for the rounding of the difference.
+    // The result is a little more, for the rounding of the difference.
     return hn::Mul(hn::Set(kDoubles, 1 + 0x1p-20),
                    hn::PromoteTo(kDoubles, hn::Max(hn::Max(hn::Abs(d.x), hn::Abs(d.y)), hn::Abs(d.z))));
   };
@@ -193,7 +193,7 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
   for (; r + 1 < rows; r += 2)
     add(distance(r, 0, 0), distance(r, 0, 1), distance(r + 1, r - 1, 0), distance(r + 1, r - 1, 1));
   if (r < rows) add(distance(r - 1, 0, 0), distance(r - 1, 0, 1), distance(r, 0, 0), distance(r, 0, 1));
-  // Each component has two of these products, and m is half of a sum.
+  // Each component has two of these products for each pair of points, and m is half of a sum.
   const std::size_t most_products = rows / 2 + 1;
   const Doubles share = hn::Set(kDoubles, 4 * kUnitRoundoff * static_cast<double>(most_products + 4));
   hn::Store(hn::Mul(share, n0), kDoubles, errors[0] + lane);
@@ -211,7 +211,7 @@ HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows,
     const Floats magnitude = MagnitudeAbove(points, rows, lane);
     hn::Store(magnitude, kFloats, tile.magnitude + lane);
     const Floats error = hn::Mul(hn::Set(kFloats, kSumErrorAbove), magnitude);
-    // NaN is doubtful, too.
+    // NaN counts as doubtful, too.
     auto some = hn::Ne(magnitude, magnitude);
     for (std::size_t k = 0; k < 9; ++k) {
       const Floats v = ToFloat(exact.normals[k] + lane);
@@ -243,8 +243,8 @@ HWY_INLINE void LoadRing(const RingInput& input, PointAccess access, const std::
 // Writes a tile entirely in float32, with its error in place of its magnitude.
 template <PointAccess kAccess>
 HWY_INLINE void FloatTile(const Segment& segment, const std::uint32_t* indices, std::size_t rows, ControlTile& tile) {
-  // Take a little more than twice the products, for their rounding and the rounding of their sum, and a tiny number in
-  // case one of them underflows.
+  // The factor is a little more than twice the products, for their rounding and the rounding of their sum; a tiny
+  // number is added in case one of them underflows.
   const Floats factor = hn::Set(kFloats, 2.0f + 0x1p-17f);
   const Floats tiny = hn::Set(kFloats, std::numeric_limits<float>::min());
   const Floats roundings = RoundingsInFloat(rows / 2 + 1);
@@ -412,7 +412,7 @@ void GroupTiles::set_alone(std::size_t element, IndexRange elements, std::span<C
     ControlTile& tile = tiles[i / kTile];
     put(tile, i % kTile, normals);
     tile.degree[i % kTile] = degree(normals);
-    // The reader must not trust this tile, but ask for the element in double.
+    // Infinity tells the reader not to trust this tile, but to request the element in double.
     tile.magnitude[i % kTile] = std::numeric_limits<float>::infinity();
   }
 }

@@ -1,4 +1,4 @@
-/// Control normals of vertices and corners, sixteen at a time. NormalCurves::of_groups starts here.
+/// The control normals of vertices and corners, sixteen at a time. NormalCurves::of_groups starts from them.
 #ifndef CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_
 #define CHRONORMAL_NORMALS_GROUPS_KERNELS_GROUP_TILES_H_
 
@@ -25,15 +25,15 @@ class GroupTiles {
   /// scattered in memory.
   GroupTiles(const Segment& segment, const NormalGroups& groups, bool fetch);
 
-  /// Writes the tiles of a range of elements (see ControlTile). The values are the ones of group_control_normals()
-  /// except for the rounding of sums in another order: they are within 2^-47 of the magnitude of the sum, rounded to
-  /// float32, and zero if they are no larger than that. Elements with many faces are added up as
-  /// group_control_normals() does. elements must begin at a multiple of 16, and end at one or at the last element;
-  /// elements.count > 0; tiles must have ceil(elements.count / 16) elements
+  /// Writes the tiles of a range of elements (see ControlTile). The values are those of group_control_normals() except
+  /// for the rounding of sums in another order: they are within 2^-47 of the magnitude of the sum, rounded to float32,
+  /// and zero if they are no larger than that bound. Elements with many faces are added up as in
+  /// group_control_normals(). elements must begin at a multiple of 16, and end at a multiple of 16 or at the last
+  /// element; elements.count > 0; tiles must have ceil(elements.count / 16) elements
   void write(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
-  /// Writes tiles, and for each tile its sums in double before any correction, with bounds on their errors, for a
-  /// closer look. Elements with many faces are left out of the sums. bounded must have as many elements as tiles
+  /// Writes tiles and, for a closer examination of each tile, its sums in double before any correction, with bounds on
+  /// their errors. Elements with many faces are left out of the sums. bounded must have as many elements as tiles
   void write(IndexRange elements, std::span<ControlTile> tiles, std::span<BoundedTile> bounded) const noexcept;
 
   /// Writes the tiles of a range of elements entirely in float32, in about half the time. `magnitude` bounds the error
@@ -41,7 +41,7 @@ class GroupTiles {
   /// error, so that its degree is 2 without a doubt, and at most 1 elsewhere. The preconditions are the ones of write()
   void write_in_float(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
-  /// Returns the faces that its elements share, for a closer look at them.
+  /// Returns the faces that elements share, for a closer examination of these faces.
   [[nodiscard]] const SharedFaces& faces() const noexcept { return faces_; }
 
  private:

@@ -1,4 +1,4 @@
-// Computes triangles a few at a time, one per lane. Sums are made one by one, each row in as few registers as the
+// Computes triangles a few at a time, one per lane. Sums are computed one by one, each row in as few registers as the
 // machine has for four doubles.
 #include "normals/groups/kernels/vector_areas.h"
 
@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Returns value, or 0 if it is not above the error.
+// Returns value, or 0 if value is not above the error.
 template <class V>
 HWY_INLINE V WithoutRounding(V value, V error) {
   return hn::IfThenElseZero(hn::Gt(hn::Abs(value), error), value);

@@ -126,7 +126,7 @@ void InterpolatePoints(VectorView<const float> from, VectorView<const float> to,
   std::size_t v = points.first;
 #if HWY_TARGET != HWY_SCALAR
   if (from.is_packed() && to.is_packed()) {
-    // Load kLanes floats of packed points; the first three of every four become a row.
+    // kLanes floats of packed points are loaded; the first three of every four become a row.
     constexpr std::size_t kRows = kLanes / 4;
     alignas(64) std::int32_t place[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i)

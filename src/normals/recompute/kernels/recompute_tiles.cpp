@@ -1,4 +1,4 @@
-// Evaluates triangles in lanes of float32, thin ones in lanes of double, and marks the doubtful ones.
+// Evaluates triangles in lanes of float32 and thin triangles in lanes of double, and marks doubtful triangles.
 #include "normals/recompute/kernels/recompute_tiles.h"
 
 #include <algorithm>
@@ -81,7 +81,7 @@ using Sum = SumOf<kLanes == 4 ? 2 : 1>;
 struct alignas(64) EdgeBlock {
   float start_e[3][kBlock], start_f[3][kBlock], end_e[3][kBlock], end_f[3][kBlock];
   const std::uint32_t* corners;
-  std::uint32_t padded[3 * kBlock];  // the corners of a block of fewer than 16 faces
+  std::uint32_t padded[3 * kBlock];  // the corners of a block of fewer than 16 faces, filled up
   bool has_last;                     // whether one of the corners is the last vertex, after which nothing may be read
 };
 
@@ -124,7 +124,7 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
 
 constexpr bool kReadsBehind = true;
 
-// Holds the edges of faces k, k + 4, ... as rows.
+// The edges of faces k, k + 4, ... as rows.
 struct EdgeRows {
   Floats e0, f0, e1, f1;
 };
@@ -144,7 +144,7 @@ HWY_INLINE EdgeRows RowsOfEdges(const float* from, const float* to, const std::u
   return {hn::Sub(b0, a0), hn::Sub(c0, a0), hn::Sub(b1, a1), hn::Sub(c1, a1)};
 }
 
-// Loads edges, and reads one float behind each vertex.
+// Loads edges. The loads read one float behind each vertex.
 template <std::size_t kStride>
 HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_t* corners, EdgeBlock& block) {
   for (std::size_t k = 0; k < kBlock; k += kLanes, corners += 3 * kLanes) {
@@ -247,7 +247,7 @@ HWY_INLINE Doubles3 ExactNormal(const CornersAtEnd& from, const CornersAtEnd& to
 }
 template <int kHalf>
 HWY_INLINE Doubles3 ExactUnit(const Doubles3& n, Floats scale) {
-  // Two steps of Newton's method each double the digits.
+  // Each of the two steps of Newton's method doubles the number of digits.
   const Doubles half_square = hn::Mul(hn::Set(kDoubles, 0.5), Dot(n, n)), three_halves = hn::Set(kDoubles, 1.5);
   Doubles y = ToDouble<kHalf>(scale);
   for (int step = 0; step < 2; ++step) y = hn::Mul(y, hn::Sub(three_halves, hn::Mul(hn::Mul(half_square, y), y)));
@@ -267,8 +267,8 @@ HWY_NOINLINE FineNormals FineNormalsAt(const MovingTriangles& triangles, const E
   FineNormals fine;
   fine.n = Joined(lower, upper);
   fine.square = Dot(fine.n, fine.n);
-  // Do not take the square times the largest share: it may be infinite, and then would not be below an infinite
-  // product.
+  // The square is not multiplied by the largest share, since it may be infinite, and then would not be below an
+  // infinite product.
   const auto precise = hn::Le(hn::Mul(product, hn::Set(kFloats, 1 / kMaxThinProduct)), fine.square);
   fine.trusted = hn::And(precise, InRange(hn::Min(fine.square, smaller), fine.square));
   const Floats one = hn::Set(kFloats, 1.0f);
@@ -281,7 +281,7 @@ HWY_INLINE Lanes3 Select(hn::Mask<FloatTag> mask, const Lanes3& yes, const Lanes
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-// Returns whether one of the 48 corners of a block is this vertex.
+// Returns true if one of the 48 corners of a block is this vertex.
 HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
   const auto wanted = hn::Set(kIndices, vertex);
   auto found = hn::Eq(hn::LoadU(kIndices, corners), wanted);
@@ -301,7 +301,7 @@ HWY_INLINE void Fetch(const MovingTriangles& triangles, const std::uint32_t* cor
   }
 }
 
-// Loads the edges of a block of faces. If there are fewer than 16, it repeats the last.
+// Loads the edges of a block of faces. If there are fewer than 16 faces, the last face is repeated.
 template <std::size_t kStride>
 HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, std::size_t count, EdgeBlock& block) {
   const auto last = static_cast<std::uint32_t>(triangles.vertex_count - 1);
@@ -321,8 +321,8 @@ HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, s
   }
 }
 
-// Calls body(place, normals, fine) for every kLanes faces of a range, where fine() computes them from exact edges. The
-// next block is loaded before the current one is processed, so that the machine does both at once.
+// Calls body(place, normals, fine) for every kLanes faces of a range, where fine() computes the normals from exact
+// edges. The next block is loaded before the current block is processed, so that the machine does both at once.
 template <std::size_t kStride, class Body>
 HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    const Body& body) {
@@ -409,7 +409,7 @@ HWY_INLINE std::size_t GroupNormals(const NormalGroups& groups, IndexRange eleme
       Sum sum;
       const std::uint32_t* const faces_end = f + groups.faces(elements.first + i + k).size();
       if (!window.fetch && faces_end - f == 6) {
-        // Six faces are by far the most frequent number.
+        // A vertex has six faces far more often than any other number.
         for (int term = 0; term < 6; ++term) sum.Add(window.normals[f[term] & window.mask]);
         f = faces_end;
       }

@@ -8,13 +8,14 @@
 ///     E F         <= sqrt(A B), A = s|e0|^2 + t|e1|^2 (Jensen), and B likewise
 ///
 /// so n is within 1e-6 rad if 2.31 sqrt(A B) <= 14.7 |n|. This holds for triangles with more than 9 degrees at their
-/// first corner that do not shrink much on their way. *Thin* ones are made anew of exact edges, entirely in double:
+/// first corner that do not shrink much on their way. *Thin* triangles are recomputed from exact edges, entirely in
+/// double:
 ///
 ///     n           in double: edges from exact differences         |error of n| <= 20 2^-53 E F
 ///     unit        in double, and rounded to float32 at the end    2^-24
 ///
-/// which is enough if that error is at most 2^-23 |n|, that is, if A B <= 2^50 |n|^2. Other faces are *doubtful*, and
-/// left to the caller, who examines them one by one.
+/// These errors are small enough if the error of n is at most 2^-23 |n|, that is, if A B <= 2^50 |n|^2. Other faces are
+/// *doubtful*, and left to the caller, which examines them one by one.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 #define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 
@@ -31,7 +32,7 @@ namespace chronormal::inline internal {
 /// Triangles are not thin if A B is at most this share of |n|^2: 2.31 sqrt(40) <= 14.7.
 inline constexpr float kMostProduct = 40;
 
-/// Holds triangles as the kernels read them. Positions are packed, or paired as x0 y0 z0 _ x1 y1 z1 _ for each vertex.
+/// Triangles as the kernels read them. Positions are packed, or paired as x0 y0 z0 _ x1 y1 z1 _ for each vertex.
 struct MovingTriangles {
   const std::uint32_t* corners = nullptr;  ///< three for each face
   std::size_t face_count = 0;
@@ -42,25 +43,25 @@ struct MovingTriangles {
   bool is_coherent = true;  ///< neighbouring faces have neighbouring vertices, so nothing is prefetched
 };
 
-/// Holds n(t) of a face, and a bound of its error: 2^-24 `error`.
+/// The vector n(t) of a face, and a bound of its error, which is 2^-24 `error`.
 struct alignas(16) FaceNormal {
   float x, y, z, error;
 };
 
-/// Up to this multiple of |n|^2, A B leaves double precise enough. The remaining error is below kThinError sqrt(A B),
-/// in units of 2^-24.
+/// Up to this multiple of |n|^2, the product A B leaves double precise enough. The remaining error is below kThinError
+/// sqrt(A B), in units of 2^-24.
 inline constexpr float kMaxThinProduct = 0x1p50f, kThinError = 0x1p-24f;
 
-/// Says where the normals of faces are: the normal of face f is normals[f & mask].
+/// The place of the normals of faces: the normal of face f is normals[f & mask].
 struct NormalWindow {
   const FaceNormal* normals = nullptr;
   std::size_t mask = 0;
   bool fetch = false;  ///< whether they are scattered in memory, and have to be prefetched
 };
 
-/// Writes the unit normals of a range of faces, and into `doubtful` the places in the range that are not to be trusted.
-/// Returns the number of doubtful places. `stream` writes past the caches if the result is packed and aligned to 64
-/// bytes. faces.count > 0; result must have faces.count elements, doubtful as much room
+/// Writes the unit normals of a range of faces, and into `doubtful` the places in the range whose normals are not
+/// reliable. Returns the number of doubtful places. `stream` bypasses the caches if the result is packed and aligned to
+/// 64 bytes. faces.count > 0; result must have faces.count elements, and doubtful must have as much room
 std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
 
@@ -70,7 +71,7 @@ std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange 
 
 /// Adds up the normals around each element in the order of groups.faces(), and writes unit normals. Elements are
 /// doubtful if their faces cancel, or if the sum is (0, 0, 0). elements.count > 0; result must have elements.count
-/// elements, doubtful as much room
+/// elements, and doubtful must have as much room
 std::size_t recompute_group_normals(const NormalGroups& groups, IndexRange elements, const NormalWindow& window,
                                     VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
 
