@@ -29,23 +29,23 @@ namespace chronormal::inline internal {
 
 /// Writes the weights of the targets that are involved in a motion, at t of a segment.
 using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
-/// Returns the weight or the time by which a person finds a moment.
+/// A function that returns the weight or the time by which a person finds a moment.
 using Moment = std::function<double(std::size_t segment, double t)>;
 
 class BlendSource {
  public:
   static constexpr bool kNeedsEnds = false;
 
-  /// shading, truth, part and the skin through which the mesh is seen, if there is one, must outlive this. If its
-  /// joints move, moment returns the time. Outputs are the outputs of the part. involved lists targets in ascending
-  /// order: weights has one value for each of them, and all other targets always have weight 0. Each segment is placed
-  /// at `samples` moments, one after the other.
+  /// shading, truth, part and the skin through which the mesh is seen, if there is one, must outlive the object. If the
+  /// joints of the skin move, moment returns the time. Outputs are the outputs of the part. involved lists targets in
+  /// ascending order: weights has one value for each of them, and all other targets always have weight 0. Each segment
+  /// is placed at `samples` moments, one after the other.
   BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
               std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
               MeshSkin* skin = nullptr);
 
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
-  /// Writes the positions at any weights, and keeps the placed moment as it is.
+  /// Writes the positions at any weights. The placed moment stays unchanged.
   void place_at(std::span<const double> weights, std::span<Vec3d> positions);
   /// Returns the weights of the placed moment.
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
@@ -58,7 +58,7 @@ class BlendSource {
   void turn_at(std::span<const double> weights, std::span<const Vec3d> positions, std::span<Vec3d> normals) const;
   /// Adds up the rendered normals at the placed moment, and finds how the skin transforms them.
   void show();
-  /// Returns a normal of the i-th output as it is seen, of any length: carried along by the skin, if there is one.
+  /// Returns a normal of the i-th output as a person sees it, of any length: transformed by the skin, if there is one.
   [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const noexcept;
   /// Tells whether the skin collapses the true normal, so that no target could render it.
   [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const;
@@ -69,8 +69,8 @@ class BlendSource {
 
  private:
   using Delta = std::pair<std::uint32_t, Vec3f>;
-  // Holds weights and positions at both ends of a segment. Tracks are mostly linear in between, and then vertices move
-  // on straight lines, so that the deltas of many targets are added up at the ends only.
+  // Weights and positions at both ends of a segment. Tracks are mostly linear between the ends. Then vertices move on
+  // straight lines, and the deltas of many targets are added up at the ends only.
   struct SegmentEnds {
     std::size_t segment = 0;
     std::vector<double> start, end;  // weights
@@ -93,7 +93,7 @@ class BlendSource {
   Weights weights_at_;
   Moment moment_;
   MeshSkin* skin_;
-  std::vector<AffineTransform> carriers_;  // of outputs, if there is a skin
+  std::vector<AffineTransform> carriers_;  // one transform for each output, if there is a skin
   std::size_t placed_ = 0;
   std::vector<std::optional<std::vector<Delta>>> moved_;  // of each involved target, once requested
   std::vector<ShownTurn> turns_;                          // of outputs

@@ -31,7 +31,7 @@
 namespace chronormal {
 namespace {
 
-// Everything that the audit of one mesh needs to know.
+// All inputs for the audit of one mesh.
 struct MeshAudit {
   const GltfDocument& document;
   const AuditOptions& options;
@@ -55,7 +55,7 @@ std::optional<MeshSkin> read_skin(const GltfDocument& document, const GltfShadin
   return std::nullopt;
 }
 
-// Reads the skin of the first node that has one and carries the mesh, as the file poses it.
+// Reads the skin of the first node that has a skin and this mesh, posed as in the file.
 std::optional<MeshSkin> standing_skin(const GltfDocument& document, const GltfShading& shading,
                                       std::map<std::size_t, Error>& unread) {
   const std::vector<GltfNode>& nodes = document.nodes();
@@ -100,7 +100,7 @@ void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, Auth
   }
 }
 
-// Notes the angles between base normals and the geometry, if there are base normals.
+// Records the angles between base normals and the geometry, if there are base normals.
 void note_offset(const GltfShading& shading, const AuthorTruth& truth, std::optional<Weighting> asked, Audit& result) {
   const AuthoredWeighting authored = find_authored_weighting(shading);
   const bool any_shaded = std::any_of(shading.element_of_vertex.begin(), shading.element_of_vertex.end(),
@@ -115,7 +115,7 @@ void note_offset(const GltfShading& shading, const AuthorTruth& truth, std::opti
   result.offsets.push_back(offset);
 }
 
-// Reads the mesh as it was before it was baked; returns nothing if the original is not known.
+// Reads the mesh as it was before the bake. Returns nothing if the original is not known.
 Result<std::optional<GltfShading>> shading_of_author(const AuditOptions& options, const GltfShading& baked) {
   if (options.author == nullptr || baked.mesh >= options.author->meshes().size()) return std::optional<GltfShading>();
   Result<GltfShading> read = read_gltf_shading(*options.author, baked.mesh, {.weld = options.weld});
@@ -125,7 +125,7 @@ Result<std::optional<GltfShading>> shading_of_author(const AuditOptions& options
   return is_same ? std::optional(std::move(read).value()) : std::nullopt;
 }
 
-// Targets that take part in a motion, ascending.
+// The targets that take part in a motion, in ascending order.
 using Involved = std::vector<std::size_t>;
 
 JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
@@ -165,8 +165,8 @@ Weights of_involved(const Involved& involved, std::size_t targets, Weights all_w
   };
 }
 
-// The segments of a track, or the one segment of a target. All of them are in memory, so that no error can occur. Of
-// long tracks only every step-th segment is measured.
+// The segments of a track, or the one segment of a target. All of them are in memory, so that no error can occur. In
+// long tracks, only every step-th segment is measured.
 struct SegmentsOfTrack {
   std::size_t count, step;
   const std::function<void()>& progress;
@@ -336,7 +336,7 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
                       std::move(subject), subject_index);
 }
 
-// Audits all tracks of a mesh. Tracks with the same keys are measured once, but each of them is a subject.
+// Audits all tracks of a mesh. Tracks with the same keys are measured once, but each track is a subject.
 Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_targets_judged, double worst_target,
                     Audit& result) {
   // The key is the animation, same_keys_as, and the skin of the node.
@@ -419,7 +419,8 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
   add_subject(std::move(*measured), result);
 }
 
-// Lists the distinct weights with which a file opens, except all zeros, and the first node that shows each of them.
+// Lists the distinct weights with which a file opens, except all zeros, and the first node that shows each set of
+// weights.
 std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> opening_poses(const GltfDocument& document,
                                                                                       std::size_t mesh) {
   std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> poses;

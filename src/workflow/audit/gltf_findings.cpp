@@ -1,4 +1,4 @@
-// Finds what an audit reports about a glTF file besides its errors.
+// Finds what an audit reports about a glTF file besides errors of normals.
 #include "workflow/audit/gltf_findings.h"
 
 #include <algorithm>

@@ -23,7 +23,7 @@ namespace chronormal::inline internal {
                                                        std::span<const AuditSubject> subjects,
                                                        const std::map<std::size_t, Error>& unread);
 
-/// Notes the viewers that take fewer targets than the mesh has.
+/// Lists the viewers that support fewer targets than the mesh has.
 [[nodiscard]] std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Viewer> viewers);
 
 /// Finds the faults of a measured target, at the weights of the involved targets at which it was measured.

@@ -45,7 +45,7 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
   }
   vertices_ = number_used(vertex);
 
-  // Normals of faces are kept if elements would take long to compute them again, or if they take little memory.
+  // Normals of faces are kept if elements would take long to compute them again, or if the normals take little memory.
   constexpr std::size_t kSmallFace = 4, kFewFaces = 100000;
   const bool has_corners = weighting != Weighting::kArea;
   keeps_faces_ = keeps_faces_ || (!has_corners && faces.size() <= kFewFaces);
@@ -99,7 +99,7 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
   if (sums_ != nullptr) return given_normals(positions, result);
   if (weighting_ != Weighting::kArea) return weighted_normals(positions, result);
   numbered_blocks(result.elements.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
-    // The faces whose normals were computed last, since neighbours ask for them again.
+    // The faces whose normals were computed last, since neighbouring elements need them again.
     struct Known {
       std::uint32_t face = kUnused;
       Vec3d normal;

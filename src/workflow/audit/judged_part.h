@@ -35,10 +35,10 @@ template <class VertexAt>
   return sum;
 }
 
-/// An output shows a normal: it is a vertex, or a corner if the vertex has several normals.
+/// An output, which shows a normal: a vertex, or a corner if its vertex has several normals.
 struct JudgedOutput {
   std::uint32_t vertex = 0, element = 0;
-  std::uint32_t face = 0, corner = 0;  ///< for rules that need them
+  std::uint32_t face = 0, corner = 0;  ///< for rules that need a face and a corner
 };
 
 struct PartNormals {
@@ -51,11 +51,11 @@ class JudgedPart {
  public:
   /// Elements and faces of the outputs are renumbered for this part; their vertices and corners stay those of the mesh.
   /// Without needs_faces, normals() may leave out the normals of faces. groups need no corners if the weighting is
-  /// area. If sums is given, it supplies the normals of elements and must outlive this.
+  /// area. If sums is given, it supplies the normals of elements and must outlive the object.
   JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
              std::vector<JudgedOutput> outputs, bool needs_faces = true, const AuthorSums* sums = nullptr);
 
-  /// Return the vertices and the elements of the part, as the mesh numbers them, ascending.
+  /// Return the vertices and the elements of the part, with their numbers in the mesh, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const std::uint32_t> elements() const noexcept { return elements_; }
   [[nodiscard]] std::span<const JudgedOutput> outputs() const noexcept { return outputs_; }
@@ -76,8 +76,8 @@ class JudgedPart {
   [[nodiscard]] std::uint32_t output_of(std::uint32_t vertex) const noexcept { return output_of_[vertex]; }
   /// Returns the number of vertices of the mesh that has these edges.
   [[nodiscard]] std::size_t vertices_of_edges() const noexcept { return output_of_.size(); }
-  /// Takes the edges of a mesh with this many vertices, which must outlive this. Every vertex must have one output at
-  /// most.
+  /// Sets the edges of a mesh with this many vertices. The edges must outlive the object. Every vertex must have one
+  /// output at most.
   void set_edges(std::span<const std::array<std::uint32_t, 2>> edges, std::size_t vertex_count);
   [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }
   /// Returns the index in vertices() of a vertex of the mesh. The part must have sums that need the vertex.
@@ -87,8 +87,8 @@ class JudgedPart {
   /// their weighted sums (normals/weighting.h) or the given sums. Sums that are only rounding error are not removed.
   void normals(std::span<const Vec3d> positions, PartNormals& result) const;
 
-  /// Bounds the change of an element's normal if each of these positions is rounded to float32. The weights of its
-  /// faces count as constant.
+  /// Returns a bound of the change of an element's normal if each of these positions is rounded to float32. The weights
+  /// of its faces count as constant.
   [[nodiscard]] double rounding_of(std::span<const Vec3d> positions, std::size_t element) const;
 
  private:
@@ -100,9 +100,10 @@ class JudgedPart {
                            const Vec3d& normal) const;
 
   std::vector<std::uint32_t> vertices_, elements_;
-  std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;        // as the part numbers them
-  std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // as the part numbers them
-  std::vector<std::uint32_t> corners_of_element_;  // 0, 1, 2 ... within these faces; empty if faces count by area
+  std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;        // vertices as numbered in the part
+  std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // elements and faces as numbered in the part
+  // 0, 1, 2 ... within the faces of the element; empty if faces are weighted by area.
+  std::vector<std::uint32_t> corners_of_element_;
   Weighting weighting_;
   const AuthorSums* sums_;
   std::vector<std::uint32_t> places_;  // for vertices of the mesh, their indices in vertices_

@@ -25,11 +25,11 @@
 
 namespace chronormal::inline internal {
 
-/// A normal shorter than this share of its largest control normal is left out of all sums: the stored normals there
-/// mostly follow from what they must be elsewhere. A gate still judges the normal as long as it has a direction.
+/// A normal shorter than this share of its largest control normal is left out of all sums, since the stored normals
+/// there mostly follow from those elsewhere. A gate still judges the normal as long as it has a direction.
 inline constexpr double kVanished = 1e-4;
 
-/// Stands for the error of a sample whose faces have an area but whose normals cancel.
+/// The value for the error of a sample whose faces have an area but whose normals cancel.
 inline constexpr double kCancels = -3;
 
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditSamplesOfAll = 210;
@@ -45,8 +45,8 @@ inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
 /// Returns the fine bin for an error. With a rounding mode other than to nearest, an angle may also be -0 or slightly
 /// more than 180: check the result before using it as an index.
 [[nodiscard]] inline std::size_t fine_bin_of(double degrees) noexcept {
-  // Each doubling is an exponent of double, and its bins are the first bits of the fraction. Both together are one
-  // number.
+  // Each doubling is an exponent of double, and its bins are the first bits of the fraction. Exponent and bits together
+  // are one number.
   static_assert(kAuditBinsOfDoubling == 128);
   constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
   constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
@@ -55,9 +55,9 @@ inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
   return static_cast<std::size_t>(std::min<std::uint64_t>(fine_bin, kAuditFineBins - 1));
 }
 
-/// Returns a lower bound, in degrees, of the angle between the rendered and the true direction. It subtracts the angle
-/// by which a rounding error of this size may have turned a normal of this length. Returns kNotJudged if rounding may
-/// give the normal any direction.
+/// Returns a lower bound, in degrees, of the angle between the rendered and the true direction. The bound is the angle
+/// between them minus the angle by which a rounding error of this size may have turned a normal of this length. Returns
+/// kNotJudged if rounding may give the normal any direction.
 [[nodiscard]] double faint_degrees(const Vec3d& shown, const Vec3d& right, double length, double rounding) noexcept;
 
 /// Returns the normal that a rule renders between two stored normals, or (0, 0, 0) if the blend is zero.
@@ -77,8 +77,8 @@ inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
 /// Returns the angle of stored normals from the geometry, by the requested weighting or else by the detected one.
 [[nodiscard]] AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<Weighting> asked);
 
-/// Finds the fault of a subject whose stored normals have an error above kAuditFault: normals that cannot be lit come
-/// first, then errors at keys, then errors between them.
+/// Finds the fault of a subject whose stored normals have an error above kAuditFault. Normals that cannot be lit come
+/// first, then errors at keys, then errors between keys.
 [[nodiscard]] std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject);
 
 /// Adds the errors of a segment to those of its subject.
@@ -90,9 +90,9 @@ inline void add_segment(const SegmentErrors& found, AuditSubject& subject) {
 /// Adds up all subjects, finds the worst one, and puts faults before notes.
 void finish(Audit& result);
 
-// A source is a motion together with the normals that are rendered on the way:
+// A source is a motion together with the normals that are rendered during it:
 //     place(segment, t, positions)   writes the positions of the part; false if nothing differs from the last call
-//     forget()                       makes the next call differ
+//     forget()                       makes the next call of place() return true
 //     turn(positions, normals)       turns the normals of the part into true directions, and keeps their lengths
 //     begin(start, end)              gets the normals of elements at both ends before the samples (if kNeedsEnds)
 //     show()                         is called after each placement, before shown()
@@ -100,14 +100,14 @@ void finish(Audit& result);
 //     seen(i, n)                     returns a normal of the i-th output as it reaches the screen
 //     right(output, n)               returns the true direction for a normal of the geometry
 //     hides(output, n)               tells whether the true normal has no direction on the screen and is not judged
-//     at(segment, t, output)         returns the place in terms for people
+//     at(segment, t, output)         returns the place in terms that a person understands
 //
 // Segments tell where to measure:
 //     look_over(look)                calls look(segment) for segments that determine the largest normals; a Status
 //     maximize(numbers)              replaces each number by the largest of all processes that have other segments
-//     over(subject, work)            adds work(segment), the errors of each measured segment, to its subject; a Status
+//     over(subject, work)            adds work(segment), the errors of each measured segment, to the subject; a Status
 
-/// Positions and normals of a part, as the source has placed it.
+/// Positions and normals of a part, as placed by the source.
 struct PlacedPart {
   explicit PlacedPart(const JudgedPart& judged) : part(judged), positions(judged.vertices().size()) {}
 
@@ -155,7 +155,8 @@ template <class Source, class Segments>
 
 /// Adds the errors of some outputs, in their order, to an empty result, as MotionError::add() and add_unlit() do.
 /// degrees_of returns the error of an output, kNotLit or kNotJudged. faint_of is called for samples that are not judged
-/// but that a gate looks at: it returns their error, kNotJudged if no face around has an area, or kCancels.
+/// but that a gate examines. It returns the error of a sample, kNotJudged if no face around it has an area, or
+/// kCancels.
 template <class Degrees, class Faint, class At>
 void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
                 MotionError& result) {
@@ -219,10 +220,10 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
 
 /// The true normal of a placed output.
 struct RightOutput {
-  Vec3d direction;          ///< as source.right() has it
+  Vec3d direction;          ///< the direction that source.right() returns
   bool is_hidden = false;   ///< as source.hides() has it
   bool has_normal = false;  ///< tells whether the normal is long enough to judge by
-  bool has_area = false;    ///< tells whether a face around it is drawn: faces without area are not drawn
+  bool has_area = false;    ///< whether a face around the output is drawn: faces without area are not drawn
 };
 
 template <class Source>
@@ -235,8 +236,8 @@ template <class Source>
 }
 
 /// Returns the errors of all placed outputs. shown(i, output) returns the rendered normal of the i-th output, and
-/// right(i, output) the true one. If each is not empty, it receives the error of each output in degrees, NaN if the
-/// output is not judged.
+/// right(i, output) the true one. If the argument each is not empty, it receives the error of every output in degrees,
+/// and NaN for outputs that are not judged.
 template <class Source, class Shown, class Right>
 [[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat, std::size_t segment,
                                    double t, const Shown& shown, const Right& right, std::span<float> each = {}) {
@@ -301,7 +302,7 @@ template <class Source, class Shown, class Right>
 struct KeptErrors {
   ErrorTable* table = nullptr;  ///< nullptr if errors are not kept
   std::size_t subject = 0;
-  bool are_watched = false;  ///< tells whether each_sample uses them
+  bool are_watched = false;  ///< whether each_sample uses the outputs
 
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
@@ -321,7 +322,7 @@ void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, 
                  bool is_weight, double at);
 
 /// Measures all samples of the segments of a subject, and fills in its errors. Calls each_sample(measured sample) for
-/// each of them. Errors: as the segments return them.
+/// every sample. Errors: as the segments return them.
 template <class Source, class Segments, class EachSample>
 [[nodiscard]] Status measure(Source& source, Segments segments, const JudgedPart& part, AuditRule rule,
                              AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {

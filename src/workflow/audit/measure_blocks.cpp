@@ -23,11 +23,11 @@ constexpr std::size_t kBlocksPerWaveAndThread = 8;
 // The errors of a block at one sample of a segment take 20 kB.
 constexpr std::size_t kMostSamples = 128;
 
-// Some outputs, and the faces from which their normals are computed.
+// A block: some outputs, and the faces from which their normals are computed.
 struct Block {
   IndexRange outputs, elements;
   std::vector<std::uint32_t> corners;           // three vertices of the mesh for each face of the block
-  std::vector<std::uint32_t> faces, face_ends;  // for each element, as the block numbers them
+  std::vector<std::uint32_t> faces, face_ends;  // for each element, as numbered in the block
 };
 
 std::vector<Block> make_blocks(const JudgedPart& part) {

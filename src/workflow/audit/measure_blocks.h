@@ -1,5 +1,5 @@
-/// The loop of an audit if no normals are stored and all faces are triangles: it does what measure() does, block by
-/// block, with the same results.
+/// The loop of an audit for motions without stored normals whose faces are all triangles. The loop does the work of
+/// measure(), block by block, with the same results.
 ///
 /// A block has some outputs with their elements and faces. Its positions are gathered once for each segment and stay in
 /// cache over all samples, and its normals and angles are computed in lanes (analysis/quality/kernels/shown_angles.h).
@@ -23,10 +23,10 @@ namespace chronormal::inline internal {
 [[nodiscard]] bool can_measure_blocks(const JudgedPart& part, AuditRule rule, Weighting weighting,
                                       std::size_t samples) noexcept;
 
-/// Names a moment and a vertex for people, as a source does (measure.h).
+/// A function that names a moment and a vertex for people, like at() of a source (measure.h).
 using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const JudgedOutput& output)>;
 
-/// The segments of a subject in a motion, as measure() goes over them.
+/// The segments of a subject in a motion, in the form that measure() needs.
 struct SegmentsOfRun {
   MotionStream& stream;
   std::span<const std::size_t> of_motion;  ///< their indices in the motion
@@ -37,7 +37,7 @@ struct SegmentsOfRun {
   }
   /// Returns the segments that determine the facts about all of them.
   [[nodiscard]] IndexRange looked_at() const noexcept { return run.looked_at(of_motion.size()); }
-  /// Returns the segments to measure. Only a sequence, which is one subject, is divided.
+  /// Returns the segments to measure. Only a sequence, which is one subject, is divided between shards.
   [[nodiscard]] IndexRange rest() const noexcept {
     return run.is_divided() ? run.rest() : IndexRange{0, of_motion.size()};
   }

@@ -159,7 +159,8 @@ Status check_normals(const Motion& motion, const StoredNormals& normals) {
   return Success{};
 }
 
-// Lists each vertex once for each normal that it shows: corners of one element with the same stored normals share one.
+// Lists each vertex once for each normal that it shows. Corners of one element with the same stored normals share one
+// output.
 std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups& groups, const StoredNormals& normals,
                                        const std::vector<bool>& moves, AuditRule rule, bool stored) {
   const auto corners = motion.topology.corners();
@@ -191,7 +192,7 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
   return outputs;
 }
 
-// Finds the vertices that move. Looks only at this run's segments if peers look at the others.
+// Finds the vertices that move. If peers examine the other segments, examines only this run's segments.
 Result<std::vector<bool>> moving_vertices(const SegmentsOfRun& segments) {
   const Motion& motion = segments.stream.motion();
   std::vector<bool> moves(motion.topology.vertex_count());

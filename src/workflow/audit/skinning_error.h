@@ -13,9 +13,9 @@ namespace chronormal::inline internal {
 
 class SkinningErrors {
  public:
-  /// Judges a sample that the source has placed: compares n(w) as the skin carries it, without the author's offset,
-  /// with the same sum over the faces of the skinned positions. Mirrored faces keep their outer side. A sample is left
-  /// out if n(w), or its remainder relative to its size, is below kVanished of the largest.
+  /// Judges a sample that the source has placed: compares n(w), transformed by the skin and without the author's
+  /// offset, with the sum over the faces of the skinned positions. Mirrored faces keep their outer side. A sample is
+  /// left out if n(w), or its remainder relative to its size, is below kVanished of the largest.
   void add_sample(const BlendSource& source, const MeasuredSample& sample);
 
   /// Returns nothing if the source has no skin.

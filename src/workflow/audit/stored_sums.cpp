@@ -75,7 +75,7 @@ void StoredSums::add_up(std::vector<std::vector<double>> sets) {
     if (!is_finite[s]) std::fill_n(sums_.data() + s * stride_, stride_, std::numeric_limits<float>::quiet_NaN());
 }
 
-// by_target has the weights as (targets, sets).
+// The array by_target has the weights as (targets, sets).
 void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
   const Group& group = groups_[g];
   const std::size_t sets = sets_.size(), first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);
@@ -90,7 +90,7 @@ void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
     const std::span<const float> weights = by_target.subspan(k * sets, sets);
     return std::any_of(weights.begin(), weights.end(), [](float weight) { return weight != 0; });
   };
-  std::vector<float> weights;  // of a run of targets, (targets, sets)
+  std::vector<float> weights;  // for a range of targets, (targets, sets)
   for (std::size_t row = 0; row < group.targets.size();) {
     weights.clear();
     std::size_t end = row;

@@ -1,8 +1,8 @@
-/// Adds up the stored normals of some outputs and their deltas, as the specification says or as a viewer keeps them.
-/// Private to workflow.
+/// Adds up the stored normals of some outputs and their deltas, as the specification requires or as a viewer keeps
+/// them. Private to workflow.
 ///
-/// The deltas of many targets exceed the cache, so that the sum at one set of weights takes as long as reading them
-/// all. Sums at several sets are therefore made in one pass.
+/// The deltas of many targets exceed the cache, so that the sum at one set of weights takes as long as reading all
+/// deltas. Sums at several sets are therefore computed in one pass.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 
@@ -19,15 +19,15 @@ namespace chronormal::inline internal {
 
 class StoredSums {
  public:
-  static constexpr std::size_t kAtOnce = 4;  ///< this many sets of weights take hardly longer than one
+  static constexpr std::size_t kAtOnce = 4;  ///< this many sets of weights take hardly longer than one set
 
-  /// shading and outputs must outlive this. involved lists targets in ascending order: a set of weights has one value
-  /// for each of them, and all other targets always have weight 0.
+  /// shading and outputs must outlive the object. involved lists targets in ascending order: a set of weights has one
+  /// value for each of them, and all other targets always have weight 0.
   StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<std::size_t> involved,
              const Viewer& viewer = {});
 
   /// Computes N + sum w D of every output at each set of weights, in float32 and target after target, as viewers add.
-  /// Forgets earlier results. A delta of zero changes no sum, even if its weight is not finite: such a weight never
+  /// Discards earlier results. A delta of zero changes no sum, even if its weight is not finite: such a weight never
   /// makes a sum finite, whatever the delta is. Uses all threads.
   void add_up(std::vector<std::vector<double>> sets);
 
@@ -40,7 +40,7 @@ class StoredSums {
   [[nodiscard]] const Viewer& viewer() const noexcept { return viewer_; }
 
  private:
-  // Neighbouring outputs, with a row of deltas for each target that turns any of them.
+  // A group of neighbouring outputs, with a row of deltas for each target that turns any of them.
   struct Group {
     std::vector<std::uint32_t> targets;  // ascending, as numbered in involved_
     std::vector<float> deltas;           // (targets, 3 kGroup)
@@ -56,7 +56,7 @@ class StoredSums {
   std::span<const JudgedOutput> outputs_;
   std::vector<std::size_t> involved_;
   Viewer viewer_;
-  std::vector<Vec3f> kept_normals_;  // of outputs, if the viewer does not keep the stored ones
+  std::vector<Vec3f> kept_normals_;  // one for each output, if the viewer does not keep normals as stored
   std::vector<Group> groups_;        // empty until the first sum
   std::vector<std::vector<double>> sets_;
   std::size_t stride_;       // of the sums of a set, in whole groups

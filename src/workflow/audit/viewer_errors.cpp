@@ -47,7 +47,7 @@ double size_of(const GltfShading& shading) noexcept {
   return length(high - low);
 }
 
-// Returns the largest distance between two places of one vertex.
+// Returns the largest distance between the two places of a vertex.
 double largest_distance(std::span<const Vec3d> a, std::span<const Vec3d> b) noexcept {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, length(a[i] - b[i]));
@@ -88,7 +88,7 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
-    // Viewers that play the same weights and keep normals alike render the same, so that one is judged for all of them.
+    // Viewers that play the same weights and keep normals alike render the same, so that one of them is judged for all.
     // This list holds the errors that are already known.
     std::vector<const MotionError*> of_kept(kept_.size());
     std::optional<SkinRule> is_right_for;  // the rule that right_ was computed for

@@ -27,13 +27,14 @@ struct ViewerError {
 
 class ViewerErrors {
  public:
-  /// weights has, for each viewer, the weights of the involved targets that it plays, as in BlendSource. shading and
-  /// part must outlive this. is_skinned: viewers may see the part through a skin in their own ways.
+  /// weights has, for each viewer, the weights that it plays for the involved targets, as in BlendSource. shading and
+  /// part must outlive the object. is_skinned means that a skin moves the part, which each viewer may do in its own
+  /// way.
   ViewerErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Viewer> viewers,
                std::vector<Weights> weights, std::span<const std::size_t> involved, bool is_skinned = false);
 
-  /// Judges every viewer at a sample that the source has placed. A viewer that renders the same as the source has its
-  /// error.
+  /// Judges every viewer at a sample that the source has placed. A viewer that renders the same as the source gets the
+  /// error of the source.
   void add_sample(BlendSource& source, const MeasuredSample& sample);
 
   /// Returns the weights that each viewer plays at the last sample.
@@ -50,7 +51,7 @@ class ViewerErrors {
   std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
   std::vector<RightOutput> right_;          // of each output, as some viewers see it
   double size_ = 0;                         // of the mesh
-  std::optional<PlacedPart> elsewhere_;     // at weights other than the specified ones, once needed
+  std::optional<PlacedPart> elsewhere_;     // the part at weights other than the specified ones, once needed
   std::size_t placed_ = 0;                  // source.placed() at the last sample; 0 before any
   std::vector<std::vector<double>> now_;    // for each viewer, the weights of the last sample
   std::vector<ViewerError> last_, errors_;  // for each viewer: of the last sample and of all

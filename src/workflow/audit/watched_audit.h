@@ -29,9 +29,9 @@ using AuditRun = RecordedRun<SegmentErrors>;
 using AuditShard = ShardOf<Audit, SegmentErrors>;
 
 /// Audits the share of a sequence's segments that belongs to the run. Every shard derives for itself the facts about
-/// the whole motion (which vertices move, how long a normal gets); with peers they derive them together, by maximize().
-/// Errors: also kUsage for single errors of a run that is divided, or for targets, and for known segments of another
-/// audit; errors of run.keep.
+/// the whole motion (which vertices move, how long a normal gets); with peers the shards derive these facts together,
+/// by maximize(). Errors: also kUsage for single errors of a run that is divided, or for targets, and for known
+/// segments of another audit; errors of run.keep.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
                                   AuditRun& run);
 
@@ -57,14 +57,14 @@ struct AuditSample {
 using AuditWatch = std::function<void(const AuditSample&)>;
 
 /// Run the audits of workflow/audit.h and report each sample, subject after subject. Tracks with the same keys are
-/// reported once, as the first of their subjects. An empty watch gets no reports.
+/// reported once, as the first of their subjects. If the watch is empty, nothing is reported.
 [[nodiscard]] Result<Audit> watched_audit(const GltfDocument& document, const AuditOptions& options,
                                           const AuditWatch& watch);
 [[nodiscard]] Result<Audit> watched_audit(MotionStream& stream, const StoredNormals& normals,
                                           const AuditOptions& options, AuditRun& run, const AuditWatch& watch);
 
-/// Returns the groups of corners that share a normal in the audit of a motion: corners joined by smooth edges, as the
-/// stored normals of keyframe 0 tell if there are any. Errors: as NormalGroups and the stream return them.
+/// Returns the groups of corners that share a normal in the audit of a motion: corners joined by smooth edges, which
+/// the stored normals of keyframe 0 determine if there are any. Errors: as NormalGroups and the stream return them.
 [[nodiscard]] Result<NormalGroups> audited_groups(MotionStream& stream, const StoredNormals& normals, bool weld);
 
 }  // namespace chronormal::inline internal

@@ -25,7 +25,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kNames = {"file", "end point", "least squares", "exact"};
 constexpr std::array<std::size_t, 5> kActive = {1, 2, 4, 8, 16};
 constexpr std::size_t kRowsPerTarget = 16;                  // rows of least squares
-constexpr std::size_t kMostWeights = std::size_t{1} << 27;  // in one list of rows
+constexpr std::size_t kMostWeights = std::size_t{1} << 27;  // all rows together, in one list
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;    // of terms; beyond it normals come from positions
 constexpr std::size_t kChunk = 512;
 
@@ -98,7 +98,7 @@ std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> 
   return result;
 }
 
-// Lists, for each target, the outputs whose normal it moves, ascending.
+// Lists, for each target, the outputs whose normals the target moves, in ascending order.
 std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   const Topology& topology = subject.set->topology;
   const std::size_t targets = subject.set->targets.size();
@@ -210,7 +210,7 @@ class BlendMeter {
         const std::size_t e = output.element;
         for (std::size_t m = 0; m < methods; ++m) {
           Quality& quality = parts[chunk * methods + m];
-          if (truth[e] == Vec3d{}) {  // only rounding error: no method is judged there
+          if (truth[e] == Vec3d{}) {  // the true normal is only rounding error, so no method is judged there
             ++quality.degenerate;
             continue;
           }
@@ -282,7 +282,7 @@ Status check(const BlendCompareOptions& options) {
   return Success{};
 }
 
-// Lists how many targets are active at once, if there are that many.
+// Lists how many targets are active at once, for each of the `wanted` numbers that exist.
 std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) {
   if (wanted > 0) return {std::min(wanted, targets)};
   std::vector<std::size_t> result;
@@ -343,13 +343,13 @@ std::vector<Output> outputs_of(const GltfShading& shading) {
   return result;
 }
 
-// Reads the weights that an animation gives a mesh, track after track; empty if it gives none.
+// Reads the weights that an animation gives a mesh, track after track. The list is empty if the animation gives none.
 Result<std::vector<std::vector<double>>> animated_weights(const GltfDocument& document, std::size_t animation,
                                                           std::size_t mesh, std::size_t most) {
   const std::vector<GltfTrack>& tracks = document.animations()[animation].tracks;
   const std::size_t targets = document.meshes()[mesh].target_count;
   std::vector<WeightTrack> read;
-  read.reserve(tracks.size());  // WeightUse points to them
+  read.reserve(tracks.size());  // WeightUse points to these tracks, so they must not move
   WeightUse use(targets);
   std::vector<std::size_t> known;
   for (std::size_t t = 0; t < tracks.size(); ++t) {

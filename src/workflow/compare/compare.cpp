@@ -62,7 +62,7 @@ struct Tally : SchemeTally {
   }
 };
 
-// The times of one scheme as the median of each segment, so that memory grows with segments and not with faces.
+// The times of one scheme, as the median of each segment, so that memory grows with segments and not with faces.
 struct SchemeTimes {
   std::vector<float> prepare_ns, evaluate_ns;
 };
@@ -258,7 +258,7 @@ std::uint32_t checksum_of_options(const CompareOptions& options, const std::vect
 }
 
 // Prepares every scheme on one block of elements, evaluates it at every sample, and compares it with the exact normals.
-// Writes the errors of each scheme to its array in `each`, if it has one.
+// Writes the errors of each scheme to the scheme's array in `each`, if there is one.
 std::vector<Tally> compare_block(const Segment& segment, const Elements& all, IndexRange range,
                                  const std::vector<std::string>& names, const CompareOptions& options,
                                  std::span<std::vector<float>> each) {

@@ -22,7 +22,8 @@ std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& 
   return cheapest;
 }
 
-// Tells whether two shards may belong to one comparison: they have the same elements, samples and schemes.
+// Returns true if two shards may belong to one comparison, that is, if they have the same elements, samples and
+// schemes.
 bool are_of_one(const Comparison& a, const Comparison& b) {
   const auto same_scheme = [](const SchemeComparison& one, const SchemeComparison& other) {
     return one.scheme == other.scheme && one.sequential == other.sequential &&

@@ -19,7 +19,7 @@ struct SchemeTally {
   CertifiedError certified = {};
 };
 
-/// The results of all schemes in one segment: one for each row, then one for linear if linear is not a row.
+/// The results of all schemes in one segment: one for each row, then one for linear if no row is linear.
 struct ComparedSegment {
   std::size_t segment = 0;
   std::vector<SchemeTally> schemes;
@@ -36,7 +36,7 @@ using ComparisonShard = ShardOf<Comparison, ComparedSegment>;
 /// must be at least one shard.
 [[nodiscard]] Result<Comparison> merge(std::vector<ComparisonShard> shards);
 
-/// Merges the bounds of elements or of blocks; of equal ones the first counts.
+/// Merges the bounds of elements or of blocks. If two bounds are equal, the first is kept.
 void add(CertifiedError& all, const CertifiedError& other);
 
 /// Adds the next results. Adding the same parts in the same order gives the same bits.

@@ -1,4 +1,4 @@
-// Computes the figures of the paper for one face: what each scheme makes of its normal, and how.
+// Computes the figures of the paper for one face: the normal that each scheme computes, and the points in between.
 #include "workflow/compare/face_figure.h"
 
 #include <array>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kQuaternion = "quaternion:", kRandom = "quaternion:random";
 
-// Returns the sum of the vectors of a scheme that adds them up, before it is normalised.
+// Returns the sum of vectors before normalization, for a scheme that adds vectors.
 Vec3d sum_at(const FittedCurves& fitted, double t) {
   const WeightBasis& basis = *fitted.basis;
   const ElementCoefficients coefficients = coefficients_of(fitted.coefficients, 0);
@@ -58,8 +58,8 @@ std::optional<FramePair> frames_of(std::string_view scheme, const ElementMotion&
   return random_frames(element, seed);
 }
 
-// Returns the tangents of the frames at all times. Those of the best frames begin along the first edge: every other
-// tangent turns with the same rotation and gives the same normals.
+// Returns the tangents of the frames at all times. The tangents of the best frames begin along the first edge, since
+// every other tangent turns with the same rotation and gives the same normals.
 std::vector<Vec3d> tangents_of(std::string_view scheme, const ElementMotion& element, const FittedCurves* fitted,
                                std::span<const double> times) {
   Vec3d start;

@@ -1,11 +1,13 @@
-/// The figures of the paper for one face: what a person needs to draw Figures 1 to 3 from a face of their own.
+/// The figures of the paper for one face: the numbers from which people can draw Figures 1 to 3 for their own faces.
 ///
-/// One face moves in one segment. At equally spaced times there are its exact normal with its length, twice the area,
-/// and for each scheme its normal, the length that it had before it was normalised (Figure 2), the angle to the
-/// exact one, and how it was made (Figure 3): the points of de Casteljau's algorithm, and the frames of quaternions.
+/// One face moves in one segment. At equally spaced times, the figure has the exact normal of the face, its length,
+/// which is twice the area, and for each scheme its normal, the length of that normal before normalization (Figure 2),
+/// the angle to the exact normal, and the way it was computed (Figure 3): the points of de Casteljau's algorithm, and
+/// the frames of quaternions.
 ///
 /// Numbers    normals are those of Scheme::evaluate(), angles those of compare() at the same samples, so that their sum
-///            is q of the paper. Lengths, points and frames are computed in double from what the scheme keeps.
+///            is q of the paper. Lengths, points and frames are computed in double from the values that the scheme
+///            keeps.
 /// Threads    pure.
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_FACE_FIGURE_H_
 #define CHRONORMAL_WORKFLOW_COMPARE_FACE_FIGURE_H_
@@ -28,29 +30,30 @@ struct FaceFigureOptions {
   std::size_t samples = 21;          ///< ends included; 2 or more
 };
 
-/// One scheme; S = samples.
+/// The figures of one scheme; S = samples.
 struct SchemeFigure {
   std::string scheme;
   double sum = 0;               ///< of the angles, radians: q of the paper
   std::vector<Vec3d> normals;   ///< (S) unit vectors, or zero
-  std::vector<double> angles;   ///< (S) radians; NaN where the exact or this normal is zero
-  std::vector<double> lengths;  ///< (S) before the normal was made a unit vector; empty where it always is one
-  /// The exact normals that de Casteljau's algorithm begins with, (K), and at each sample the points that it comes to:
-  /// K - 1 of the first level, K - 2 of the second, ..., 1 of the last one, (S, K (K - 1) / 2). Else empty.
+  std::vector<double> angles;   ///< (S) radians; NaN if the exact normal or this normal is zero
+  std::vector<double> lengths;  ///< (S) before normalization; empty if the length is always one
+  /// The exact normals that de Casteljau's algorithm begins with, (K), and at each sample the points that the algorithm
+  /// computes: K - 1 of the first level, K - 2 of the second, ..., 1 of the last level, (S, K (K - 1) / 2). Other
+  /// schemes have none.
   std::vector<Vec3d> nodes, points;
-  /// (S) the tangent of the frame of a quaternion at each sample; its binormal is normal x tangent. Else empty, and
-  /// where the scheme took its fallback.
+  /// (S) the tangent of the frame of a quaternion at each sample; the binormal is normal x tangent. Empty for other
+  /// schemes, and if the scheme used its fallback.
   std::vector<Vec3d> tangents;
 };
 
 struct FaceFigure {
   std::size_t face = 0, segment = 0;
-  std::vector<std::array<Vec3d, 2>> corners;  ///< where each is at t = 0 and at t = 1
+  std::vector<std::array<Vec3d, 2>> corners;  ///< the place of each corner at t = 0 and at t = 1
   std::vector<double> times;                  ///< (S) t
-  std::vector<Vec3d> normals;                 ///< (S) exact unit normals, with their limits; zero where there are none
+  std::vector<Vec3d> normals;                 ///< (S) exact unit normals, with their limits; zero if there is none
   std::vector<double> lengths;                ///< (S) of n(t): twice the area
   /// The paper's M (eq. 8): rows of the affine map that takes the first, the second and the last corner and the unit
-  /// normal from t = 0 to t = 1. Nothing where the face has no area at t = 0, or none at t = 1.
+  /// normal from t = 0 to t = 1. Missing if the face has no area at t = 0 or at t = 1.
   std::optional<std::array<std::array<double, 4>, 3>> matrix;
   std::vector<SchemeFigure> schemes;
 };

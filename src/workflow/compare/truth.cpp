@@ -41,7 +41,7 @@ class KeptKeys {
     segment.index = i;
     return segment;
   }
-  // Returns the keyframes between the kept ones i and i + 1.
+  // Returns the keyframes between the kept keyframes i and i + 1.
   [[nodiscard]] std::span<const Motion::Keyframe> between(std::size_t i) const {
     return std::span(motion_.keyframes).subspan(i * every_ + 1, every_ - 1);
   }

@@ -1,5 +1,5 @@
-// Looks at every segment of a motion for causes of wrong normals, block by block and in waves of segments, and adds up
-// the findings in order. A wave looks at vertices first, since the limit for small faces depends on the largest
+// Examines every segment of a motion for causes of wrong normals, block by block and in waves of segments, and adds up
+// the findings in order. A wave examines vertices first, since the limit for small faces depends on the largest
 // coordinates of the keyframe. Then a quick test of sixteen faces at a time (analysis/signs/kernels/face_glance.h)
 // leaves only a few faces for the full test.
 #include "chronormal/workflow/inspect.h"
@@ -31,8 +31,8 @@
 namespace chronormal {
 namespace {
 
-// Half a unit in the last place of float32 moves an end of an edge by up to sqrt(3) units, so the edge by twice as
-// much, and the cross product of two edges by twice as much again, times the longer edge.
+// Half a unit in the last place of float32 moves an end of an edge by up to sqrt(3) such halves. The edge changes by up
+// to twice as much, and the cross product of two edges by twice as much again, times the longer edge.
 constexpr double kRounding = 4 * 1.7320508075688772 * 0x1p-24;
 
 // A block has this many faces or vertices, so that their control normals stay in the second-level cache. A wave has one
@@ -75,7 +75,7 @@ struct FaceTally {
   }
 };
 
-// The bounding box of vertices, which are added one after the other.
+// The bounding box of vertices that are added one after the other.
 struct Box {
   bool is_empty = true;
   Vec3f low, high;
@@ -183,7 +183,7 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
   return kRounding * static_cast<double>(face.size() - 2) * coordinate * edge;
 }
 
-// Judges a face of one keyframe by its normal there. No coordinate of the keyframe is larger than `most`.
+// Judges a face at one keyframe by its normal there. No coordinate of the keyframe is larger than `most`.
 void inspect_at_keyframe(std::span<const std::uint32_t> face, std::size_t f, VectorView<const float> positions,
                          double most, const Vec3d& normal, KeyframeTally& tally, FaceMarks& marks) {
   const double largest_rounding = kRounding * most * 2 * most;  // for a triangle
@@ -207,7 +207,7 @@ Box box_of(VectorView<const float> positions, IndexRange vertices) {
 
 void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& tally) {
   const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
-  double most_of_square = 0;  // squares up to this one belong to lengths that are not larger
+  double most_of_square = 0;  // squares up to this value belong to lengths that are not larger
   for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
     const Vec3d step = to.way_from(from, v, v);
     if (max_abs(step) == 0) continue;

@@ -14,7 +14,7 @@
 namespace chronormal {
 namespace {
 
-// Signed bytes round a component by up to 1 / 254, and so a length by up to sqrt(3) times as much.
+// Signed bytes round a component by up to 1 / 254, and so change a length by up to sqrt(3) times as much.
 constexpr double kLengthTolerance = 1.7320508075688772 / 254;
 
 Status inspect_vertices(GltfGeometry geometry, GltfPrimitiveInspection& result) {

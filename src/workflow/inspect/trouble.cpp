@@ -28,7 +28,7 @@ std::string have(const std::string& counted_things, std::size_t count) {
   return counted_things + (count == 1 ? " has" : " have");
 }
 
-// Returns ", 30 times in all" if the same faces occur more than once.
+// Returns ", 30 times in all" if some faces are reported more than once.
 std::string in_all(const Places& places) {
   return places.pairs > places.faces ? ", " + grouped(places.pairs) + " times in all" : "";
 }

@@ -1,4 +1,4 @@
-/// Finds the bad news in the results of inspect_input(), in words, and says what it means for normals. Private to
+/// Describes in words the problems in the results of inspect_input(), and what they mean for normals. Private to
 /// workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_
 #define CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_

@@ -138,7 +138,7 @@ Json viewer_json(const Audit& audit, const AuditLimits& limits, const ViewerAudi
   return json;
 }
 
-// Returns everything found in one input, except its subjects.
+// Returns all findings about one input, except its subjects.
 Json without_subjects(const std::string& input, const Audit& audit, const AuditLimits& limits) {
   Json json;
   json["input"] = {{"name", input}};
@@ -165,8 +165,7 @@ Json without_subjects(const std::string& input, const Audit& audit, const AuditL
   return json;
 }
 
-// Returns the text of one input. Its subjects are converted one by one, so that they are never all in memory as
-// objects.
+// Returns the text of one input. Subjects are converted one by one, so that they are never all in memory as objects.
 std::string audit_text_of(const std::string& input, const Audit& audit, const AuditLimits& limits, bool is_indented) {
   Json json = json_of_command("audit", kAuditSchema);
   json.update(without_subjects(input, audit, limits));

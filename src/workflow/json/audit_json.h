@@ -13,7 +13,7 @@ namespace chronormal::inline internal {
 /// The version of the JSON of audits. 2: `viewers` for `hosts`; torn edges.
 inline constexpr int kAuditSchema = 2;
 
-/// Returns everything found in one input, without the fields that every command begins with.
+/// Returns all findings about one input, without the fields that every command begins with.
 [[nodiscard]] Json audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
 /// Returns the text of audit_json() in one line.

@@ -1,4 +1,4 @@
-/// The figures of one face as a JSON value, which reports hold as well. Private to workflow.
+/// The figures of one face as a JSON value, which reports also contain. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_JSON_FACE_FIGURE_JSON_H_
 #define CHRONORMAL_WORKFLOW_JSON_FACE_FIGURE_JSON_H_
 

@@ -37,7 +37,7 @@ struct NamedComparison {
 /// the same on every run. inputs must not be empty.
 [[nodiscard]] std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times);
 
-/// input is the name of what the face belongs to.
+/// The text of input names the file that the face belongs to.
 [[nodiscard]] std::string face_figure_json(const std::string& input, const FaceFigure& figure);
 
 struct NamedBlendComparison {

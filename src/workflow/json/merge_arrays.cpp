@@ -98,7 +98,7 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
   for (const ShardRows& rows : all) {
     std::uint32_t sum = 0;
     std::uint64_t at = 0;
-    // Reads the bytes of a part up to a place, and copies them if asked to.
+    // Reads the bytes of a part up to a place, and copies them if is_copied.
     const auto pass = [&](std::uint64_t end, bool is_copied) -> Status {
       while (at < end) {
         const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), end - at));

@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;  // fields stay in the order of the documen
 [[nodiscard]] std::string json_text(const Json& json);
 
 /// Inserts objects into a text in place of its empty list `name`, which must come before any other list of this name.
-/// The objects are made one by one, so that a million of them are never in memory together. is_indented formats them as
-/// json_text() does, for a list of the outermost object; otherwise all are on one line.
+/// The objects are created one by one, so that a million objects are never in memory together. is_indented formats them
+/// as json_text() does, for a list of the outermost object; otherwise all objects are on one line.
 [[nodiscard]] std::string with_items(std::string text, const std::string& name, std::size_t count,
                                      const std::function<Json(std::size_t)>& item, bool is_indented);
 

@@ -16,9 +16,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr double kMostCount = 9007199254740992;  // a double holds every integer up to this one
+constexpr double kMostCount = 9007199254740992;  // a double holds every integer up to this number
 
-// Reads the numbers of a list one after the other.
+// A reader for the numbers of a list, one after the other.
 class Numbers {
  public:
   explicit Numbers(JsonView list) : list_(std::move(list)) {}

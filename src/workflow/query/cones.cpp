@@ -62,7 +62,7 @@ Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
       const unsigned char* const local = &triangles[meshlet.triangle_offset + 3 * i];
       const unsigned* const global = &vertices[meshlet.vertex_offset];
       const Triangle triangle = from_the_lowest({global[local[0]], global[local[1]], global[local[2]]});
-      // Duplicate faces are taken one after the other.
+      // Each of several duplicate faces is taken once, one after the other.
       auto found = std::lower_bound(faces.begin(), faces.end(), std::pair{triangle, std::uint32_t{0}});
       while (taken[found->second] != 0) ++found;
       taken[found->second] = 1;

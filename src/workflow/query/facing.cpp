@@ -68,7 +68,7 @@ void add_facing(const Facing& facing, std::size_t element, const SegmentPart& pa
   if (facing.count == 0) ++(facing.side == Side::kFront ? found.always_front : found.always_back);
 }
 
-// Vertices at one point have one normal, and see the viewer alike.
+// Finds when outputs face the viewer. Vertices at one point have one normal, and see the viewer alike.
 Found facing_of_outputs(const Segment& segment, const View& view, const AskedOutputs& outputs,
                         const SegmentPart& part) {
   std::vector<std::optional<Facing>> facings(outputs.element_count());
@@ -101,7 +101,7 @@ Found facing_of(const Segment& segment, const View& view, bool with_silhouettes,
   return found;
 }
 
-// Returns the size of these rows in the answer, in bytes.
+// Returns how many bytes these rows take in the answer.
 std::uint64_t bytes_of_fronts(const Found& found) {
   constexpr std::uint64_t kBytesPerFront = 2 * sizeof(std::int64_t) + 4 * sizeof(double);
   constexpr std::uint64_t kBytesPerSilhouette = 5 * sizeof(std::int64_t) + 4 * sizeof(double);
@@ -137,7 +137,7 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
   const bool are_faces = elements.kind == ElementKind::kFaces;
   if (silhouettes && !are_faces)
     return Error{ErrorCode::kUsage, "--silhouettes", "silhouettes are edges between faces: ask --elements faces"};
-  // An eye counts from the origin of the motion, as vertices do.
+  // The eye is relative to the origin of the motion, like vertices.
   View view = placed;
   const Vec3d origin = {motion.origin[0], motion.origin[1], motion.origin[2]};
   if (view.is_eye) {

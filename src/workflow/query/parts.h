@@ -18,7 +18,7 @@
 
 namespace chronormal::inline internal {
 
-/// Returns how much an answer may take.
+/// Returns the limit on the size of an answer.
 [[nodiscard]] inline Expansion expansion_of(const QuerySpan& span) {
   return span.expansion != nullptr ? *span.expansion : Expansion::unlimited();
 }
@@ -33,8 +33,7 @@ namespace chronormal::inline internal {
                                   "the answer for every " + std::string(what) + " of every segment");
 }
 
-/// The vertices or corners whose normals are asked for: each with its vertex, and with the faces that its normal is the
-/// sum of.
+/// The vertices or corners whose normals are requested. Each has its vertex, and the faces whose sum is its normal.
 class AskedOutputs {
  public:
   /// Errors: of make_groups()
@@ -62,8 +61,8 @@ class AskedOutputs {
   NormalGroups groups_;
 };
 
-/// Holds an answer whose rows are only known as they are found to what its span allows, while it grows: what is
-/// written in the end may be a little more, and is checked once more by those who write it.
+/// A check that an answer stays within its span's limit while it grows, if the number of rows is not known before. The
+/// size of the written answer may be a little larger, and the writer checks it once more.
 class RowsInBounds {
  public:
   explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}
@@ -105,7 +104,8 @@ template <class T, class Answer, class BytesOf>
   return results;
 }
 
-/// Does the same for answers whose size check_rows() has already limited.
+/// Calls answer(part) for every part, like for_parts_in_bounds(), if check_rows() has already limited the size of the
+/// answer.
 template <class T, class Answer>
 [[nodiscard]] std::vector<T> for_parts(std::span<const SegmentPart> parts, const QueryProgress& progress,
                                        const Answer& answer) {

@@ -1,4 +1,4 @@
-// Shared code of all questions: the parts of segments that lie in a span, and answers as files.
+// Shared code of all questions: the parts of segments in a span, and answers as files.
 
 #include "chronormal/workflow/query.h"
 

@@ -38,7 +38,7 @@ Means means_of(const Motion& motion, const SegmentPart& part) {
   return means;
 }
 
-// Vertices at one point have one normal.
+// Computes the means of outputs. Vertices at one point have one normal.
 Means means_of_outputs(const Motion& motion, const AskedOutputs& outputs, const SegmentPart& part) {
   const Segment segment = motion.segment(part.segment);
   struct One {
@@ -67,7 +67,7 @@ Means means_of_outputs(const Motion& motion, const AskedOutputs& outputs, const 
   return means;
 }
 
-// Parts weigh as much as they last.
+// Averages the means of all parts. Each part has its duration as weight.
 Means whole_of(const Motion& motion, std::span<const SegmentPart> parts, std::span<const Means> found) {
   Means whole = found.front();
   whole.to = found.back().to;

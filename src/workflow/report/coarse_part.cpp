@@ -32,7 +32,7 @@ struct Faces {
   std::vector<std::size_t> first;  // first triangle of each face, and the end
 };
 
-// Lists of numbers, one for each element, stored one after the other.
+// A list of numbers for each element, stored one after the other.
 struct ListsOfElements {
   // each(use) must call use(element, number) for all entries, in order. Entries without an element are left out.
   template <class Each>
@@ -133,7 +133,7 @@ Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size
   return kept;
 }
 
-// Returns fewer triangles with the same vertices. Their border stays if possible.
+// Returns fewer triangles with the same vertices. The border of the triangles stays the same if possible.
 std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
                                       std::size_t most_triangles) {
   if (triangles.empty() || most_triangles == 0) return {};

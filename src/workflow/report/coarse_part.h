@@ -8,9 +8,9 @@
 
 namespace chronormal::inline internal {
 
-/// Leaves about this many vertices of a part: half of them around its worst places, with all triangles there, and half
-/// for the other places, which become coarse. The worst places keep their neighbourhoods even if these need more.
-/// Numbers in the model are updated. The part must have no coarse triangles yet.
+/// Reduces a part to about this many vertices: half of them around its worst places, with all triangles there, and half
+/// for the other places, which become coarse. The worst places keep their neighbourhoods even if these need more
+/// vertices. Numbers in the model are updated. The part must have no coarse triangles yet.
 void make_coarse(ReportModel& model, std::size_t part, std::size_t most_vertices);
 
 }  // namespace chronormal::inline internal

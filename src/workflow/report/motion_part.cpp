@@ -36,7 +36,7 @@ ModelVectors changes(const std::vector<float>& first, std::vector<float> now) {
     result.vertices.push_back(static_cast<std::uint32_t>(v));
     result.values.insert(result.values.end(), &now[3 * v], &now[3 * v] + 3);
   }
-  // A vertex with its number takes 16 bytes, and 12 bytes without.
+  // A vertex with its number takes 16 bytes, and a vertex without a number takes 12 bytes.
   result.is_dense = 4 * result.vertices.size() > 3 * vertices;
   if (result.is_dense) result = {true, {}, std::move(now)};
   return result;
@@ -100,7 +100,7 @@ Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals
     std::uint32_t vertex = 0, element = 0, corner = 0;
   };
   std::vector<Shown> shown;
-  std::vector<std::uint32_t> shown_by(corners.size());  // for each corner, the corner that stands for its output
+  std::vector<std::uint32_t> shown_by(corners.size());  // for each corner, the corner that represents its output
   for (std::uint32_t e = 0; e < groups.value().size(); ++e) {
     const std::size_t first = shown.size();
     for (const std::uint32_t c : groups.value().corners(e)) {

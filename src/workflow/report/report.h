@@ -1,4 +1,4 @@
-/// A report: everything that a page needs to show how an input deforms, as rendered beside the truth.
+/// A report: all data that a page needs to show how an input deforms, with the rendered normals beside the true ones.
 ///
 ///     Result<Input> input = open_input(...);                  // with KeepShading::kAll
 ///     Result<Report> found = report(input.value(), {});
@@ -9,11 +9,11 @@
 /// plan of bake and compare. The page computes the true and the rendered normals at any moment in between from the same
 /// positions and normals, so that its numbers at the worst places are the numbers of the audit.
 ///
-/// Worst      at most kMostWorstPlaces vertices, each at its largest error, which is above kLeastPlace; none within
-///            kPlaceDistance of another of the same mesh.
-/// Thinned    a page above the size limit is thinned out, and says so: first it drops keyframes and samples between the
-///            worst places, then triangles far from these places, which become fewer and are not judged. Everything
-///            that the normals around a worst place depend on is kept as it is.
+/// Worst      at most kMostWorstPlaces vertices, each at its largest error, which is above kLeastPlace; no two of a
+///            mesh are within kPlaceDistance of each other.
+/// Thinned    a page above the size limit is thinned out, and states this. First keyframes and samples between the
+///            worst places are dropped, then triangles far from these places become fewer and are not judged. All data
+///            that the normals around a worst place depend on is kept unchanged.
 /// Threads    uses all cores; gives the same bytes on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_H_
@@ -37,18 +37,19 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kMostReportBytes = 30000000;  ///< of a page with its template
 inline constexpr std::size_t kMostWorstPlaces = 20;
-inline constexpr double kLeastPlace = 0.001;    ///< degrees: a smaller error is no worst place
-inline constexpr double kPlaceDistance = 0.04;  ///< between worst places, as a share of the mesh's diagonal
+inline constexpr double kLeastPlace = 0.001;  ///< degrees; a place with a smaller error is not a worst place
+/// Least distance between worst places, as a share of the mesh's diagonal.
+inline constexpr double kPlaceDistance = 0.04;
 
 struct ReportOptions {
   std::string animation = {};               ///< see AuditOptions
   std::optional<std::size_t> samples = {};  ///< see AuditOptions
   std::optional<Weighting> weighting = {};  ///< see AuditOptions
-  std::vector<Viewer> viewers = {};         ///< glTF: viewers to show besides the specification
+  std::vector<Viewer> viewers = {};         ///< viewers of glTF files to show besides the specification
   bool plan = true;                         ///< glTF: with the candidates of bake for each mesh
   std::size_t most_bytes = kMostReportBytes;
   std::size_t template_bytes = 0;  ///< size of the page without the report
-  /// Called with the current step ("auditing", "comparing", "planning") and its progress.
+  /// A function that is called with the current step ("auditing", "comparing", "planning") and its progress.
   std::function<void(std::string_view what, std::size_t done, std::size_t total)> progress = {};
 };
 
@@ -56,7 +57,7 @@ struct ReportOptions {
 struct ReportPlace {
   std::size_t part = 0, motion = 0, sample = 0, vertex = 0;  ///< indices in Report::parts and below
   double degrees = 0;
-  std::string label;   ///< as the file counts: "mesh 0, primitive 1, vertex 5051"
+  std::string label;   ///< the name in terms of the file: "mesh 0, primitive 1, vertex 5051"
   std::string moment;  ///< "jawOpen at 0.55", "talk at 1.25 s"
 };
 
@@ -74,7 +75,7 @@ struct Report {
   std::optional<NamedComparison> comparison;  ///< of schemes, on vertices, unless the input is glTF
   std::vector<ReportPart> parts;
   std::vector<ReportPlace> worst;    ///< worst first
-  std::vector<std::string> thinned;  ///< what was left out, one sentence each
+  std::vector<std::string> thinned;  ///< descriptions of the data that was left out, one sentence each
   std::string container;             ///< the bytes
 };
 
@@ -84,10 +85,10 @@ struct Report {
 /// judged.
 [[nodiscard]] Result<Report> report(Input& input, const ReportOptions& options);
 
-/// A template holds this mark exactly once, and the report takes its place.
+/// The mark that a template contains exactly once, and that the report replaces.
 inline constexpr std::string_view kReportMark = "<!--chronormal-data-->";
 
-/// Checks that a template holds the mark exactly once. Errors: kInvalidInput.
+/// Checks that a template contains the mark exactly once. Errors: kInvalidInput.
 [[nodiscard]] Status check_report_template(std::string_view page_template);
 
 /// Fills a template: the container, packed and as base64, becomes a script element in place of the mark, from which no

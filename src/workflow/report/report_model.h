@@ -30,7 +30,7 @@ struct ModelVectors {
   [[nodiscard]] std::uint32_t vertex(std::size_t i) const noexcept {
     return is_dense ? static_cast<std::uint32_t>(i) : vertices[i];
   }
-  /// Makes the vectors dense if every vertex of the mesh has one.
+  /// Makes the vectors dense if every vertex of the mesh has a vector.
   void drop_vertices_of(std::size_t vertex_count) {
     is_dense = vertex_count > 0 && vertices.size() == vertex_count;
     if (is_dense) vertices.clear();
@@ -65,7 +65,8 @@ struct ModelTruth {
   };
 
   std::vector<std::uint32_t> first, corners;  ///< of polygons; empty if triangles are added up
-  /// (n, 2) corners of polygons, ascending, and elements that add them up; empty if each counts for its vertex.
+  /// (n, 2) corners of polygons, ascending, and the elements that add them up; empty if each corner counts for its
+  /// vertex.
   std::vector<std::uint32_t> terms;
   std::vector<ModelOffset> offsets;
   std::vector<Changes> changes;  ///< of each target; empty without offsets
@@ -112,7 +113,7 @@ struct ModelPart {
   std::string name;
   std::optional<std::size_t> mesh;
   std::vector<ModelPrimitive> primitives;
-  std::vector<std::uint32_t> labels;  ///< (V) number of each vertex in the file; empty if the same
+  std::vector<std::uint32_t> labels;  ///< (V) number of each vertex in the file; empty if the numbers are the same
   std::vector<std::uint32_t> triangles, faces, coarse;
   std::vector<std::uint32_t> backs;  ///< corners of triangles whose vertex shows the other side of a sheet
   std::size_t elements = 0;
@@ -125,7 +126,7 @@ struct ModelPart {
   std::optional<GltfBakeMark> mark;
   std::vector<ModelShown> shown;
   ModelTruth truth;
-  // Members for other motions. Vectors are values; missing ones are as in keyframe 0.
+  // These members are for motions other than glTF. Vectors are values; missing vectors are as in keyframe 0.
   std::vector<double> times;
   std::vector<std::size_t> keyframe_numbers;
   std::vector<ModelVectors> keyframe_positions, keyframe_normals;

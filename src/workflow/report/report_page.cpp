@@ -1,4 +1,4 @@
-// Makes the page of a report: a template with the container in it.
+// Creates the page of a report from a template and the container.
 #include <string>
 
 #include "workflow/json/object.h"

@@ -1,4 +1,4 @@
-/// Makes the parts of a report from an input: one for each judged mesh of a glTF file, or one for another motion.
+/// Builds the parts of a report from an input: one for each judged mesh of a glTF file, or one for any other motion.
 /// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_PARTS_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_PARTS_H_
@@ -20,7 +20,7 @@
 
 namespace chronormal::inline internal {
 
-/// Makes the part of a glTF mesh, with its normals as `viewers` keep them. The true normals are the author's, or sums
+/// Builds the part of a glTF mesh, with its normals as `viewers` keep them. The true normals are the author's, or sums
 /// by the requested weighting. Errors: as GltfDocument returns them.
 [[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh,
                                           std::optional<Weighting> asked, std::span<const Viewer> viewers,
@@ -29,7 +29,7 @@ namespace chronormal::inline internal {
 /// The vertices of a motion in a report: a vertex of the file occurs once for each normal that it shows.
 struct MotionVertices {
   std::vector<std::uint32_t> labels;             ///< their vertices in the file, ascending
-  std::vector<std::uint32_t> elements, corners;  ///< of each vertex; corners: one that shows it
+  std::vector<std::uint32_t> elements, corners;  ///< the element of each vertex, and a corner that shows it
   std::vector<std::uint32_t> of_corner;          ///< for each corner of the motion, the vertex that it shows
   std::size_t element_count = 0;
 };

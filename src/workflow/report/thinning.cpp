@@ -65,7 +65,7 @@ std::size_t sum(const ReportModel& model, const OfPart& of_part) {
   return result;
 }
 
-// Returns the rest of `most` after subtracting `taken`.
+// Returns the part of `most` that is left after `taken`.
 std::size_t left(std::size_t most, std::size_t taken) { return most > taken ? most - taken : 0; }
 
 // Lists the samples of a motion that are worst places.
@@ -87,7 +87,7 @@ std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
     is_segment_kept[s] = true;
     is_kept[part.segments[2 * s]] = is_kept[part.segments[2 * s + 1]] = true;
   };
-  is_kept[0] = true;  // the other keyframes are stored relative to it
+  is_kept[0] = true;  // the other keyframes are stored relative to keyframe 0
   for (const ReportPlace& place : model.worst) {
     const std::size_t s = part.motions[place.motion].segments[place.sample];
     keep(s);
@@ -152,7 +152,8 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
   const auto note = [&](const std::string& sentence) { model.thinned.push_back(sentence); };
   if (const std::size_t all = bytes_of(model); model.kind != "gltf" && all > most_bytes) {
     const std::size_t of_keyframes = sum(model, bytes_of_keyframes), before = model.parts[0].times.size();
-    // At least half of the page is for keyframes. If it is still too large after this, it has too many vertices.
+    // At least half of the page is for keyframes. If the page is still too large after this step, it has too many
+    // vertices.
     const std::size_t after = thin_keyframes(model, std::max(left(most_bytes, all - of_keyframes), most_bytes / 2));
     const bool is_sequence = model.kind == "sequence";
     if (after < before)

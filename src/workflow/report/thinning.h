@@ -1,12 +1,13 @@
 /// Leaves out parts of a report that would make it too large. Private to workflow.
 ///
-///     keyframes   of segments evenly over the motion; worst places keep theirs, with the segments beside them
-///     samples     of glTF files evenly over each motion; worst places keep theirs
-///     triangles   around the worst places all stay, as far as half of the vertices go; the others become fewer, by
-///                 quadrics (Garland and Heckbert 1997, as in meshoptimizer), and are not judged
+///     keyframes   of segments, evenly over the motion; worst places keep their keyframes, and the segments beside them
+///     samples     of glTF files, evenly over each motion; worst places keep their samples
+///     triangles   far from the worst places become fewer, by quadrics (Garland and Heckbert 1997, as in
+///                 meshoptimizer), and are not judged; those around the worst places stay, as long as half of the
+///                 vertices suffice
 ///
-/// An element is judged if everything that its true normal depends on is there: its faces and its polygons with all of
-/// their vertices, and its edges. So the normals of a worst place do not change.
+/// An element is judged if all parts that its true normal depends on are left: its faces and polygons with all of their
+/// vertices, and its edges. So the normals of a worst place do not change.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_THINNING_H_
 #define CHRONORMAL_WORKFLOW_REPORT_THINNING_H_
 

@@ -24,8 +24,8 @@ struct WatchedPart {
 class WatchedMotions {
  public:
   /// audited lists the viewers of the audit; only the weights of the viewers in `kept` are kept. vertex_of_corner,
-  /// which must outlive this, has the vertex of the report for each corner; if it is empty, vertices are as in the
-  /// audit.
+  /// which must outlive the object, has the vertex of the report for each corner; if it is empty, vertices are as in
+  /// the audit.
   WatchedMotions(std::span<const Viewer> audited, std::span<const Viewer> kept,
                  std::span<const std::uint32_t> vertex_of_corner = {});
 

@@ -14,7 +14,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The triangles of part.triangles that make up one face: those of a polygon follow each other as a fan.
+// The triangles of part.triangles that form one face; the triangles of a polygon are consecutive and form a fan.
 struct ReportFace {
   std::size_t first = 0, end = 0;
 
@@ -49,7 +49,7 @@ Vec3d value_at(const std::vector<float>& values, std::size_t i) {
           static_cast<double>(values[3 * i + 2])};
 }
 
-// Returns the vector of a vertex, or nothing where it has none.
+// Returns the vector of a vertex, or nothing if it has none.
 std::optional<Vec3d> vector_of(const ModelVectors& vectors, std::uint32_t vertex) {
   if (vectors.is_dense) return value_at(vectors.values, vertex);
   const auto found = std::lower_bound(vectors.vertices.begin(), vectors.vertices.end(), vertex);
@@ -57,7 +57,7 @@ std::optional<Vec3d> vector_of(const ModelVectors& vectors, std::uint32_t vertex
   return value_at(vectors.values, static_cast<std::size_t>(found - vectors.vertices.begin()));
 }
 
-// Where a vertex is at both ends of the straight way on which a place is found.
+// Returns the places of a vertex at both ends of the straight path that contains a worst place.
 std::array<Vec3d, 2> ends_of(const ModelPart& part, const ModelMotion& motion, std::size_t sample,
                              std::uint32_t vertex) {
   if (motion.weights.empty()) {

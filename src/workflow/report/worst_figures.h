@@ -11,14 +11,15 @@
 
 namespace chronormal::inline internal {
 
-/// A page without the program inside shows these alone; eight take about 40 kB of it.
+/// A page without the program inside shows only these figures; eight figures take about 40 kB of the page.
 inline constexpr std::size_t kMostFigures = 8, kFigureSamples = 21;
 inline constexpr std::array<std::string_view, 7> kFigureSchemes = {
     "linear", "quadratic", "cubic", "slerp", "decasteljau:4", "quaternion:matrix", "quaternion:optimal"};
 
-/// Returns an array of figures, that of the worst place first: for each place the face around it whose normal `linear`
-/// misses most, unless another place has it. The face moves in the segment of the place; in a glTF file it moves from
-/// the base to the moment of the place, or to weight 1 where the place is found by a weight.
+/// Returns an array of figures, with that of the worst place first. The figure of a place shows the face around the
+/// place for which `linear` has the largest error, unless another place already shows this face. The face moves in the
+/// segment of the place; in a glTF file it moves from the base to the moment of the place, or to weight 1 if the place
+/// is given by a weight.
 [[nodiscard]] Json worst_figures(const ReportModel& model);
 
 }  // namespace chronormal::inline internal

@@ -17,19 +17,20 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the files that `count` moments are written to, and checks that they may be written. If there are several
-/// shards, files of other shards may exist. Errors: also kUsage for a shard of .npz, and for peers and a stream.
+/// Returns the files to write for `count` moments, and checks that they may be written. If there are several shards,
+/// files of other shards may exist. Errors: also kUsage for a shard of .npz, and for peers and a stream.
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count, const SegmentRun& run);
 
 /// Runs write_samples() on the share of the run, in which each moment is a segment:
 ///
-///     shard      its share of the moments: .ply and .obj files with the numbers that they would have among all, or
-///                .npy with as many rows (workflow/json/parts.h joins them). The bits are the same as in one run
+///     shard      writes its share of the moments: .ply and .obj files with the numbers that they would have among all
+///                files, or .npy with as many rows (workflow/json/parts.h joins them). The bits are the same as in one
+///                run
 ///     peers      the shards share one output, which nobody sees before all are done: a .npy or .npz file that every
 ///                process writes its rows into, or .ply and .obj files. The first process gets the summary of all, and
 ///                each other process its own
-///     journal    each row of a .npy file gets a record. The file is OUT.partial until it is whole. Rows that the
+///     journal    each row of a .npy file gets a record. The file is OUT.partial until it is complete. Rows that the
 ///                journal of an earlier run has, and that are in the file with the same checksum, are not computed
 ///                again. The journal stays; the caller removes it
 ///

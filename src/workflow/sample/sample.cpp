@@ -26,7 +26,7 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
-constexpr double kLargestStepError = 1e-7;  // of a local t; there are at most a million steps
+constexpr double kLargestStepError = 1e-7;  // error of a local t; there are at most a million steps
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
 Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
@@ -183,7 +183,7 @@ std::vector<float> NormalSampler::unit_normals(const Segment& segment, const Loc
 
 Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment, double t, double time) {
   if (!scheme_normals_ || segment_ != segment.index) {
-    scheme_normals_.reset();  // frees memory before the next one is made
+    scheme_normals_.reset();  // frees memory before the next object is created
     scheme_normals_ = std::make_shared<SchemeNormals>(segment, groups_.get(), options_.scheme);
     segment_ = segment.index;
   }

@@ -1,4 +1,4 @@
-// Names the files of samples, and writes poses into them as they are computed.
+// Chooses the names of sample files, and writes poses into the files as they are computed.
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || form
 Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments& moments,
                      const std::vector<double>& in_a_row, std::size_t i) {
   if (!moments.times.empty()) {
-    // A run of moments starts at the same one for all shards, so that the prepared segment does not depend on the
+    // A run of moments starts at the same moment for all shards, so that the prepared segment does not depend on the
     // share.
     std::size_t first = i;
     while (first > 0 && in_a_row[first - 1] == in_a_row[first] + 1) --first;
@@ -170,7 +170,7 @@ class ArrayFile {
     return binary::bytes_of(values, std::endian::little, storage_);
   }
 
-  std::unique_ptr<OutputFile> file_;  // on the heap, so that its address for npz_ stays
+  std::unique_ptr<OutputFile> file_;  // on the heap, so that the address that npz_ keeps stays valid
   std::optional<NpzOutput> npz_;
   std::size_t normals_ = 0, positions_ = 0;  // indices of arrays in npz_
   Origin origin_ = {};                       // of the positions
@@ -179,7 +179,7 @@ class ArrayFile {
   std::string storage_;
 };
 
-// Removes a partial output at the end if no row of it was written, since there is nothing to continue.
+// Removes a partial output at the end if no row was written to it, since there is nothing to continue.
 struct EmptyPartial {
   EmptyPartial() = default;
   EmptyPartial(const EmptyPartial&) = delete;
@@ -189,7 +189,7 @@ struct EmptyPartial {
     if (!name.empty() && journal->is_empty()) std::filesystem::remove(name, ignored);
   }
 
-  std::string name;  // empty if there is none
+  std::string name;  // empty if there is no partial output
   const Journal* journal = nullptr;
 };
 
@@ -371,7 +371,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
       return status.error();
   }
 
-  std::vector<OutputFile> meshes;  // without names until all are there: they may have those of keyframes
+  std::vector<OutputFile> meshes;  // without names until all are complete, since their names may be those of keyframes
   run.skip(written);
   const auto keys = [&](std::size_t i) {
     return moments.times.empty() ? Motion::SegmentKeys{}
@@ -469,7 +469,7 @@ Result<std::vector<std::string>> internal::sample_files(const SampleOutput& outp
     return Error{ErrorCode::kUsage, output.path,
                  "there are " + std::to_string(count) + " meshes, and the standard output can take one"};
   }
-  // If there are shards, files of the other shards may exist.
+  // Files of the other shards may exist.
   const IndexRange own = names.size() == count ? run.share_of(count) : IndexRange{0, names.size()};
   for (std::size_t i = own.first; i < own.end(); ++i) {
     if (Status status = check_output(names[i], output.force); !status) return status.error();

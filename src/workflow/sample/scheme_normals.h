@@ -25,8 +25,8 @@ struct TargetWeight {
   double weight = 0;
 };
 
-/// Returns the one target of a pose, or the first one if all weights are 0. Errors: kUsage if several targets have a
-/// weight, or the weight is outside [0, 1].
+/// Returns the only target of a pose, or the first target if all weights are 0. Errors: kUsage if several targets have
+/// a weight, or the weight is outside [0, 1].
 [[nodiscard]] Result<TargetWeight> one_target_of(std::span<const double> weights);
 
 class SchemeNormals {
@@ -40,9 +40,9 @@ class SchemeNormals {
   /// Writes the unit normals at t in [0, 1]. result must have as many elements as the segment.
   void unit_normals(double t, VectorView<float> result) const;
 
-  /// Writes the unit normals at t = index / steps as they come out of `index` steps from t = 0. Every
-  /// anchor_interval-th step is computed anew (0: none). The scheme must have a sequential form. Going back starts
-  /// over.
+  /// Writes the unit normals at t = index / steps as they result from `index` steps from t = 0. Every
+  /// anchor_interval-th step is recomputed from t (0: no step is). The scheme must have a sequential form. Going back
+  /// starts again at t = 0.
   void played_normals(std::size_t index, std::size_t steps, std::size_t anchor_interval, VectorView<float> result);
 
  private:
@@ -55,7 +55,7 @@ class SchemeNormals {
   Segment segment_;
   std::vector<ControlNormals> control_normals_;
   std::vector<Block> blocks_;
-  std::size_t played_ = 0;  // steps since the playbacks began; 0 if there are none
+  std::size_t played_ = 0;  // steps since the playbacks began; 0 if there are no playbacks
 };
 
 }  // namespace chronormal::inline internal

@@ -1,6 +1,6 @@
-/// One pass over the segments of a motion, which compare, audit, sample, inspect and query share. A run knows which
-/// segments are its own, holds their keyframes, and knows where results go; the commands know what to compute for a
-/// segment, and how to add up results.
+/// One pass over the segments of a motion, which compare, audit, sample, inspect and query share. A run decides which
+/// segments it handles, keeps their keyframes in memory, and passes results on; the commands decide what to compute for
+/// a segment, and how to add up results.
 ///
 ///     SegmentRun run;                           // one process does everything; or:
 ///     run.shard = Shard{0, 8};                  // the first of eight shares, for --shard 1/8
@@ -8,8 +8,8 @@
 ///     run.begin(motion.segments.size());
 ///     run.over(stream, segment_keys(motion), run.share(), at_once, [&](IndexRange segments) -> Status { ... });
 ///
-/// A RecordedRun also has a result for each segment: it skips the segments whose results an earlier run has kept
-/// (--resume), hands each new result to the journal, and collects them for the part of a shard.
+/// A RecordedRun also has a result for each segment. It skips the segments whose results an earlier run has kept
+/// (--resume), passes each new result to the journal, and collects all results for the part of a shard.
 ///
 /// Results are added up segment by segment in the order of the motion, so that their bits depend neither on the number
 /// of threads nor on where a motion is divided.
@@ -50,7 +50,7 @@ class Journal;
 struct SegmentRun {
   using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-  /// The share of the work; without one, the run does all of it and makes no part for merge.
+  /// The share of the work. Without a shard, the run does all work and writes no part for merge.
   std::optional<Shard> shard = {};
   /// The processes that have the other shares, or nullptr if none are known.
   const Peers* peers = nullptr;
@@ -72,9 +72,9 @@ struct SegmentRun {
   void skip(std::size_t segments) noexcept { done_ += segments; }
   /// Returns the segments that this process computes.
   [[nodiscard]] IndexRange share() const noexcept { return share_of(total_); }
-  /// Returns this process's share of `total` things.
+  /// Returns the range of this process among `total` items.
   [[nodiscard]] IndexRange share_of(std::size_t total) const noexcept { return shard.value_or(Shard{}).of(total); }
-  /// Returns the things to look at for facts about all of them: only its own if peers look at the others.
+  /// Returns the items to examine for facts about all items: only this process's own items if peers examine the others.
   [[nodiscard]] IndexRange looked_at(std::size_t total) const noexcept {
     return peers != nullptr ? share_of(total) : IndexRange{0, total};
   }
@@ -89,8 +89,8 @@ struct SegmentRun {
     if (progress) progress(done_ * steps_ + steps, share().count * steps_);
   }
 
-  /// Goes over segments that are in memory, in order: calls work(segments) for `at_once` of them at a time, and reports
-  /// that they are done. Errors: as work returns them.
+  /// Processes segments that are in memory, in order: calls work(segments) for `at_once` segments at a time, and
+  /// reports progress. Errors: as work returns them.
   template <class Work>
   [[nodiscard]] Status over(IndexRange segments, std::size_t at_once, const Work& work) {
     return in_waves(segments, at_once, [&](IndexRange some) -> Status {
@@ -99,8 +99,8 @@ struct SegmentRun {
       return status;
     });
   }
-  /// Does the same for a stream. For each wave it holds the keyframes from the first to the last that keys(segment)
-  /// names. Errors: also those of the stream.
+  /// Processes the segments of a stream, in the same way. For each wave, keeps the keyframes from the first to the last
+  /// that keys(segment) names in memory. Errors: also those of the stream.
   template <class Keys, class Work>
   [[nodiscard]] Status over(MotionStream& stream, const Keys& keys, IndexRange segments, std::size_t at_once,
                             const Work& work) {
@@ -142,7 +142,7 @@ template <class Found>
 struct RecordedRun : SegmentRun {
   /// The results of the first segments of the share, if an earlier run has them.
   std::vector<Found> known = {};
-  /// Called for each segment that was computed, in order, so that a later run can have it among `known`; may be empty.
+  /// Called for each computed segment, in order, so that a later run can have its result among `known`; may be empty.
   /// An error that it returns ends the run.
   std::function<Status(const Found&)> keep = {};
   /// The result of each segment of a shard, including the known ones.
@@ -196,8 +196,8 @@ struct ShardOf {
 };
 
 /// Puts the segments of shards, which may come in any order, in the order of the motion, which has total(whole)
-/// segments. Errors: kUsage unless are_of_one(whole, whole) says that all belong to one task, which `tasks` names, and
-/// each segment is in exactly one shard.
+/// segments. Errors: kUsage unless are_of_one(whole, whole) is true for all shards, which then belong to one task,
+/// named by `tasks`, and each segment is in exactly one shard.
 template <class Whole, class Found, class AreOfOne>
 [[nodiscard]] Result<std::vector<Found>> join(std::vector<ShardOf<Whole, Found>>& shards, std::size_t total,
                                               const AreOfOne& are_of_one, const char* tasks) {

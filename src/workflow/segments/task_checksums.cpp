@@ -1,4 +1,4 @@
-// Takes checksums of keyframes while a stream reads them, and of the outline of a motion.
+// Computes checksums of keyframes while a stream reads them, and of the outline of a motion.
 #include "workflow/segments/task_checksums.h"
 
 #include <limits>
@@ -104,7 +104,7 @@ TaskChecksums read_task_checksums(const JsonView& part) {
 
 Status KnownParts::add(const std::string& part, const TaskChecksums& checksums) {
   parts_.push_back(part);
-  std::optional<Error> keyframe;  // reported last: errors in what all keyframes share say more
+  std::optional<Error> keyframe;  // reported last, since errors in the data that all keyframes share are more helpful
   for (const auto& [name, checksum] : checksums) {
     const auto [known, is_new] = first_.try_emplace(name, checksum, parts_.size() - 1);
     if (is_new || known->second.first == checksum) continue;

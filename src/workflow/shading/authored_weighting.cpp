@@ -18,8 +18,8 @@ constexpr double kFollows = 1;  // degrees
 
 using Stored = std::span<const StoredNormal>;  // sorted by element
 
-// Holds some elements as a small mesh, so that memory stays that of one block. Each element has its own copy of its
-// faces: it is one vertex of them, and no other element uses their other vertices.
+// Some elements as a small mesh, so that memory stays that of one block. Each element has its own copy of its faces:
+// the element is one vertex of these faces, and no other element uses their other vertices.
 class Block {
  public:
   Block(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups, Stored stored) {
@@ -51,7 +51,7 @@ class Block {
     groups_ = NormalGroups::of_vertices(topology_, separate_points(topology_.vertex_count()));
   }
 
-  // Returns the normals of the elements by a weighting, one for each stored normal; zero where an element has none.
+  // Returns the normals of the elements by a weighting, one for each stored normal, and zero if an element has none.
   [[nodiscard]] std::vector<Vec3d> normals(Weighting weighting) const {
     const auto view = VectorView<const float>::packed(positions_.data(), topology_.vertex_count());
     const std::vector<Vec3d> all = all_weighted_normals_at({&topology_, view, view, 0, 1, 0}, groups_, weighting, 0);
@@ -63,7 +63,7 @@ class Block {
  private:
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
-  std::vector<std::uint32_t> own_;  // for each stored normal, the vertex that stands for its element
+  std::vector<std::uint32_t> own_;  // for each stored normal, the vertex that represents its element
   Topology topology_;
   std::vector<float> positions_;
   NormalGroups groups_;
@@ -75,7 +75,7 @@ bool differ(const Vec3d& a, const Vec3d& b) {
   return dot(across, across) > kTells * kTells * dot(a, a) * dot(b, b) || along < 0;
 }
 
-// Holds the distances that are added up over blocks.
+// The distances that are added up over blocks.
 struct Distances {
   std::array<WeightingDistance, kAllWeightings.size()> of_weightings;
   std::array<std::vector<float>, kWeightings.size()> told;  // degrees, of the normals that tell
@@ -117,7 +117,7 @@ Distances distances_of(const Block& block, Stored stored) {
     result.telling += tells ? 1U : 0U;
     for (std::size_t w = 0; w < normals.size(); ++w) {
       if (normals[w][i] == Vec3d{}) continue;
-      // An author may show the other side of a surface; the distance ignores which.
+      // An author may show the other side of a surface, so the distance ignores the side.
       const double angle = angle_between(stored[i].normal, normals[w][i]) * kDegreesPerRadian;
       const double degrees = std::fmin(angle, 180 - angle);
       result.add(w, stored[i], degrees);

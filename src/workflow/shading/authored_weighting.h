@@ -1,17 +1,18 @@
 /// Finds which weighting an author's normals follow. Private to workflow.
 ///
-/// The program that made a mesh weighed the faces around a vertex in its own way (normals/weighting.h), and its stored
-/// normals show which. The true normals follow the same weighting: a difference from another weighting is no error of
-/// the file.
+/// The program that made a mesh weighted the faces around a vertex in its own way (normals/weighting.h), which its
+/// stored normals show. The true normals follow the same weighting, so a difference from another weighting is no error
+/// of the file.
 ///
-///     tells      a stored normal around which two weightings differ by more than 0.1 degrees: elsewhere all agree
-///     distance   of a weighting: the median, over the normals that tell, of the angle to the stored one
-///     detected   the weighting at the smallest distance, where that is at most a degree, and two thirds of the
+///     tells      a stored normal tells if two weightings differ there by more than 0.1 degrees: elsewhere all agree
+///     distance   of a weighting: the median, over the normals that tell, of the angle to the stored normal
+///     detected   the weighting at the smallest distance, if that is at most a degree, and at most two thirds of the
 ///                distance of area; else area, which is exact at every time
 ///
-/// It is the median because it does not ask about the normals that an author bent by hand, as long as most are as they
-/// were computed. Normals in 8 bits, and quads that were cut into triangles afterwards, leave it well within the two
-/// thirds where weightings differ by more than a degree; if none comes close, all have about the same distance.
+/// The distance is a median because normals that an author bent by hand then have no influence, as long as most normals
+/// are as they were computed. Normals in 8 bits, and quads that were cut into triangles afterwards, leave the distance
+/// well within the two thirds if weightings differ by more than a degree. If no weighting comes close, all have about
+/// the same distance.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
 #define CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
 
@@ -35,12 +36,12 @@ struct StoredNormal {
   Vec3d normal;
 };
 
-/// The distances between the stored normals and the normals of one weighting, in degrees. Normals of the other side
+/// The distances between the stored normals and the normals of one weighting, in degrees. Normals of the opposite side
 /// count as equal.
 struct WeightingDistance {
   std::size_t count = 0;  ///< how many stored normals have an element with a normal
   double sum = 0, worst = 0;
-  std::uint32_t worst_at = 0;  ///< the vertex with the worst one
+  std::uint32_t worst_at = 0;  ///< the vertex with the worst distance
   double of_telling = 0;       ///< the median over the normals that tell
 
   [[nodiscard]] double mean() const noexcept { return count > 0 ? sum / static_cast<double>(count) : 0; }
@@ -57,13 +58,13 @@ struct AuthoredWeighting {
 };
 
 /// Compares stored normals with all weightings of the geometry. groups must belong to the topology, and have corners.
-/// O(corners), seven times; uses all cores, and little memory beside the stored normals. The result has the same bits
+/// O(corners), seven times; uses all cores, and little memory besides the stored normals. The result has the same bits
 /// on any number of threads.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
                                                         const NormalGroups& groups, std::vector<StoredNormal> stored);
 
-/// Compares the base normals of a mesh in the same way; detects area if it has none. Its groups must have their
-/// corners. If there are more normals than `most`, it asks about that many of them, evenly spread.
+/// Compares the base normals of a mesh in the same way, and detects area if the mesh has none. The groups of the mesh
+/// must have their corners. If there are more normals than `most`, compares that many of them, evenly spread.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const GltfShading& shading,
                                                         std::size_t most = static_cast<std::size_t>(-1));
 

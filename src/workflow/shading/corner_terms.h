@@ -1,7 +1,7 @@
 /// Computes the terms that corners of polygons add to the normals of elements, by a weighting. Private to workflow.
 ///
 /// Many corners are computed at once: the normal of a polygon once for corners that are close together in the list, and
-/// angles in SIMD lanes. The result has the same bits as corner_term(), called for each corner.
+/// angles in SIMD lanes. The result has the same bits as calls of corner_term() for each corner.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 #define CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 
@@ -17,8 +17,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, twice its area long; e
-/// and f are the edges from the corner to the next and to the previous one.
+/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, with twice its area as
+/// length; e and f are the edges from the corner to the next and to the previous corner.
 [[nodiscard]] Vec3d corner_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept;
 
 /// The number of elements that are computed together: their corners fill lanes, and fit into the fastest cache.
@@ -51,7 +51,7 @@ class CornerTerms {
 
  private:
   struct Face {
-    std::uint64_t use = 0;  // the use of the object in which this entry was made
+    std::uint64_t use = 0;  // the use of the object in which this entry was added
     std::uint32_t polygon = 0;
     Vec3d term;  // the whole term, or the vector that the angle multiplies
     double area = 0;

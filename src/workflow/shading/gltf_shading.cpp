@@ -152,7 +152,7 @@ Points split_by_targets(Points points, const std::vector<BlendTarget>& targets) 
   return points;
 }
 
-// Makes a point of its own of each vertex that `alone` names.
+// Gives each vertex in `alone` its own point.
 Points set_apart(const Points& points, const std::vector<bool>& alone) {
   std::vector<std::uint32_t> classes = points.point_of_vertex;
   std::size_t class_count = points.count;
@@ -295,7 +295,7 @@ void number_by_corners(const Topology& topology, Points& points) {
   points.count = count;
 }
 
-// Tells which polygons lie back to back: single triangles, or two in a row that were cut from a quad.
+// The polygons that are back to back: single triangles, or two consecutive triangles that were cut from a quad.
 struct Backs {
   std::vector<std::uint32_t> polygon;  // of each triangle, named by its first triangle
   std::vector<std::uint32_t> back;     // of each triangle: the polygon behind its own, or kNoFace

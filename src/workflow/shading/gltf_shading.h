@@ -1,4 +1,4 @@
-/// The normals that a viewer renders for one mesh of a glTF file, and the true ones. Private to workflow.
+/// The normals that a viewer renders for one mesh of a glTF file, and the true normals. Private to workflow.
 ///
 /// A viewer renders normalize(N + sum_i w_i D_i): the stored base normal and the stored deltas. The truth follows from
 /// the geometry: n(w) of eq. 32, area-weighted, over the faces whose corners share the stored base normal at one point.
@@ -8,8 +8,8 @@
 ///     authored offset    the angle of that rotation; not an error
 ///     motion error       the angle between the rendered and the true normal at w
 ///
-/// A primitive without NORMAL is flat by the specification: viewers compute its normals from positions, so they are
-/// true.
+/// A primitive without NORMAL is flat by the specification: viewers compute its normals from positions, so these
+/// normals are true.
 ///
 /// Shapes     V = vertices of all primitives with faces, one primitive after the other (parts); K = targets of the
 /// mesh.
@@ -35,7 +35,7 @@ namespace chronormal::inline internal {
 struct GltfShadingOptions {
   bool smooth = false;        ///< give vertex normals to primitives without NORMAL, which are flat otherwise
   double crease_angle = 180;  ///< degrees, for smooth: edges sharper than this in the base are hard
-  /// Keep normal_deltas, tangents and tangent_deltas; otherwise they are only checked.
+  /// Keeps normal_deltas, tangents and tangent_deltas; otherwise they are only checked.
   bool keep_deltas = true;
   bool weld = true;  ///< join vertices at the same point in every pose
 };
@@ -46,7 +46,7 @@ struct GltfShading {
   std::size_t mesh = 0;
   std::vector<GltfPart> parts;  ///< node is empty
   BlendSet set;                 ///< all parts together, with all targets of the file, correction targets too
-  NormalGroups groups;          ///< of set.topology; outputs are vertices, also those of flat primitives
+  NormalGroups groups;          ///< groups of set.topology; outputs are vertices, also those of flat primitives
   /// (V) The element of each vertex; kNoElement if it has no face, or its primitive is flat.
   std::vector<std::uint32_t> element_of_vertex;
   /// (V) The point of each vertex, a number below V. Vertices are one point if they share a place in the base, and the
@@ -57,11 +57,11 @@ struct GltfShading {
   /// Marks corners of faces on the back of the side whose normal their vertex shows; elements leave these corners out.
   /// Empty if there are none.
   std::vector<bool> at_the_back;
-  std::vector<float> normals;  ///< (V, 3) N as stored; (0, 0, 0) where a primitive has none
-  /// Stored deltas of each target, (V, 3); empty if no primitive stores any for it.
+  std::vector<float> normals;  ///< (V, 3) N as stored; (0, 0, 0) if the primitive has no normals
+  /// The stored deltas of each target, (V, 3); empty if no primitive stores deltas for the target.
   std::vector<std::vector<float>> normal_deltas;
   std::vector<bool> turns;      ///< per target: any of its normal deltas is not zero, even if they are not kept
-  std::vector<float> tangents;  ///< (V, 4), or empty where no primitive has any
+  std::vector<float> tangents;  ///< (V, 4), or empty if no primitive has tangents
   std::vector<std::vector<float>> tangent_deltas;  ///< as normal_deltas
   std::optional<GltfBakeMark> mark;
   /// The number of correction targets of an earlier bake that lost their deltas because another program made new
@@ -84,8 +84,8 @@ struct GltfShading {
 /// primitives only. A vertex of the file has one normal, so that a crease cannot split it: the parts on both sides of
 /// the crease are joined there, and split_by_crease counts the vertex.
 ///
-/// Errors: see GltfDocument; kUsage for a crease angle outside [0, 180]; kInvalidInput where the mesh has no primitive
-/// with faces, or extras.chronormal is not what a bake writes, with the JSON pointer.
+/// Errors: see GltfDocument; kUsage for a crease angle outside [0, 180]; kInvalidInput, with the JSON pointer, if the
+/// mesh has no primitive with faces, or extras.chronormal was not written by a bake.
 [[nodiscard]] Result<GltfShading> read_gltf_shading(const GltfDocument& document, std::size_t mesh,
                                                     const GltfShadingOptions& options = {});
 
@@ -93,8 +93,8 @@ struct GltfShading {
 [[nodiscard]] Vec3d normal_from_positions(const GltfShading& shading, std::span<const double> positions,
                                           std::size_t element) noexcept;
 
-/// Computes n(w) of all elements from the blended positions by cross products in double. It uses nothing but eq. 1, and
-/// treats no result as rounding error. weights must have one value per target. O(corners); uses all cores.
+/// Computes n(w) of all elements from the blended positions by cross products in double. The function uses only eq. 1,
+/// and treats no result as rounding error. weights must have one value per target. O(corners); uses all cores.
 [[nodiscard]] std::vector<Vec3d> normals_from_positions(const GltfShading& shading, std::span<const double> weights);
 
 /// Returns the true direction at a vertex: n(w) of its element, rotated as the author rotated the base. base_normal and
@@ -102,7 +102,7 @@ struct GltfShading {
 /// N is zero. If N faces away from n(0), -n(0) and -n(w) take their places.
 [[nodiscard]] Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d& normal) noexcept;
 
-/// Does the same for one vertex and many normals. It is a linear map, which keeps lengths.
+/// A map with the effect of shown_direction() for one vertex and many normals. The map is linear and keeps lengths.
 class ShownTurn {
  public:
   ShownTurn() = default;
@@ -115,7 +115,7 @@ class ShownTurn {
   }
 
  private:
-  Vec3d axis_;         // as long as the sine of the angle
+  Vec3d axis_;         // its length is the sine of the angle
   double cosine_ = 1;  // negative if N faces away from n(0)
 };
 

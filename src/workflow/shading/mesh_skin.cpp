@@ -13,8 +13,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kEvenBlock = 1024;
-// Relative to the square of the scale: how far rounding of matrices in files may take axes from perpendicular and
-// equally long. An angle changes by at most half of this part of itself.
+// Tolerance relative to the square of the scale: rounding of matrices in files may make axes this much less
+// perpendicular and equally long. An angle changes by at most half of this part of itself.
 constexpr double kEven = 1e-4;
 
 bool keeps_angles(const std::array<Vec3d, 3>& columns) {

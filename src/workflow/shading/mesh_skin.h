@@ -1,10 +1,10 @@
 /// Moves the vertices of a mesh by the skin of a node. Private to workflow.
 ///
-/// Viewers blend the joint matrices of a vertex by its shares, M = sum of w_j M_j. They transform its position by M,
-/// and its normal by the linear part L of M (docs/decisions/0022 lists viewers that differ). L is not the normal
+/// Viewers blend the joint matrices of a vertex by its weights, M = sum of w_j M_j. They transform the position by M,
+/// and the normal by the linear part L of M (docs/decisions/0022 lists viewers that differ). L is not the normal
 /// matrix: unless it only rotates and scales evenly, it does not take the true normal to the normal of the skinned
 /// surface. No target can correct this. So the error is measured between normals that L has transformed, and the error
-/// of L itself is reported apart.
+/// of L itself is reported separately.
 ///
 /// Copies     share the data of the file; each has its own pose.
 /// Threads    const functions may run at once.
@@ -37,8 +37,8 @@ class MeshSkin {
                                              std::optional<std::size_t> animation,
                                              const MeshSkin* of_same_mesh = nullptr);
 
-  /// Poses the joints as they are at a time; if they jump there, just after the jump or just before it. Returns whether
-  /// the pose may have changed.
+  /// Poses the joints as they are at a time; if they jump there, uses the pose just after the jump or just before it.
+  /// Returns true if the pose may have changed.
   bool pose(double time, bool just_before);
 
   /// Tells whether the joints move in the animation.

@@ -1,12 +1,12 @@
-/// Random poses that a rig is made for, for files without animations: poses that sliders, a captured face or an avatar
-/// program may set. Private to workflow.
+/// Random poses for files without animations, such as sliders, a captured face or an avatar program may set. Private to
+/// workflow.
 ///
-///     no poses given   1 to 7 targets at once, 4 on average, at weights from 0 to 1; each next one is drawn by
-///                      how often its name goes together with those that are drawn already
-///     poses given      the way from one pose to another, or to rest
+///     no poses given   1 to 7 targets at once, 4 on average, at weights from 0 to 1; each next target is
+///                      drawn by how often its name goes together with the names drawn before
+///     poses given      a pose between two given poses, or between a given pose and rest
 ///
-/// Names go together if they are the left and the right of the same thing (8 times as often as any two), share a word,
-/// or both belong to the mouth or to the eyes (3 times: "jawOpen" and "mouthSmile_L").
+/// Names go together if they are the left and the right of the same feature (8 times as often as any two), share a
+/// word, or both belong to the mouth or to the eyes (3 times: "jawOpen" and "mouthSmile_L").
 ///
 /// Threads    pure; the same poses on every system.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_RIG_POSES_H_
@@ -29,8 +29,8 @@ namespace chronormal::inline internal {
 
 class RigPoses {
  public:
-  /// targets lists the targets that may be active, out of target_count. names has target_count names, or is empty.
-  /// given holds poses of target_count weights each.
+  /// The argument targets lists the targets that may be active, out of target_count. names has target_count names, or
+  /// is empty. given holds poses of target_count weights each.
   RigPoses(std::span<const std::string> names, std::vector<std::size_t> targets, std::size_t target_count,
            PoseList given);
 

@@ -1,8 +1,8 @@
 /// The pairs of vertices between which a jump of the error is visible. Private to workflow.
 ///
-/// Normals are interpolated over faces: two neighbours with the same error look right, and two with different errors
-/// show a fold that is not there. The *tear* of a pair is the angle that belongs to the length of the difference of
-/// their errors:
+/// Normals are interpolated over faces: two neighbours with the same error look right, while two neighbours with
+/// different errors show a fold that does not exist. The *tear* of a pair is the angle that belongs to the length of
+/// the difference of their errors:
 ///
 ///     tear(a, b) = 2 asin(min(1, |(s_a - u_a) - (s_b - u_b)| / 2)),   s rendered and u true, both unit vectors
 #ifndef CHRONORMAL_WORKFLOW_SHADING_SURFACE_EDGES_H_

@@ -16,7 +16,7 @@ namespace chronormal::inline internal {
 /// Weights of all targets, pose by pose.
 using PoseList = std::vector<std::vector<double>>;
 
-/// The keys of a track and its interpolation. A cubic spline with one key holds still.
+/// The keys of a track and its interpolation. A cubic spline with one key stays constant.
 struct WeightTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   GltfKeys keys;
@@ -29,12 +29,12 @@ struct WeightTrack {
   [[nodiscard]] double value(std::size_t key, std::size_t target) const noexcept;
   /// Returns a tangent of a cubic spline, per second.
   [[nodiscard]] double tangent(std::size_t key, bool out, std::size_t target) const noexcept;
-  /// Returns a weight between two keys as a cubic in Bernstein form. Steps hold their value.
-  /// key + 1 < size()
+  /// Returns a weight between two keys as a cubic in Bernstein form. In a step track, the weight stays constant. key +
+  /// 1 < size()
   [[nodiscard]] std::array<double, 4> piece(std::size_t key, std::size_t target) const noexcept;
 };
 
-/// Gathers the weights that a mesh is given, by tracks and by single poses.
+/// The weights that a mesh is given, by tracks and by single poses.
 class WeightUse {
  public:
   explicit WeightUse(std::size_t targets) : lowest_(targets, 0.0), highest_(targets, 0.0), moments_(targets) {}
@@ -55,10 +55,11 @@ class WeightUse {
 
   /// Returns the largest number of poses that samples() can return.
   [[nodiscard]] std::size_t sample_count() const noexcept;
-  /// Returns poses that the weights pass through: all keys, and fifteen poses between any two. If there are more than
-  /// `most`, it takes that many of them, evenly spread.
+  /// Returns poses that the weights pass through: all keys, and fifteen poses between any two keys. If there are more
+  /// than `most` poses, returns that many of them, evenly spread.
   [[nodiscard]] std::vector<std::vector<double>> samples(std::size_t most) const { return samples(most, 1); }
-  /// Does the same, but keeps all keys as long as possible: it takes seven, three, one or no poses between any two.
+  /// Returns poses like samples(), but keeps all keys as long as possible, with seven, three, one or no poses between
+  /// two keys.
   [[nodiscard]] std::vector<std::vector<double>> samples_with_keys(std::size_t most) const;
 
  private:

@@ -59,7 +59,7 @@ class Sides {
   std::vector<char> other_;
 };
 
-// Returns the edges around an element, one to each neighbouring point. for_edges(visit) must visit all of them.
+// Returns the edges around an element, one to each neighbouring point. for_edges(visit) must visit all of these edges.
 template <class ForEdges>
 std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges& for_edges) {
   std::vector<OffsetEdge> edges;
@@ -71,11 +71,11 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
   return edges;
 }
 
-// Holds the angles between candidates and stored normals, in degrees.
+// The angles between candidates and stored normals, in degrees.
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
-  std::size_t silent = 0, silent_off = 0;  // normals that do not tell, and how many of them follow no candidate
+  std::size_t silent = 0, silent_off = 0;  // normals that do not tell, and how many of these follow no candidate
 
   void add(const Distances& other) {
     for (std::size_t c = 0; c < kCandidates; ++c)
@@ -194,7 +194,7 @@ class Mending {
   // explain; if no key turns the element, the distance in the base.
   [[nodiscard]] double off(std::uint32_t element, bool whole) const {
     if (vertex_of_[element] == kNoVertex) return 0;
-    // Each corner of a polygon counts once, however many triangles have a part in it.
+    // Each corner of a polygon counts once, even if it belongs to several triangles.
     std::vector<Part> parts;
     const auto corners = shading_.set.topology.corners();
     for (const std::uint32_t c : corners_of(element, whole)) {
@@ -264,9 +264,9 @@ class Mending {
   }
 
   // Counts how many more elements nearby follow their sums if a run of triangles is one polygon. Elements that only
-  // come nearer do not count: that may be chance.
+  // come nearer do not count, since that may be chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
-    std::vector<std::pair<std::size_t, std::size_t>> before;  // polygons that the run takes apart
+    std::vector<std::pair<std::size_t, std::size_t>> before;  // polygons that the run would dissolve
     for (std::size_t t = first; t < first + count; t = before.back().first + before.back().second)
       before.emplace_back(polygons_.of_triangle(t), polygons_.triangle_count(polygons_.of_triangle(t)));
     if (!polygons_.join(first, count)) return 0;
@@ -347,8 +347,8 @@ class Candidates {
   [[nodiscard]] static bool is_of_polygons(std::size_t c) { return c / kWeightings.size() >= 2; }
 
   // Returns the candidate at the smallest distance, by keys or, if no key tells, by the base. The distance of a
-  // candidate is the angle that this share of the normals is within. Returns nothing if it is beyond `follows`, or more
-  // than `clear` times the distance of area; or_area accepts area in the second case.
+  // candidate is the angle within which this share of the normals follow it. Returns nothing if the smallest distance
+  // is beyond `follows`, or more than `clear` times the distance of area; with or_area, the second case returns area.
   [[nodiscard]] std::optional<std::size_t> closest(double share, double follows, double clear, bool or_area) {
     for (Distances* of : {&keys_, &of_base_}) {
       if (of->told[0].empty()) continue;
@@ -394,7 +394,7 @@ class Candidates {
     return is_of_quads_ && keys_.silent > keys_.told[0].size() && 2 * keys_.silent_off < keys_.silent;
   }
 
-  // Returns whether all elements that are asked follow a candidate exactly, so that there is nothing to mend.
+  // Returns true if all examined elements follow a candidate exactly, so that there is nothing to mend.
   [[nodiscard]] bool do_all_follow(std::size_t c) const {
     if (keys_.silent_off > 0 || of_base_.silent_off > 0) return false;
     const AuthorSums& sums = of_kinds_[sums_of_kind_[c / kWeightings.size()]];
@@ -445,7 +445,7 @@ class Candidates {
     spread_ = quantile(of.spread, 0.5);
   }
 
-  // Returns whether several elements show parts of one point.
+  // Returns true if several elements show parts of one point.
   [[nodiscard]] bool is_any_point_shared() const {
     std::vector<std::uint32_t> element(shading_.point_of_vertex.size(), kNoVertex);
     for (const std::uint32_t v : shading_.set.topology.corners()) {
@@ -495,8 +495,8 @@ class Candidates {
                                      [](Distances& sum, const Distances& each) { sum.add(each); }));
   }
 
-  // Returns the angle between the stored normal of an element and the normal by one candidate, in degrees; 0 if there
-  // is none.
+  // Returns the angle between the stored normal of an element and the normal by one candidate, in degrees, or 0 if the
+  // element has no normal.
   [[nodiscard]] double distance_of(std::uint32_t e, const StoredKey* key, const AuthorSums& of,
                                    Weighting weighting) const {
     const auto of_base = [&](std::uint32_t v) { return base_.position(v); };

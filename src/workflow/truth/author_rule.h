@@ -1,12 +1,12 @@
 /// Finds which sums of face normals the normals of a mesh follow. Private to workflow.
 ///
-/// The tool that made a mesh weighed polygons or triangles in its own way, and its stored normals show which. The
-/// normals of targets at weight 1 decide, with the offset of the base carried along: a flat base or a cube is the same
-/// by all rules, but its targets are not. The base decides only if no target tells.
+/// The tool that made a mesh weighted polygons or triangles in its own way, which its stored normals show. The normals
+/// of targets at weight 1 decide, with the offset of the base applied: a flat base or a cube has the same normals by
+/// all rules, but its targets do not. The base decides only if no target tells.
 ///
 ///     candidates   five weightings, of triangles or quads, of an element's own corners or its whole point
-///     tells        a stored normal around which two candidates differ by more than 0.1 degrees: elsewhere all agree
-///     distance     of a candidate: a quantile, over the normals that tell, of the angle to the stored one
+///     tells        a stored normal tells if two candidates differ there by more than 0.1 degrees: elsewhere all agree
+///     distance     of a candidate: a quantile, over the normals that tell, of the angle to the stored normal
 ///     found        the candidate that the most normals follow to 0.003 degrees, if a tenth of them do, and clearly more
 ///                  than follow triangles by area: much of the mesh may be bent by hand. Else the candidate with the
 ///                  smallest median, if that is at most a degree, and two thirds of the median of triangles by area;
@@ -14,7 +14,7 @@
 ///
 /// The rule is mended around the normals that do not follow it: triangles in a row become larger polygons, quads are
 /// split, and elements add up their whole point (both sides of what only looks like a sheet, too), if that makes a
-/// normal follow exactly. Changes that only bring normals nearer are not made: that may be chance.
+/// normal follow exactly. Changes that only bring normals nearer are not made, since that may be chance.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 
@@ -46,8 +46,8 @@ struct FoundRule {
 };
 
 /// Finds the rule of a mesh. Its groups must have their corners, and its deltas of normals must be kept. O(corners) for
-/// each candidate, base and target, but asks some tens of thousands of normals at most. Uses all cores; the result has
-/// the same bits on any number of threads.
+/// each candidate, base and target, but examines some tens of thousands of normals at most. Uses all cores; the result
+/// has the same bits on any number of threads.
 [[nodiscard]] FoundRule find_author_rule(const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

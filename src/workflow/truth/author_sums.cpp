@@ -36,12 +36,12 @@ std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first,
     const std::uint32_t next = at->second;
     at = leaves(next);
     if (at == border.end() || at->first != next) return {};
-    if (at + 1 != border.end() && (at + 1)->first == next) return {};  // the outline touches itself there
+    if (at + 1 != border.end() && (at + 1)->first == next) return {};  // the outline visits this vertex twice
   } while (at->first != begin);
   return loop.size() == count + 2 ? loop : std::vector<std::uint32_t>();
 }
 
-// Returns whether a vertex shows the other side of a polygon of some triangles in a row.
+// Returns true if a vertex shows the other side of a polygon that consists of some consecutive triangles.
 bool is_at_the_back(const GltfShading& shading, std::size_t first, std::size_t count, std::uint32_t vertex) {
   if (shading.at_the_back.empty()) return false;
   const auto corners = shading.set.topology.corners();

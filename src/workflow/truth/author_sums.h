@@ -6,9 +6,9 @@
 ///     quad         (a, b, c), (a, c, d)     consecutive, with the shared edge at places 0, 2 and 0, 1
 ///     larger       any number of triangles in a row, in any order, that fill an outline without a vertex inside
 ///
-/// The pattern of quads is strict because pairs that share any edge are often halves of two neighbours. An element adds
-/// up either the faces whose corners show its normal, or all faces around the point: some tools give the corners of
-/// flat faces their own normal, but still count these faces for the other corners.
+/// The pattern of quads is strict because two triangles that share any other edge are often halves of two neighbouring
+/// quads. An element adds up either the faces whose corners show its normal, or all faces around the point: some tools
+/// give the corners of flat faces their own normal, but still count these faces for the other corners.
 ///
 /// The sums are chosen by comparing them with the normals that the file stores (author_rule.h).
 ///
@@ -40,8 +40,8 @@ struct AuthorSum {
   double terms = 0;  ///< the sum of the lengths of its terms
   double areas = 0;  ///< the sum of the lengths of its face normals, each twice the area of the face
 
-  /// Returns the same direction, as long as a sum by area would be if its faces looked one way. It is shorter if the
-  /// terms cancel to less than a twentieth, so that the length goes to zero as the direction is lost.
+  /// Returns the same direction, with the length that a sum by area would have if its faces had one direction. The
+  /// length is smaller if the terms cancel to less than a twentieth, so that it goes to zero as the direction is lost.
   [[nodiscard]] Vec3d with_area_length() const noexcept {
     constexpr double kLost = 0.05;
     const double size = length(normal);
@@ -49,13 +49,14 @@ struct AuthorSum {
   }
 };
 
-/// Polygons that are put together from triangles again.
+/// Polygons that are rebuilt from triangles.
 class Polygons {
  public:
   explicit Polygons(const Topology& triangles);
 
-  /// Makes one polygon of `count` triangles from `first` on, and single triangles of the rest of polygons that it takes
-  /// apart. Returns false, and changes nothing, if their outline is no polygon around all of their vertices.
+  /// Joins `count` triangles from `first` on to one polygon, and makes single triangles of what remains of the polygons
+  /// that this dissolves. Returns false, and changes nothing, if the outline of the triangles is no polygon around all
+  /// of their vertices.
   bool join(std::size_t first, std::size_t count);
   /// Makes quads of all pairs that follow the pattern, within the parts of the mesh. Returns their number.
   std::size_t join_quads(std::span<const GltfPart> parts);
@@ -77,10 +78,11 @@ class Polygons {
   void take_apart(std::size_t polygon);
 
   const Topology* triangles_;
-  // All four are empty until something is joined.
+  // All four lists are empty until triangles are joined.
   std::vector<std::uint32_t> first_, count_;  // of each triangle: its polygon; of a polygon: its triangles
-  std::vector<std::uint32_t> loop_of_;        // where a larger polygon's corners are in loops_, by its first triangle
-  std::vector<std::uint32_t> loops_;          // a larger polygon has two corners more than triangles
+  // The place of a larger polygon's corners in loops_, by its first triangle.
+  std::vector<std::uint32_t> loop_of_;
+  std::vector<std::uint32_t> loops_;  // a larger polygon has two corners more than triangles
   std::size_t joined_ = 0;
 };
 
@@ -88,15 +90,15 @@ class Polygons {
 class AuthorSums {
  public:
   AuthorSums() = default;
-  /// Adds up the corners that show each element's normal or, if `whole_point` is set for an element, all corners at its
-  /// point. If `wanted` is not empty, only the elements set in it have corners.
+  /// Prepares sums of the corners that show each element's normal or, if `whole_point` is set for an element, all
+  /// corners at its point. If `wanted` is not empty, only the elements set in it have corners.
   AuthorSums(const GltfShading& shading, const Polygons& polygons, Weighting weighting,
              const std::vector<bool>& whole_point, const std::vector<bool>& wanted = {});
 
   [[nodiscard]] Weighting weighting() const noexcept { return weighting_; }
 
-  /// Returns the sum of an element, from positions that position(vertex) gives. It is zero if it is nothing but
-  /// rounding error.
+  /// Returns the sum of an element, from positions that position(vertex) gives. The sum is zero if it is only rounding
+  /// error.
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position) const {
     return at(element, position, weighting_);
@@ -109,8 +111,8 @@ class AuthorSums {
     return result;
   }
 
-  /// Calls visit(i, sum) for the i-th of some elements, one after the other; visit() may not ask for sums itself. Calls
-  /// for kElementsOfBlock elements or so take a fraction of the time of one call each.
+  /// Calls visit(i, sum) for the i-th of some elements, one after the other; visit() must not compute sums itself. A
+  /// call for about kElementsOfBlock elements takes a fraction of the time of one call for each element.
   template <class PositionOf, class Visit>
   void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Visit& visit) const {
     for_each(elements, position, visit, weighting_);
@@ -148,8 +150,8 @@ class AuthorSums {
     });
   }
 
-  /// Return the number of polygons with a corner that is added up, in the order of their triangles, and the vertices
-  /// around one of them.
+  /// Return the number of polygons that have a corner in some sum, in the order of their triangles, and the vertices
+  /// around one of these polygons.
   [[nodiscard]] std::size_t polygon_count() const noexcept { return loop_offsets_.size() - 1; }
   [[nodiscard]] std::span<const std::uint32_t> polygon(std::size_t p) const noexcept {
     return {loops_.data() + loop_offsets_[p], loops_.data() + loop_offsets_[p + 1]};

@@ -1,16 +1,16 @@
 /// The normals that the author of a mesh would see, at any weights. Private to workflow.
 ///
 /// The truth is what the authoring tool renders. The tool adds up the normals of polygons by a rule (author_rule.h),
-/// r(w), and the author may have changed the result: normals bent by hand, or made by a modifier. This change is the
-/// *offset*; the surface carries it along (offset_frame.h). Let o_0 be the offset of the base, and o_i that of target i
-/// at weight 1, as the file stores them. The truth at weights w has the offset o(w) = o_0 + sum of w_i (o_i - o_0), at
-/// most a right angle from the sum. So it passes through all stored normals, and is r(w) if there is no offset.
+/// r(w), and the author may have changed the result, by hand or by a modifier. This change is the *offset*, which moves
+/// along with the surface (offset_frame.h). Let o_0 be the offset of the base, and o_i the offset of target i at weight
+/// 1, as the file stores them. The truth at weights w has the offset o(w) = o_0 + sum of w_i (o_i - o_0), at most a
+/// right angle from the sum. So the truth passes through all stored normals, and equals r(w) if there is no offset.
 /// Azimuths are measured from the edge for which the offsets of an element differ least; if no edge can be used at
 /// every key, from a direction that the smallest rotation turns along with the sum.
 ///
-/// Unknown    If no target stores normals that tell, nobody knows how an offset moves: its rotation in the base
-///            stays as it is, so that the truth by area is exact.
-/// Stale      If the stored normals of a target tell nothing (stale_keys.h), r counts, with the offset of the base.
+/// Unknown    If no target stores normals that tell, the motion of an offset is unknown. Its rotation in the base then
+///            stays constant, so that the truth by area is exact.
+/// Stale      If the stored normals of a target are stale (stale_keys.h), r counts, with the offset of the base.
 /// Degenerate If r(w) is zero, the truth is zero. If r is zero at a key, the offset there is that of the base.
 /// Threads    const functions may run at once
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_TRUTH_H_
@@ -46,8 +46,8 @@ class AuthorTruth {
   struct Frame {
     std::uint32_t first_edge = 0, edge_count = 0;  ///< all edges around the element, in edges()
     std::uint32_t edge = kNone;                    ///< the edge from which azimuths are measured, in edges()
-    double side = 1;                               ///< -1 if the author shows the other side of r
-    Vec3d base_z, base_x;                          ///< in place of the edge, if there is none
+    double side = 1;                               ///< -1 if the author shows the side opposite to r
+    Vec3d base_z, base_x;                          ///< replace the edge, if there is none
     PlaneOffset base;
   };
   /// The difference between the offset of a target at weight 1 and the offset of the base.
@@ -63,18 +63,19 @@ class AuthorTruth {
   AuthorTruth(const GltfShading& shading, Weighting weighting);
 
   [[nodiscard]] const AuthorRule& rule() const noexcept { return rule_; }
-  /// Empty where the truth is plain.
+  /// Returns the sums, which are empty if the truth is plain.
   [[nodiscard]] const AuthorSums& sums() const noexcept { return sums_; }
   /// Returns whether the truth is n(w), by area, with the offset of the base turned along unchanged, so that it can be
   /// exact.
   [[nodiscard]] bool is_plain() const noexcept { return rule_.is_plain() && frames_.empty(); }
-  /// Returns whether the stored normals of targets have a part in the truth, so that it differs from area weighting. A
-  /// bake that keeps them says so in its mark.
+  /// Returns true if the stored normals of targets influence the truth, so that it differs from area weighting. A bake
+  /// that keeps the truth records this in its mark.
   [[nodiscard]] bool follows_keys() const noexcept { return !is_plain() || any_split_; }
   [[nodiscard]] std::span<const StaleKey> stale() const noexcept { return stale_; }
   /// Returns the number of elements that have an offset.
   [[nodiscard]] std::size_t offset_count() const noexcept { return frames_.size(); }
-  /// Return the frames, the frame of each element (or kNone; empty if no element has one), and the edges around them.
+  /// Return the frames, the frame of each element (or kNone; the list is empty if no element has a frame), and the
+  /// edges around them.
   [[nodiscard]] std::span<const Frame> frames() const noexcept { return frames_; }
   [[nodiscard]] std::span<const std::uint32_t> frame_of_element() const noexcept { return frame_of_element_; }
   [[nodiscard]] std::span<const OffsetEdge> edges() const noexcept { return edges_; }
@@ -119,8 +120,8 @@ class AuthorTruth {
                   [&](std::uint32_t e, const AuthorSum& sum) { visit(e, turned_sum(e, sum, position, pose)); });
   }
 
-  /// Lists the elements whose truth a target turns, ascending. It is empty for targets that are not in the author's
-  /// mesh.
+  /// Lists the elements whose true normal a target turns, in ascending order. The list is empty for targets that are
+  /// not in the author's mesh.
   [[nodiscard]] std::vector<std::uint32_t> elements_of(std::size_t target) const;
 
  private:
@@ -148,9 +149,9 @@ class AuthorTruth {
   bool any_split_ = false;
 };
 
-/// Finds what the author of a mesh would see, or uses sums by a weighting if one is asked for. Copies of a point that a
-/// key tells apart become elements of their own in the first case. The shading must be as the constructor for it needs
-/// it.
+/// Finds the normals that the author of a mesh would see, or uses sums by a weighting if one is requested. In the first
+/// case, copies of a point whose normals differ at a key become separate elements. The shading must satisfy the
+/// preconditions of the constructor that takes it.
 [[nodiscard]] AuthorTruth author_truth(GltfShading& shading, std::optional<Weighting> asked);
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-/// Measures the offset that an author added to a sum of normals in a frame that the surface carries along. Private to
+/// Measures the offset that an author added to a sum of normals, in a frame that moves with the surface. Private to
 /// workflow.
 ///
 /// At a point with the unit sum z and an edge from there, a stored normal s has
@@ -8,7 +8,7 @@
 ///     azimuth    of s around z, from the edge
 ///     offset     a point of a plane, alpha / mean from the origin, in the direction of the azimuth
 ///
-/// Blender keeps custom normals in this way: alpha is scaled as the edges rise or fall.
+/// Blender stores custom normals in this way, and scales alpha as the edges rise or fall.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_OFFSET_FRAME_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_OFFSET_FRAME_H_
 
@@ -31,7 +31,7 @@ struct OffsetEdge {
   std::uint32_t from = 0, to = 0;
 };
 
-/// Returns the mean angle between z and the edges around its point, in radians; 1 if there is none.
+/// Returns the mean angle between z and the edges around its point, in radians, or 1 if there is no edge.
 template <class PositionOf>
 [[nodiscard]] double mean_edge_angle(std::span<const OffsetEdge> edges, const Vec3d& z, const PositionOf& position) {
   double sum = 0;
@@ -52,8 +52,8 @@ template <class PositionOf>
   return unit(along - dot(along, z) * z);
 }
 
-/// Returns whether azimuths can be measured from an edge: it is longer than 1e-6 of the longest one, and more than a
-/// degree from z.
+/// Returns true if azimuths can be measured from an edge, which must be longer than 1e-6 of the longest edge, and more
+/// than a degree from z.
 template <class PositionOf>
 [[nodiscard]] bool gives_azimuth(std::span<const OffsetEdge> edges, const OffsetEdge& edge, const Vec3d& z,
                                  const PositionOf& position) {
@@ -82,9 +82,9 @@ template <class PositionOf>
   return portable::cos(alpha) * z + portable::sin(alpha) * across;
 }
 
-/// Returns the angle between a stored normal at a key and the base normal whose offset is carried there, in radians, by
-/// the edge for which it is smallest. base and at_key give positions, z0 and z are the unit sums, s0 and s the stored
-/// normals.
+/// Returns the angle in radians between a stored normal at a key and the base normal with its offset moved there,
+/// measured from the edge that gives the smallest angle. base and at_key give positions, z0 and z are the unit sums, s0
+/// and s the stored normals.
 template <class BaseOf, class KeyOf>
 [[nodiscard]] double carried_error(std::span<const OffsetEdge> edges, const Vec3d& z0, const Vec3d& s0,
                                    const BaseOf& base, const Vec3d& z, const Vec3d& s, const KeyOf& at_key) {

@@ -144,7 +144,7 @@ bool split_by_keys(GltfShading& shading) {
   const std::vector<std::size_t> targets = targets_with_normals(shading);
   if (targets.empty() || shading.groups.size() == 0) return false;
   const std::vector<std::uint32_t> vertex_of = vertices_of_elements(shading);
-  // Only vertices that share their elements can be split.
+  // Only vertices that share an element with other vertices can be split.
   std::vector<std::uint32_t> sharing;
   for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) {
     const std::uint32_t e = shading.element_of_vertex[v];

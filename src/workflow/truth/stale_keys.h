@@ -1,15 +1,16 @@
-/// Finds stored normals of targets that tell nothing of their author. Private to workflow.
+/// Finds stored normals of targets that do not show what their author saw. Private to workflow.
 ///
-/// Another program may have moved vertices after the normals of a target were made, or stored none. A target is *stale*
-/// on a connected part of the mesh where its normals
+/// Another program may have moved vertices after the normals of a target were computed, or may have stored no normals.
+/// A target is *stale* on a connected part of the mesh if its normals
 ///
-///     are no nearer to the turned surface than the base normals: turn the base normals as the faces around their
-///     vertices turn; the median angle to the results is at least three quarters of the median turn; and
-///     do not turn as the surface does: over the part, the turns of normals and surface, as axes times sines, have a
+///     are no nearer to the turned surface than the base normals: if the base normals turn like the faces around their
+///     vertices, the median angle to the results is at least three quarters of the median turn; and
+///     do not turn like the surface: over the part, the turns of normals and surface, as axes times sines, have a
 ///     correlation below a half.
 ///
-/// The first alone would find a target whose author weighs faces otherwise. Vertices around which the surface turns by
-/// less than a degree do not count. Connected parts are judged as a whole, since exporters drop small deltas.
+/// The first condition alone would also find targets whose author weights faces differently. Vertices around which the
+/// surface turns by less than a degree do not count. Connected parts are judged as a whole, since exporters drop small
+/// deltas.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_STALE_KEYS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_STALE_KEYS_H_
 
@@ -25,7 +26,7 @@ namespace chronormal::inline internal {
 /// A target that is stale on some connected parts of the mesh.
 struct StaleKey {
   std::size_t target = 0;
-  std::size_t vertices = 0;  ///< vertices of these parts that it turns by more than a degree
+  std::size_t vertices = 0;  ///< vertices of these parts that the target turns by more than a degree
 };
 
 class StaleKeys {
@@ -52,8 +53,8 @@ class StaleKeys {
 };
 
 /// Splits the elements of copies of a point whose base normals agree but whose normals at a key differ, unless the key
-/// is stale: an edge may be hard in a target alone. The groups must have their corners. Returns whether anything was
-/// split.
+/// is stale, since an edge may be hard in a single target. The groups must have their corners. Returns true if any
+/// element was split.
 bool split_by_keys(GltfShading& shading);
 
 }  // namespace chronormal::inline internal

@@ -1,7 +1,7 @@
-/// The normals of the author that a file stores, of the base and of each target at weight 1. Private to workflow.
+/// The author's normals that a file stores, for the base and for each target at weight 1. Private to workflow.
 ///
 /// A bake spreads the normals of a target over its own deltas and the deltas of correction targets that follow its
-/// weight. If its mark says that the sums are still the author's normals, they are added up again here.
+/// weight. If the mark of the bake states that the sums are still the author's normals, this code adds them up again.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 
@@ -19,9 +19,9 @@ namespace chronormal::inline internal {
 /// The positions and normals of all vertices, in the base or in one target at weight 1.
 class StoredKey {
  public:
-  /// Takes the base.
+  /// Reads the base.
   explicit StoredKey(const GltfShading& shading);
-  /// Takes a target at weight 1.
+  /// Reads a target at weight 1.
   StoredKey(const GltfShading& shading, std::size_t target);
 
   [[nodiscard]] Vec3d position(std::uint32_t vertex) const noexcept {
@@ -42,15 +42,16 @@ class StoredKey {
     double weight = 1;
   };
   const GltfShading* shading_;
-  std::vector<float> moved_;  // all positions; empty if they are those of the base
+  std::vector<float> moved_;  // all positions; empty if they are equal to those of the base
   std::vector<Part> parts_;   // the target and the correction targets that follow it
 };
 
-/// Lists the targets that have their author's normals, ascending. It is empty if an earlier bake replaced them.
+/// Lists the targets that have their author's normals, in ascending order. The list is empty if an earlier bake
+/// replaced these normals.
 [[nodiscard]] std::vector<std::size_t> targets_with_normals(const GltfShading& shading);
 
-/// Returns a vertex of each element, or GltfShading::kNoElement if no vertex shows it. All vertices of an element store
-/// the same normal.
+/// Returns a vertex of each element, or GltfShading::kNoElement if no vertex shows the element. All vertices of an
+/// element store the same normal.
 [[nodiscard]] std::vector<std::uint32_t> vertices_of_elements(const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

@@ -88,8 +88,8 @@ void PlayedTrack::play_spline(double time, bool just_before, std::span<double> w
       weights[i] = h[0] * number(from, 1) + h[2] * number(to, 1) + t * (h[1] * number(from, 2) + h[3] * number(to, 0));
       continue;
     }
-    // This viewer misreads the values of one target as a spline with three values per key, and its first third, which
-    // are in-tangents, as the keys. Past the end of the array it reads no value, so that the weight is 0.
+    // This viewer misreads the values of one target as a spline with three values per key, and uses the first third,
+    // which are in-tangents, as the keys. Past the end of the array there are no values, so that the weight is 0.
     const auto number = [&](std::size_t at) { return keys_.values[3 * at * targets + i]; };
     weights[i] = 3 * to + 1 >= keys || 3 * from + 2 >= keys
                      ? 0

@@ -1,7 +1,7 @@
 /// The weights that a viewer plays from a track of a file, which may differ from those that glTF specifies. Private to
 /// workflow.
 ///
-/// A track is not sampled in advance: a resampled track computes the two samples around the time that is asked for.
+/// A track is not sampled in advance. A resampled track computes the two samples around the requested time.
 #ifndef CHRONORMAL_WORKFLOW_VIEWERS_PLAYED_TRACK_H_
 #define CHRONORMAL_WORKFLOW_VIEWERS_PLAYED_TRACK_H_
 
@@ -25,12 +25,13 @@ struct TimeRange {
 
 class PlayedTrack {
  public:
-  /// Takes keys as GltfDocument::keys() returns them, and the time range of the animation that the track belongs to.
+  /// Creates a track from keys as GltfDocument::keys() returns them, and from the time range of the animation that the
+  /// track belongs to.
   PlayedTrack(const Viewer& viewer, GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count,
               const TimeRange& animation);
 
-  /// Writes the weights that the viewer shows at a time. Where they jump, it writes the ones just after the jump, or
-  /// just before it.
+  /// Writes the weights that the viewer shows at a time. If the weights jump at that time, writes those just after the
+  /// jump, or just before it.
   void at(double time, bool just_before, std::span<double> weights) const;
 
   /// Tells whether the viewer plays the specified weights, except for rounding and dropped weights.

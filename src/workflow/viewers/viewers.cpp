@@ -29,8 +29,8 @@ float half(float value) noexcept {
 
 Vec3f half(const Vec3f& v) noexcept { return {half(v.x), half(v.y), half(v.z)}; }
 
-// Rounds to a signed integer that stands for [-1, 1], halves away from zero. Integers of 9 to 15 bits are stored in 16:
-// their upper bits are repeated in the unused lower ones, so that 1 stays 1.
+// Rounds to a signed integer that represents [-1, 1], with halves away from zero. Integers of 9 to 15 bits are stored
+// in 16 bits: their upper bits are repeated in the unused lower bits, so that 1 stays 1.
 float clamped(float value, int bits) noexcept {
   const int wide = bits <= 8 ? 8 : 16;
   const int lack = wide - bits;
@@ -62,7 +62,7 @@ Vec3d from_octahedral(const Octahedral& o) noexcept {
   return unit(Vec3d{o.x - std::copysign(fold, o.x), o.y - std::copysign(fold, o.y), z});
 }
 
-// Returns a direction after it was stored as two unsigned integers that stand for [-1, 1], rounded down.
+// Returns a direction after it was stored as two unsigned integers that represent [-1, 1], rounded down.
 Vec3d through_unsigned_octahedral(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const double most = std::ldexp(1, bits) - 1;
@@ -115,8 +115,8 @@ Vec3d through_frame(const Vec3d& v, int bits) noexcept {
       Vec3d{2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]), 1 - 2 * (q[0] * q[0] + q[1] * q[1])});
 }
 
-// Returns the unit normal that a viewer stores for a vector of any length. With 32 bits it is rounded to float32 only.
-// A viewer that stores frames also turns vectors whose length is not 1.
+// Returns the unit normal that a viewer stores for a vector of any length. A viewer with 32 bits only rounds it to
+// float32. A viewer that stores frames also turns vectors whose length is not 1.
 Vec3f kept_direction(const Viewer& viewer, const Vec3f& v) noexcept {
   constexpr int kAllBits = 32;
   const Vec3d vector = to_double(v);
