@@ -232,7 +232,7 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
   return text;
 }
 
-// Says which errors remain in the viewers that the file is made for, with a remedy.
+// Returns a text about the errors that remain in the viewers that the file is made for, with a remedy.
 std::string left_over(const GltfBake& bake) {
   double worst = 0;
   for (const BakedMesh& mesh : bake.meshes)
@@ -246,7 +246,7 @@ std::string left_over(const GltfBake& bake) {
       worst, kHarmlessTolerance);
 }
 
-// Says how many corrections bake left out, and why.
+// Returns a text about the number of corrections that bake left out, and the reason.
 std::string left_text(const GltfBake& bake) {
   std::size_t left_out = 0;
   for (const BakedMesh& mesh : bake.meshes) left_out += mesh.left_out;
@@ -338,7 +338,7 @@ std::string lines_after(const BakeReport& report) {
   return text;
 }
 
-// Says how far normals that are right for straight pieces are from those of the original curves.
+// Returns a text about the distance of normals that are right for straight pieces from those of the original curves.
 std::string beside_curves(const SequenceBake& bake) {
   if (!bake.cut) return "";
   return formatted(" for the straight pieces, within {:g} degrees of the curves", bake.cut->path.tolerance);

@@ -171,7 +171,7 @@ export class ChronormalError extends Error {
   code: number;
 }
 
-/** The content of a file. A call copies it before it returns its promise, so the caller may reuse the memory at once. */
+/** The content of a file. A call copies the content before it returns, so the caller may reuse the memory at once. */
 export type Bytes = Uint8Array | ArrayBuffer | ArrayBufferView;
 
 export function bake(input: Bytes, options?: BakeOptions & { plan?: false }): Promise<Baked>;

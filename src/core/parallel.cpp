@@ -89,7 +89,7 @@ namespace {
 struct Job;
 thread_local Job* current_job = nullptr;  // the job whose piece this thread runs
 
-// Holds a loop that runs. The pool's mutex guards all members that are not constant or atomic.
+// A running loop. The pool's mutex guards all members that are not constant or atomic.
 struct Job {
   const std::function<void(std::size_t)>& body;
   const std::size_t count;

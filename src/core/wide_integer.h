@@ -29,7 +29,7 @@ namespace chronormal::inline internal {
 inline constexpr int kDigitBits = 24;
 inline constexpr std::int64_t kDigitBase = std::int64_t{1} << kDigitBits;
 
-/// Holds a finite float as mantissa * 2^(shift - 149): a signed integer of 24 bits, and 0 <= shift <= 253.
+/// A finite float as mantissa * 2^(shift - 149): a signed integer of 24 bits, and 0 <= shift <= 253.
 struct FloatParts {
   std::int64_t mantissa = 0;
   unsigned shift = 0;
@@ -42,7 +42,7 @@ struct FloatParts {
   }
 };
 
-/// Holds a finite double as mantissa * 2^(shift - 1074): a signed integer of 53 bits, and 0 <= shift <= 2045.
+/// A finite double as mantissa * 2^(shift - 1074): a signed integer of 53 bits, and 0 <= shift <= 2045.
 struct DoubleParts {
   std::int64_t mantissa = 0;
   unsigned shift = 0;

@@ -98,7 +98,7 @@ void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums&
   }
 }
 
-// Holds a vector that is linear or quadratic over a piece, by its values at both ends.
+// A vector that is linear or quadratic over a piece, by its values at both ends.
 struct Ends {
   Vec3d from, to;
 };

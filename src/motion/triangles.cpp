@@ -72,7 +72,8 @@ std::vector<Point> flattened(std::span<const std::uint32_t> face, std::span<cons
   return points;
 }
 
-// Tells whether no triangle of the fan turns right. If so, they cover a polygon that does not cross itself once.
+// Returns true if no triangle of the fan turns right. The fan then covers every part of a polygon that does not cross
+// itself exactly once.
 bool is_fan_of(const std::vector<Point>& points) {
   for (std::size_t c = 2; c < points.size(); ++c)
     if (turn(points[0], points[c - 1], points[c]) < 0) return false;

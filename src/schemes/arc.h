@@ -36,8 +36,7 @@ inline constexpr double kPi = 3.14159265358979323846;
   return angle < 0 ? angle + 2 * kPi : angle;
 }
 
-/// The circles through u0 and u1, given by one angle: axis(phi) = cos(phi) pole + sin(phi) bisector        (eq.
-/// 6)
+/// The circles through u0 and u1, given by one angle: axis(phi) = cos(phi) pole + sin(phi) bisector (eq. 6).
 struct CircleFamily {
   Vec3d u0, u1;
   Vec3d pole;      ///< axis of the great circle: phi = 0, slerp

@@ -46,7 +46,7 @@
 
 namespace chronormal::inline internal {
 
-/// Represents one element while it is fitted.
+/// One element while it is fitted.
 class ElementMotion {
  public:
   /// Makes the i-th element of a block.

@@ -290,8 +290,8 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const El
   return all;
 }
 
-// Describes the fault of a way, or returns "". `expected` has the normals at each of the times; the function fills it
-// if it is empty.
+// Describes the fault of one way to evaluate, or returns "". `expected` has the normals at each of the times; if it is
+// empty, the function fills it.
 std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times, Random& random,
                            std::vector<Normals>& expected) {
   const auto same = [](const Normals& a, const Normals& b) {

@@ -1,5 +1,5 @@
-/// Measures the processor time of this process. Tests can limit it, since other programs on the machine do not affect
-/// it.
+/// Measures the processor time of this process. Tests can limit this time, since other programs on the machine do not
+/// affect it.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 #define CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 

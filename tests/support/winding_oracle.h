@@ -218,8 +218,7 @@ struct ExactCrossings {
     };
     return Line{seen(a.x, b.x, from.x, to.x), seen(a.y, b.y, from.y, to.y), seen(a.z, b.z, from.z, to.z)};
   };
-  // Uses the normal instead of a vertical line: the point is inside the face if all three areas have the direction of
-  // n.
+  // Uses the normal n instead of a vertical line: a point is inside the face if all three areas have the direction n.
   const auto cross = [](const Line& a, const Line& b) {
     Line result;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -20,7 +20,7 @@ after(remove);
 const { bake, audit, inspect, compare, sample, ChronormalError } = await load('index.node.js');
 const readme = readFileSync(join(installed, 'README.md'), 'utf8');
 
-// The face has two targets and an animation. convert makes it from the built-in morph bumps, not baked yet.
+// The face has two targets and an animation. It is the built-in sample bumps, which convert writes without a bake.
 const made = native(['convert', '--sample', 'bumps', '-o', 'bumps.glb']);
 assert.equal(made.status, 0, made.stderr);
 const face = new Uint8Array(readFileSync(join(folder, 'bumps.glb')));

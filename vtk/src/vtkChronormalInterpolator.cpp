@@ -36,7 +36,7 @@ using chronormal::vtk::steps_near;
 struct vtkChronormalInterpolator::Request {
   std::vector<double> times;  // times of the steps
   std::size_t from = 0;       // the earlier of the two steps around the time
-  double t = 0;               // from that step, 0, to the next one, 1
+  double t = 0;               // from 0 at that step to 1 at the next step
   int ghosts = -1;            // levels of ghost cells to keep, or -1 for a whole
   std::string place;          // place in composite data, for messages
 };

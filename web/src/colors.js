@@ -15,7 +15,7 @@ const ENDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 /** Returns the round number of degrees at which a scale for these degrees ends. */
 export const scaleEnd = (degrees) => ENDS.find((end) => end >= degrees) ?? 180;
 
-/** Formats degrees for people: about three digits, "0°" for a negligible error, and "–" if there is no error to show. */
+/** Formats degrees for people: about three digits, "0°" for a negligible error, and "–" if there is no error. */
 export function degreesText(degrees) {
   if (!(degrees >= 0)) return '–';
   if (degrees < 0.0005) return '0°';

@@ -214,8 +214,8 @@ export function truthOf(part) {
   };
 }
 
-/** Copies an array of numbers. Unlike set() of typed arrays, which is five times slower when the types differ, this loop
- * is always fast. */
+/** Copies an array of numbers. Unlike set() of typed arrays, which is five times slower when the types differ, this
+ * loop is always fast. */
 export function copy(from, to) {
   for (let i = 0; i < from.length; ++i) to[i] = from[i];
 }

@@ -29,8 +29,8 @@ export function neighbour({ at: values }, at, step) {
 // Marks a sample whose keyframes were left out of the report.
 const LEFT_OUT = 0xffffffff;
 
-/** Returns the segment and t of a place in a motion of keyframes. If its keyframes were left out, the nearest place with
- * keyframes is used. */
+/** Returns the segment and t of a place in a motion of keyframes. If its keyframes were left out, the nearest place
+ * with keyframes is used. */
 export function segmentAt({ segment, t }, at) {
   const last = segment.length - 1, from = Math.min(Math.floor(at), last), to = Math.min(from + 1, last);
   if (segment[from] !== LEFT_OUT) return [segment[from], t[from] + (segment[from] === segment[to] ? (at - from) * (t[to] - t[from]) : 0)];

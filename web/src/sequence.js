@@ -146,8 +146,8 @@ export function makeSequence(part) {
     }
   }
 
-  /** Computes all arrays at a moment. `scheme` is a name in schemes.js, or "stored" to interpolate the stored normals of
-   * both keyframes. */
+  /** Computes all arrays at a moment. `scheme` is a name in schemes.js, or "stored" to interpolate the stored normals
+   * of both keyframes. */
   surface.pose = (number, t, scheme, least) => {
     enter(number);
     const { intervals, evaluate } = schemeOf(scheme);

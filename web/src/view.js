@@ -263,8 +263,8 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  /** Chooses the layout "side" or "wipe". The distance of the camera changes, so that the same part of the mesh stays in
-   * view. */
+  /** Chooses the layout "side" or "wipe". The distance of the camera changes, so that the same part of the mesh stays
+   * in view. */
   view.setLayout = (layout) => {
     const before = distanceOf(1);
     view.layout = layout;

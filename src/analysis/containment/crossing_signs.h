@@ -15,13 +15,11 @@
 /// change, one root (Descartes).
 ///
 /// Ties       A point may go exactly through an edge, or stay in a plane. So all signs are computed as if the point
-/// were moved
-///            by e = (e1, e2, e3), infinitely small with e1 >> e2 >> e3 > 0 (simulation of simplicity):
+///            were moved by e = (e1, e2, e3), infinitely small with e1 >> e2 >> e3 > 0 (simulation of simplicity):
 ///                V - e . n(t)   and   S_ab - e1 (b - a)_y + e2 (b - a)_x
 ///            The first term that is not zero decides. A sign is 0 only if the triangle then has no area.
-/// Numbers    Signs are computed in double with a bound of the rounding error; if that is not enough, in integers of
-/// any
-///            size (core/wide_integer.h), from the floats and their residuals. Times are multiples of 2^-48.
+/// Numbers    Signs are computed in double with a bound of the rounding error; if double is not enough, in integers of
+///            any size (core/wide_integer.h), from the floats and their residuals. Times are multiples of 2^-48.
 ///
 /// Source: Edelsbrunner, Muecke, Simulation of Simplicity (1990); for the cubic, Provot, Collision and self-collision
 /// handling (1997).

@@ -36,8 +36,8 @@ struct BoxTree {
   std::vector<std::uint32_t> order;  ///< the triangles, ordered so that those of a node are consecutive
 };
 
-/// Groups triangles that are near each other in these positions. corners has three vertices for each triangle. O(n log
-/// n).
+/// Groups triangles that are near each other in these positions. corners has three vertices for each triangle.
+/// O(n log n).
 [[nodiscard]] BoxTree build_box_tree(VectorView<const float> positions, std::span<const std::uint32_t> corners);
 
 /// A box that moves, with its limits at both ends of a segment; the limits belong to it.

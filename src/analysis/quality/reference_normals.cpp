@@ -1,4 +1,4 @@
-// The exact normals that everything is compared with. They are cross products of vertices at t in double, or in
+// The exact normals with which all schemes are compared. They are cross products of vertices at t in double, or in
 // integers if double cannot tell them from rounding error.
 #include "chronormal/analysis/quality.h"
 
@@ -111,7 +111,7 @@ class ExactArea {
   }
 
  private:
-  // Returns from 2^t.scale + (to - from) t 2^t.scale.
+  // Returns the position of a vertex at t, times 2^t.scale: from 2^t.scale + (to - from) t 2^t.scale.
   [[nodiscard]] Point point(std::uint32_t vertex, const UnitFraction& t) const {
     std::array<WideInteger<14>, 3> start, step;
     const auto add = [this](const SegmentEnd& end, std::uint32_t of, auto& sum, std::int64_t sign) {

@@ -1,12 +1,12 @@
 // Finds collapses in three stages. Each stage settles the faces for which its answer is certain.
 //
-// 1. A half space: if all control normals have a positive dot product with one direction, so has n(t), which is a
-// convex
-//    combination of them. This takes three dot products, and proves it for almost every face.
-// 2. The determinant: n(t) = 0 is a linear relation between the control normals, so there is none if they span space.
-// 3. Integers: n(t) has three components, each a quadratic. If all are multiples of one, its roots are the collapses.
-// If
-//    two differ, the combination of the two without t^2 is linear, and its root is the only candidate.
+// 1. A half space: if all control normals have a positive dot product with one direction, so has n(t), which is their
+//    convex combination. This test takes three dot products, and proves that almost every face has no collapse.
+// 2. The determinant: n(t) = 0 is a linear relation between the control normals, so a face has no collapse if its
+//    control normals span space.
+// 3. Integers: n(t) has three components, each a quadratic. If all components are multiples of one quadratic, its roots
+//    are the collapses. If two components differ, their combination without t^2 is linear, and its root is the only
+//    candidate.
 //
 // Control normals are within 2^-26 of their length of the exact ones, which both bounds in floating point allow for.
 

@@ -9,8 +9,8 @@
 /// doubles finds the neighbours between which it changes. The search starts from a guess in floating point, which only
 /// affects the time: a few microseconds with a good guess.
 ///
-/// Roots between the same two neighbouring doubles are returned as one. Roots below 2^-200 are not distinguished from
-/// 0.
+/// Roots between the same two neighbouring doubles are returned as one. Roots below 2^-200 count
+/// as 0.
 ///
 /// Source: Basu, Pollack, Roy, Algorithms in Real Algebraic Geometry (2006), chapter 2.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_EXACT_ROOTS_H_

@@ -155,8 +155,8 @@ Motion soup() {
   return connected(Topology::triangles(3 * kFaces, std::move(corners)).value(), std::move(keyframes));
 }
 
-// Makes an egg with ripples, and targets that push parts of its front about. Neighbours overlap, as targets of a face
-// do.
+// Makes an egg with ripples, and targets that push parts of its front about. Neighbouring targets overlap, as in a
+// face.
 Motion bumps() {
   constexpr std::size_t kTargets = 12;
   const Grid grid{64, 48, true};

@@ -55,7 +55,7 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 /// place of every error is `place`, or begins with it.
 [[nodiscard]] Result<MeshFrame> read_mesh_file(const InputOptions& options, const std::string& path,
                                                const std::string& place, ReadMotion& read);
-/// Does this for bytes that are in memory.
+/// Reads the mesh of the next keyframe in the same way, from bytes that are in memory.
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
 

@@ -60,7 +60,8 @@ struct Cut {
   }
 };
 
-// Returns the extension of a format that is read, in lower case. It is empty if the name has none: 0.05 is a number.
+// Returns the extension of a name in lower case, or an empty text if no format has this extension: in a name such as
+// walk_0.05, the end is part of a number.
 std::string known_extension(std::string_view name) {
   return find_format(name) == nullptr ? std::string() : lower_extension(name);
 }

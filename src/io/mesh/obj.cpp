@@ -98,7 +98,7 @@ class ObjReader {
   std::string joined_;              // a statement of several lines
   std::vector<float> positions_;
   PolygonBuilder faces_;
-  // Holds the largest positive index so far. Whether it names a vertex is known only at the end.
+  // The largest positive index so far. Whether it names a vertex is known only at the end.
   struct Largest {
     std::int64_t index = 0;
     std::size_t line = 0;

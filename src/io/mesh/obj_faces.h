@@ -10,7 +10,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds the part of an OBJ file that begins with its first face.
+/// The part of an OBJ file that begins with its first face.
 ///
 /// Shapes     V = vertices; positions are (V, 3).
 /// Threads    const member functions may be called from several threads at a time.

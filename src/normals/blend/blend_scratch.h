@@ -32,7 +32,7 @@ struct BlendBase {
 [[nodiscard]] BlendBase make_blend_base(const BlendSet& set, const BlendTerms& terms);
 [[nodiscard]] std::size_t base_bytes(const BlendShape& shape) noexcept;
 
-/// Holds the normal of a face at some weights, and a bound of its error.
+/// The normal of a face at some weights, and a bound of its error.
 struct BlendedFace {
   Vec3d normal;
   double noise = 0;

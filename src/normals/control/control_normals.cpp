@@ -19,7 +19,7 @@ namespace {
 // The error of eq. 5 in double: see "n(t) counts as zero" in the header.
 constexpr double kEvaluationError = 16 * kUnitRoundoff;
 
-// Holds the edge from the first corner of a face at both ends of the segment.
+// The edge from the first corner of a face at both ends of the segment.
 struct Edge {
   Vec3d from, to;
 };

@@ -31,7 +31,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds t = part / whole, of integers. Doubles and their differences are integers times 2^-1074, of 2099 bits.
+/// The time t = part / whole, of integers. Doubles and their differences are integers times 2^-1074, of 2099 bits.
 struct TimeFraction {
   static constexpr std::size_t kDigits = 89;
 

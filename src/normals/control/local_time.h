@@ -18,7 +18,8 @@ inline constexpr double kSmallestTime = 0x1p-200;
   return t < kSmallestTime ? 0 : t > 1 ? 1 : t;
 }
 
-/// Does this for a time that may be no double: a time closer than kSmallestTime to either end becomes that end.
+/// Returns the time in [0, 1] for a time that may be no double. A time closer than kSmallestTime to an end becomes that
+/// end.
 [[nodiscard]] inline LocalTime local_time(const LocalTime& time) noexcept {
   if (time.is_double()) return local_time(time.t);
   if (time.t < kSmallestTime) return 0.0;

@@ -19,7 +19,7 @@ inline constexpr double kDegreeTolerance = 0x1p-28;
 /// If rounding of double may be a larger share of a control normal, the control normal is computed from integers.
 inline constexpr double kLargestRounding = 0x1p-26;
 
-/// Holds control normals in double, and a bound of the error of any component of each.
+/// Control normals in double, and a bound of the error of any component of each.
 struct BoundedNormals {
   ControlNormals normals;
   std::array<double, 3> errors{};  ///< errors of n0, m, n1

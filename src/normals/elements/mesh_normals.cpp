@@ -126,7 +126,7 @@ void put(const Rgb10A2Output& output, std::size_t i, Rgb10A2 value) { output.res
 
 // ---- the two sources of elements -----------------------------------------------------------------------------------
 
-// Writes the elements from `first` on to memory that begins with the first of them.
+// Writes elements, from number `first` on, to memory that begins with this first element.
 template <class Form>
 struct Shifted {
   Form form;

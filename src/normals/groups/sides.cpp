@@ -38,7 +38,7 @@ bool has_twice(std::span<const std::uint32_t> loop) {
   return false;
 }
 
-// Holds sets of numbers that grow together, unless that would join two that must stay apart.
+// Sets of numbers that grow together, unless that would join two that must stay apart.
 class JoinedNodes {
  public:
   JoinedNodes(std::size_t nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> apart)

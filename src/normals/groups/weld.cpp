@@ -58,7 +58,7 @@ std::uint32_t hash_of(const PlaceKey& place) {
   return static_cast<std::uint32_t>(hash >> 32);
 }
 
-// Does this for many vertices, in buckets by the first bits of their hashes, each of which is sorted on its own.
+// Splits many vertices by their place, in buckets by the first bits of their hashes. Each bucket is sorted separately.
 void split_many_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::vector<Coinciding>& found) {
   constexpr std::size_t kBuckets = 1024, kShift = 22, kHashedBlock = std::size_t{1} << 14;
   std::vector<Hashed> hashed(vertices.size()), in_buckets(vertices.size());

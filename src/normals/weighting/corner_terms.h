@@ -28,7 +28,7 @@ struct CornerVertices {
   return {face[i], face[i + 1 == face.size() ? 0 : i + 1], face[i == 0 ? face.size() - 1 : i - 1]};
 }
 
-/// Holds an edge between two vertices at t, and the size of its terms. Its error is a few eps of that size.
+/// An edge between two vertices at t, and the size of its terms. Its error is a few eps of that size.
 struct MovingEdge {
   Vec3d vector;
   double size;

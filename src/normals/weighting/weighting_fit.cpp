@@ -131,7 +131,7 @@ Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, 
   return angle;
 }
 
-// Holds an angle over a piece of time that is only known up to a radius.
+// An angle over a piece of time that is only known up to a radius.
 struct CoarseAngle {
   double middle, radius;
 };
@@ -207,7 +207,7 @@ struct Element {
   Weighting weighting;
   ControlNormals fit;
 
-  // Holds the cross and dot product of the fit and the element, about the centre and about all of the piece.
+  // The cross and dot product of the fit and the element, about the centre and about all of the piece.
   struct Products {
     VectorSeries<kTerms> cross_here, cross_around;
     Series<kTerms> dot_here, dot_around;

@@ -1,5 +1,5 @@
-// Audits glTF files. For each mesh this measures the distance of the author's normals from the geometry, every target
-// from weight 0 to 1, every track of weights and every expression of an avatar, and collects notes.
+// Audits glTF files. For each mesh, the audit measures the distance of the author's normals from the geometry, every
+// target from weight 0 to 1, every track of weights and every expression of an avatar, and collects notes.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -115,7 +115,7 @@ std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
     }
   }
   std::vector<std::vector<std::uint32_t>> result(targets);
-  std::vector<std::size_t> moved_by(subject.elements(), targets);  // the last target that moved it
+  std::vector<std::size_t> moved_by(subject.elements(), targets);  // the last target that moved each element
   for (std::size_t k = 0; k < targets; ++k) {
     for (const std::uint32_t v : subject.set->targets[k].vertices)
       for (const std::uint32_t f : faces_of_vertex[v])

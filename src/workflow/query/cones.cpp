@@ -32,8 +32,8 @@ struct Meshlets {
   }
 };
 
-// Builds meshlets with meshoptimizer, which returns the corners of triangles but may rotate them; this finds their
-// faces.
+// Builds meshlets with meshoptimizer, and finds their faces, since meshoptimizer returns the corners of triangles and
+// may rotate them.
 Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
   const std::span<const std::uint32_t> corners = motion.topology.corners();
   const std::vector<float>& positions = motion.keyframes.front().positions;

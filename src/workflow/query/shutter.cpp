@@ -16,7 +16,7 @@
 namespace chronormal {
 namespace {
 
-// Holds the means of all faces, vertices or corners over a part of a segment, or over parts that follow each other.
+// The means of all faces, vertices or corners over a part of a segment, or over parts that follow each other.
 struct Means {
   std::vector<ShutterNormal> normals;
   std::vector<Vec3d> from, to;  // unit normals at both ends

@@ -201,7 +201,7 @@ Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment,
   const auto expected = VectorView<float>::packed(at_random.data(), element_count());
   scheme_normals_->unit_normals(static_cast<double>(index) * (1 / static_cast<double>(steps)), expected);
   scheme_normals_->played_normals(index, steps, anchor_interval, result);
-  // Drift is never negative, so the first element is the worst until another one is worse.
+  // Drift is never negative, so the first element is the worst until an element with more drift follows.
   struct Worst {
     double angle = 0;
     std::size_t element = 0;

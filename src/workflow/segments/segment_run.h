@@ -109,7 +109,7 @@ struct SegmentRun {
       return status ? work(some) : status;
     });
   }
-  /// Does the same before the run, to find facts about all segments; reports no progress.
+  /// Processes segments in the same way before the run, to find facts about all segments, without reports of progress.
   template <class Keys, class Work>
   [[nodiscard]] static Status look_over(MotionStream& stream, const Keys& keys, IndexRange segments,
                                         std::size_t at_once, const Work& work) {

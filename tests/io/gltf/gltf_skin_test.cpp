@@ -19,8 +19,8 @@ using test::GltfBuilder;
 using test::GltfFixture;
 using Json = GltfBuilder::Json;
 
-// A quad with two targets in node 0, whose skin has the joints 1 and 2. The weights of vertex v are 1 - v / 4 and v /
-// 4.
+// A quad with two targets in node 0, whose skin has the joints 1 and 2. The weights of vertex v are 1 - v / 4 for joint
+// 1 and v / 4 for joint 2.
 struct Skinned {
   GltfBuilder builder = test::quad_document();
 

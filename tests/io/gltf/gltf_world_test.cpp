@@ -49,8 +49,8 @@ Vec3d first_normal_at_start(const Motion& motion, std::size_t face) {
 TEST(GltfWorld, scale_rotation_and_translation_of_a_node_and_its_parent_apply_in_that_order) {
   GltfBuilder builder = triangle();
   const double half = std::sqrt(0.5);
-  // The child node scales by 2 and moves by 3 along z; the parent turns by 90 degrees about z, then moves by 10 along
-  // x.
+  // The child node scales by 2 and moves by 3 along z; the parent turns by 90 degrees about z, then moves by
+  // 10 along x.
   builder.add_node(0, {{"scale", {2, 2, 2}}, {"translation", {0, 0, 3}}});
   builder.json["nodes"].push_back({{"children", {0}}, {"rotation", {0, 0, half, half}}, {"translation", {10, 0, 0}}});
   const auto motion = world_motion(builder);

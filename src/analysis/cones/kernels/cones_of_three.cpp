@@ -22,7 +22,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Holds kLanes elements: three vectors each, scaled by powers of two, and the error bounds of the vectors.
+// The vectors of kLanes elements: three each, scaled by powers of two, and the error bounds of the vectors.
 struct Scaled {
   alignas(64) double vectors[9][kLanes];
   alignas(64) double errors[3][kLanes];

@@ -37,9 +37,8 @@ class ReferenceTriangles {
 inline constexpr double kNoExactNormal = -1, kNoNormal = -2;
 
 /// Writes the angle between each exact normal, which need not be a unit vector, and the rendered normal: kNoExactNormal
-/// if the exact one is zero, or else kNoNormal if the rendered one is zero or not finite. Fastest if the largest
-/// component of exact normals is
-/// 1. All three must have the same size.
+/// if the exact normal is zero, or else kNoNormal if the rendered one is zero or not finite. The function is fastest if
+/// 1 is the largest component of each exact normal. All three arrays must have the same size.
 void angles_to_exact(std::span<const Vec3d> exact, VectorView<const float> shown, std::span<double> angles) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -58,7 +58,7 @@ class NewArrays {
   /// Returns all bytes, in the order of the buffer, as views, which live as long as this. The spool must be in memory
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
-  /// Holds the JSON of buffer views and of accessors, in the order of their indices, for bytes that begin at `offset`
+  /// The JSON of buffer views and of accessors, in the order of their indices, for bytes that begin at `offset`
   /// of a buffer, and buffer views that are numbered from first_view.
   struct Json {
     std::vector<std::string> views, accessors;

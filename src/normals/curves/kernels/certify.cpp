@@ -89,7 +89,7 @@ HWY_INLINE DoubleMask StaysAbove(const Quartic& n_square, double ratio, const Qu
   return CertainlyNotNegative<kCertificateDepth>(slack, open);
 }
 
-// Holds the values of the Bernstein polynomials of degrees 2 and 4 at an instant.
+// The values of the Bernstein polynomials of degrees 2 and 4 at an instant.
 struct Instant {
   double of_degree2[3], of_degree4[5];
 };

@@ -48,7 +48,7 @@ enum class BlockKind : int {
   return bytes[static_cast<int>(kind)];
 }
 
-/// Says how precisely the elements of a block are kept, whatever their degree.
+/// The precision with which the elements of a block are kept, whatever their degree.
 enum class Precision : std::uint8_t { k11, k16, kScaled16, k32 };
 
 /// The degree of a block whose elements are all flagged.

@@ -18,8 +18,8 @@ struct BlockSpan {
   std::size_t elements = 0;
 };
 
-/// Says how a kernel uses memory. PrefetchRule decides by its working set how early it prefetches blocks. With
-/// `stream`, results go past the caches, for which all their arrays must be aligned to 64 bytes.
+/// The way in which a kernel uses memory. PrefetchRule decides by the working set how early blocks are prefetched. With
+/// `stream`, results bypass the caches, for which all their arrays must be aligned to 64 bytes.
 struct MemoryAccess {
   WorkingSet working_set = WorkingSet::kSmall;
   bool stream = false;

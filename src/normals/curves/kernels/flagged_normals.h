@@ -31,7 +31,7 @@ struct FlaggedNormals {
   [[nodiscard]] static FlaggedNormals scaled(const ControlNormals& normals, double certain) noexcept;
 };
 
-/// Holds sixteen FlaggedNormals side by side: the planes of ControlTile in double, and the limits. Unused lanes are
+/// Sixteen FlaggedNormals side by side: the planes of ControlTile in double, and the limits. Unused lanes are
 /// zero.
 struct alignas(64) FlaggedTile {
   double normals[9][kTile]{};

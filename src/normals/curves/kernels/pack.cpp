@@ -23,7 +23,7 @@ HWY_INLINE Lanes3 LoadTileVector(const ControlTile& tile, std::size_t k, std::si
 
 HWY_INLINE Floats MaxAbs(const Lanes3& v) { return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); }
 
-// Holds the results of the tests of each lane as bits, the lowest lane first.
+// The results of the tests of each lane as bits, the lowest lane first.
 struct LaneTests {
   std::uint32_t certain = 0, fits11 = 0, fits16 = 0, moving = 0, bending = 0;
 };

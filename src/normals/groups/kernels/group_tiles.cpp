@@ -216,7 +216,7 @@ HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows,
     for (std::size_t k = 0; k < 9; ++k) {
       const Floats v = ToFloat(exact.normals[k] + lane);
       hn::Store(v, kFloats, tile.normals[k] + lane);
-      // A zero is not doubtful, unless rounding made it of a negative number.
+      // A zero is not doubtful, unless a negative number was rounded to this zero.
       const auto has_bits =
           hn::MaskFromVec(hn::BitCast(kFloats, hn::VecFromMask(kInts, hn::Ne(hn::BitCast(kInts, v), hn::Zero(kInts)))));
       some = hn::Or(some, hn::And(has_bits, hn::Le(hn::Abs(v), error)));

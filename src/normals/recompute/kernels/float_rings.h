@@ -11,7 +11,7 @@
 
 namespace chronormal::inline internal {
 
-/// Holds points in rows x y z _, and whether points of neighbouring elements are scattered in memory and should be
+/// Points in rows x y z _, and whether points of neighbouring elements are scattered in memory and should be
 /// prefetched.
 struct RingPoints {
   const float* rows = nullptr;

@@ -77,7 +77,7 @@ using Sum = SumOf<kLanes == 4 ? 2 : 1>;
 
 #endif
 
-// Holds edges from the first corner of the faces of a block, at both ends, and the corners that they were made from.
+// Edges from the first corner of the faces of a block, at both ends, and the corners that they were made from.
 struct alignas(64) EdgeBlock {
   float start_e[3][kBlock], start_f[3][kBlock], end_e[3][kBlock], end_f[3][kBlock];
   const std::uint32_t* corners;
@@ -225,7 +225,7 @@ HWY_INLINE Lanes3 PointsOf(const float* points, const EdgeBlock& block, std::siz
   return {hn::Load(kFloats, planes[0]), hn::Load(kFloats, planes[1]), hn::Load(kFloats, planes[2])};
 }
 
-// Holds the results of exact edges for kLanes faces of a block: see "thin" in recompute_tiles.h.
+// The results of exact edges for kLanes faces of a block: see "thin" in recompute_tiles.h.
 struct FineNormals {
   Lanes3 n, unit;
   Floats square;  // n . n

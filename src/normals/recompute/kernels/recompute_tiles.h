@@ -65,7 +65,7 @@ struct NormalWindow {
 std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
 
-/// Does this for normals that keep their length, with their errors.
+/// Writes the normals of a range of faces in the same way, but with their lengths and errors.
 std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    FaceNormal* result, std::uint32_t* doubtful) noexcept;
 
