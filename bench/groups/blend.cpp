@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kTargets = 100, kDenseTargets = 5;
 constexpr double kMoved = 0.025;       // share of vertices per target, as in a face with 102 targets
-constexpr double kDisplacement = 0.1;  // in multiples of the radius of the ring
+constexpr double kDisplacement = 0.1;  // multiple of the radius of the ring
 constexpr double kExactError = 1e-6, kFloatError = 1e-3;
 // The linear sum is inexact by design, so this limit in radians reveals gross mistakes only.
 constexpr double kLinearError = 3.2;

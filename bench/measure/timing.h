@@ -22,7 +22,7 @@ inline constexpr Effort kQuickEffort{0.001, 0.01, 5, 3};
 
 struct Timed {
   std::function<void()> run;
-  double seconds = 0;                    ///< of an observed call; 0 if there was none
+  double seconds = 0;                    ///< time of an observed call; 0 if there was no such call
   std::vector<double> nanoseconds = {};  ///< per call, one value for each repetition
 };
 

@@ -23,7 +23,7 @@ class BareLoop {
 
  private:
   Reads reads_;
-  std::size_t blocks_;  // of 16 elements each
+  std::size_t blocks_;  // number of blocks of 16 elements each
   Threads threads_;
   int way_ = 0;
   AlignedArray<float> from_;

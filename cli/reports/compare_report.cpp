@@ -95,7 +95,7 @@ std::string segment_cell(const NamedComparison& input, std::size_t segment) {
 // The columns of Table 2.
 struct OperationColumn {
   int OperationCounts::*count;
-  const char* short_name;  // as in the table for people
+  const char* short_name;  // the name in the table for people
   const char* latex;
 };
 

@@ -16,7 +16,7 @@ namespace chronormal::inline internal::portable {
 /// Return the sine and the cosine of x, |x| <= 39,000.
 [[nodiscard]] double sin(double x) noexcept;
 [[nodiscard]] double cos(double x) noexcept;
-/// Returns the arc sine of x. Beyond |x| = 1 the result is the one at 1.
+/// Returns the arc sine of x. Beyond |x| = 1 the result is that at the nearer end.
 [[nodiscard]] double asin(double x) noexcept;
 [[nodiscard]] double atan(double x) noexcept;
 /// Returns the angle of the vector (x, y), in [-pi, pi]. The zero vector has the angle 0, or pi if x is -0.

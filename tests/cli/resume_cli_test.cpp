@@ -106,7 +106,7 @@ TEST_F(Resume, a_journal_of_another_run_is_refused_with_what_differs) {
   EXPECT_EQ(file("out.journal"), journal);
   EXPECT_EQ(file("out.partial"), partial);
   fs::remove(folder_ / "out.journal");
-  EXPECT_EQ(run(command).exit_code, 0);  // starts anew, replacing the rest of the unfinished run
+  EXPECT_EQ(run(command).exit_code, 0);  // starts again, and replaces the rest of the unfinished run
 }
 
 TEST_F(Resume, files_of_other_people_are_not_touched) {

@@ -112,7 +112,7 @@ Motion changed(Motion motion, Change&& change) {
   return motion;
 }
 
-// Returns the same motion with the corners of every triangle in another order.
+// Returns a copy of a motion in which the corners of every triangle are in another order.
 Motion reordered(const Motion& motion, const std::array<std::size_t, 3>& order) {
   std::vector<std::uint32_t> corners;
   for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {

@@ -199,8 +199,8 @@ describe('a real viewer', () => {
         }
       });
 
-    // PlayCanvas finds a target by its name, if it has one: of several targets with the same name, only the last is
-    // found.
+    // PlayCanvas finds a target by its name, if the target has one. If several targets have the same name, it finds
+    // only the last.
     const mixes = viewer === 'playcanvas';
     test(`${mixes ? 'mixes up' : 'tells apart'} targets of the same name: ${viewer}`, async () => {
       const track = { interpolation: 'STEP', times: [0, 1], values: [0.75, 0.25, 0.75, 0.25], targets: 2, moving: 0 };

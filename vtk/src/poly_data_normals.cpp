@@ -41,7 +41,7 @@ void for_elements(std::size_t count, const Body& body) {
   });
 }
 
-// Returns the four lists of cells of a vtkPolyData, in the order in which it numbers them.
+// Returns the four lists of cells of a vtkPolyData, in the order in which vtkPolyData numbers cells.
 std::array<vtkCellArray*, 4> cell_lists(vtkPolyData* mesh) {
   return {mesh->GetVerts(), mesh->GetLines(), mesh->GetPolys(), mesh->GetStrips()};
 }

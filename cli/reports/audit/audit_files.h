@@ -22,7 +22,7 @@ struct AuditedFile {
   std::optional<MotionError> error;  ///< empty if the file could not be judged
   std::size_t faults = 0;            ///< number of fault lines in the report of this file alone
   std::string verdict;               ///< a word or two
-  Json json;                         ///< of audit_object(), or "input" and "error"
+  Json json;                         ///< result of audit_object(), or "input" and "error"
 };
 
 /// Returns the table of all files, after their worst error.

@@ -49,7 +49,7 @@ struct Surface {
   Found doubled_faces;     ///< faces with the outline and winding of a lower face
   Found back_to_back;      ///< pairs of faces with the same outline but opposite windings
   std::size_t triangles = 0;
-  std::size_t most_corners = 0;  ///< of any face
+  std::size_t most_corners = 0;  ///< the largest number of corners of a face
 };
 
 /// Counts all of these for a mesh; `points` tells which of its vertices are one point.

@@ -170,7 +170,7 @@ struct GltfTrack {
 struct GltfAnimation {
   std::string name;
   std::size_t channel_count = 0;  ///< number of channels of all kinds
-  std::vector<GltfTrack> tracks;  ///< of weights
+  std::vector<GltfTrack> tracks;  ///< tracks of weights
 };
 
 /// The keys of a track; K = keys, N = targets of the mesh.
@@ -205,7 +205,7 @@ struct GltfOptions {
   bool allow_external = false;  ///< buffers may be in files outside of the asset's folder
   /// The largest memory for the arrays of one primitive, since a small file can demand much.
   std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
-  std::size_t max_expansion = 100;  ///< as in InputOptions
+  std::size_t max_expansion = 100;  ///< see InputOptions
   bool strict = false;              ///< refuse files for which GltfDocument::notes() would not be empty
   /// Finds buffers and images by their paths below the asset's folder; if empty, the file system does.
   FileResolver resolve = {};
@@ -281,7 +281,7 @@ class GltfDocument {
 
 // Edits of a glTF file that leave everything else unchanged, byte for byte.
 //
-// The JSON is not printed anew. Changes are inserted into the text of the source, so that every token that no pointer
+// The JSON is not printed again. Changes are inserted into the text of the source, so that every token that no pointer
 // names keeps its bytes (64-bit integers, 1e400, unknown extensions, the order of members, blanks). New arrays are
 // appended to the BIN chunk of the source, which remains a prefix of the new chunk unless leave_out_unused() is called.
 //

@@ -46,9 +46,9 @@ class Expansion;  // limits the memory and output that a file may cause
 /// Selects which normals and smoothing groups that meshes store are kept.
 enum class KeepShading {
   kNone,
-  kFirst,  ///< those of the first keyframe, which is the base, or the mesh of a cache
-  kAll,    ///< those of all keyframes, if all store normals
-  kRead,   ///< those of all keyframes that are read at once; only of the first one if positions are left in files
+  kFirst,  ///< normals of the first keyframe, which is the base, or the mesh of a cache
+  kAll,    ///< normals of all keyframes, if all store normals
+  kRead,   ///< normals of all keyframes that are read at once; only of the first if positions stay in files
 };
 
 /// The options of an input; their names are those of the program's options.

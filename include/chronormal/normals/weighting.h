@@ -14,9 +14,10 @@
 ///     inverse-roots  u / sqrt(|e| |f|)          Jin, Lewis, West 2005
 ///
 /// Area is the default because it is the only one whose sum is a polynomial in time: exact by three control normals.
-/// The others are evaluated here anew for each t, or *fitted*: replaced, element by element and segment by segment, by
-/// the quadratic that has the weighted direction at t = 0, 1/2 and 1, with the area-weighted length there. NormalCurves
-/// plays it like the exact ones. It is an approximation, so each element carries a bound.
+/// A normal of the other weightings is evaluated again for each t, or *fitted*: replaced, for each element and segment,
+/// by the quadratic that has the weighted direction at t = 0, 1/2 and 1, with the area-weighted length there.
+/// NormalCurves plays these quadratics like exact normals. The quadratics are approximations, so each element has a
+/// bound.
 ///
 /// Polygons   n, u and the angle are those of the polygon, its vector area and its own corner angle in [0, pi], not of
 ///            the triangles that some tool would cut it into. e x f is that of the corner: for a triangle and a convex

@@ -161,9 +161,10 @@ struct BakedMesh {
   std::size_t mesh = 0;
   std::string name;
   BakeEncoding encoding = BakeEncoding::kExact;
-  Weighting weighting = Weighting::kArea;  ///< of the true normals; has no meaning for a mesh that was baked before
-  std::size_t elements = 0;                ///< different normals
-  std::vector<GltfExtraTarget> extras;     ///< correction targets, added now or by an earlier bake
+  Weighting weighting =
+      Weighting::kArea;                 ///< weighting of the true normals; meaningless for a mesh that was baked before
+  std::size_t elements = 0;             ///< different normals
+  std::vector<GltfExtraTarget> extras;  ///< correction targets, added now or by an earlier bake
   /// Bytes of new arrays, not counting those shared with an earlier mesh, plus the growth of tracks.
   std::size_t bytes = 0;
   /// For exact: moving targets that no animation drives, which are baked like endpoint.

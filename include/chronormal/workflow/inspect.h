@@ -55,7 +55,7 @@ struct SegmentInspection {
 
 struct Inspection {
   std::size_t vertices = 0, faces = 0, keyframes = 0;
-  double first_time = 0, last_time = 0;  ///< of keyframes
+  double first_time = 0, last_time = 0;  ///< times of keyframes
   Vec3d low, high;                       ///< bounding box over all keyframes
   double diagonal = 0;                   ///< diagonal of that box
   Largest motion, turn;                  ///< largest values over all segments
@@ -143,7 +143,7 @@ struct InspectedGltf {
   GltfInspection inspection;
   std::span<const GltfPart> parts;       ///< the origin of vertices and faces of the input
   double curve_error = 0;                ///< the error of the cut curves, as in Input
-  std::size_t split = 0;                 ///< of count_split_normals()
+  std::size_t split = 0;                 ///< result of count_split_normals()
   std::optional<std::size_t> animation;  ///< the inspected animation; nothing for targets or a mesh at rest
 };
 

@@ -9,7 +9,7 @@
 /// Area-weighted normals are within 1e-6 rad of exact arithmetic, also for thin and small faces and faces of mixed
 /// sizes. They are computed from positions, or at times by curves of the segment if kCurvesFrom times or more are
 /// requested there (normals/mesh_normals.h). At weights the guarantee holds for positions before rounding to float32.
-/// Other weightings, which are not polynomials, are computed anew in double.
+/// Other weightings, which are not polynomials, are computed in double at each moment.
 ///
 /// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and
 ///            outputs of the same element have the same bits.

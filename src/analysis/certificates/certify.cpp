@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kMostPieces = 256;
 // The smallest width of a piece; a narrower piece is practically a single instant.
 constexpr double kNarrowest = 0x1p-40;
-constexpr double kPromisedShare = 0x1p-26;  // of a control normal: see face_control_normals()
+constexpr double kPromisedShare = 0x1p-26;  // promised error of a control normal: see face_control_normals()
 constexpr std::size_t kBlockSize = 1024;
 
 // The normal n(t) over [0, 1], scaled to a size of about 1, and a bound of its error.
@@ -69,7 +69,7 @@ std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlEr
 struct Piece {
   double a, b;
   double upper;
-  double uncertainty;  // in the middle of the piece
+  double uncertainty;  // uncertainty in the middle of the piece
 
   friend bool operator<(const Piece& x, const Piece& y) { return x.upper < y.upper; }
 };

@@ -42,7 +42,7 @@ class CubicCurve {
 
  private:
   Bernstein<Vec3d, 3> p_;
-  Bernstein<double, 2> radius_{};  // of the ball, over [0, 1]
+  Bernstein<double, 2> radius_{};  // radius of the ball, over [0, 1]
   double angle_;
 };
 

@@ -19,8 +19,8 @@ constexpr std::size_t kAxisRefinements = 10;
 constexpr double kWidest = 0.995;         // the sine of 84 degrees: beyond it the test would hardly ever reject
 constexpr double kTestSlack = 0x1p-20;    // for the test in float32: some ten roundings of 2^-24
 constexpr double kRoundUp = 1 + 0x1p-22;  // for rounding to float, and the rounding before that
-constexpr double kSumRounding = 0x1p-46;  // of sums of products in double
-constexpr double kSteps = 127;            // of a component in 8 bits
+constexpr double kSumRounding = 0x1p-46;  // rounding of sums of products in double
+constexpr double kSteps = 127;            // steps of a component in 8 bits
 
 // The places of a vertex at both ends of the interval, and a bound of their rounding error.
 struct Ends {
@@ -96,7 +96,7 @@ class Cluster {
         s = std::fmax(s, (height[k] + error * distance + 2 * p.error * size[k]) / (along[k] - error));
       }
     }
-    // Rounding moves the point by less than this share of its way back along the axis.
+    // The point goes further back along the axis, by more than rounding can move it.
     const double cosine = std::sqrt((1 - double{cone.sine}) * (1 + double{cone.sine}));
     s += 0x1p-22 * (length(center) + s) / cosine + 0x1p-120;
     const Vec3d point = center - s * axis;

@@ -47,7 +47,7 @@ void cones_of_block(std::span<const ControlNormals> normals, double t0, double t
 // The direction in a cone that is farthest from a unit axis, by the sine and cosine of its angle to the axis.
 struct Farthest {
   double sine = 0, cosine = 2;
-  Vec3d axis;  // of the cone
+  Vec3d axis;  // axis of the cone
 
   // Returns a number that decreases as the angle grows from 0 to 270 degrees, for comparing angles.
   [[nodiscard]] double nearness() const noexcept { return sine >= 0 ? cosine : -2 - cosine; }

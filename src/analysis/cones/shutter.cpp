@@ -27,9 +27,9 @@ namespace {
 
 constexpr double kRadius = 2.125;
 constexpr double kGaussError = 32.0 / 15 * 0x1p-32 / (1 - 0x1p-4);
-constexpr double kNearness = 0.5;           // of q to q(0): a piece with at most this is small enough
+constexpr double kNearness = 0.5;           // a piece is small enough if q is this near to q(0)
 constexpr int kDeepest = 28;                // halvings
-constexpr double kCurveRounding = 0x1p-47;  // of n(t) from its control normals, and of sums of unit vectors
+constexpr double kCurveRounding = 0x1p-47;  // rounding of n(t) and of sums of unit vectors
 
 constexpr std::array<double, 4> kNodes{0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
                                        0.96028985649753623};

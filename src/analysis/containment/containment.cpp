@@ -68,7 +68,7 @@ struct Triangles {
 };
 
 Triangles triangles_of(const Topology& topology, const Points& points, VectorView<const float> positions) {
-  std::vector<float> places;  // of polygons that must be triangulated
+  std::vector<float> places;  // places of polygons that must be triangulated
   for (std::size_t v = 0; v < positions.count && !topology.all_triangles(); ++v) {
     const Vec3f place = positions[v];
     places.insert(places.end(), {place.x, place.y, place.z});
@@ -125,7 +125,7 @@ std::optional<double> first_root(const Bernstein<double, 3>& p) {
 
 // The data of a segment that all points need.
 struct MeshInSegment {
-  Segment segment;  // of the triangles
+  Segment segment;  // segment of the triangles
   std::span<const std::uint32_t> faces;
   std::span<const BoxNode> nodes;
   std::vector<MovingBox> boxes;

@@ -59,7 +59,7 @@ struct Verdict {
     kOpen       ///< the cell is too long to tell
   };
   Kind kind = kNothing;
-  int change = 0;  ///< of a crossing: the sign of the volume after it, by which the winding number changes
+  int change = 0;  ///< the sign of the volume after a crossing, by which the winding number changes
 };
 
 class CrossingSigns {

@@ -28,7 +28,7 @@ namespace chronormal::inline internal {
 /// A node of the tree. If it has children, they follow each other.
 struct BoxNode {
   std::uint32_t first = 0;  ///< the first child, or the first triangle
-  std::uint32_t count = 0;  ///< of triangles; 0: the node has two children
+  std::uint32_t count = 0;  ///< number of triangles; 0: the node has two children
 };
 
 struct BoxTree {

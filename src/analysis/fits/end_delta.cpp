@@ -179,7 +179,7 @@ class ScaleSearch {
     double ahead0, ahead1, cosine0, cosine1, height, square0, square1, square2;
   };
   struct Worst {
-    double behind = 0, ahead = 0;  // of the line relative to the normal, as keys
+    double behind = 0, ahead = 0;  // keys: how far the line is behind or ahead of the normal
   };
 
   [[nodiscard]] Worst worst(double log_scale) const noexcept {

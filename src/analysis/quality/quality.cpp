@@ -18,7 +18,7 @@ void Quality::add(std::span<const Vec3d> exact, VectorView<const float> normals,
   assert(exact.size() == normals.count);
   constexpr std::size_t kAtOnce = 256;
   std::array<double, kAtOnce> angles;
-  Quality all = *this;  // in registers
+  Quality all = *this;  // a copy, so that the compiler keeps it in registers
   for (std::size_t begin = 0; begin < exact.size(); begin += kAtOnce) {
     const std::size_t size = std::min(kAtOnce, exact.size() - begin);
     angles_to_exact(exact.subspan(begin, size), normals.part({begin, size}), std::span(angles).first(size));

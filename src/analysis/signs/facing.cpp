@@ -99,7 +99,7 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
     size = std::max(size, std::fabs(p[k]));
     bound = std::max(bound, f.bounds[k][i]);
   }
-  constexpr double kRoundings = 64;  // of restrict_to() and of the coefficients
+  constexpr double kRoundings = 64;  // roundings of restrict_to() and of the coefficients
   bound += kRoundings * kUnitRoundoff * size;
   // If both a front and a back are certainly seen, at the ends or in between, the answer is certain.
   bool shows_front = false, shows_back = false;

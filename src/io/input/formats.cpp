@@ -140,7 +140,7 @@ std::string unknown_format(std::string_view bytes, std::string_view what) {
 
 std::string way_in(std::string_view file_name, std::string_view bytes) {
   struct Foreign {
-    std::string_view kind;  // in the words of known_kind()
+    std::string_view kind;  // a result of known_kind()
     std::array<std::string_view, 4> extensions;
     std::string_view way;
   };

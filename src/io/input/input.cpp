@@ -54,7 +54,7 @@ Error chooses_nothing(const InputOptions& options) {
 struct Opened {
   std::optional<GltfDocument> document;
   std::size_t file_size = 0;  // size of the document
-  ReadMotion read;            // not yet read for a document
+  ReadMotion read;            // empty until read, for a document
 };
 
 // Return the names of a file and of several files, for messages and tables.
@@ -651,7 +651,7 @@ Result<Input> open_input(const InputOptions& asked) {
   if (!options.base.empty()) return keep(name_of_file(options.base), read_targets(options));
   if (options.files.size() > 1 || !may_be_whole(options.files.front(), options)) {
     std::vector<std::string> files = options.files;
-    (void)sort_listed(files);  // in the order of find_frames()
+    (void)sort_listed(files);  // the order of find_frames()
     return keep(name_of_files(files), read_several(options));
   }
 

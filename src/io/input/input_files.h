@@ -22,12 +22,12 @@ struct ReadMotion {
   std::optional<MotionStream> stream = {};  ///< the motion as a stream, if keyframes are still in files
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
-  std::string shaded_by;                      ///< as Input has it
+  std::string shaded_by;                      ///< see Input
   std::vector<std::string> other_files = {};  ///< files of a sequence that are examined for more digits than float32 if
                                               ///< its first file has none
   std::uint64_t bytes_read = 0;               ///< size of all files
   std::vector<std::string> notes = {};        ///< notes as in Input
-  std::optional<FileSeries> series = {};      ///< as Input has it
+  std::optional<FileSeries> series = {};      ///< see Input
 };
 
 /// A function that returns the relevant files of a folder, in any order.

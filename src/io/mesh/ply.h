@@ -67,7 +67,7 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 struct PlyProperties {
   VectorView<const float> of_vertices;                           ///< one for each vertex, after x, y, z
   VectorView<const float> of_faces;                              ///< one for each face, after its indices
-  std::span<const float> quality_of_vertices, quality_of_faces;  ///< one for each
+  std::span<const float> quality_of_vertices, quality_of_faces;  ///< one number for each vertex or face
 };
 
 /// Writes a PLY file with these properties.

@@ -296,7 +296,7 @@ class Call {
     const double* const p = pose_.points.data() + kBlendLanes * std::size_t{v};
     Vec3d result{p[0], p[1], p[2]};
     if (pose_.has_points) return result;
-    for (const std::uint32_t i : pose_.active) {  // in the order of move_points()
+    for (const std::uint32_t i : pose_.active) {  // the same order as in move_points()
       const BlendTarget& target = source_.set.targets[i];
       const auto at = std::lower_bound(target.vertices.begin(), target.vertices.end(), v);
       if (at == target.vertices.end() || *at != v) continue;

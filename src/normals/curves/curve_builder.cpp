@@ -92,7 +92,7 @@ class Build {
     for (; count > 0; --count) {
       if (!builder_) {
         parts_[next_].begin = curves_.blocks.data() + bytes_;
-        std::swap(parts_[next_].flagged, curves_.flagged);  // these then need not be moved
+        std::swap(parts_[next_].flagged, curves_.flagged);  // the flagged elements then need not be moved
         builder_.emplace(parts_[next_], limits_);
       }
       if (builder_->make_chunk(source)) continue;

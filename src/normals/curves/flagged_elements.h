@@ -28,7 +28,7 @@ struct FlaggedElements {
     return element_of(tiles[index / kTile].normals, index % kTile);
   }
 
-  /// Becomes empty, and keeps its memory.
+  /// Removes all elements, and keeps their memory.
   void clear() noexcept {
     numbers.clear();
     tiles.clear();

@@ -445,11 +445,11 @@ class PartBuilder {
   AlignedArray<ControlTile> tiles_;
   std::size_t made_ = 0;  // elements
   FloatTrials float_;
-  std::array<BoundedTile, kWrittenTiles> bounded_;  // of the tiles that are being added
-  TileCertificates certificates_;                   // of the tile that is being examined
+  std::array<BoundedTile, kWrittenTiles> bounded_;  // bounds of the tiles that are being added
+  TileCertificates certificates_;                   // certificates of the tile that is being examined
   std::uint32_t has_bounds_ = 0;                    // bits of the tiles that have bounds
   bool is_examined_ = false;                        // whether one of the tiles was examined, sixteen elements at a time
-  std::size_t chunk_bytes_ = 0;                     // of the last chunk
+  std::size_t chunk_bytes_ = 0;                     // size of the last chunk
 };
 
 }  // namespace chronormal::inline internal

@@ -439,7 +439,7 @@ struct MeshNormals::Parts {
     return access_of_pass(curves.blocks.size(), size() * bytes_of_result);
   }
 
-  std::shared_ptr<const Topology> mesh;  // of all objects that another() has made
+  std::shared_ptr<const Topology> mesh;  // the mesh of all objects that another() has created
   MeshNormalsOptions options;
   std::vector<std::uint32_t> group_of_face;  // kept until the outputs that share a normal are known
   std::vector<float> normal_of_corner;       // kept until then, too

@@ -54,7 +54,7 @@ class PathMaker {
   static constexpr std::size_t kMostTriangles = 16;
 
   struct Piece {
-    std::size_t first, last;  // of points_
+    std::size_t first, last;  // indices into points_
   };
 
   // Returns a path that adds nothing, in place of a path that is too long.

@@ -68,7 +68,7 @@ NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTi
   return result;
 }
 
-constexpr double kLargestNormal = 0x1p100;  // in float32, with room for sums
+constexpr double kLargestNormal = 0x1p100;  // largest normal in float32 that leaves room for sums
 
 FaceNormal rounded(const NormalAtTime& normal) {
   // The factor is a little above 1, for the rounding of the bound.

@@ -95,8 +95,8 @@ class BlendSource {
   MeshSkin* skin_;
   std::vector<AffineTransform> carriers_;  // one transform for each output, if there is a skin
   std::size_t placed_ = 0;
-  std::vector<std::optional<std::vector<Delta>>> moved_;  // of each involved target, once requested
-  std::vector<ShownTurn> turns_;                          // of outputs
+  std::vector<std::optional<std::vector<Delta>>> moved_;  // deltas of each involved target, once requested
+  std::vector<ShownTurn> turns_;                          // turns of outputs
   std::optional<SegmentEnds> ends_;
   bool known_ = false;
   std::size_t samples_, segment_ = 0;

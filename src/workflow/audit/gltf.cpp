@@ -565,7 +565,7 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     ++done;
     if (options.progress) options.progress(std::min(done, total), total);
   };
-  std::uint64_t error_bytes = 0;  // of the tables of all meshes
+  std::uint64_t error_bytes = 0;  // bytes of the tables of all meshes
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
     const Tracks tracks = tracks_of(document, m, only);
     if (!has_targets(document.meshes()[m]) || (only && tracks.empty())) continue;

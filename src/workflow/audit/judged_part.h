@@ -107,7 +107,7 @@ class JudgedPart {
   Weighting weighting_;
   const AuthorSums* sums_;
   std::vector<std::uint32_t> places_;  // for vertices of the mesh, their indices in vertices_
-  bool keeps_faces_;  // else each element computes its faces' normals: no memory, and little time for small elements
+  bool keeps_faces_;                   // if false, each element recomputes the normals of its faces, without memory
   std::vector<JudgedOutput> outputs_;
   std::span<const std::array<std::uint32_t, 2>> edges_;
   std::vector<std::array<std::uint32_t, 2>> own_edges_;  // edges of a small part

@@ -162,7 +162,7 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
                 MotionError& result) {
   double sum = 0, sum_of_squares = 0, worst = 0;  // kept in registers
   std::size_t judged = 0;
-  std::array<std::uint32_t, kAuditFineBins> counts{};  // of at most kRange outputs
+  std::array<std::uint32_t, kAuditFineBins> counts{};  // counts of at most kRange outputs
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const JudgedOutput& output = outputs[i];
     double degrees = degrees_of(output, i);
@@ -221,7 +221,7 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
 /// The true normal of a placed output.
 struct RightOutput {
   Vec3d direction;          ///< the direction that source.right() returns
-  bool is_hidden = false;   ///< as source.hides() has it
+  bool is_hidden = false;   ///< the result of source.hides()
   bool has_normal = false;  ///< tells whether the normal is long enough to judge by
   bool has_area = false;    ///< whether a face around the output is drawn: faces without area are not drawn
 };
@@ -312,7 +312,7 @@ struct MeasuredSample {
   std::size_t segment = 0;
   double t = 0;
   const PlacedPart& placed;
-  std::span<const double> largest;  ///< as largest_control_normals() has it
+  std::span<const double> largest;  ///< the result of largest_control_normals()
   const MotionError& error;
   std::span<const float> each;  ///< errors of outputs, NaN if not judged; empty if not kept
 };
@@ -338,7 +338,7 @@ template <class Source, class Segments, class EachSample>
   const auto right = [&](std::size_t, const JudgedOutput& output) {
     return right_output(source, placed, largest, output);
   };
-  MotionError error;  // of the last sample
+  MotionError error;  // error of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
   const Status measured = segments.over(subject, [&](std::size_t s) {
     SegmentErrors found{s, {}, {}};

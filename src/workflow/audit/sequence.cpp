@@ -112,7 +112,7 @@ class SequenceSource {
   bool stored_;
   const JudgedPart& part_;
   AuditRule rule_;
-  std::vector<Vec3d> first_;  // in keyframe 0
+  std::vector<Vec3d> first_;  // stored normals of keyframe 0
   std::span<const std::size_t> segments_;
   bool known_ = false;
   std::size_t segment_ = 0;

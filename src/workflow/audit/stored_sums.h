@@ -59,7 +59,7 @@ class StoredSums {
   std::vector<Vec3f> kept_normals_;  // one for each output, if the viewer does not keep normals as stored
   std::vector<Group> groups_;        // empty until the first sum
   std::vector<std::vector<double>> sets_;
-  std::size_t stride_;       // of the sums of a set, in whole groups
+  std::size_t stride_;       // number of sums of a set, rounded up to whole groups
   std::vector<float> sums_;  // (sets, stride)
 };
 

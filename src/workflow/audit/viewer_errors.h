@@ -49,8 +49,8 @@ class ViewerErrors {
   std::vector<Weights> weights_;
   std::vector<StoredSums> kept_;            // normals and deltas as some viewers keep them
   std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
-  std::vector<RightOutput> right_;          // of each output, as some viewers see it
-  double size_ = 0;                         // of the mesh
+  std::vector<RightOutput> right_;          // true normal of each output, as some viewers see it
+  double size_ = 0;                         // size of the mesh
   std::optional<PlacedPart> elsewhere_;     // the part at weights other than the specified ones, once needed
   std::size_t placed_ = 0;                  // source.placed() at the last sample; 0 before any
   std::vector<std::vector<double>> now_;    // for each viewer, the weights of the last sample

@@ -44,13 +44,13 @@ struct AuditSample {
   std::size_t subject_index = 0;  ///< its future index in Audit::subjects
   const AuditSubject& subject;    ///< errors not filled in yet
   std::size_t segment = 0;        ///< index in the subject, or in the motion
-  double t = 0;                   ///< in the segment
+  double t = 0;                   ///< t within the segment
   double at = 0;                  ///< weight or time
   const JudgedPart& part;
   std::span<const double> largest;  ///< per element of the part: length of the largest control normal
   const MotionError& error;
   std::span<const float> degrees;               ///< per output of the part; NaN if not judged
-  std::span<const double> weights;              ///< of all targets of a glTF file
+  std::span<const double> weights;              ///< weights of all targets of a glTF file
   std::span<const std::vector<double>> played;  ///< for a glTF file, the weights that each viewer plays
 };
 

@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 4> kNames = {"file", "end point", "least 
 constexpr std::array<std::size_t, 5> kActive = {1, 2, 4, 8, 16};
 constexpr std::size_t kRowsPerTarget = 16;                  // rows of least squares
 constexpr std::size_t kMostWeights = std::size_t{1} << 27;  // all rows together, in one list
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;    // of terms; beyond it normals come from positions
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;    // limit for terms; beyond it, normals come from positions
 constexpr std::size_t kChunk = 512;
 
 Error misuse(std::string place, std::string message) {

@@ -52,7 +52,7 @@ double median(std::vector<float> values) {
 
 // The results of one scheme on one block, or on all blocks of a segment so far.
 struct Tally : SchemeTally {
-  std::vector<Quality> samples;                // of a block, if samples are kept
+  std::vector<Quality> samples;                // errors of a block, if samples are kept
   std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
 
   void add(const Tally& other) {
@@ -197,7 +197,7 @@ class Elements {
   std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // by segment, for groups
   std::vector<std::uint32_t> large_;                             // faces of more than many_corners_, for groups
   std::map<std::size_t, SharedFaces> shared_;                    // by segment, for groups
-  std::map<std::size_t, std::vector<ReferenceArea>> of_large_;   // of large_ at each sample, by segment
+  std::map<std::size_t, std::vector<ReferenceArea>> of_large_;   // areas of large_ at each sample, by segment
   double shared_ns_ = 0;
 };
 

@@ -33,7 +33,7 @@ struct FaceFigureOptions {
 /// The figures of one scheme; S = samples.
 struct SchemeFigure {
   std::string scheme;
-  double sum = 0;               ///< of the angles, radians: q of the paper
+  double sum = 0;               ///< sum of the angles in radians: q of the paper
   std::vector<Vec3d> normals;   ///< (S) unit vectors, or zero
   std::vector<double> angles;   ///< (S) radians; NaN if the exact normal or this normal is zero
   std::vector<double> lengths;  ///< (S) before normalization; empty if the length is always one

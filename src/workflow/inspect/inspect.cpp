@@ -98,7 +98,7 @@ struct Box {
 
 // The vertices of one block of a segment, or of all of its blocks so far.
 struct VertexTally {
-  Box from, to;  // of the keyframes judged in this segment
+  Box from, to;  // boxes of the keyframes judged in this segment
   Largest motion;
   std::size_t moved = 0;
 
@@ -125,7 +125,7 @@ void keep_larger(Largest& largest, const Largest& other) {
 
 // The findings in one block of faces of a segment, or in all of its blocks so far.
 struct SegmentTally {
-  KeyframeTally from, to;  // of the keyframes judged in this segment
+  KeyframeTally from, to;  // results of the keyframes judged in this segment
   FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
   Largest turn;
   CurveCount curves;

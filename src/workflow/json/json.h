@@ -42,7 +42,7 @@ struct NamedComparison {
 
 struct NamedBlendComparison {
   std::string name;
-  std::string animation;  ///< as requested; empty for random weights
+  std::string animation;  ///< the requested animation; empty for random weights
   BlendComparison comparison;
 };
 

@@ -17,7 +17,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kMostTriangles = 512;  // of a meshlet; the limit of meshoptimizer
+constexpr std::size_t kMostTriangles = 512;  // meshoptimizer's limit for a meshlet
 constexpr float kConeWeight = 0.5F;          // meshlets whose faces point in similar directions are culled more often
 
 // Returns the half angle in degrees, rounded up.

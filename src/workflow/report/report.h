@@ -35,7 +35,7 @@
 
 namespace chronormal::inline internal {
 
-inline constexpr std::size_t kMostReportBytes = 30000000;  ///< of a page with its template
+inline constexpr std::size_t kMostReportBytes = 30000000;  ///< size limit of a page with its template
 inline constexpr std::size_t kMostWorstPlaces = 20;
 inline constexpr double kLeastPlace = 0.001;  ///< degrees; a place with a smaller error is not a worst place
 /// Least distance between worst places, as a share of the mesh's diagonal.
@@ -72,7 +72,7 @@ struct Report {
   Audit audit;        ///< for a glTF file, with all viewers
   std::optional<GltfBake> plan;
   std::string plan_message;                   ///< why a requested plan is missing
-  std::optional<NamedComparison> comparison;  ///< of schemes, on vertices, unless the input is glTF
+  std::optional<NamedComparison> comparison;  ///< errors of schemes, on vertices, unless the input is glTF
   std::vector<ReportPart> parts;
   std::vector<ReportPlace> worst;    ///< worst first
   std::vector<std::string> thinned;  ///< descriptions of the data that was left out, one sentence each

@@ -64,12 +64,12 @@ struct ModelTruth {
     std::vector<float> values;  ///< (n, 2)
   };
 
-  std::vector<std::uint32_t> first, corners;  ///< of polygons; empty if triangles are added up
+  std::vector<std::uint32_t> first, corners;  ///< corners of polygons; empty if triangles are added up
   /// (n, 2) corners of polygons, ascending, and the elements that add them up; empty if each corner counts for its
   /// vertex.
   std::vector<std::uint32_t> terms;
   std::vector<ModelOffset> offsets;
-  std::vector<Changes> changes;  ///< of each target; empty without offsets
+  std::vector<Changes> changes;  ///< changes of each target; empty without offsets
 
   [[nodiscard]] bool is_plain() const noexcept { return first.empty() && offsets.empty(); }
 };

@@ -18,7 +18,7 @@ namespace chronormal::inline internal {
 /// The motions of one mesh.
 struct WatchedPart {
   std::vector<ModelMotion> motions;
-  std::vector<ModelPeak> peaks;  ///< of vertices, if any were judged
+  std::vector<ModelPeak> peaks;  ///< peaks of vertices, if any were judged
 };
 
 class WatchedMotions {

@@ -173,9 +173,9 @@ class ArrayFile {
   std::unique_ptr<OutputFile> file_;  // on the heap, so that the address that npz_ keeps stays valid
   std::optional<NpzOutput> npz_;
   std::size_t normals_ = 0, positions_ = 0;  // indices of arrays in npz_
-  Origin origin_ = {};                       // of the positions
+  Origin origin_ = {};                       // origin of the positions
   std::optional<std::uint64_t> at_;          // next row's place in the .npy file of all peers
-  std::uint32_t checksum_ = 0;               // of a .npy file without peers
+  std::uint32_t checksum_ = 0;               // checksum of a .npy file without peers
   std::string storage_;
 };
 

@@ -297,8 +297,8 @@ void number_by_corners(const Topology& topology, Points& points) {
 
 // The polygons that are back to back: single triangles, or two consecutive triangles that were cut from a quad.
 struct Backs {
-  std::vector<std::uint32_t> polygon;  // of each triangle, named by its first triangle
-  std::vector<std::uint32_t> back;     // of each triangle: the polygon behind its own, or kNoFace
+  std::vector<std::uint32_t> polygon;  // the polygon of each triangle, named by its first triangle
+  std::vector<std::uint32_t> back;     // for each triangle, the polygon behind its own, or kNoFace
 
   [[nodiscard]] bool are_apart(std::uint32_t a, std::uint32_t b) const {
     return back[a] != kNoFace && back[a] == polygon[b];

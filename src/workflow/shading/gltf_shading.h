@@ -62,7 +62,7 @@ struct GltfShading {
   std::vector<std::vector<float>> normal_deltas;
   std::vector<bool> turns;      ///< per target: any of its normal deltas is not zero, even if they are not kept
   std::vector<float> tangents;  ///< (V, 4), or empty if no primitive has tangents
-  std::vector<std::vector<float>> tangent_deltas;  ///< as normal_deltas
+  std::vector<std::vector<float>> tangent_deltas;  ///< has the form of normal_deltas
   std::optional<GltfBakeMark> mark;
   /// The number of correction targets of an earlier bake that lost their deltas because another program made new
   /// normals; `mark` is empty then.

@@ -296,7 +296,7 @@ class Mending {
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<StoredKey> keys_;
-  std::vector<char> whole_;  // of each element
+  std::vector<char> whole_;  // for each element, whether it adds up its whole point
   std::vector<double> off_;
   std::vector<std::uint32_t> point_offsets_, corners_at_;
   std::size_t budget_ = 400000;  // elements that may still be tried; bounds the cost of normals that no polygon mends
@@ -552,7 +552,7 @@ class Candidates {
   std::vector<std::size_t> sums_of_kind_;  // whole points are the same as own corners if no point has several elements
   std::optional<Sides> sides_;
   std::vector<std::optional<std::size_t>> asked_keys_;
-  std::vector<std::vector<std::uint32_t>> followers_;  // of each key: the elements that must all follow a rule
+  std::vector<std::vector<std::uint32_t>> followers_;  // for each key, the elements that must all follow a rule
   Distances of_base_, keys_;
   bool is_of_quads_ = false;
   double distance_ = 0, spread_ = 0;

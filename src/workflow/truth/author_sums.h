@@ -79,7 +79,8 @@ class Polygons {
 
   const Topology* triangles_;
   // All four lists are empty until triangles are joined.
-  std::vector<std::uint32_t> first_, count_;  // of each triangle: its polygon; of a polygon: its triangles
+  std::vector<std::uint32_t> first_,
+      count_;  // first triangle of each triangle's polygon; number of triangles of a polygon
   // The place of a larger polygon's corners in loops_, by its first triangle.
   std::vector<std::uint32_t> loop_of_;
   std::vector<std::uint32_t> loops_;  // a larger polygon has two corners more than triangles
@@ -191,7 +192,7 @@ class AuthorSums {
 
   Weighting weighting_ = Weighting::kArea;
   std::vector<std::uint32_t> loop_offsets_ = {0}, loops_;  // vertices of polygons
-  std::vector<std::uint32_t> offsets_ = {0};               // of elements in sums_
+  std::vector<std::uint32_t> offsets_ = {0};               // ranges of elements in sums_
   std::vector<Corner> sums_;
 };
 

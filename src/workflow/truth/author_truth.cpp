@@ -205,11 +205,11 @@ class AuthorTruth::Finder {
   std::vector<std::uint32_t> vertex_of_;
   double tolerance_;
   StoredKey base_;
-  std::vector<Vec3d> z0_;  // of each element, on the author's side
+  std::vector<Vec3d> z0_;  // sum of each element, on the author's side
   std::vector<double> side_;
   std::vector<char> off_;
   StaleKeys stale_;
-  std::vector<std::uint32_t> element_of_;  // of each frame
+  std::vector<std::uint32_t> element_of_;  // element of each frame
   std::vector<PlaneOffset> base_offsets_;  // by each edge
   std::vector<double> differences_;        // between offsets by each edge and the base's; -1 if the edge cannot be used
 };

@@ -65,8 +65,8 @@ class AuthorTruth {
   [[nodiscard]] const AuthorRule& rule() const noexcept { return rule_; }
   /// Returns the sums, which are empty if the truth is plain.
   [[nodiscard]] const AuthorSums& sums() const noexcept { return sums_; }
-  /// Returns whether the truth is n(w), by area, with the offset of the base turned along unchanged, so that it can be
-  /// exact.
+  /// Returns whether the truth is n(w), by area, with the offset of the base unchanged, so that the
+  /// truth can be exact.
   [[nodiscard]] bool is_plain() const noexcept { return rule_.is_plain() && frames_.empty(); }
   /// Returns true if the stored normals of targets influence the truth, so that it differs from area weighting. A bake
   /// that keeps the truth records this in its mark.
@@ -144,7 +144,7 @@ class AuthorTruth {
   std::vector<OffsetEdge> edges_;
   std::vector<Frame> frames_;
   std::vector<std::uint32_t> frame_of_element_;  // empty if no element has an offset
-  std::vector<std::vector<Change>> changes_;     // of each target, by frames
+  std::vector<std::vector<Change>> changes_;     // changes of each target, by frames
   std::vector<StaleKey> stale_;
   bool any_split_ = false;
 };

@@ -156,7 +156,7 @@ bool split_by_keys(GltfShading& shading) {
   std::vector<std::uint32_t> classes(shading.groups.element_of_output().begin(),
                                      shading.groups.element_of_output().end());
   std::size_t count = shading.groups.size();
-  std::vector<std::uint32_t> first_of = vertex_of;  // of each class, the vertex that others are compared with
+  std::vector<std::uint32_t> first_of = vertex_of;  // for each class, the vertex that others are compared with
   for (const std::size_t k : targets) {
     const StoredKey key(shading, k);
     // Lists, for each class that this key splits, the first vertex of each new class.

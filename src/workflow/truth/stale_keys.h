@@ -47,8 +47,8 @@ class StaleKeys {
 
  private:
   std::vector<std::uint32_t> part_of_vertex_;
-  std::vector<std::vector<bool>> stale_;  // of each target: whether each part is stale; empty if none is
-  std::vector<bool> is_all_stale_;        // of each target
+  std::vector<std::vector<bool>> stale_;  // for each target, whether each part is stale; empty if no part is
+  std::vector<bool> is_all_stale_;        // for each target
   std::vector<StaleKey> list_;
 };
 

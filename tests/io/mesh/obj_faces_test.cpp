@@ -48,8 +48,8 @@ TEST(ObjFaces, vertices_among_them_are_those_of_the_first_file) {
 TEST(ObjFaces, whatever_takes_more_than_a_look_is_left_to_the_reader) {
   const std::string first = vertices(0) + kFaces;
   for (const std::string& bytes : {
-           vertices(7) + "f 1 2 3\n" + kFaces,          // one face more
-           vertices(7) + "v 0 0 0\n" + kFaces,          // one vertex more
+           vertices(7) + "f 1 2 3\n" + kFaces,          // has one face more
+           vertices(7) + "v 0 0 0\n" + kFaces,          // has one vertex more
            vertices(7) + "v 0 0 nan\n" + kFaces,        // NaN is not a number
            vertices(7) + "v 0 0 0 1\n" + kFaces,        // a fourth number
            vertices(7) + "o name \\\n" + kFaces,        // a line that is continued in the next

@@ -200,7 +200,7 @@ TEST(BlendTerms, sets_without_faces_vertices_or_targets_have_none) {
 }
 
 // Lists keep the contribution of every face. For meshes of more than 100,000 faces, terms that are requested one by one
-// compute the contributions anew.
+// compute the contributions again.
 TEST(BlendTerms, have_the_same_bits_in_lists_and_element_by_element_on_large_meshes) {
   const Motion motion = fixtures::smooth_morph(230);  // 105,800 faces
   const std::size_t count = motion.topology.vertex_count();

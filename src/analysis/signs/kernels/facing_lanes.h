@@ -41,14 +41,14 @@ void facing_of_eye(const ControlNormals* normals, std::size_t count, const Facin
 
 /// Polynomials in Bernstein form, and brackets of their roots.
 struct alignas(64) SingleRoots {
-  double p[4][kFacingBlock];   ///< the coefficients of each: three, or four
+  double p[4][kFacingBlock];   ///< the coefficients of each polynomial: three, or four
   double error[kFacingBlock];  ///< the error of each coefficient, without the rounding of later operations
   double lower[kFacingBlock], upper[kFacingBlock];
   int before[kFacingBlock];  ///< the sign before the only root; 0 if the lane could not find all roots
 };
 
-/// Finds the only root of each polynomial that certainly has just one, as CertainRoots does; it leaves the others to
-/// CertainRoots.
+/// Finds the only root of each polynomial that certainly has just one root, as CertainRoots does. The other polynomials
+/// are left to CertainRoots.
 void find_single_roots(std::size_t degree, std::size_t count, SingleRoots& roots) noexcept;
 
 }  // namespace chronormal::inline internal

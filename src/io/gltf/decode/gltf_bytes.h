@@ -97,7 +97,7 @@ class Bytes {
   std::map<std::size_t, FileBytes> files_;                           // by buffer
   std::map<std::size_t, std::string> embedded_;                      // by buffer: decoded data URIs
   std::map<std::size_t, std::shared_ptr<const std::string>> views_;  // by view: decompressed
-  std::size_t kept_bytes_ = 0;                                       // in views_
+  std::size_t kept_bytes_ = 0;                                       // size of all views_
   std::optional<Expansion> expansion_;                               // set at the first call of expansion()
 };
 

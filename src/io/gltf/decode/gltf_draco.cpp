@@ -116,7 +116,7 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
       else
         reason = decoded.status().error_msg_string();
     }
-  } catch (const std::exception& exception) {  // it trusted lengths of the file
+  } catch (const std::exception& exception) {  // the decoder trusted lengths in the file
     reason = exception.what();
   }
   if (!mesh) return invalid_input(place, std::string("the compressed mesh is broken: ").append(reason));

@@ -92,9 +92,9 @@ class EditLayout {
   JsonText json_;
   std::optional<std::vector<std::string_view>> bin_;
   std::size_t bin_size_ = 0;
-  UnusedArrays unused_;                   // after leave_out_unused()
-  std::vector<JsonMember> first_buffer_;  // after move_buffers(): the members of the former buffer 0
-  std::string other_buffers_;             // after move_buffers(): text of the other buffers, each after a comma
+  UnusedArrays unused_;                   // filled by leave_out_unused()
+  std::vector<JsonMember> first_buffer_;  // filled by move_buffers(): members of the former buffer 0
+  std::string other_buffers_;             // filled by move_buffers(): text of the other buffers, each after a comma
   std::vector<Image> images_;
   std::deque<FileBytes> files_;
   std::vector<std::string> warnings_;

@@ -113,7 +113,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
   };
   const Floats shortest = hn::Min(hn::Min(along0, along_m), along1);
   const Floats shortest_square = hn::Mul(shortest, shortest);
-  const auto at_least = [&](Floats factor, Floats square) HWY_ATTR {  // of |n(t)|^2
+  const auto at_least = [&](Floats factor, Floats square) HWY_ATTR {  // tests |n(t)|^2
     return hn::Ge(hn::Mul(factor, shortest_square), hn::Mul(square, axis_square));
   };
   const Floats one = hn::Set(kFloats, 1.0f);
