@@ -70,9 +70,9 @@ def main():
     module = (package / "src/program.wasm").read_bytes()
     node = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout.strip()
     lines = [
-        f"The module is {len(module) / 1e6:.2f} MB, {len(gzip.compress(module, 9)) / 1e6:.2f} MB when gzipped; the package, with its",
-        f"picture, {tarball.stat().st_size / 1e6:.2f} MB. Seconds are those of all processors together, start included, by Node.js {node}; MB are",
-        "the most that was used.",
+        f"The module is {len(module) / 1e6:.2f} MB, {len(gzip.compress(module, 9)) / 1e6:.2f} MB when gzipped. The package, with its",
+        f"picture, is {tarball.stat().st_size / 1e6:.2f} MB. Seconds are processor time on all cores, start included, with Node.js {node}. MB are",
+        "the largest amount of memory in use.",
         "",
         "| what | program: seconds | package: seconds | times | program: MB | package: MB |",
         "|---|---|---|---|---|---|",
