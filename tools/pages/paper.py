@@ -238,7 +238,7 @@ def measure_drift(page):
     arcs = [[found["twist", s, 10000, a][1] for s in PLAYED[4:]] for a in (0, 64)]
     page.requires(max(worst.values()) < 5e-6, "anchored drift stays below 5e-6 rad, as schemes/scheme.h says")
     page.says(f"by more than {scientific(max(worst.values()), 1)} radians", f"from {scientific(min(free))} to {scientific(max(free))} radians",
-              f"by up to {scientific(max(arcs[0]))} after 10,000 steps, and by {scientific(max(arcs[1]))} where")
+              f"by up to {scientific(max(arcs[0]))} after 10,000 steps, and by {scientific(max(arcs[1]))} if")
 
 
 # Section 4 of docs/paper.md.
