@@ -41,7 +41,7 @@ inline bool is_index_or_none(const auto& index, std::size_t count) { return !ind
 
 inline void check_structure(const GltfDocument& document, GltfReading& reading) {
   for (const GltfMesh& mesh : document.meshes()) {
-    reading.require(!mesh.primitives.empty(), "a mesh has primitives");
+    reading.require(!mesh.primitives.empty(), "the mesh has no primitives");
     reading.require(mesh.weights.size() == mesh.target_count && all_finite(mesh.weights), "a target has one weight");
     reading.require(mesh.target_names.empty() || mesh.target_names.size() == mesh.target_count, "all names or none");
     for (const GltfPrimitive& primitive : mesh.primitives) {

@@ -44,8 +44,8 @@ void append(std::string& text, T value, std::endian order) {
 
 /// Says what is wrong with a coordinate that is to be a float32; nullptr where it is fine.
 [[nodiscard]] inline const char* coordinate_fault(double value) noexcept {
-  if (!std::isfinite(value)) return "the coordinate is not a finite number";
-  if (std::fabs(value) > std::numeric_limits<float>::max()) return "the coordinate is too large";
+  if (!std::isfinite(value)) return "the coordinate is NaN or infinite";
+  if (std::fabs(value) > std::numeric_limits<float>::max()) return "the coordinate is too large for float32";
   return nullptr;
 }
 

@@ -27,9 +27,9 @@ std::uint64_t Expansion::most() const noexcept {
 Status Expansion::check(std::uint64_t bytes, const std::string& place) const {
   if (bytes <= most()) return Success{};
   const std::uint64_t times = read_ == 0 ? bytes : bytes / read_ + (bytes % read_ == 0 ? 0 : 1);
-  return invalid_input(place, grouped(read_) + " bytes that were read ask for " + grouped(bytes) +
-                                  " of memory or output, and may have " + grouped(most()) + "; --max-expansion " +
-                                  std::to_string(times) + " allows it");
+  return invalid_input(place, "an input of " + grouped(read_) + " bytes would need " + grouped(bytes) +
+                                  " bytes of memory or output, but the limit is " + grouped(most()) +
+                                  "; if you trust the file, add --max-expansion " + std::to_string(times));
 }
 
 }  // namespace chronormal::inline internal

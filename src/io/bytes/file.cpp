@@ -71,8 +71,8 @@ Status check_holes(int descriptor, std::uint64_t size, const std::string& place)
   if (size <= kLarge) return Success{};
   const std::uint64_t enough = size / Expansion::kUsual, written = written_bytes(descriptor, size, enough);
   if (written >= enough) return Success{};
-  return invalid_input(place, "of its " + std::to_string(size) + " bytes only " + std::to_string(written) +
-                                  " were ever written: the rest are holes, and no data");
+  return invalid_input(place, "the file is almost empty, since only " + std::to_string(written) + " of its " +
+                                  std::to_string(size) + " bytes were ever written; copy or download the file again");
 }
 
 // Returns true for devices that reading may never end on, such as /dev/zero. Terminals are not among them: a key ends
@@ -92,9 +92,9 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
 
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) return failure(place, errno);
-  if (S_ISDIR(status.st_mode)) return Error{ErrorCode::kFailed, place, "this is a folder, not a file"};
+  if (S_ISDIR(status.st_mode)) return Error{ErrorCode::kFailed, place, "this is a folder; name a file"};
   if (may_have_no_end(descriptor, status))
-    return Error{ErrorCode::kFailed, place, "this is a device, not a file, and may have no end"};
+    return Error{ErrorCode::kFailed, place, "this is a device, whose data may never end; name a file"};
 
   FileBytes file;
   // Files of the kernel have no size. Most have an end, but /proc/kmsg waits for more.
@@ -113,13 +113,14 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
   const bool has_no_size = !is_stdin && S_ISREG(status.st_mode) && status.st_size == 0;
   if (!read_all(descriptor, has_no_size ? OnWait::kFail : OnWait::kWait, most_of_stream, file.owned_)) {
     if (has_no_size && errno == EAGAIN)
-      return Error{ErrorCode::kFailed, place, "this file has no size, and waits for more to read: it may have no end"};
+      return Error{ErrorCode::kFailed, place,
+                   "this is a file of the system whose data may never end; name another file"};
     return failure(place, errno);
   }
   if (file.owned_.size() > most_of_stream)
     return Error{ErrorCode::kFailed, place,
-                 "there is no end within " + std::to_string(most_of_stream) +
-                     " bytes, and no more are read of a stream: write them to a file, and give that"};
+                 "the stream is longer than " + std::to_string(most_of_stream) +
+                     " bytes; save its data to a file, and name that file"};
   return file;
 }
 

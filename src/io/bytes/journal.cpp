@@ -37,13 +37,15 @@ Result<Journal> Journal::open(const std::string& path, std::string_view run) {
   Journal journal(path, Descriptor(open_descriptor(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK)));
   const int file = journal.file_.number();
   if (file < 0 || ::fstat(file, &status) != 0) return failure(path, errno);
-  const Error foreign{ErrorCode::kFailed, path,
-                      "this is no journal of an interrupted run: remove it, or write to another output"};
+  const Error foreign{
+      ErrorCode::kFailed, path,
+      "this file is in the way of the journal, but is not one; remove the file, or choose another output"};
   if (!S_ISREG(status.st_mode)) return foreign;
   // If the file system has no locks, two runs that write the same output are not noticed.
   const bool is_taken = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   if (is_taken || ::fstat(file, &status) != 0 || status.st_nlink == 0)
-    return Error{ErrorCode::kFailed, path, "another run is writing this output now"};
+    return Error{ErrorCode::kFailed, path,
+                 "another run is writing to the same output; wait until that run has ended, or choose another output"};
   const Result<FileBytes> bytes = FileBytes::open(path);
   if (!bytes) return bytes.error();
   if (!journal.read(bytes.value().bytes())) return foreign;

@@ -21,7 +21,7 @@ constexpr std::array kKnownKinds = std::to_array<KnownKind>({
     {"\xFF\xD8\xFF"sv, "a JPEG image"},
     {"GIF8"sv, "a GIF image"},
     {"RIFF????WEBP"sv, "a WebP image"},
-    {"RIFF"sv, "a RIFF file (sound or film)"},
+    {"RIFF"sv, "a RIFF file (sound or video)"},
     {"II*\0"sv, "a TIFF image"},
     {"MM\0*"sv, "a TIFF image"},
     {"#?RADIANCE"sv, "an HDR image"},
@@ -29,7 +29,7 @@ constexpr std::array kKnownKinds = std::to_array<KnownKind>({
     {"DDS "sv, "a DDS texture"},
     {"\xABKTX "sv, "a KTX texture"},
     {"8BPS"sv, "a Photoshop image"},
-    {"????ftyp"sv, "a film or an image of the MPEG-4 family"},
+    {"????ftyp"sv, "a video or an image of the MPEG-4 family"},
     {"%PDF-"sv, "a PDF document"},
     {"PK\3\4"sv, "a ZIP archive", " npz "},
     {"PK\5\6"sv, "an empty ZIP archive", " npz "},
@@ -43,13 +43,13 @@ constexpr std::array kKnownKinds = std::to_array<KnownKind>({
     {"Rar!\x1A\x07"sv, "a RAR archive"},
     {"Kaydara FBX Binary"sv, "an FBX file"},
     {"; FBX "sv, "an FBX file"},
-    {"BLENDER"sv, "a file of Blender"},
+    {"BLENDER"sv, "a Blender file"},
     {"PXR-USDC"sv, "a USD file"},
     {"#usda "sv, "a USD file"},
     {"Ogawa"sv, "an Alembic file"},
     {"\x89HDF\r\n\x1A\n"sv, "an HDF5 file (older Alembic, among others)"},
-    {"# vtk DataFile"sv, "a file of VTK"},
-    {"<VTKFile"sv, "a file of VTK"},
+    {"# vtk DataFile"sv, "a VTK file"},
+    {"<VTKFile"sv, "a VTK file"},
     {"solid "sv, "an STL file"},
     {"\x7F"
      "ELF"sv,
@@ -57,7 +57,7 @@ constexpr std::array kKnownKinds = std::to_array<KnownKind>({
     {"MZ\x90\0"sv, "a program for Windows"},
     {"\0asm"sv, "a WebAssembly module"},
     {"SQLite format 3\0"sv, "an SQLite database"},
-    {"version https://git-lfs"sv, "a pointer of Git LFS, which stands for a file that was not fetched"},
+    {"version https://git-lfs"sv, "a placeholder of Git LFS (fetch the file with git lfs pull)"},
     {"\xFF\xFE"sv, "text in UTF-16"},
     {"\xFE\xFF"sv, "text in UTF-16"},
     {"<!doctype html"sv, "an HTML page"},
@@ -114,7 +114,7 @@ const KnownKind* find_kind(std::string_view bytes) noexcept {
 // Returns the title of a format: "glTF" for "gltf", "OBJ" for "obj".
 std::string title_of(std::string_view format) {
   if (format == "gltf") return "glTF";
-  if (format == "target") return "a target of MakeHuman";
+  if (format == "target") return "a MakeHuman target";
   if (format == "maya") return "a Maya cache";
   std::string title(format);
   for (char& c : title) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;

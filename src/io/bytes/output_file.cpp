@@ -74,7 +74,7 @@ void flush_folder_of(const std::string& path) {
 }
 
 Error exists_already(const std::string& path) {
-  return Error{ErrorCode::kFailed, path, "the file exists already; pass --force to overwrite it"};
+  return Error{ErrorCode::kFailed, path, "the file exists already; add --force to overwrite it"};
 }
 
 }  // namespace
@@ -143,8 +143,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
 }
 
 Result<OutputFile> OutputFile::go_on(const std::string& path, bool force, std::uint64_t kept) {
-  if (is_stream(path))
-    return Error{ErrorCode::kUsage, path, "this is no file, and only a file can be continued by a later run"};
+  if (is_stream(path)) return Error{ErrorCode::kUsage, path, "a later run cannot go on with a stream; name a file"};
   if (Status status = check_output(path, force); !status) return status.error();
   auto state = std::make_unique<State>();
   state->path = path;
@@ -173,7 +172,7 @@ Result<OutputFile> OutputFile::join(const std::string& path, const std::string& 
   state->file = TemporaryFile::of_peer(name);
   if (state->file->is_open()) return OutputFile(std::move(state));
   Error error = failure(path, errno);
-  error.message = "can not open what the first process has begun to write: " + error.message;
+  error.message = "the output that the first process has begun cannot be opened: " + error.message;
   return error;
 }
 
@@ -230,11 +229,11 @@ Status OutputFile::finish() {
 }  // namespace internal
 
 Status check_output(const std::string& path, bool force) {
-  if (path.empty()) return Error{ErrorCode::kUsage, "", "the name of the output is empty"};
+  if (path.empty()) return Error{ErrorCode::kUsage, "", "the name of the output is empty; name a file"};
   if (stream_descriptor(path)) return Success{};
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return Success{};
-  if (S_ISDIR(status.st_mode)) return Error{ErrorCode::kFailed, path, "this is a folder, not a file"};
+  if (S_ISDIR(status.st_mode)) return Error{ErrorCode::kFailed, path, "this is a folder; name a file"};
   if (S_ISREG(status.st_mode) && !force) return exists_already(path);
   return Success{};
 }

@@ -29,8 +29,8 @@ Status PositionedFile::read(std::uint64_t at, std::span<char> bytes) const {
   const std::uint64_t end =
       is_known ? static_cast<std::uint64_t>(status.st_size) : at + (bytes.size() - missing->size());
   return Error{ErrorCode::kFailed, path_,
-               "the file ends at byte " + std::to_string(end) + ", but had " + std::to_string(size_) +
-                   " bytes when it was opened: it was cut while it was read"};
+               "another program has shortened the file from " + std::to_string(size_) + " to " + std::to_string(end) +
+                   " bytes while it was read; run the command again"};
 }
 
 }  // namespace chronormal::inline internal

@@ -51,7 +51,8 @@ Status check_text(std::string_view bytes, const std::string& name) {
     const std::string_view page = bytes.substr(at, kPage);
     const std::size_t zeros = std::min(page.find_first_not_of('\0'), page.size());
     if (zeros == kPage)
-      return invalid_input(binary::place(name, at), "this is no text: from here on there are thousands of zero bytes");
+      return invalid_input(binary::place(name, at),
+                           "this is not a text file, or it is damaged: thousands of zero bytes begin here");
     at += zeros;
   }
   return Success{};
@@ -160,9 +161,9 @@ std::string describe(NumberFault fault, std::string_view word) {
   if (word.empty()) return "a number is missing";
   switch (fault) {
     case NumberFault::kNotFinite:
-      return quoted(word) + " is not a finite number";
+      return quoted(word) + " is NaN or infinite";
     case NumberFault::kTooLarge:
-      return quoted(word) + " is too large";
+      return quoted(word) + " is too large for float32";
     case NumberFault::kNotANumber:
     case NumberFault::kNone:
       break;

@@ -74,7 +74,7 @@ std::unique_ptr<TemporaryFile> TemporaryFile::of_peer(const std::string& name) {
 
 Error TemporaryFile::not_opened(const std::string& place) {
   Error error = failure(place, errno);
-  error.message = "can not write in its folder: " + error.message;
+  error.message = "the folder of the output cannot be written to: " + error.message;
   return error;
 }
 

@@ -25,20 +25,20 @@ class DescriptionReader {
 
   Result<MayaCacheDescription> read(std::string_view bytes) {
     constexpr std::size_t kLargest = std::size_t{1} << 24;
-    if (bytes.size() > kLargest) return error(kLargest, "a description has no more than 16 MiB");
+    if (bytes.size() > kLargest) return error(kLargest, "the description of the Maya cache is larger than 16 MiB");
     const pugi::xml_parse_result parsed = document_.load_buffer(bytes.data(), bytes.size());
     const pugi::xml_node root = document_.child("Autodesk_Cache_File");
     if (!parsed || !root)
       return error(parsed ? 0 : static_cast<std::size_t>(parsed.offset),
-                   parsed ? "this is not the description of a Maya cache: there is no Autodesk_Cache_File"
-                          : "this is no XML: " + std::string(parsed.description()));
+                   parsed ? "this is not the description of a Maya cache, since it has no Autodesk_Cache_File"
+                          : "the XML is not valid: " + std::string(parsed.description()));
 
     const pugi::xml_node type = root.child("cacheType");
     if (Status status = read_type(type); !status) return status.error();
     if (const pugi::xml_node per_frame = root.child("cacheTimePerFrame")) {
       if (Status status = read_ticks(per_frame, "TimePerFrame", description_.ticks_per_frame); !status)
         return status.error();
-      if (description_.ticks_per_frame <= 0) return error(per_frame, "TimePerFrame must be above 0");
+      if (description_.ticks_per_frame <= 0) return error(per_frame, "TimePerFrame must be greater than 0");
     }
     for (const pugi::xml_node channel : root.child("Channels").children()) {
       if (channel.type() != pugi::node_element) continue;
@@ -58,9 +58,9 @@ class DescriptionReader {
   [[nodiscard]] Status read_type(const pugi::xml_node& type) {
     const std::string_view files = type.attribute("Type").value(), format = type.attribute("Format").value();
     if (files != "OneFile" && files != "OneFilePerFrame")
-      return error(type, "the Type of cacheType is " + scan::quoted(files) + "; it can be OneFile or OneFilePerFrame");
+      return error(type, "Type of cacheType is " + scan::quoted(files) + ", but must be OneFile or OneFilePerFrame");
     if (format != "mcc" && format != "mcx")
-      return error(type, "the Format of cacheType is " + scan::quoted(format) + "; it can be mcc or mcx");
+      return error(type, "Format of cacheType is " + scan::quoted(format) + ", but must be mcc or mcx");
     description_.has_file_per_frame = files == "OneFilePerFrame";
     description_.extension = format == "mcc" ? ".mc" : ".mcx";
     return Success{};
@@ -89,7 +89,9 @@ class DescriptionReader {
         if (Status status = read_ticks(node, attribute, *ticks); !status) return status;
       }
       if (channel.step <= 0 || channel.start > channel.end)
-        return error(node, "a regular channel needs a SamplingRate above 0, and a StartTime not after its EndTime");
+        return error(
+            node,
+            "a regular channel must have a SamplingRate greater than 0, and a StartTime not later than its EndTime");
     }
     description_.channels.push_back(std::move(channel));
     return Success{};
@@ -187,13 +189,14 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
   std::vector<std::string> files = {stem + described.extension};
   if (described.has_file_per_frame) {
     if (resolve)
-      return Error{ErrorCode::kUsage, name, "its files, one for each frame, can only be listed in a folder on disk"};
+      return Error{ErrorCode::kUsage, name,
+                   "the cache has a file for each frame, and these can only be found in a folder on disk"};
     Result<std::vector<std::string>> found = list_frame_files(path.parent_path(), stem, described.extension);
     if (!found) return found.error();
     files = std::move(found).value();
     if (files.empty())
-      return invalid_input(
-          name, "there is no file " + frame_file(stem, described.extension, 0, 1) + " (or another number) beside it");
+      return invalid_input(name, "the files of the cache are missing; they should be in the same folder, named like " +
+                                     frame_file(stem, described.extension, 0, 1));
   }
 
   PositionCache cache;
@@ -239,9 +242,9 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
   for (const MayaCacheDescription::Channel& channel : described.channels) {
     if (channel.name != choice.channel || !channel.is_regular) continue;
     if (const std::optional<std::int64_t> ticks = find_missing(channel, cache))
-      return invalid_input(name, "it declares a sample at tick " + std::to_string(*ticks) + ", which is not there" +
+      return invalid_input(name, "the sample at tick " + std::to_string(*ticks) + " is missing in the cache" +
                                      (described.has_file_per_frame
-                                          ? "; its file would be " +
+                                          ? "; that file should be " +
                                                 frame_file(stem, described.extension, *ticks, described.ticks_per_frame)
                                           : ""));
   }

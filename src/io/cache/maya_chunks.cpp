@@ -27,13 +27,13 @@ class ChunkReader {
   Result<std::vector<Points>> read() {
     is_wide_ = bytes_.starts_with("FOR8");
     if (!is_wide_ && !bytes_.starts_with("FOR4"))
-      return error(0, "this is not a Maya cache: its first word is neither FOR4 nor FOR8");
+      return error(0, "this is not a Maya cache, since it begins neither with FOR4 nor with FOR8");
     for (std::size_t at = 0; at < bytes_.size();) {
       Chunk group;
       if (Status status = read_chunk(at, bytes_.size(), group); !status) return status.error();
       if (group.tag != (is_wide_ ? "FOR8" : "FOR4"))
-        return error(at, scan::quoted(group.tag) + " stands where a group must begin");
-      if (group.end - group.begin < kTagSize) return error(at, "the group has no name");
+        return error(at, "the cache is damaged, since " + scan::quoted(group.tag) + " is where a group must begin");
+      if (group.end - group.begin < kTagSize) return error(at, "the cache is damaged, since this group has no name");
       if (Status status = read_group(bytes_.substr(group.begin, kTagSize), group); !status) return status.error();
       at = group.end;  // groups are not padded
     }
@@ -49,14 +49,15 @@ class ChunkReader {
 
   [[nodiscard]] Status read_chunk(std::size_t at, std::size_t end, Chunk& chunk) const {
     const std::size_t header = is_wide_ ? 16 : 8, alignment = is_wide_ ? 8 : 4;
-    if (end - at < header) return error(at, "the file or group ends inside the header of a chunk");
+    if (end - at < header) return error(at, "the cache is damaged or cut off inside the header of a chunk");
     chunk.tag = bytes_.substr(at, kTagSize);
     chunk.begin = at + header;
     const std::uint64_t size = is_wide_ ? binary::load<std::uint64_t>(bytes_.data() + at + 8, kMayaOrder)
                                         : binary::load<std::uint32_t>(bytes_.data() + at + 4, kMayaOrder);
     if (size > end - chunk.begin)
-      return error(at, "the chunk " + scan::quoted(chunk.tag) + " declares " + std::to_string(size) +
-                           " bytes, but the file or group has only " + std::to_string(end - chunk.begin) + " more");
+      return error(at, "the chunk " + scan::quoted(chunk.tag) + " should have " + std::to_string(size) +
+                           " bytes, but only " + std::to_string(end - chunk.begin) +
+                           " are left; the cache is damaged or cut off");
     chunk.end = chunk.begin + static_cast<std::size_t>(size);
     const auto filled = static_cast<std::size_t>((alignment - size % alignment) % alignment);
     chunk.next = chunk.end + std::min(filled, end - chunk.end);
@@ -96,14 +97,15 @@ class ChunkReader {
         count = number;
         has_count = true;
       } else if (chunk.tag == "FVCA" || chunk.tag == "DVCA") {
-        if (!channel || !has_count) return error(at, "points must follow the name and the size of their channel");
-        if (!time) return error(at, "the points have no time: neither TIME nor STIM stands before them");
+        if (!channel || !has_count)
+          return error(at, "the cache is damaged, since these points have no channel name (CHNM) or no size (SIZE)");
+        if (!time) return error(at, "the points have no time, since neither TIME nor STIM comes before them");
         const bool is_double = chunk.tag == "DVCA";
         const std::uint64_t point_size = is_double ? 24 : 12;
         if (count < 0 || content.size() % point_size != 0 ||
             content.size() / point_size != static_cast<std::uint32_t>(count))
-          return error(at, "the channel " + scan::quoted(*channel) + " declares " + std::to_string(count) +
-                               " points, but has " + std::to_string(content.size()) + " bytes for them");
+          return error(at, "the channel " + scan::quoted(*channel) + " should have " + std::to_string(count) +
+                               " points, which do not fit its " + std::to_string(content.size()) + " bytes");
         list_.push_back({*channel, *time, static_cast<std::uint32_t>(count), is_double, chunk.begin});
         channel.reset();
         has_count = false;
@@ -145,11 +147,11 @@ Result<std::string> choose_channel(const std::vector<Points>& list, const CacheO
   const std::string place = name + ", channels";
   std::map<std::string_view, std::uint32_t> all, left;
   for (const Points& points : list) all.emplace(points.channel, points.count);
-  if (all.empty()) return invalid_input(place, "there are no points in the file");
+  if (all.empty()) return invalid_input(place, "the cache has no points");
   if (!options.channel.empty()) {
     if (all.contains(options.channel)) return options.channel;
-    return invalid_input(place,
-                         "there is no channel " + scan::quoted(options.channel) + "; there are " + names_of(all));
+    return invalid_input(
+        place, "the cache has no channel " + scan::quoted(options.channel) + "; choose one of " + names_of(all));
   }
 
   for (const auto& channel : all) {
@@ -157,7 +159,8 @@ Result<std::string> choose_channel(const std::vector<Points>& list, const CacheO
   }
   if (left.empty())
     return invalid_input(place, "no channel has the " + std::to_string(options.vertex_count) +
-                                    " points that the mesh needs; there are " + names_of(all));
+                                    " points of the mesh, only " + names_of(all) +
+                                    "; give the mesh that the cache was made for");
   if (left.size() > 1) {
     std::map<std::string_view, std::uint32_t> positions;
     for (const MayaCacheDescription::Channel& channel : described) {
@@ -167,8 +170,8 @@ Result<std::string> choose_channel(const std::vector<Points>& list, const CacheO
     if (!positions.empty()) left = std::move(positions);
   }
   if (left.size() > 1)
-    return invalid_input(place, "several channels could be meant; name one, as in cache.xml#" +
-                                    scan::quoted(left.begin()->first) + ": " + names_of(left));
+    return invalid_input(place, "several channels fit the mesh, " + names_of(left) +
+                                    "; name one of them, as in cache.xml#" + scan::quoted(left.begin()->first));
   return std::string(left.begin()->first);
 }
 

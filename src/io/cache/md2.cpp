@@ -55,15 +55,18 @@ class Md2Reader {
   }
 
   [[nodiscard]] Status read_header() {
-    if (!bytes_.starts_with("IDP2")) return error(0, "this is not an MD2 file: its first word is not IDP2");
-    if (bytes_.size() < kMd2HeaderSize) return error(bytes_.size(), "the file ends inside its header of 68 bytes");
-    if (field(4) != 8) return error(4, "version " + std::to_string(field(4)) + " of MD2 is unknown; there is only 8");
-    if (field(24) <= 0) return error(24, "the header declares " + std::to_string(field(24)) + " vertices");
+    if (!bytes_.starts_with("IDP2")) return error(0, "this is not an MD2 file, since it does not begin with IDP2");
+    if (bytes_.size() < kMd2HeaderSize)
+      return error(bytes_.size(), "the file is cut off inside its header of 68 bytes; copy or export it again");
+    if (field(4) != 8)
+      return error(4, "version " + std::to_string(field(4)) + " of MD2 cannot be read; only version 8 can");
+    if (field(24) <= 0)
+      return error(24, "the number of vertices is " + std::to_string(field(24)) + ", but must be at least 1");
     vertex_count_ = static_cast<std::size_t>(field(24));
     const std::uint64_t frame_size = kFrameHeaderSize + std::uint64_t{4} * vertex_count_;
     if (field(16) <= 0 || static_cast<std::uint64_t>(field(16)) != frame_size)
-      return error(16, "a frame of " + std::to_string(vertex_count_) + " vertices has " + std::to_string(frame_size) +
-                           " bytes, but the header declares " + std::to_string(field(16)));
+      return error(16, "the size of a frame is " + std::to_string(field(16)) + " bytes in the header, but " +
+                           std::to_string(vertex_count_) + " vertices take " + std::to_string(frame_size));
     if (Status status = read_table(32, 52, kTriangleSize, 1, "triangles", triangles_); !status) return status;
     return read_table(40, 56, static_cast<std::size_t>(frame_size), 2, "frames", frames_);
   }
@@ -72,13 +75,13 @@ class Md2Reader {
                                   std::int32_t fewest, const std::string& what, Table& table) const {
     const std::int32_t count = field(count_at), begin = field(begin_at);
     if (count < fewest)
-      return error(count_at, "the header declares " + std::to_string(count) + " " + what + "; a motion needs " +
-                                 std::to_string(fewest) + " or more");
+      return error(count_at, "the number of " + what + " is " + std::to_string(count) +
+                                 ", but a motion needs at least " + std::to_string(fewest));
     if (begin < 0 || static_cast<std::size_t>(begin) > bytes_.size() ||
         !binary::fits(static_cast<std::uint64_t>(count), record_size, bytes_.size() - static_cast<std::size_t>(begin)))
-      return error(begin_at, "the header declares " + std::to_string(count) + " " + what + " from byte " +
-                                 std::to_string(begin) + " on, but the file has only " + std::to_string(bytes_.size()) +
-                                 " bytes");
+      return error(begin_at, "the file is cut off, since it should have " + std::to_string(count) + " " + what +
+                                 " from byte " + std::to_string(begin) + " on, but has only " +
+                                 std::to_string(bytes_.size()) + " bytes");
     table = {static_cast<std::size_t>(count), static_cast<std::size_t>(begin), record_size};
     return Success{};
   }
@@ -91,8 +94,8 @@ class Md2Reader {
         const auto vertex = binary::load<std::uint16_t>(bytes_.data() + at, kMd2Order);
         if (vertex >= vertex_count_)
           return invalid_input(binary::place(name_, at) + ", triangle " + std::to_string(f),
-                               "corner " + std::to_string(c) + " names vertex " + std::to_string(vertex) +
-                                   ", but the file has " + std::to_string(vertex_count_));
+                               "corner " + std::to_string(c) + " refers to vertex " + std::to_string(vertex) +
+                                   ", but the file has only " + std::to_string(vertex_count_) + " vertices");
         corners.push_back(vertex);
       }
     }

@@ -19,20 +19,22 @@ constexpr std::endian kMddOrder = std::endian::big;
 Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                     const CacheOptions& /*options*/) {
   if (bytes.size() < kMddHeaderSize)
-    return invalid_input(binary::place(name, bytes.size()), "the file ends inside its header of 8 bytes");
+    return invalid_input(binary::place(name, bytes.size()),
+                         "the file is cut off inside its header of 8 bytes; copy or export it again");
   const point_cache::Counts counts{binary::load<std::int32_t>(bytes.data() + 4, kMddOrder),
                                    binary::load<std::int32_t>(bytes.data(), kMddOrder)};
   if (Status status = point_cache::check_counts(size, name, counts, kMddHeaderSize, sizeof(float)); !status)
     return status.error();
   const std::size_t body = kMddHeaderSize + sizeof(float) * static_cast<std::size_t>(counts.samples);
-  if (body > bytes.size()) return invalid_input(binary::place(name, bytes.size()), "the times are not here");
+  if (body > bytes.size())
+    return invalid_input(binary::place(name, bytes.size()),
+                         "the file is cut off inside the times of its samples; copy or export it again");
   CacheLayout layout = point_cache::layout_of(counts, body, kMddOrder);
   for (std::size_t k = 0; k < layout.times.size(); ++k) {
     const std::size_t at = kMddHeaderSize + sizeof(float) * k;
     layout.times[k] = double{binary::load<float>(bytes.data() + at, kMddOrder)};
     if (!std::isfinite(layout.times[k]))
-      return invalid_input(binary::place(name, at) + ", sample " + std::to_string(k),
-                           "the time is not a finite number");
+      return invalid_input(binary::place(name, at) + ", sample " + std::to_string(k), "the time is NaN or infinite");
   }
   return layout;
 }
@@ -53,8 +55,9 @@ Result<std::string> mdd_header(const Motion& motion) {
     const auto time = static_cast<float>(motion.keyframes[k].time);
     if (!(before < time) || !std::isfinite(time))
       return Error{ErrorCode::kUsage, "",
-                   "MDD holds times as float32, for which keyframe " + std::to_string(k) +
-                       " is too near to the one before or too far from 0; write .npz"};
+                   "keyframe " + std::to_string(k) +
+                       " is so close to the keyframe before, or so late, that the float32 times of MDD cannot tell "
+                       "them apart; write .npz instead"};
     binary::append(bytes, time, kMddOrder);
     before = time;
   }

@@ -98,33 +98,37 @@ bool read_type(std::string_view type, bool allow_text, Array& array) {
 Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, bool allow_text, bool more_may_follow,
                               const std::string& place) {
   const auto error = [&](std::string message) { return invalid_input(place, std::move(message)); };
-  if (!start.starts_with(kFirstWord)) return error("this is not a NumPy array: it does not begin with \\x93NUMPY");
-  if (start.size() < 12) return error("the array ends inside its header");
+  if (!start.starts_with(kFirstWord))
+    return error("this is not a NumPy array, since it does not begin with \\x93NUMPY");
+  if (start.size() < 12) return error("the array is cut off inside its header; copy or save the file again");
   const auto version = static_cast<unsigned char>(start[6]);
   if (version < 1 || version > 3 || start[7] != '\0')
     return error("version " + std::to_string(version) + "." + std::to_string(static_cast<unsigned char>(start[7])) +
-                 " of the array header is unknown; there are 1.0, 2.0 and 3.0");
+                 " of the array header cannot be read; only 1.0, 2.0 and 3.0 can");
   const std::size_t text_begin = version == 1 ? 10 : 12;
   const std::size_t text_size = version == 1 ? binary::load<std::uint16_t>(start.data() + 8, std::endian::little)
                                              : binary::load<std::uint32_t>(start.data() + 8, std::endian::little);
   if (text_size > kLongestHeader) return error("the array header is longer than 65,536 bytes");
-  if (text_size > start.size() - text_begin) return error("the array ends inside its header");
+  if (text_size > start.size() - text_begin)
+    return error("the array is cut off inside its header; copy or save the file again");
 
   Array array;
   array.data_begin = text_begin + text_size;
   bool has_type = false, has_order = false, has_shape = false;
   Python header(start.substr(text_begin, text_size));
-  const auto broken = [&] { return error("the array header does not follow the form of NumPy"); };
+  const auto broken = [&] {
+    return error("the array header is not as NumPy writes it; save the array with numpy.save or numpy.savez");
+  };
   if (!header.sign('{')) return broken();
   while (!header.sign('}')) {
     const std::optional<std::string_view> key = header.string();
     if (!key || !header.sign(':')) return broken();
     if (*key == "descr" && !has_type) {
       const std::optional<std::string_view> type = header.string();
-      if (!type) return error("the elements of the array are records; they must be numbers");
+      if (!type) return error("the array has records, but must have numbers");
       if (!read_type(*type, allow_text, array))
         return error("elements of the type " + scan::quoted(*type) +
-                     " are not supported; float32, float64 and integers of up to 64 bits are");
+                     " cannot be read; save the array as float32, float64, or integers of up to 64 bits");
       has_type = true;
     } else if (*key == "fortran_order" && !has_order) {
       const std::optional<bool> is_fortran = header.boolean();
@@ -155,7 +159,8 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
     if (fits) size *= length;
   }
   if (!fits || (size != left && !more_may_follow))
-    return error("its header says " + array.text() + ", but it has " + std::to_string(left) + " bytes of elements");
+    return error("the array should be " + array.text() + ", but has " + std::to_string(left) +
+                 " bytes; copy or save the file again");
   return array;
 }
 
@@ -218,12 +223,12 @@ Result<std::string> read_text(std::string_view bytes, const std::string& place) 
   const Array& found = array.value();
   const std::size_t step = found.kind == Kind::kText ? 4 : 1;
   if ((found.kind != Kind::kText && found.kind != Kind::kBytes) || found.element_count() != 1)
-    return invalid_input(place, "this must be one text, but it is " + found.text());
+    return invalid_input(place, "the array must be a single text, but is " + found.text());
   std::string text;
   for (std::size_t at = found.data_begin; at < bytes.size(); at += step) {
     const std::uint32_t c =
         step == 4 ? binary::load<std::uint32_t>(bytes.data() + at, found.order) : static_cast<unsigned char>(bytes[at]);
-    if (c > 127) return invalid_input(place, "the text is not ASCII");
+    if (c > 127) return invalid_input(place, "the text must be ASCII");
     text += static_cast<char>(c);
   }
   while (text.ends_with('\0')) text.pop_back();  // NumPy fills up with zeros

@@ -37,8 +37,8 @@ std::string element_place(const std::string& place, std::initializer_list<std::s
 Status check_positions(const Array& array, const std::string& place, const std::string& what) {
   if (array.kind == Kind::kFloat && array.shape.size() == 3 && array.shape[2] == 3 && array.element_count() > 0)
     return Success{};
-  return invalid_input(place,
-                       what + " must be (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
+  return invalid_input(
+      place, what + " must be an array (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
 }
 
 // Returns the layout of positions in C order, in a file that has the array from byte `begin` on.
@@ -113,9 +113,8 @@ Result<PositionCache> read_positions(const Array& array, const std::string& name
 
 // VTK and PyVista store the number of corners before the corners of each face.
 constexpr const char* kPadded =
-    "the faces are padded: each begins with its number of corners, as VTK and PyVista have them. Write the corners "
-    "alone: "
-    "faces.reshape(-1, 4)[:, 1:] of triangles";
+    "each face begins with its number of corners, as in VTK and PyVista; save the corners alone, for triangles "
+    "faces.reshape(-1, 4)[:, 1:]";
 
 // Tells whether each row of so many numbers begins with the number of the others. Polygons around a vertex with that
 // number do so too, but they have it only once, and share no edge on the far side.
@@ -151,7 +150,7 @@ bool is_padded_list(const Array& array) {
 Result<Topology> read_faces(const Array& array, std::size_t vertex_count, const std::string& place) {
   if (is_padded_list(array)) return invalid_input(place, kPadded);
   if (array.kind == Kind::kFloat || array.shape.size() != 2 || array.shape[1] < 3 || array.element_count() == 0)
-    return invalid_input(place, "faces must be (faces, 3) of integers, but are " + array.text());
+    return invalid_input(place, "faces must be an array (faces, 3) of integers, but are " + array.text());
   constexpr std::uint64_t kMostCorners = std::numeric_limits<std::uint32_t>::max();
   if (array.element_count() > kMostCorners) return invalid_input(place, "the mesh has more than 4,294,967,295 corners");
   const auto faces = static_cast<std::size_t>(array.shape[0]), corners = static_cast<std::size_t>(array.shape[1]);
@@ -167,9 +166,10 @@ Result<Topology> read_faces(const Array& array, std::size_t vertex_count, const 
   }
   if (wrong)
     return invalid_input(element_place(place, {*wrong / corners, *wrong % corners}),
-                         counts_corners ? std::string(kPadded)
-                                        : "the face names a vertex that is not there: vertices are counted from 0 to " +
-                                              std::to_string(vertex_count - 1));
+                         counts_corners
+                             ? std::string(kPadded)
+                             : "the face refers to a vertex that does not exist; vertices are counted from 0 to " +
+                                   std::to_string(vertex_count - 1));
   if (are_padded(indices, corners)) return invalid_input(place, kPadded);
   if (corners == 3) return Topology::triangles(vertex_count, std::move(indices));
   std::vector<std::uint32_t> offsets(faces + 1);
@@ -179,14 +179,14 @@ Result<Topology> read_faces(const Array& array, std::size_t vertex_count, const 
 
 Status read_times(const Array& array, PositionCache& cache, const std::string& place) {
   if (array.shape.size() != 1 || array.shape[0] != cache.samples.size())
-    return invalid_input(place, "times must be a number for each of the " + std::to_string(cache.samples.size()) +
-                                    " keyframes, but are " + array.text());
+    return invalid_input(place, "times must be an array of " + std::to_string(cache.samples.size()) +
+                                    " numbers, one for each keyframe, but are " + array.text());
   for (std::size_t k = 0; k < cache.samples.size(); ++k) {
     double& time = cache.samples[k].time;
     if (array.kind == Kind::kFloat) time = array.real(k);
     if (array.kind == Kind::kInteger) time = static_cast<double>(array.integer(k));
     if (array.kind == Kind::kUnsigned) time = static_cast<double>(array.vertex(k));
-    if (!std::isfinite(time)) return invalid_input(element_place(place, {k}), "the time is not a finite number");
+    if (!std::isfinite(time)) return invalid_input(element_place(place, {k}), "the time is NaN or infinite");
   }
   return Success{};
 }
@@ -197,7 +197,8 @@ Status take_velocities(const Array& array, const std::string& name, Motion& moti
   if (!read) return read.error();
   std::vector<PositionCache::Sample>& samples = read.value().samples;
   if (samples.size() != motion.keyframes.size() || read.value().vertex_count != motion.topology.vertex_count())
-    return invalid_input(name + ", velocities", "velocities must be as many as positions, but are " + array.text());
+    return invalid_input(name + ", velocities",
+                         "velocities must have the same shape as positions, but are " + array.text());
   for (std::size_t k = 0; k < samples.size(); ++k) motion.keyframes[k].velocities = std::move(samples[k].positions);
   return Success{};
 }
@@ -212,7 +213,7 @@ Result<MotionKind> read_kind(std::string_view bytes, const std::string& place) {
   if (!text) return text.error();
   for (const MotionKind kind : {MotionKind::kSequence, MotionKind::kTargets, MotionKind::kAnimation})
     if (text.value() == motion_kind_name(kind)) return kind;
-  return invalid_input(place, "it must be sequence, targets or animation, but is " + scan::quoted(text.value()));
+  return invalid_input(place, "kind must be sequence, targets or animation, but is " + scan::quoted(text.value()));
 }
 
 // Reads the arrays of an archive, one at a time.
@@ -278,8 +279,9 @@ class Archive {
       names += i == 0 ? "" : ", ";
       names += i == kMostNamed ? "..." : std::string(name.ends_with(".npy") ? name.substr(0, name.size() - 4) : name);
     }
-    return invalid_input(place(array), "the file has no array of this name; it has " +
-                                           (names.empty() ? std::string("none at all") : names));
+    return invalid_input(place(array),
+                         "the file has no array of this name" +
+                             (names.empty() ? std::string(", and no other array either") : ", only " + names));
   }
   [[nodiscard]] const zip::Member* find(std::string_view array) const {
     for (const zip::Member& member : members_) {
@@ -373,7 +375,9 @@ Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, 
   const Result<Array> array = npy::read_header(bytes, size, name + ", header");
   if (!array) return array.error();
   if (Status status = check_positions(array.value(), name + ", positions", "positions"); !status) return status.error();
-  if (array.value().is_fortran) return invalid_input(name + ", positions", "they are in the order of Fortran");
+  if (array.value().is_fortran)
+    return invalid_input(name + ", positions",
+                         "positions are in Fortran order; save numpy.ascontiguousarray(positions)");
   CacheLayout layout = layout_of(array.value(), 0, "positions");
   for (std::size_t k = 0; k < layout.times.size(); ++k)
     layout.times[k] = static_cast<double>(k) / options.frames_per_second;
@@ -429,8 +433,8 @@ Result<std::string> write_npy_faces(const Topology& topology) {
   for (std::size_t f = 0; f < faces; ++f) {
     if (topology.face(f).size() != corners)
       return Error{ErrorCode::kUsage, "",
-                   "an array of faces has as many corners in every row, but face 0 has " + std::to_string(corners) +
-                       " and face " + std::to_string(f) + " has " + std::to_string(topology.face(f).size()) +
+                   "an array of faces needs faces of the same size, but face 0 has " + std::to_string(corners) +
+                       " corners and face " + std::to_string(f) + " has " + std::to_string(topology.face(f).size()) +
                        "; triangulate the mesh"};
   }
   std::string bytes = npy::write_header(topology.vertex_count() <= 0x80000000U ? "<i4" : "<u4", {faces, corners});

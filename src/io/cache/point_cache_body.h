@@ -28,16 +28,16 @@ struct Counts {
                                          std::size_t begin, std::size_t times_size) {
   const std::string place = binary::place(name, begin);
   if (counts.vertices <= 0 || counts.samples <= 0)
-    return invalid_input(place, "the header declares " + std::to_string(counts.vertices) + " vertices and " +
-                                    std::to_string(counts.samples) + " samples");
+    return invalid_input(place, "the header has " + std::to_string(counts.vertices) + " vertices and " +
+                                    std::to_string(counts.samples) + " samples, but both must be at least 1");
   const std::uint64_t left = file_size - begin;
   const std::uint64_t sample_size = times_size + std::uint64_t{12} * static_cast<std::uint32_t>(counts.vertices);
   const auto samples = static_cast<std::uint64_t>(counts.samples);
   const bool fits = binary::fits(samples, sample_size, left);
   if (!fits || samples * sample_size != left)
-    return invalid_input(place, "the header declares " + std::to_string(counts.samples) + " samples of " +
-                                    std::to_string(counts.vertices) + " vertices, for which the file is too " +
-                                    (fits ? "long" : "short"));
+    return invalid_input(place, "the file is too " + std::string(fits ? "long" : "short") + " for the " +
+                                    std::to_string(counts.samples) + " samples of " + std::to_string(counts.vertices) +
+                                    " vertices in its header; copy or export it again");
   return Success{};
 }
 
@@ -56,7 +56,8 @@ struct Counts {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   if (Status status = check_is_sequence(motion); !status) return status;
   if (motion.keyframes.size() > kMost || motion.topology.vertex_count() > kMost)
-    return Error{ErrorCode::kUsage, "", "this format holds no more than 2,147,483,647 vertices and keyframes"};
+    return Error{ErrorCode::kUsage, "",
+                 "this format can have at most 2,147,483,647 vertices and keyframes; write .npz instead"};
   return Success{};
 }
 

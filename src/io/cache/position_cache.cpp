@@ -13,19 +13,20 @@ namespace chronormal::inline internal {
 Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
                                  const std::string& cache_name, MotionKind kind) {
   if (cache.vertex_count != faces.vertex_count())
-    return invalid_input(cache_name, "it has " + std::to_string(cache.vertex_count) +
+    return invalid_input(cache_name, "the cache has " + std::to_string(cache.vertex_count) +
                                          (cache.vertex_count == 1 ? " vertex" : " vertices") + ", but the mesh " +
-                                         mesh_name + " has " + std::to_string(faces.vertex_count()));
+                                         mesh_name + " has " + std::to_string(faces.vertex_count()) +
+                                         "; give the mesh that the cache was made for");
   if (cache.samples.size() < 2)
-    return invalid_input(cache_name,
-                         "a motion needs two samples or more, but it has " + std::to_string(cache.samples.size()));
+    return invalid_input(
+        cache_name, "a motion needs at least two samples, but the cache has " + std::to_string(cache.samples.size()));
   for (std::size_t k = 1; k < cache.samples.size() && kind != MotionKind::kTargets; ++k) {
     const double before = cache.samples[k - 1].time, time = cache.samples[k].time;
     const bool is_jump = kind == MotionKind::kAnimation && before == time;
     if (!(before < time) && !is_jump)
       return invalid_input(cache_name + ", sample " + std::to_string(k),
-                           "its time, " + rounded_text(time, {before}) + " s, is not after that of sample " +
-                               std::to_string(k - 1) + ", " + rounded_text(before, {time}) + " s");
+                           "the time of this sample, " + rounded_text(time, {before}) + " s, is not later than " +
+                               rounded_text(before, {time}) + " s, the time of sample " + std::to_string(k - 1));
   }
 
   Motion motion;
@@ -47,7 +48,8 @@ Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std:
 Status check_keyframes(const Motion& motion) {
   const auto misuse = [](const char* message) { return Error{ErrorCode::kUsage, "", message}; };
   if (motion.keyframes.size() < 2 || motion.segments.empty())
-    return misuse("this format holds two keyframes or more, but the mesh does not move");
+    return misuse(
+        "the mesh does not move, but this format needs at least two keyframes; write .obj, .ply or .npz instead");
   return Success{};
 }
 
@@ -59,7 +61,7 @@ Status each_keyframe(MotionStream& stream, std::endian order,
     if (Status status = stream.hold(k, k); !status) return status;
     const std::vector<float>& positions = motion.keyframes[k].positions;
     if (positions.size() != 3 * motion.topology.vertex_count())
-      return Error{ErrorCode::kUsage, "", "a keyframe has another number of coordinates than the vertices need"};
+      return Error{ErrorCode::kUsage, "", "a keyframe has more or fewer coordinates than the mesh has vertices"};
     if (motion.origin == Origin{}) {
       if (Status status = each(binary::bytes_of(positions, order, storage)); !status) return status;
       continue;
@@ -74,11 +76,11 @@ Status each_keyframe(MotionStream& stream, std::endian order,
 
 Status check_is_sequence(const Motion& motion) {
   if (motion.kind == MotionKind::kTargets)
-    return Error{ErrorCode::kUsage, "",
-                 "this format holds one sequence of keyframes, but the motion is targets over a base; .npz holds them"};
+    return Error{
+        ErrorCode::kUsage, "",
+        "this format cannot store targets over a base, only a sequence of keyframes; write .npz or .glb instead"};
   if (!motion.segments.empty() && motion.segments.size() + 1 != motion.keyframes.size())
-    return Error{ErrorCode::kUsage, "",
-                 "this format holds one sequence without jumps, but weights jump in the animation; .npz holds it"};
+    return Error{ErrorCode::kUsage, "", "this format cannot store an animation whose weights jump; write .npz instead"};
   return check_keyframes(motion);
 }
 

@@ -207,7 +207,7 @@ Result<GltfDocument> GltfDocument::read(std::string_view bytes, const std::strin
   if (Status is_other = check_kind(bytes, binary::place(name, 0), "gltf"); !is_other) return is_other.error();
   if (is_glb_extension(lower_extension(name)) && !recognises(bytes.substr(0, 512)))
     return invalid_input(binary::place(name, 0),
-                         "this is not glTF: it begins neither as GLB (glTF) nor as a JSON object ({)");
+                         "this is not a glTF file, since it begins neither with the word glTF (GLB) nor with { (JSON)");
   if (is_glb(bytes)) {
     Result<GlbChunks> found = read_glb(bytes, name);
     if (!found) return found.error();
@@ -242,7 +242,7 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
     if (source.indices && geometry.corners.size() != declared.element_count)
       return invalid_input(bytes.place(pointer + "/indices"),
                            "the accessor declares " + std::to_string(declared.element_count) +
-                               " indices, but the compressed mesh has " + std::to_string(geometry.corners.size()));
+                               " indices, but the Draco data have " + std::to_string(geometry.corners.size()));
   } else {
     if (source.indices) {
       Result<std::vector<std::uint32_t>> indices = bytes.indices(*source.indices, vertex_count);
@@ -292,7 +292,7 @@ Status GltfDocument::State::check_size(std::size_t mesh, std::size_t primitive, 
     return bytes.expansion().check(vertices * per_vertex * (targets + 1) + sizeof(std::uint32_t) * corners, place);
   }
   return invalid_input(place, "its " + std::to_string(vertices) + " vertices and " + std::to_string(targets) +
-                                  " targets would take more than " + std::to_string(most_bytes) + " bytes");
+                                  " targets would need more than " + std::to_string(most_bytes) + " bytes of memory");
 }
 
 Status GltfDocument::State::read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
@@ -340,10 +340,10 @@ Result<std::size_t> GltfDocument::find_animation(const std::string& name_or_inde
   if (code == std::errc() && stop == end && index < all.size()) return index;
 
   constexpr std::size_t kMostNamed = 20;
-  std::string message = "there is no animation '" + name_or_index + "'";
-  if (all.empty()) message += ", the file has none";
+  std::string message = "the file has no animation '" + name_or_index + "'";
+  if (all.empty()) message += ", and no other animation either; leave out --animation";
   for (std::size_t i = 0; i < std::min(all.size(), kMostNamed); ++i)
-    message.append(i == 0 ? "; there are " : ", ").append(std::to_string(i)).append(" ").append(all[i].name);
+    message.append(i == 0 ? "; choose one of " : ", ").append(std::to_string(i)).append(" ").append(all[i].name);
   if (all.size() > kMostNamed) message += ", ...";
   return Error{ErrorCode::kUsage, name(), message};
 }

@@ -49,14 +49,14 @@ bool is_same_folder(const std::string& a, const std::string& b) {
 
 // Returns what is wrong with text that is to be a JSON value at this level of nesting, or an empty text if nothing is.
 std::string value_fault(const std::string& json, std::size_t level) {
-  constexpr const char* kNone = "what is to be written here is no JSON value: ";
+  constexpr const char* kNone = "the new value is not valid JSON: ";
   // The parser takes a zero byte for the end of the text, and skips a byte order mark.
-  if (json.find('\0') != std::string::npos) return std::string(kNone).append("it has a zero byte");
-  if (json.starts_with(kByteOrderMark)) return std::string(kNone).append("it has a byte order mark");
+  if (json.find('\0') != std::string::npos) return std::string(kNone).append("the text has a zero byte");
+  if (json.starts_with(kByteOrderMark)) return std::string(kNone).append("the text begins with a byte order mark");
   const Result<nlohmann::json> parsed = parse_json(json, "", 0, {"", [](std::size_t, const nlohmann::json&) {}});
   if (!parsed) return std::string(kNone).append(parsed.error().message);
   if (level + json_depth(json) > kDeepestJson)
-    return "what is to be written here is nested deeper than " + std::to_string(kDeepestJson) + " levels";
+    return "the new value is nested deeper than " + std::to_string(kDeepestJson) + " levels";
   return "";
 }
 
@@ -67,11 +67,11 @@ Status GltfEdit::State::apply(const Change& change, JsonText& json) const {
     return invalid_input(document.bytes.place(change.pointer), std::move(message));
   };
   const auto tokens = split_json_pointer(change.pointer);
-  if (!tokens) return error("this is no JSON pointer");
+  if (!tokens) return error("this is not a JSON pointer; write one like /meshes/0/extras");
   if (tokens->size() == 1) {
     const std::string& name = tokens->front();
     if (name == "accessors" || name == "bufferViews" || name == "buffers")
-      return error("accessors, buffer views and buffers are added with arrays, not as JSON");
+      return error("accessors, bufferViews and buffers cannot be changed as JSON; add an array instead");
   }
   std::string fault = value_fault(change.json, tokens->size() + (change.append ? 1 : 0));
   for (const std::string& token : *tokens) {
@@ -106,7 +106,7 @@ Result<gltf::LayoutTarget> GltfEdit::State::target_of(const std::string& path) c
   }
   const std::string extension = lower_extension(path);
   if (!is_glb_extension(extension) && extension != ".gltf")
-    return Error{ErrorCode::kUsage, path, "the name of a glTF file ends with .glb, .gltf or .vrm"};
+    return Error{ErrorCode::kUsage, path, "the name of a glTF file must end with .glb, .gltf or .vrm"};
   target.glb = is_glb_extension(extension);
   target.stands_alone = !folder || (target.glb && !is_glb) ||
                         !is_same_folder(std::filesystem::path(path).parent_path().string(), *folder);

@@ -79,11 +79,12 @@ class Assembly {
     }
     if (!enough)
       return invalid_input(document_.name(), std::to_string(keyframes) + " keyframes of " +
-                                                 std::to_string(vertex_count_) + " vertices would take more than " +
+                                                 std::to_string(vertex_count_) + " vertices would need more than " +
                                                  std::to_string(most_bytes) + " bytes of memory");
     if (Status status = document_.expansion().check(most_bytes - left, document_.name()); !status) return status;
     if (vertex_count_ >= std::numeric_limits<std::uint32_t>::max() / 3)
-      return invalid_input(document_.name(), "indices of 32 bits cannot name so many vertices");
+      return invalid_input(document_.name(), "the mesh has more vertices than can be read, " +
+                                                 std::to_string(std::numeric_limits<std::uint32_t>::max() / 3));
     return Success{};
   }
 
@@ -109,7 +110,7 @@ class Assembly {
       geometry.value().corners = {};
       geometries_.push_back(std::move(geometry).value());
     }
-    if (corners.empty()) return invalid_input(document_.name(), "the meshes have no faces");
+    if (corners.empty()) return invalid_input(document_.name(), "the meshes have no faces, so they have no normals");
     Result<Topology> topology = Topology::triangles(vertex_count_, std::move(corners));
     if (!topology) return invalid_input(document_.name(), topology.error().text());
     result_.motion.topology = std::move(topology).value();
@@ -206,7 +207,9 @@ Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOp
   for (const GltfPart& part : assembly.parts())
     target_count = std::max(target_count, document.meshes()[part.mesh].target_count);
   if (assembly.empty() || !has_moving_targets(document))
-    return invalid_input(document.name(), "no mesh with faces has morph targets that move it, so that nothing moves");
+    return invalid_input(
+        document.name(),
+        "nothing in this file moves by morph targets; export the shape keys of the mesh as morph targets");
   if (Status status = assembly.check_memory(target_count + 1, options.most_bytes); !status) return status.error();
   if (Status status = assembly.read(true); !status) return status.error();
 
@@ -274,8 +277,9 @@ class AnimationReader {
       curve_of_part_.resize(assembly_.parts().size(), curve_of_track_.at(track.same_keys_as));
     }
     if (assembly_.empty())
-      return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
-                           "the animation gives no weights to morph targets of a mesh with faces");
+      return invalid_input(
+          document_.name() + ", /animations/" + std::to_string(animation_),
+          "the animation drives no morph targets; choose another with --animation, or leave --animation out");
     return Success{};
   }
 
@@ -284,8 +288,9 @@ class AnimationReader {
     std::sort(keys_.begin(), keys_.end());
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     if (keys_.size() < 2)
-      return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
-                           "all weights have a single key, so that nothing moves");
+      return invalid_input(
+          document_.name() + ", /animations/" + std::to_string(animation_),
+          "nothing moves in the animation, since its weights have only one key; choose another with --animation");
     return Success{};
   }
 
@@ -354,7 +359,7 @@ class AnimationReader {
       const double wanted = a > 0 ? std::ceil(duration * std::sqrt(a / (8 * tolerance))) : 1;
       if (!(static_cast<double>(pieces_.size()) + wanted <= static_cast<double>(kMostPieces)))
         return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
-                             "the cubic splines bend too much: they would be cut into more than " +
+                             "the animation bends too much between its keys, and would need more than " +
                                  std::to_string(kMostPieces) + " straight pieces");
       const auto count = static_cast<std::size_t>(std::max(wanted, 1.0));
       const std::size_t keyframes = keyframes_of(pieces_.size() + count);
@@ -449,7 +454,7 @@ Result<GltfMotion> read_gltf_motion(const GltfDocument& document, const GltfMoti
 Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotionOptions& options) {
   Assembly assembly(document, options.world);
   assembly.add_meshes([](std::size_t) { return true; });
-  if (assembly.empty()) return invalid_input(document.name(), "there is no mesh with faces");
+  if (assembly.empty()) return invalid_input(document.name(), "the file has no mesh with faces, so it has no normals");
   if (Status status = assembly.check_memory(1, options.most_bytes); !status) return status.error();
   if (Status status = assembly.read(true); !status) return status.error();
   const auto default_weights = [&](std::size_t p) {

@@ -61,7 +61,7 @@ Result<GltfSkin> GltfSkin::read(const GltfDocument& document, std::size_t node, 
   const std::optional<std::uint32_t> index = model.nodes[node].skin;
   if (!index || *index >= model.skins.size())
     return invalid_input(state.bytes.place("/nodes/" + std::to_string(node) + "/skin"),
-                         "this is none of the " + std::to_string(model.skins.size()) + " skins of the file");
+                         "there is no skin with this index; the file has " + std::to_string(model.skins.size()));
   const gltf::SkinSource& source = model.skins[*index];
   if (source.fault) return *source.fault;
   GltfSkin skin;
@@ -74,7 +74,7 @@ Result<GltfSkin> GltfSkin::read(const GltfDocument& document, std::size_t node, 
       const float* const m = numbers.value().data() + 16 * j;
       if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
         return invalid_input(state.bytes.accessor_place(*source.inverse_binds),
-                             "the last row of matrix " + std::to_string(j) + " is not 0, 0, 0, 1");
+                             "the last row of matrix " + std::to_string(j) + " must be 0, 0, 0, 1");
       const auto column = [m](std::size_t c) { return to_double(Vec3f{m[4 * c], m[4 * c + 1], m[4 * c + 2]}); };
       skin.inverse_binds_[j] = {{column(0), column(1), column(2)}, column(3)};
     }
@@ -128,7 +128,8 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
   const std::string pointer = gltf::primitive_pointer(mesh, primitive) + "/attributes";
   if (source.influence_fault) return *source.influence_fault;
   const std::vector<gltf::InfluenceSource>& sets = source.influences;
-  if (sets.empty()) return invalid_input(state.bytes.place(pointer), "there is no JOINTS_0 for the skin of the mesh");
+  if (sets.empty())
+    return invalid_input(state.bytes.place(pointer), "the mesh has a skin, but its vertices have no joints (JOINTS_0)");
   // A file may have many sets of weights that all use the same accessor.
   constexpr std::uint64_t kOfVertex = 4 * (2 * sizeof(float) + sizeof(JointShare));
   const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / kOfVertex / sets.size();
@@ -180,7 +181,7 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
         if (joint >= joints_.size())
           return invalid_input(state.bytes.place(pointer + "/JOINTS_" + std::to_string(n)),
                                "vertex " + std::to_string(v) + " follows joint " + std::to_string(joint) +
-                                   " of a skin that has " + std::to_string(joints_.size()));
+                                   ", but the skin has only " + std::to_string(joints_.size()) + " joints");
         shares.push_back({joint, share});
       }
     }

@@ -205,7 +205,7 @@ Result<Motion> make_builtin_morph(std::string_view name) {
   if (name == "eversion") return eversion();
   if (name == "soup") return soup();
   if (name == "bumps") return bumps();
-  std::string message = "there is no built-in morph '" + std::string(name) + "'; there are";
+  std::string message = "there is no built-in morph '" + std::string(name) + "'; choose one of";
   const char* separator = " ";
   const auto list = [&](std::span<const BuiltinMorph> morphs) {
     for (const BuiltinMorph& morph : morphs) {

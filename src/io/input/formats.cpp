@@ -135,7 +135,8 @@ const Format* find_format(std::string_view file_name, std::string_view bytes) no
 
 std::string unknown_format(std::string_view bytes, std::string_view what) {
   const std::string_view kind = known_kind(bytes);
-  return kind.empty() ? "neither the name nor the content tells " + std::string(what) : "this is " + std::string(kind);
+  return kind.empty() ? "the file is not " + std::string(what) + ", by its name and its content"
+                      : "this is " + std::string(kind);
 }
 
 std::string way_in(std::string_view file_name, std::string_view bytes) {
@@ -146,11 +147,11 @@ std::string way_in(std::string_view file_name, std::string_view bytes) {
   };
   static constexpr std::string_view kSection = " (docs/formats.md#from-fbx-alembic-and-openusd)";
   static constexpr auto kForeign = std::to_array<Foreign>({
-      {"an FBX file", {".fbx"}, "convert it to glTF, by Blender or fbx2gltf"},
-      {"an Alembic file", {".abc"}, "write OBJ and PC2 or MDD from it"},
-      {"a USD file", {".usd", ".usda", ".usdc", ".usdz"}, "write OBJ and PC2 or MDD from it"},
-      {"a file of Blender", {".blend"}, "export glTF, or OBJ and PC2"},
-      {"a file of VTK", {".vtp", ".vtu", ".vtk"}, "write PLY or OBJ from it, or .npz with positions and faces"},
+      {"an FBX file", {".fbx"}, "convert it to glTF with Blender or fbx2gltf first"},
+      {"an Alembic file", {".abc"}, "export it as OBJ with PC2 or MDD first"},
+      {"a USD file", {".usd", ".usda", ".usdc", ".usdz"}, "export it as OBJ with PC2 or MDD first"},
+      {"a Blender file", {".blend"}, "export it as glTF, or as OBJ with PC2, first"},
+      {"a VTK file", {".vtp", ".vtu", ".vtk"}, "export it as PLY or OBJ, or as .npz with positions and faces, first"},
   });
   if (find_format(file_name) != nullptr) return "";
   const std::string extension = lower_extension(file_name);
@@ -159,8 +160,8 @@ std::string way_in(std::string_view file_name, std::string_view bytes) {
     const bool has_extension = !extension.empty() && std::find(foreign.extensions.begin(), foreign.extensions.end(),
                                                                extension) != foreign.extensions.end();
     if (kind != foreign.kind && !has_extension) continue;
-    return "this is " + std::string(foreign.kind) + ", which is not read: " + std::string(foreign.way) +
-           std::string(kSection) + ". Formats that are read are " +
+    return "this is " + std::string(foreign.kind) + ", which cannot be read; " + std::string(foreign.way) +
+           std::string(kSection) + ". These formats can be read: " +
            extensions_of({Holds::kGltf, Holds::kMotion, Holds::kMesh, Holds::kCache, Holds::kTarget});
   }
   return "";
@@ -185,9 +186,9 @@ Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name
   const Format* const format = find_format(file_name, bytes);
   if (std::string way = way_in(file_name, bytes); !way.empty()) return invalid_input(place, std::move(way));
   if (format == nullptr || format->holds != Holds::kMesh)
-    return invalid_input(place, (format == nullptr ? unknown_format(bytes, "the format")
-                                                   : "this is no mesh, by its name or its content") +
-                                    "; a mesh is " + extensions_of({Holds::kMesh}, " or "));
+    return invalid_input(place,
+                         (format == nullptr ? unknown_format(bytes, "in a known format") : "this is not a mesh") +
+                             "; give a mesh as " + extensions_of({Holds::kMesh}, " or "));
   if (const Status is_other = check_kind(bytes, place, format->name); !is_other) return is_other.error();
   if (wanted.velocities && format->read_moving_mesh != nullptr)
     return format->read_moving_mesh(bytes, place, wanted.origin);

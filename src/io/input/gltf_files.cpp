@@ -43,8 +43,8 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
   }
   if (!own_mesh.empty() && !own_gltf.empty())
     return Error{ErrorCode::kUsage, folder,
-                 "it has glTF files, which are inputs one by one, and keyframes of a sequence, such as " +
-                     file_name_of(own_gltf) + " and " + file_name_of(own_mesh) + "; use a pattern such as '" +
+                 "the folder has both glTF files and keyframes of a sequence, such as " + file_name_of(own_gltf) +
+                     " and " + file_name_of(own_mesh) + "; choose one kind with a pattern such as '" +
                      (fs::path(folder) / "*.glb").string() + "'"};
   if (!own_mesh.empty()) files.clear();
   return files;
@@ -84,8 +84,8 @@ Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>&
   }
   if (!files.empty() && !other.empty())
     return Error{ErrorCode::kUsage, other,
-                 "it cannot stand beside " + files.front() +
-                     ": glTF files are inputs one by one, and all other files together are one"};
+                 "this file cannot be given together with the glTF file " + files.front() +
+                     "; give either glTF files alone, or the keyframes of one sequence"};
   return files;
 }
 

@@ -38,7 +38,7 @@ Error misuse(std::string place, std::string message) {
 }
 
 Error not_animated(const std::string& input) {
-  return misuse(input, "--animation chooses among those of a glTF file, which this is not");
+  return misuse(input, "--animation is only for glTF files, and this is not one; leave --animation out");
 }
 
 // Returns the error for a choice of keyframes in an input that is no sequence.
@@ -47,7 +47,7 @@ Error chooses_nothing(const InputOptions& options) {
                 : options.to         ? "--to"
                 : options.every != 1 ? "--every"
                                      : "--loop",
-                "it chooses among the keyframes of a sequence, which this is not");
+                "this option is only for sequences of keyframes, and the input is not one; leave the option out");
 }
 
 // The result of opening: a document, or else a motion or a mesh.
@@ -119,7 +119,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
     jumps = jumps || motion.keyframes[k - 1].time == motion.keyframes[k].time;
   if (jumps && (options.every != 1 || options.loop))
     return misuse(options.loop ? "--loop" : "--every",
-                  "the motion jumps there from one clip to the next: choose the keyframes of one by --from and --to");
+                  "the chosen keyframes belong to several clips, between which the motion jumps; choose one clip with "
+                  "--from and --to");
   std::vector<Motion::Keyframe> kept;
   for (const std::size_t k : frames.value()) {
     // The ends may depend on chosen keyframes and on others.
@@ -130,7 +131,10 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (options.loop) kept.back().time = closing_time(times, frames.value());
   std::swap(motion.keyframes, kept);
   motion.connect(jumps ? MotionKind::kAnimation : MotionKind::kSequence);
-  if (motion.segments.empty()) return misuse("--to", "the motion jumps between these keyframes, and nothing moves");
+  if (motion.segments.empty())
+    return misuse(
+        "--to",
+        "nothing moves between the chosen keyframes, since the motion jumps there; choose others with --from and --to");
   const auto positions = [&kept](std::size_t k) -> Result<std::vector<float>> { return kept[k].positions; };
   return set_end_velocities(options, times, positions, motion);
 }
@@ -264,12 +268,13 @@ std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh
       is_shuffled = is_shuffled && std::fabs(double{a[v]} - double{b[v]}) <= kTolerance * size;
   }
   if (is_shuffled)
-    return "the cache is not of this mesh: it has the same vertices in another order, so that faces join the wrong "
-           "ones";
+    return "the cache has the vertices of this mesh in another order, so the result is wrong; export mesh and cache "
+           "together, without reordering vertices";
   const double farther = sum / std::sqrt(radius) / (sum_of_mesh / std::sqrt(radius_of_mesh));
   if (farther < kFarther && farther > 1 / kFarther) return "";
-  return "the cache is hardly of this mesh, or has its vertices in another order: in its first frame edges are " +
-         std::to_string(farther).substr(0, 4) + " times as long, for its size, as in the mesh";
+  return "the cache does not seem to belong to this mesh, or has its vertices in another order, since edges are " +
+         std::to_string(farther).substr(0, 4) +
+         " times as long, relative to the size, in the first frame as in the mesh; export mesh and cache together";
 }
 
 Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::string& mesh_input,
@@ -279,8 +284,8 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   const Result<std::vector<std::string>> meshes = find_frames(of_mesh);
   if (!meshes) return meshes.error();
   if (meshes.value().size() != 1)
-    return misuse(mesh_input, "a cache goes over one mesh, but this stands for " +
-                                  std::to_string(meshes.value().size()) + " files");
+    return misuse(mesh_input,
+                  "a cache needs exactly one mesh, but this names " + std::to_string(meshes.value().size()) + " files");
   const std::string& mesh_path = meshes.value().front();
   ReadMotion read;
   Result<FileBytes> file = FileBytes::open(mesh_path, options.resolve);
@@ -408,18 +413,19 @@ Result<Opened> open_whole(const std::string& path, const InputOptions& options) 
     const Status read = read_whole_motion(*format, bytes, path, options, opened.read);
     if (!read) return read.error();
   } else if (options.allow_mesh && format == nullptr) {
-    return invalid_input(file_name_of(path), unknown_format(bytes, "a format that is read") + ": " +
-                                                 extensions_of({Holds::kGltf, Holds::kMotion, Holds::kMesh}) +
-                                                 " alone, " + extensions_of({Holds::kCache}) + " over a mesh, " +
-                                                 extensions_of({Holds::kTarget}) + " over --base");
+    return invalid_input(file_name_of(path), unknown_format(bytes, "in a format that can be read") + "; give " +
+                                                 extensions_of({Holds::kGltf, Holds::kMotion, Holds::kMesh}) + ", or " +
+                                                 extensions_of({Holds::kCache}) + " after a mesh, or " +
+                                                 extensions_of({Holds::kTarget}) + " with --base");
   } else if (options.allow_mesh) {
     Result<ReadMotion> mesh = read_still_mesh(bytes, path, options);
     if (!mesh) return mesh.error();
     opened.read = std::move(mesh).value();
   } else {
-    return invalid_input(file_name_of(path), unknown_format(bytes, "a format that holds a whole motion") + " (" +
-                                                 extensions_of({Holds::kGltf, Holds::kMotion}) + "); a sequence of " +
-                                                 extensions_of({Holds::kMesh}, " or ") + " files needs two or more");
+    return invalid_input(file_name_of(path), unknown_format(bytes, "a motion") + "; give a file with a motion (" +
+                                                 extensions_of({Holds::kGltf, Holds::kMotion}) +
+                                                 "), or two or more files of a sequence (" +
+                                                 extensions_of({Holds::kMesh}, " or ") + ")");
   }
   if (options.progress) options.progress(1, 1);
   return opened;
@@ -432,7 +438,7 @@ Result<ReadMotion> read_several(const InputOptions& options) {
     const std::optional<CacheInput> cache = as_cache(inputs[i]);
     if (!cache) continue;
     if (inputs.size() != 2 || as_cache(inputs[1 - i]))
-      return misuse(inputs[i], "a cache has no faces: give it together with one mesh (" +
+      return misuse(inputs[i], "a cache has no faces; give it together with one mesh (" +
                                    extensions_of({Holds::kMesh}, " or ") + ")");
     if (!options.animation.empty()) return not_animated(inputs[i]);
     return read_cache_over_mesh(*cache, inputs[1 - i], options);
@@ -440,7 +446,7 @@ Result<ReadMotion> read_several(const InputOptions& options) {
   for (const std::string& input : inputs) {
     const Format* const format = find_format(input);
     if (format != nullptr && (format->holds == Holds::kGltf || format->holds == Holds::kMotion))
-      return misuse(input, "the file is a whole motion: give it alone");
+      return misuse(input, "the file is a whole motion; give no other inputs");
   }
   if (!options.animation.empty()) return not_animated(inputs.front());
   std::vector<std::string> notes;
@@ -464,23 +470,25 @@ Status check_input(const InputOptions& options) {
     return misuse("--fps", "the frame rate must be a number from 1e-9 to 1e9");
   if (const Result<Path> path = make_path(options.path); !path) return misuse("--path", path.error().message);
   if (!options.animation.empty() && (!options.base.empty() || options.files.empty()))
-    return misuse("--animation", "it chooses among those of a glTF file: name one");
+    return misuse("--animation", "--animation is only for glTF files; name one as the input");
   if (!options.base.empty()) {
-    if (!options.samples.empty()) return misuse("--base", "a built-in morph is no target: give .obj, .ply or .target");
-    if (options.files.empty()) return misuse("--base", "there is nothing to read: name the targets of the base");
+    if (!options.samples.empty())
+      return misuse("--base", "--sample cannot be used with --base; give targets as .obj, .ply or .target files");
+    if (options.files.empty()) return misuse("--base", "the targets of the base are missing; name their files");
     if (options.chooses_frames()) return chooses_nothing(options);
     if (options.frames_per_second != 1)
-      return misuse("--fps", "targets of a base have no frames and no times, but weights: leave it out");
+      return misuse("--fps",
+                    "--fps has no meaning with --base, since targets have weights and no times; leave --fps out");
     return Success{};
   }
   if (options.files.empty() && options.samples.empty())
-    return misuse("", "there is nothing to read: name the keyframes, or --sample NAME");
+    return misuse("", "there is no input; name a file, a folder or several keyframes, or --sample NAME");
   if (options.samples.size() + (options.files.empty() ? 0 : 1) > 1)
-    return misuse("", "there are several inputs: give one");
+    return misuse("", "there is more than one input; give either files or one --sample");
   for (const std::string& file : options.files) {
     const Format* const format = find_format(file);
     if (format != nullptr && format->holds == Holds::kTarget)
-      return misuse(file, "a target changes a mesh: name the mesh with --base FILE");
+      return misuse(file, "a target needs the mesh that it changes; name that mesh with --base FILE");
   }
   return Success{};
 }
@@ -524,7 +532,9 @@ Status Input::State::cut_motion() {
   if (cut) return Success{};
   if (cut_error) return *cut_error;
   Status status = opened.document && path.is_curved()
-                      ? misuse("", "the weights of a glTF file say how its vertices move: paths are of sequences")
+                      ? misuse("",
+                               "--path is only for sequences of keyframes, since weights move the vertices of a glTF "
+                               "file; leave --path out")
                       : check_path(opened.read.stream->motion(), path.kind);
   if (status) {
     Result<CutStream> made = cut_into_segments(std::move(*opened.read.stream), path, most_pieces, kept_bytes);

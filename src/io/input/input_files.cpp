@@ -20,8 +20,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::string_view kNoneMatches = "no file of this name, and none that matches it";
-constexpr std::string_view kTopologyMustNotChange = ": topology must not change between keyframes";
+constexpr std::string_view kNoneMatches = "no file has this name or matches this pattern";
+constexpr std::string_view kTopologyMustNotChange = "; all keyframes must have the same faces";
 
 // Removes the digits at the beginning of the text, and returns them without leading zeros.
 std::string_view take_number(std::string_view& text) {
@@ -98,7 +98,7 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
   bool has_stdin = false;
   for (const std::string& input : options.files) {
     if (input == "-") {
-      if (has_stdin) return Error{ErrorCode::kUsage, input, "the standard input can be given only once"};
+      if (has_stdin) return Error{ErrorCode::kUsage, input, "the standard input (-) can only be given once"};
       has_stdin = true;
       files.push_back(input);
       continue;
@@ -113,7 +113,7 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
     const bool is_pattern = input.find_first_of("*?[") != std::string::npos;
     const auto numbered = is_missing && !is_pattern ? around_number(input) : std::nullopt;
     if (!std::filesystem::exists(status) && !(is_missing && is_pattern) && !numbered)
-      return Error{ErrorCode::kFailed, input, code ? code.message() : "no such file or folder"};
+      return Error{ErrorCode::kFailed, input, code ? code.message() : "there is no file or folder of this name"};
     Result<std::vector<std::string>> found = numbered     ? match_numbered(numbered->first, numbered->second)
                                              : is_missing ? match_pattern(input)
                                                           : list_folder(input);
@@ -195,11 +195,11 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
   const auto misuse = [](const char* place, std::string message) {
     return Error{ErrorCode::kUsage, place, std::move(message)};
   };
-  const std::string range = "keyframes are counted from 0 to " + std::to_string(count - 1);
-  if (options.every == 0) return misuse("--every", "the step from one keyframe to the next must be 1 or more");
-  if (options.to && *options.to >= count) return misuse("--to", "there is no such keyframe: " + range);
+  const std::string range = "the keyframes are numbered from 0 to " + std::to_string(count - 1);
+  if (options.every == 0) return misuse("--every", "the step must be at least 1");
+  if (options.to && *options.to >= count) return misuse("--to", "there is no such keyframe; " + range);
   const std::size_t last = options.to.value_or(count - 1);
-  if (options.from >= count) return misuse("--from", "there is no such keyframe: " + range);
+  if (options.from >= count) return misuse("--from", "there is no such keyframe; " + range);
   std::vector<std::size_t> frames;
   for (std::size_t k = options.from; k <= last; k += std::min(options.every, count)) frames.push_back(k);
   if (frames.size() < 2 && options.chooses_frames())
@@ -207,7 +207,7 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
                   : options.to                        ? "--to"
                   : options.loop && options.from == 0 ? "--loop"
                                                       : "--from",
-                  "a motion needs two keyframes or more, and so few are left: " + range);
+                  "fewer than two keyframes are left, but a motion needs at least two; " + range);
   if (options.loop) frames.push_back(frames.front());
   return frames;
 }

@@ -36,13 +36,14 @@ Result<std::vector<FileIdentity>> identify_files(const InputOptions& options) {
   std::vector<FileIdentity> files;
   for (const std::string& path : paths.value()) {
     struct stat status {};
-    if (path == "-") return Error{ErrorCode::kUsage, path, "the standard input cannot be read again: name a file"};
+    if (path == "-")
+      return Error{ErrorCode::kUsage, path, "the standard input cannot be read again by a later run; name a file"};
     if (::stat(path.c_str(), &status) != 0) return failure(path, errno);
     if (!S_ISREG(status.st_mode))
-      return Error{ErrorCode::kUsage, path, "a pipe or a device cannot be read again: name a file"};
+      return Error{ErrorCode::kUsage, path, "a pipe or a device cannot be read again by a later run; name a file"};
     if (path.ends_with(".xml"))
       return Error{ErrorCode::kUsage, path,
-                   "its positions are in other files, which are not watched: name the .mcx or .mc"};
+                   "changes of the other files of this cache would not be noticed; name the .mcx or .mc file"};
     files.push_back({path, static_cast<std::uint64_t>(status.st_size),
                      std::int64_t{status.st_mtim.tv_sec} * 1000000000 + status.st_mtim.tv_nsec});
   }

@@ -330,8 +330,9 @@ Status sort_as_sequence(const std::string& input, std::vector<std::string>& file
       const bool same = std::all_of(group.varying.begin(), group.varying.end(),
                                     [&](std::size_t k) { return names.number(a, k) == names.number(b, k); });
       if (same)
-        return invalid_input(input, file_name_of(files[a]) + " and " + file_name_of(files[b]) +
-                                        " have the same number: one of them is no keyframe");
+        return invalid_input(
+            input, file_name_of(files[a]) + " and " + file_name_of(files[b]) +
+                       " have the same number, so one of them is not a keyframe; choose files with a pattern");
     }
   }
   groups = divided(names, groups);
@@ -354,9 +355,9 @@ Status sort_as_sequence(const std::string& input, std::vector<std::string>& file
       const Place& place = names.place(file, groups.front().varying.back());
       std::string pattern = files[file];
       pattern.replace(place.begin, place.end - place.begin, "*");
-      return invalid_input(input, (sequences > 1 ? "these are " + std::to_string(sequences) + " sequences"
-                                                 : std::string("these are a sequence and other files")) +
-                                      ": " + list + "; name one, by a pattern such as '" + pattern + "'");
+      return invalid_input(input, (sequences > 1 ? "the files are " + std::to_string(sequences) + " sequences"
+                                                 : std::string("the files are a sequence and other files")) +
+                                      ": " + list + "; choose one sequence with a pattern such as '" + pattern + "'");
     }
     std::sort(files.begin(), files.end(), stands_before);
     return Success{};

@@ -15,7 +15,8 @@ Result<PointPaths> parse_points(std::string_view bytes, const std::string& name)
   const bool moves = shape.size() == 3 && shape[1] == 2 && shape[2] == 3;
   if (array.kind != npy::Kind::kFloat || !(moves || (shape.size() == 2 && shape[1] == 3)))
     return invalid_input(
-        name, "points must be (n, 3), or (n, 2, 3) where they move, of float32 or float64, but are " + array.text());
+        name,
+        "points must be an array (n, 3), or (n, 2, 3) if they move, of float32 or float64, but are " + array.text());
   const auto count = static_cast<std::size_t>(shape[0]);
   const std::size_t ends = moves ? 2 : 1;
   PointPaths paths;

@@ -12,7 +12,8 @@ Result<std::vector<RigPose>> parse_poses(std::string_view text, const std::strin
   const Result<nlohmann::json> parsed = parse_json(text, name, 0, {"", [](std::size_t, const nlohmann::json&) {}});
   if (!parsed) return parsed.error();
   const nlohmann::json& root = parsed.value();
-  if (!root.is_array() || root.empty()) return invalid_input(name, "it must be a list of one pose at least");
+  if (!root.is_array() || root.empty())
+    return invalid_input(name, "the file must be a list of at least one pose, such as [{\"smile\": 1}]");
   JsonComplaint complaint(name);
   std::vector<RigPose> poses;
   const JsonView list(root, "", complaint);
@@ -28,7 +29,7 @@ Result<std::vector<RigPose>> parse_poses(std::string_view text, const std::strin
         pose.named.push_back({target, of_target.as_number(), of_target.place()});
       }
     } else {
-      item.complain("a pose must be an object of weights by the names of targets, or a list of weights");
+      item.complain("a pose must be weights by the names of targets, such as {\"smile\": 1}, or a list of weights");
     }
     if (complaint.first()) return *complaint.first();
   }

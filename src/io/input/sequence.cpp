@@ -37,7 +37,7 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
         !std::filesystem::is_directory(path, ignored)) {
       if (format != nullptr && format != own)
         return invalid_input(folder, "the folder has both " + std::string(format->name) + " and " +
-                                         std::string(own->name) + " files; use a pattern such as '" +
+                                         std::string(own->name) + " files; choose one kind with a pattern such as '" +
                                          (std::filesystem::path(folder) / "*").string() +
                                          std::string(format->extensions.front()) + "'");
       format = own;
@@ -119,7 +119,7 @@ Result<std::vector<std::string>> find_frames(const InputOptions& options, std::v
   Result<std::vector<std::string>> files = find_input_files(options, list_folder, sort_as_sequence);
   if (!files || files.value() != options.files || !sort_listed(files.value())) return files;
   if (notes != nullptr)
-    notes->push_back("the files were listed in the order of their letters, and are read in that of their numbers: " +
+    notes->push_back("the files are read in the order of their numbers, not as they were listed: " +
                      file_name_of(files.value().front()) + " to " + file_name_of(files.value().back()));
   return files;
 }
@@ -131,7 +131,7 @@ Result<std::vector<std::size_t>> choose_files(const std::vector<std::string>& fi
   const std::size_t total = files.size();
   if (total < 2)
     return invalid_input(total == 0 ? "" : files.front(),
-                         "a sequence needs two frames or more, but " + std::to_string(total) +
+                         "a sequence needs at least two keyframes, but " + std::to_string(total) +
                              (total == 1 ? " was" : " were") + " found; give several " +
                              extensions_of({Holds::kMesh}, " or ") + " files, a quoted pattern or a folder");
   return choose_frames(total, options);
@@ -150,13 +150,13 @@ Result<std::vector<double>> find_times(const std::vector<std::string>& files, co
     if (options.frames_per_second != 1)
       return Error{ErrorCode::kUsage, "--fps",
                    "the names of the files are times in seconds (" + file_name_of(files.front()) + " to " +
-                       file_name_of(files.back()) + "): leave it out"};
+                       file_name_of(files.back()) + "), so --fps has no meaning; leave --fps out"};
     return std::move(found.times);
   }
   if (found.series && !found.series->is_even())
     read.notes.push_back("the numbers of the files (" + file_name_of(files.front()) + " to " +
                          file_name_of(files.back()) +
-                         ") are not evenly spaced: each keyframe is at its own number, counted from the first one");
+                         ") are not evenly spaced; the time of each keyframe follows its number");
   for (double& time : found.times) time /= options.frames_per_second;
   return std::move(found.times);
 }

@@ -58,7 +58,7 @@ Result<std::size_t> find_target(const TargetNames& names, const std::string& nam
     for (std::size_t i = 1; i < found.size(); ++i)
       numbers += (i + 1 == found.size() ? " and " : ", ") + std::to_string(found[i]);
     return Error{ErrorCode::kUsage, "",
-                 "targets " + numbers + " all have the name '" + name_or_number + "': say which by its number"};
+                 "targets " + numbers + " all have the name '" + name_or_number + "'; give the number of one instead"};
   }
   std::size_t number = 0;
   const char* const end = name_or_number.data() + name_or_number.size();

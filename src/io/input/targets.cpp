@@ -49,7 +49,7 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
       if (format != nullptr && format != own)
         return invalid_input(folder, "the folder has both " + std::string(format->name) + " and " +
                                          std::string(own->name) + " files (" + files.back() + ", " + path +
-                                         "); name the targets by patterns or one by one");
+                                         "); choose one kind with a pattern, or name the targets one by one");
       format = own;
       files.push_back(path);
     }
@@ -57,8 +57,8 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
   }
   if (code) return Error{ErrorCode::kFailed, folder, code.message()};
   if (files.empty())
-    return invalid_input(folder, "the folder has no targets (" + extensions_of({Holds::kMesh, Holds::kTarget}, " or ") +
-                                     ") besides the base");
+    return invalid_input(folder, "the folder has no targets but the base itself (" +
+                                     extensions_of({Holds::kMesh, Holds::kTarget}, " or ") + ")");
   return files;
 }
 
@@ -111,14 +111,15 @@ Result<std::vector<float>> read_shape(const InputOptions& options, const std::st
 Result<ReadMotion> read_targets(const InputOptions& options) {
   const std::string& base = options.base;
   if (base == "-" && std::find(options.files.begin(), options.files.end(), "-") != options.files.end())
-    return Error{ErrorCode::kUsage, "-", "the standard input can be given only once"};
+    return Error{ErrorCode::kUsage, "-", "the standard input (-) can only be given once"};
   Result<std::vector<std::string>> found =
       find_input_files(options, [&](const std::string& folder) { return list_targets(folder, base); });
   if (!found) return found.error();
   std::vector<std::string> files = std::move(found).value();
   std::erase_if(
       files, [&](const std::string& file) { return file == base || (!options.resolve && is_same_file(file, base)); });
-  if (files.empty()) return invalid_input(place_of(base), "there is no target besides the base itself");
+  if (files.empty())
+    return invalid_input(place_of(base), "there is no target, only the base itself; name the files of the targets");
 
   // Reads normals only from the base: viewers that compute targets from positions use no others.
   InputOptions of_base = options;

@@ -33,8 +33,9 @@ struct NamePattern {
 };
 
 Result<NamePattern> parse_pattern(const std::string& pattern) {
-  const Error misuse{ErrorCode::kUsage, pattern,
-                     "the name must have one %d or %0Nd (N = 1 to 99) for the number of the file"};
+  const Error misuse{
+      ErrorCode::kUsage, pattern,
+      "the name of the output must have one %d, or %03d for three digits, where the number of each file goes"};
   NamePattern parts;
   const std::size_t slash = pattern.rfind('/');
   const std::size_t percent = pattern.find('%', slash == std::string::npos ? 0 : slash);
@@ -94,7 +95,8 @@ Result<std::vector<std::string>> numbered_names(const std::string& pattern, std:
   if (!parts) return parts.error();
   if (!parts.value().has_number && count > 1)
     return Error{ErrorCode::kUsage, pattern,
-                 "there are " + std::to_string(count) + " files to write: the name must have a %d for their number"};
+                 "the result is " + std::to_string(count) +
+                     " files; put %d into the name of the output, where the number of each file goes"};
   std::vector<std::string> names;
   for (std::size_t k = 0; k < count; ++k) names.push_back(parts.value().name(k));
   return names;
@@ -122,7 +124,8 @@ Status internal::write_motion(MotionStream& stream, const std::string& path, boo
     return write_keyframes(stream, *format, path, force, expansion);
   if (format != nullptr && format->holds == Holds::kGltf) {
     if (motion.kind != MotionKind::kTargets || !is_glb_extension(lower_extension(path)))
-      return Error{ErrorCode::kUsage, path, "convert writes targets as .glb; bake writes glTF, with the normals"};
+      return Error{ErrorCode::kUsage, path,
+                   "convert writes glTF only as .glb, and only targets over a base; use bake for other glTF files"};
     if (Status status = check_output(path, force); !status) return status;
     if (Status status = stream.hold_all(); !status) return status;
     const Result<std::string> glb = write_glb_targets(motion, weld);
@@ -134,7 +137,8 @@ Status internal::write_motion(MotionStream& stream, const std::string& path, boo
     for (const Format& each : formats())
       if (each.write_mesh != nullptr || each.write_motion != nullptr)
         writable.append(writable.empty() ? "" : ", ").append(each.extensions.front());
-    return Error{ErrorCode::kUsage, path, "the name must end in one of " + writable};
+    return Error{ErrorCode::kUsage, path,
+                 "the format of the output is unknown; its name must end in one of " + writable};
   }
   Result<OutputFile> file = OutputFile::create(path, force);
   if (!file) return file.error();

@@ -145,7 +145,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     std::string_view message = exception.what();
     if (const std::size_t colon = message.rfind(": "); colon != std::string_view::npos)
       message.remove_prefix(colon + 2);
-    error_message_ = std::string("this is no JSON: ").append(message);
+    error_message_ = std::string("the JSON is not valid: ").append(message);
     return false;
   }
 
@@ -199,7 +199,7 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
     offset += kByteOrderMark.size();
   }
   if (text.starts_with(kByteOrderMark))  // the library would skip it too
-    return invalid_input(binary::place(name, offset), "this is no JSON: a second byte order mark");
+    return invalid_input(binary::place(name, offset), "the JSON is not valid: it has a second byte order mark");
   // JSON never contains a zero byte. The parser would complain about each; a sparse file may have a terabyte of them.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) text = text.substr(0, zero + 1);
   const Scan scan = scan_json(text);
@@ -238,7 +238,7 @@ std::string JsonView::pointer(std::string_view key) const { return with_json_tok
 std::string JsonView::pointer(std::size_t index) const { return pointer(std::to_string(index)); }
 
 bool JsonView::is_object() const {
-  if (!value_->is_object()) complain("this must be an object, not " + article(*value_));
+  if (!value_->is_object()) complain("the value must be an object, not " + article(*value_));
   return value_->is_object();
 }
 
@@ -260,11 +260,11 @@ std::optional<JsonView> JsonView::array(const char* key) const {
   const nlohmann::json* const value = find(key);
   if (value == nullptr) return std::nullopt;
   if (!value->is_array()) {
-    complain(key, "this must be an array, not " + article(*value));
+    complain(key, "the value must be an array, not " + article(*value));
     return std::nullopt;
   }
   if (value->empty()) {
-    complain(key, "the array is empty: leave it out, or give it one item or more");
+    complain(key, "the array is empty; remove it, or give it at least one item");
     return std::nullopt;
   }
   return member(key, *value);
@@ -278,23 +278,23 @@ std::optional<std::size_t> JsonView::as_count(std::size_t most) const {
   } else if (value_->is_number_float()) {
     const double number = value_->get<double>();
     if (std::isinf(number)) {
-      complain("the number is too large");
+      complain("the number is too large for a double");
       return std::nullopt;
     }
     if (!(number >= 0 && number <= kLargestExact && number == std::floor(number))) {
-      complain("this must be a whole number, not " + value_->dump());
+      complain("the value must be a whole number, not " + value_->dump());
       return std::nullopt;
     }
     result = static_cast<std::size_t>(number);
   } else if (value_->is_number()) {
-    complain("this must not be negative");
+    complain("the value must not be negative");
     return std::nullopt;
   } else {
-    complain("this must be a whole number, not " + article(*value_));
+    complain("the value must be a whole number, not " + article(*value_));
     return std::nullopt;
   }
   if (result > most) {
-    complain(std::to_string(result) + " is too large; the most is " + std::to_string(most));
+    complain(std::to_string(result) + " is too large; the largest allowed value is " + std::to_string(most));
     return std::nullopt;
   }
   return result;
@@ -311,7 +311,7 @@ std::size_t JsonView::count(const char* key, std::size_t most, std::size_t fallb
 }
 
 std::size_t JsonView::required_count(const char* key, std::size_t most) const {
-  if (!has(key)) complain(std::string("there is no ").append(key));
+  if (!has(key)) complain(std::string(key).append(" is missing"));
   return count(key, most, 0);
 }
 
@@ -319,7 +319,7 @@ std::optional<std::size_t> JsonView::as_index(std::size_t count, const char* wha
   const std::optional<std::size_t> index = as_count(~std::size_t{0});
   if (!index) return std::nullopt;
   if (*index < count) return index;
-  complain("there is no " + std::to_string(*index) + " among the " + std::to_string(count) + " " + what);
+  complain("the index is " + std::to_string(*index) + ", but the file has only " + std::to_string(count) + " " + what);
   return std::nullopt;
 }
 
@@ -330,20 +330,20 @@ std::optional<std::size_t> JsonView::find_index(const char* key, std::size_t cou
 }
 
 std::optional<std::size_t> JsonView::required_index(const char* key, std::size_t count, const char* what) const {
-  if (!has(key)) complain(std::string("there is no ").append(key));
+  if (!has(key)) complain(std::string(key).append(" is missing"));
   return find_index(key, count, what);
 }
 
 bool JsonView::flag(const char* key) const {
   const nlohmann::json* const value = find(key);
   if (value == nullptr) return false;
-  if (!value->is_boolean()) complain(key, "this must be true or false, not " + article(*value));
+  if (!value->is_boolean()) complain(key, "the value must be true or false, not " + article(*value));
   return value->is_boolean() && value->get<bool>();
 }
 
 std::string JsonView::as_text() const {
   if (value_->is_string()) return value_->get<std::string>();
-  complain("this must be a string, not " + article(*value_));
+  complain("the value must be a string, not " + article(*value_));
   return "";
 }
 
@@ -353,17 +353,17 @@ std::string JsonView::text(const char* key) const {
 }
 
 std::string JsonView::required_text(const char* key) const {
-  if (!has(key)) complain(std::string("there is no ").append(key));
+  if (!has(key)) complain(std::string(key).append(" is missing"));
   return text(key);
 }
 
 double JsonView::as_number() const {
   if (value_->is_number()) {
     const double number = value_->get<double>();
-    if (std::isinf(number)) complain("the number is too large");
+    if (std::isinf(number)) complain("the number is too large for a double");
     return number;
   }
-  complain("this must be a number, not " + article(*value_));
+  complain("the value must be a number, not " + article(*value_));
   return 0;
 }
 

@@ -251,8 +251,8 @@ Status JsonText::append(std::string_view pointer, std::string value) { return ch
 Status JsonText::change(std::string_view pointer, std::string value, bool append) {
   const auto error = [&](std::string message) { return invalid_input(std::string(pointer), std::move(message)); };
   const auto tokens = split_json_pointer(pointer);
-  if (!tokens) return error("this is no JSON pointer");
-  if (tokens->empty() && !append) return error("the whole document can not be replaced");
+  if (!tokens) return error("this is not a JSON pointer; write one like /meshes/0/extras");
+  if (tokens->empty() && !append) return error("the whole document cannot be replaced; name a member of it");
   value.erase(0, skip_blanks(value, 0));
   value.resize(value.find_last_not_of(kBlanks) + 1);
 
@@ -261,7 +261,8 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
   for (std::size_t i = 0; i < tokens->size(); ++i) {
     Node& node = *way.back();
     const std::string& token = (*tokens)[i];
-    if (!node.is_container()) return error("there is neither an object nor an array to take '" + token + "' from");
+    if (!node.is_container())
+      return error("only an object or an array can take a member, but none takes '" + token + "' from");
     last = find_member(node, token);
     if (last != nullptr) {
       if (!last->value) last->value = std::make_unique<Node>(last->text);
@@ -280,7 +281,7 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
 
   Node& node = *way.back();
   if (append) {
-    if (node.text.front() != '[') return error("there is no array to which something could be added");
+    if (node.text.front() != '[') return error("a value can only be added to an array, but this is not one");
     node.expand();
     add_member(node, "", std::move(value));
   } else {

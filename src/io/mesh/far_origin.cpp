@@ -18,13 +18,11 @@ std::string note_of_lost_digits(std::span<const float> positions) {
     step = std::max(step, double{farthest} - double{std::nextafter(farthest, 0.0F)});
   }
   if (!(step > kMuch * extent)) return "";
-  std::string text =
-      "the positions have no more digits than float32, and are so far from the origin that these have steps of ";
+  std::string text = "the mesh is so far from the origin that float32 positions move in steps of ";
   scan::append_number(text, static_cast<float>(step));
-  text += " in an extent of ";
+  text += ", while the mesh has a size of ";
   scan::append_number(text, static_cast<float>(extent));
-  return text +
-         ": normals are those of the rounded positions. Move the mesh to the origin before it is written as float32";
+  return text + "; normals follow the rounded positions, so move the mesh to the origin before you export it";
 }
 
 std::string origin_text(const Origin& origin) {

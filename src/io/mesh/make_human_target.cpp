@@ -60,13 +60,13 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
 
     if (done > most)
       return error("the file unpacks to more than " + std::to_string(most) +
-                   " bytes, which no target of this base needs");
+                   " bytes, which is more than a target of this base can need");
     if (code == Z_OK) continue;
     if (code == Z_MEM_ERROR) throw std::bad_alloc();
-    // There is room for output, so the input is incomplete.
-    if (code == Z_BUF_ERROR) return error("the gzip data end early");
+    if (code == Z_BUF_ERROR)
+      return error("the gzip data are cut off; copy the file again");  // there was room, so it wants more input
     if (code != Z_STREAM_END) {
-      std::string message = "the gzip data are damaged";
+      std::string message = "the gzip data are damaged; copy the file again";
       if (stream.msg != nullptr) message.append(" (").append(stream.msg).append(")");
       return error(std::move(message));
     }
@@ -115,19 +115,19 @@ Status TargetReader::read_line(std::string_view line) {
   std::array<float, 3> delta{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto axis_error = [&](const std::string& message) {
-      return error(std::string(1, "xyz"[axis]) + " of the delta of vertex " + std::to_string(vertex.value()) + ": " +
-                   message);
+      return error(std::string(1, "xyz"[axis]) + " of vertex " + std::to_string(vertex.value()) + ": " + message);
     };
     std::string_view word = scan::take_word(line);
     if (word.starts_with('#')) word = {};
     const NumberFault fault = scan::parse_float(word, delta[axis]);
     if (fault != NumberFault::kNone) return axis_error(scan::describe(fault, word));
-    if (!std::isfinite(from[axis] + delta[axis])) return axis_error("base and delta together are too large");
+    if (!std::isfinite(from[axis] + delta[axis]))
+      return axis_error("the sum of base and delta is too large for float32");
   }
   const std::string_view rest = scan::take_word(line);
   if (!rest.empty() && !rest.starts_with('#'))
-    return error("after the delta of vertex " + std::to_string(vertex.value()) + " stands " + scan::quoted(rest) +
-                 ", but a line is one index and three numbers");
+    return error("the line has " + scan::quoted(rest) + " after the delta of vertex " + std::to_string(vertex.value()) +
+                 ", but must have only an index and three numbers");
 
   has_delta_[vertex.value()] = true;
   target_.vertices.push_back(vertex.value());
@@ -139,14 +139,14 @@ Result<std::uint32_t> TargetReader::read_vertex(std::string_view word) {
   std::int64_t index = 0;
   const NumberFault fault = scan::parse_integer(word, index);
   if (fault == NumberFault::kNotANumber)
-    return error(scan::quoted(word) + " is not an index; a line is one index and three numbers");
+    return error(scan::quoted(word) + " is not an index; a line must have an index and three numbers");
   const bool is_vertex =
       fault == NumberFault::kNone && index >= 0 && static_cast<std::uint64_t>(index) < std::uint64_t{base_.count};
   if (!is_vertex)
-    return error(scan::quoted(word) + " is no vertex of the base, which has " + std::to_string(base_.count) +
-                 ", counted from 0");
+    return error(scan::quoted(word) + " is not a vertex of the base, whose " + std::to_string(base_.count) +
+                 " vertices are counted from 0");
   const auto vertex = static_cast<std::uint32_t>(index);
-  if (has_delta_[vertex]) return error("vertex " + std::to_string(vertex) + " has a delta already");
+  if (has_delta_[vertex]) return error("vertex " + std::to_string(vertex) + " has two deltas in this file");
   return vertex;
 }
 

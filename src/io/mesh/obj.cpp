@@ -88,7 +88,7 @@ class ObjReader {
   [[nodiscard]] std::string open_corner() const { return corner_name(faces_.face_count(), faces_.open_corners()); }
   [[nodiscard]] std::size_t vertex_count() const { return positions_.size() / 3; }
   [[nodiscard]] std::string unknown_vertex(std::int64_t index) const {
-    return " names vertex " + std::to_string(index) + ", but the file has " + std::to_string(vertex_count()) +
+    return " refers to vertex " + std::to_string(index) + ", but the file has " + std::to_string(vertex_count()) +
            (vertex_count() == 1 ? " vertex" : " vertices");
   }
 
@@ -118,9 +118,8 @@ Result<MeshFrame> ObjReader::read() {
     if (Status status = read_statement(whole_statement()); !status) return status.error();
   }
   const std::size_t last_line = lines_.number() == 0 ? 1 : lines_.number();
-  if (positions_.empty()) return error_in_line(last_line, "the file ends without a vertex (a line that begins with v)");
-  if (faces_.face_count() == 0)
-    return error_in_line(last_line, "the file ends without a face (a line that begins with f)");
+  if (positions_.empty()) return error_in_line(last_line, "the file has no vertices (lines that begin with v)");
+  if (faces_.face_count() == 0) return error_in_line(last_line, "the file has no faces (lines that begin with f)");
   if (largest_.index > static_cast<std::int64_t>(vertex_count()))
     return error_in_line(largest_.line, corner_name(largest_.face, largest_.corner) + unknown_vertex(largest_.index));
 
@@ -129,10 +128,11 @@ Result<MeshFrame> ObjReader::read() {
   positions_.shrink_to_fit();
   MeshFrame mesh{std::move(topology).value(), std::move(positions_)};
   mesh.has_more_digits = has_more_digits_;
-  const auto note = [&](std::size_t count, const char* one, const char* several, const char* rest) {
-    if (count > 0) mesh.notes.push_back(std::to_string(count) + (count == 1 ? one : several) + rest);
+  const auto note = [&](std::size_t count, const char* one, const char* several) {
+    if (count > 0) mesh.notes.push_back(std::to_string(count) + (count == 1 ? one : several));
   };
-  note(dropped_faces_, " face has", " faces have", " fewer than three corners: left out");
+  note(dropped_faces_, " face has fewer than three corners and is left out",
+       " faces have fewer than three corners and are left out");
   if (shading_ == nullptr) return mesh;
   // Normals may come after the faces that refer to them.
   for (std::uint32_t& index : shading_->normal_of_corner) {
@@ -142,9 +142,10 @@ Result<MeshFrame> ObjReader::read() {
     }
     shading_->has_normals = shading_->has_normals || index > 0;
   }
-  note(shading_->unknown_normals, " corner names a normal", " corners name normals",
-       " that the file does not have: taken as corners without one");
-  note(shading_->nameless_groups, " line has", " lines have", " an s without a smoothing group: taken as s off");
+  note(shading_->unknown_normals, " corner refers to a normal that the file does not have, and is read without one",
+       " corners refer to normals that the file does not have, and are read without one");
+  note(shading_->nameless_groups, " line has an s without a smoothing group, and is read as s off",
+       " lines have an s without a smoothing group, and are read as s off");
   return mesh;
 }
 
@@ -204,7 +205,7 @@ Status ObjReader::read_vertex(std::string_view numbers) {
     float unused = 0;
     const NumberFault fault = scan::parse_float(word, unused);
     if (fault == NumberFault::kNotANumber)
-      return error("after the position of vertex " + std::to_string(vertex_count()) + ": " +
+      return error("more than the position of vertex " + std::to_string(vertex_count()) + ": " +
                    scan::describe(fault, word));
   }
   positions_.insert(positions_.end(), position.begin(), position.end());
@@ -269,7 +270,7 @@ Status ObjReader::read_corner(std::string_view word) {
   const NumberFault fault = scan::parse_integer(vertex, index);
   if (fault == NumberFault::kNotANumber) return error(open_corner() + ": " + scan::quoted(word) + " is not an index");
   if (fault == NumberFault::kTooLarge)
-    return error(open_corner() + ": " + scan::quoted(vertex) + " is more than a mesh can have");
+    return error(open_corner() + ": " + scan::quoted(vertex) + " is a larger index than a mesh can have");
 
   std::size_t slash = first_slash;
   std::string_view normal;
@@ -278,7 +279,7 @@ Status ObjReader::read_corner(std::string_view word) {
     const std::string_view text = word.substr(slash + 1, next == std::string_view::npos ? next : next - slash - 1);
     std::int64_t unused = 0;
     if (part == 2 || (!text.empty() && scan::parse_integer(text, unused) == NumberFault::kNotANumber))
-      return error(open_corner() + ": " + scan::quoted(word) + " is not of the form v, v/vt, v//vn or v/vt/vn");
+      return error(open_corner() + ": " + scan::quoted(word) + " must be written as v, v/vt, v//vn or v/vt/vn");
     if (part == 1) normal = text;
     slash = next;
   }
@@ -288,7 +289,8 @@ Status ObjReader::read_corner(std::string_view word) {
 
 Status ObjReader::resolve(std::int64_t index, std::string_view word) {
   const auto count = static_cast<std::int64_t>(vertex_count());
-  if (index == 0) return error(open_corner() + ": " + scan::quoted(word) + ": vertices are counted from 1, not from 0");
+  if (index == 0)
+    return error(open_corner() + ": " + scan::quoted(word) + " is not allowed, since vertices are counted from 1");
   if (index < -count) return error(open_corner() + unknown_vertex(index) + " so far");
   if (index > largest_.index) largest_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
   const std::int64_t vertex = index < 0 ? count + index : index - 1;

@@ -41,14 +41,14 @@ class AsciiSource {
 
   [[nodiscard]] bool begin_row() {
     do {
-      if (!lines_.next()) return fail("the file ends here, before this row");
+      if (!lines_.next()) return fail("the file is cut off here, before this row; copy or export it again");
       row_ = lines_.line();
       next_ = scan::take_word(row_);
     } while (next_.empty());
     return true;
   }
   [[nodiscard]] bool end_row() {
-    if (!next_.empty()) return fail(scan::quoted(next_) + " is more than the header declares for a row");
+    if (!next_.empty()) return fail(scan::quoted(next_) + " is one value more than the header declares for a row");
     return true;
   }
 
@@ -133,8 +133,9 @@ class BinarySource {
       value = static_cast<float>(whole);
       return true;
     }
-    if (!std::isfinite(real)) return fail("the coordinate is not a finite number", type);
-    if (std::fabs(real) > std::numeric_limits<float>::max()) return fail("the coordinate is too large", type);
+    if (!std::isfinite(real)) return fail("the coordinate is NaN or infinite", type);
+    if (std::fabs(real) > std::numeric_limits<float>::max())
+      return fail("the coordinate is too large for float32", type);
     value = static_cast<float>(real);
     return true;
   }
@@ -147,8 +148,9 @@ class BinarySource {
       last_digit = 1;
       return true;
     }
-    if (!std::isfinite(value)) return fail("the coordinate is not a finite number", type);
-    if (std::fabs(value) > std::numeric_limits<float>::max()) return fail("the coordinate is too large", type);
+    if (!std::isfinite(value)) return fail("the coordinate is NaN or infinite", type);
+    if (std::fabs(value) > std::numeric_limits<float>::max())
+      return fail("the coordinate is too large for float32", type);
     last_digit = 0;  // a bit
     return true;
   }
@@ -198,8 +200,8 @@ class BinarySource {
     return true;
   }
   bool fail_at_end() {
-    message_ =
-        "the file ends before the data that its header declares: " + std::to_string(bytes_left()) + " bytes are left";
+    message_ = "the file is cut off, since only " + std::to_string(bytes_left()) +
+               " bytes are left for this row; copy or export it again";
     return false;
   }
   // Fails at the value that was just read.
@@ -233,15 +235,17 @@ class BodyReader {
       if (Status status = read_element(e); !status) return status.error();
     }
     if (faces_.face_count() == 0)
-      return invalid_input(name_ + ", " + source_.place(), "no face has three corners or more");
+      return invalid_input(name_ + ", " + source_.place(),
+                           "no face has three or more corners, so the mesh has no normals");
     Result<Topology> topology = faces_.build(vertex_count());
     if (!topology) return invalid_input(name_ + ", " + source_.place(), topology.error().text());
     MeshFrame mesh{std::move(topology).value(), std::move(positions_)};
     mesh.velocities = std::move(velocities_);
     mesh.has_more_digits = has_more_digits_;
     if (dropped_faces_ > 0)
-      mesh.notes.push_back(std::to_string(dropped_faces_) + (dropped_faces_ == 1 ? " face has" : " faces have") +
-                           " fewer than three corners: left out");
+      mesh.notes.push_back(std::to_string(dropped_faces_) +
+                           (dropped_faces_ == 1 ? " face has fewer than three corners and is left out"
+                                                : " faces have fewer than three corners and are left out"));
     return mesh;
   }
 
@@ -272,9 +276,9 @@ class BodyReader {
       std::uint64_t row_bytes = 0;
       for (const Property& property : element.properties) row_bytes += Source::fewest_bytes(property);
       if (element.count > left / row_bytes)
-        return invalid_input(name_ + ", " + source_.place(), "the header declares " + std::to_string(element.count) +
-                                                                 " elements " + scan::quoted(element.name) +
-                                                                 ", for which the file is too short");
+        return invalid_input(name_ + ", " + source_.place(),
+                             "the file is too short for the " + std::to_string(element.count) + " elements " +
+                                 scan::quoted(element.name) + " in its header; copy or export it again");
       left -= element.count * row_bytes;
     }
     return Success{};
@@ -322,7 +326,7 @@ class BodyReader {
 
   [[nodiscard]] bool read_length(const Property& property, std::int64_t& length) {
     if (!source_.integer(property.count_type, length)) return false;
-    return length >= 0 || fail("a list has the length " + std::to_string(length));
+    return length >= 0 || fail("a list has a negative length, " + std::to_string(length));
   }
 
   [[nodiscard]] bool skip(const Property& property) {
@@ -338,8 +342,9 @@ class BodyReader {
       std::int64_t vertex = 0;
       if (!source_.integer(property.type, vertex)) return false;
       if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count())
-        return fail("corner " + std::to_string(c) + " names vertex " + std::to_string(vertex) + ", but the file has " +
-                    std::to_string(vertex_count()) + (vertex_count() == 1 ? " vertex" : " vertices"));
+        return fail("corner " + std::to_string(c) + " refers to vertex " + std::to_string(vertex) +
+                    ", but the file has " + std::to_string(vertex_count()) +
+                    (vertex_count() == 1 ? " vertex" : " vertices"));
       if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
         return fail("the mesh has more than 4,294,967,295 corners");
     }

@@ -86,12 +86,12 @@ Result<Header> HeaderReader::read() {
   };
 
   if (!next_words() || words.size() != 1 || words[0] != "ply")
-    return error("this is not a PLY file: its first line is not the word ply");
+    return error("this is not a PLY file, since its first line is not the word ply");
   while (next_words()) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "end_header") {
-      if (words.size() != 1) return error("there is more than one word in the line end_header");
-      if (!has_format_) return error("the header has no format");
+      if (words.size() != 1) return error("the line end_header must have no other words");
+      if (!has_format_) return error("the header has no line that begins with format");
       header_.body_begin = lines_.position();
       header_.line_count = lines_.number();
       if (Status status = check_elements(); !status) return status.error();
@@ -99,7 +99,7 @@ Result<Header> HeaderReader::read() {
     }
     if (Status status = read_statement(words); !status) return status.error();
   }
-  return error("the file ends before the line end_header");
+  return error("the header does not end, since the line end_header is missing");
 }
 
 Status HeaderReader::read_statement(const Words& words) {
@@ -107,12 +107,12 @@ Status HeaderReader::read_statement(const Words& words) {
   if (!has_format_) return error("a line that begins with format must come before " + scan::quoted(words[0]));
   if (words[0] == "element") return read_element(words);
   if (words[0] == "property") return read_property(words);
-  return error(scan::quoted(words[0]) + " is not a word of a PLY header");
+  return error(scan::quoted(words[0]) + " is not a keyword of a PLY header");
 }
 
 Status HeaderReader::read_format(const Words& words) {
-  if (has_format_) return error("the format is declared twice");
-  if (words.size() != 3) return error("this must read: format ENCODING 1.0");
+  if (has_format_) return error("the header has two lines that begin with format");
+  if (words.size() != 3) return error("the line must be: format ENCODING 1.0");
   if (words[1] == "ascii") {
     header_.encoding = PlyEncoding::kAscii;
   } else if (words[1] == "binary_little_endian") {
@@ -121,21 +121,21 @@ Status HeaderReader::read_format(const Words& words) {
     header_.encoding = PlyEncoding::kBinaryBigEndian;
   } else {
     return error("the encoding " + scan::quoted(words[1]) +
-                 " is unknown; it can be ascii, binary_little_endian or binary_big_endian");
+                 " cannot be read; it must be ascii, binary_little_endian or binary_big_endian");
   }
-  if (words[2] != "1.0") return error("version " + scan::quoted(words[2]) + " of PLY is unknown; there is only 1.0");
+  if (words[2] != "1.0") return error("version " + scan::quoted(words[2]) + " of PLY cannot be read; only 1.0 can");
   has_format_ = true;
   return Success{};
 }
 
 Status HeaderReader::read_element(const Words& words) {
-  if (words.size() != 3) return error("this must read: element NAME COUNT");
+  if (words.size() != 3) return error("the line must be: element NAME COUNT");
   Element element;
   element.name = words[1];
   const char* const last = words[2].data() + words[2].size();
   const auto [end, code] = from_chars(words[2].data(), last, element.count);
   if (code != std::errc{} || end != last)
-    return error(scan::quoted(words[2]) + " is not a possible number of " + scan::quoted(words[1]) + " elements");
+    return error(scan::quoted(words[2]) + " is not a valid number of " + scan::quoted(words[1]) + " elements");
   if (!element_names_.insert(element.name).second)
     return error("the element " + scan::quoted(element.name) + " is declared twice");
   property_names_.clear();
@@ -144,23 +144,23 @@ Status HeaderReader::read_element(const Words& words) {
 }
 
 Status HeaderReader::read_property(const Words& words) {
-  if (header_.elements.empty()) return error("a property must follow its element");
+  if (header_.elements.empty()) return error("a property must come after its element");
   const bool is_list = words.size() > 1 && words[1] == "list";
   if (words.size() != (is_list ? 5 : 3))
-    return error("this must read: property TYPE NAME, or property list COUNT_TYPE TYPE NAME");
+    return error("the line must be: property TYPE NAME, or property list COUNT_TYPE TYPE NAME");
 
   Property property;
   property.is_list = is_list;
   property.name = words.back();
   const std::string_view type_word = words[words.size() - 2];
   const std::optional<Scalar> type = find_scalar(type_word);
-  if (!type) return error("the type " + scan::quoted(type_word) + " is unknown");
+  if (!type) return error("the type " + scan::quoted(type_word) + " is not a type of PLY");
   property.type = *type;
   if (is_list) {
     const std::optional<Scalar> count_type = find_scalar(words[2]);
-    if (!count_type) return error("the type " + scan::quoted(words[2]) + " is unknown");
+    if (!count_type) return error("the type " + scan::quoted(words[2]) + " is not a type of PLY");
     if (!is_integer(*count_type))
-      return error("the length of a list can not be of the type " + scan::quoted(words[2]) + ": it is an integer");
+      return error("the length of a list must be an integer, but its type is " + scan::quoted(words[2]));
     property.count_type = *count_type;
   }
   if (!property_names_.insert(property.name).second)
@@ -173,14 +173,16 @@ Status HeaderReader::read_property(const Words& words) {
 Status HeaderReader::assign_role(Property& property) {
   const Element& element = header_.elements.back();
   if (element.name == "vertex" && property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z') {
-    if (property.is_list) return error("the coordinate " + scan::quoted(property.name) + " is a list");
+    if (property.is_list)
+      return error("the coordinate " + scan::quoted(property.name) + " is a list, but must be a number");
     property.role = static_cast<Role>(property.name[0] - 'x');
   }
   if (element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index")) {
     if (!property.is_list || !is_integer(property.type))
       return error("the property " + scan::quoted(property.name) + " must be a list of integers");
     for (const Property& other : element.properties) {
-      if (other.role == Role::kIndices) return error("both vertex_indices and vertex_index are declared");
+      if (other.role == Role::kIndices)
+        return error("the faces have both vertex_indices and vertex_index; keep one of them");
     }
     property.role = Role::kIndices;
   }
@@ -208,7 +210,7 @@ Status HeaderReader::check_elements() {
       return error(std::string("the vertices have no property ") + "xyz"[static_cast<std::size_t>(role)]);
   }
   if (header_.face_element == kNone || header_.elements[header_.face_element].count == 0) {
-    if (has_strips) return error("the file has triangle strips, which are not supported; write it with faces");
+    if (has_strips) return error("the file has triangle strips, which cannot be read; export it with faces");
     return error("the file has no faces");
   }
   if (!has_role(header_.face_element, Role::kIndices)) return error("the faces have no property vertex_indices");
@@ -237,10 +239,12 @@ Result<bool> assign_velocities(Header& header, const std::string& name) {
       continue;
     for (std::size_t c = 0; c < 3; ++c) {
       if (found[c] == nullptr)
-        return invalid_input(name + ", header",
-                             "the vertices have a part of a velocity, but no property " + std::string(names[c]));
+        return invalid_input(
+            name + ", header",
+            "the velocity of the vertices is incomplete, since they have no property " + std::string(names[c]));
       if (found[c]->is_list)
-        return invalid_input(name + ", header", "the velocity " + std::string(names[c]) + " is a list");
+        return invalid_input(name + ", header",
+                             "the velocity " + std::string(names[c]) + " is a list, but must be a number");
       found[c]->role = static_cast<Role>(static_cast<std::size_t>(Role::kVelocityX) + c);
     }
     return true;

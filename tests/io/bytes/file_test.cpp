@@ -126,7 +126,7 @@ TEST(FileBytes, devices_are_refused_but_for_terminals) {
     const Result<FileBytes> file = FileBytes::open(device);
     ASSERT_FALSE(file.ok()) << device;
     EXPECT_EQ(file.error().code, ErrorCode::kFailed);
-    EXPECT_EQ(file.error().text(), device + std::string(": this is a device, not a file, and may have no end"));
+    EXPECT_EQ(file.error().text(), device + std::string(": this is a device, whose data may never end; name a file"));
   }
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(terminal, 0);
@@ -169,7 +169,7 @@ TEST(FileBytes, missing_file_and_folder_are_errors_with_the_path) {
   EXPECT_EQ(missing.error().text(), folder / "no" + ": No such file or directory");
   const Result<FileBytes> directory = FileBytes::open(folder.path());
   ASSERT_FALSE(directory.ok());
-  EXPECT_EQ(directory.error().text(), folder.path() + ": this is a folder, not a file");
+  EXPECT_EQ(directory.error().text(), folder.path() + ": this is a folder; name a file");
 }
 
 TEST(WriteOutput, new_file_has_the_permissions_of_the_umask) {
@@ -209,7 +209,7 @@ TEST(WriteOutput, existing_file_is_kept_without_force_and_replaced_with_it) {
   const TemporaryFolder folder;
   const std::string path = folder.write("a", "old");
   ASSERT_EQ(::chmod(path.c_str(), 0604), 0);
-  const std::string refusal = path + ": the file exists already; pass --force to overwrite it";
+  const std::string refusal = path + ": the file exists already; add --force to overwrite it";
   EXPECT_EQ(error_of(write_output(path, "new", false)), refusal);
   EXPECT_EQ(error_of(check_output(path, false)), refusal);
   EXPECT_EQ(read_whole(path), "old");
@@ -329,7 +329,7 @@ TEST(WriteOutput, standard_output_and_its_other_names_are_streams) {
 
 TEST(WriteOutput, failure_leaves_no_temporary_and_the_old_file) {
   const TemporaryFolder folder;
-  EXPECT_EQ(error_of(write_output(folder.path(), "x", true)), folder.path() + ": this is a folder, not a file");
+  EXPECT_EQ(error_of(write_output(folder.path(), "x", true)), folder.path() + ": this is a folder; name a file");
   EXPECT_NE(error_of(write_output(folder / "no/where", "x", false)).find("can not write in its folder"),
             std::string::npos);
   EXPECT_NE(error_of(write_output(folder / std::string(300, 'a'), "x", false)), "no error");

@@ -40,7 +40,7 @@ const std::vector<Sample> kSamples = {
     {"7z\xBC\xAF\x27\x1C\0\4"s, "a 7-Zip archive"},
     {"Kaydara FBX Binary  \0\x1A\0"s, "an FBX file"},
     {"; FBX 7.3.0 project file\n", "an FBX file"},
-    {"BLENDER-v300", "a file of Blender"},
+    {"BLENDER-v300", "a Blender file"},
     {"PXR-USDC\0\x08"s, "a USD file"},
     {"#usda 1.0\n(\n", "a USD file"},
     {"solid cube\nfacet normal 0 0 1\n", "an STL file"},

@@ -146,7 +146,8 @@ TEST(Spool, in_a_folder_that_is_not_there_says_so) {
   const TemporaryFolder folder;
   const Result<Spool> spool = Spool::beside(folder / "none/out.glb", "none/out.glb");
   ASSERT_FALSE(spool.ok());
-  EXPECT_EQ(spool.error().text(), "none/out.glb: can not write in its folder: No such file or directory");
+  EXPECT_EQ(spool.error().text(),
+            "none/out.glb: the folder of the output cannot be written to: No such file or directory");
 }
 
 // Returns the path by which the system reaches the unnamed file of a spool in a folder.

@@ -53,7 +53,7 @@ TEST(ReadMayaPoints, a_channel_must_be_the_only_one_that_can_be_meant) {
   EXPECT_EQ(error_text(read_maya_points(bytes, "a.mc", {1, 3, "head"})),
             "a.mc, channels: there is no channel 'head'; there are 'body' (3), 'other' (1)");
   EXPECT_EQ(error_text(read_maya_points(test::MayaWriter(false).header(0), "a.mc")),
-            "a.mc, channels: there are no points in the file");
+            "a.mc, channels: the cache has no points");
 }
 
 TEST(ReadMayaPoints, errors_say_where_and_what) {
@@ -62,11 +62,11 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
     return error_text(read_maya_points(header + writer.group("MYCH", chunks), "a.mc"));
   };
   EXPECT_EQ(error_text(read_maya_points("FOR5", "a.mc")),
-            "a.mc, byte 0: this is not a Maya cache: its first word is neither FOR4 nor FOR8");
+            "a.mc, byte 0: this is not a Maya cache, since it begins neither with FOR4 nor with FOR8");
   EXPECT_EQ(error_with(writer.chunk("FVCA", ""), writer.header(0)),
-            "a.mc, byte 60: points must follow the name and the size of their channel");
+            "a.mc, byte 60: the cache is damaged, since these points have no channel name (CHNM) or no size (SIZE)");
   EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}), ""),
-            "a.mc, byte 36: the points have no time: neither TIME nor STIM stands before them");
+            "a.mc, byte 36: the points have no time, since neither TIME nor STIM comes before them");
   EXPECT_EQ(
       error_with(writer.chunk("CHNM", "a") + writer.integer("SIZE", -1) + writer.chunk("FVCA", ""), writer.header(0)),
       "a.mc, byte 84: the channel 'a' declares -1 points, but has 0 bytes for them");
@@ -78,7 +78,7 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
   EXPECT_EQ(error_with(writer.points<double>("a", {1, 2, 3}) + writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) +
                            writer.chunk("DVCA", test::raw<double>({1, 1e39, 1}, true)),
                        writer.header(0)),
-            "a.mc, byte 156, channel 'a', point 0: the coordinate is too large");
+            "a.mc, byte 156, channel 'a', point 0: the coordinate is too large for float32 for float32");
   EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}) + writer.points<float>("a", {1, 2, 3, 4, 5, 6}),
                        writer.header(0)),
             "a.mc, byte 136: the channel 'a' has 2 points here, but 1 before");
@@ -114,15 +114,15 @@ TEST(ReadMayaDescription, errors_say_where_and_what) {
   };
   EXPECT_NE(error_with("Autodesk_Cache_File", "x").find("c.xml, byte "), std::string::npos);
   EXPECT_EQ(error_text(read_maya_description("<a/>", "c.xml")),
-            "c.xml, byte 0: this is not the description of a Maya cache: there is no Autodesk_Cache_File");
+            "c.xml, byte 0: this is not the description of a Maya cache, since it has no Autodesk_Cache_File");
   EXPECT_NE(error_with("OneFile", "TwoFiles").find("the Type of cacheType is 'TwoFiles'"), std::string::npos);
   EXPECT_NE(error_with("mcc", "abc").find("the Format of cacheType is 'abc'"), std::string::npos);
-  EXPECT_NE(error_with("\"250\"", "\"0\"").find("TimePerFrame must be above 0"), std::string::npos);
+  EXPECT_NE(error_with("\"250\"", "\"0\"").find("TimePerFrame must be greater than 0"), std::string::npos);
   EXPECT_NE(error_with("\"125\"", "\"4294967296\"").find("SamplingRate: '4294967296' is too large"), std::string::npos);
   EXPECT_NE(error_with("\"125\"", "\"-1\"").find("a SamplingRate above 0"), std::string::npos);
   EXPECT_NE(error_with("\"375\"", "\"249\"").find("a StartTime not after its EndTime"), std::string::npos);
   EXPECT_EQ(error_text(read_maya_description(std::string((std::size_t{1} << 24) + 1, ' '), "c.xml")),
-            "c.xml, byte 16777216: a description has no more than 16 MiB");
+            "c.xml, byte 16777216: the description of the Maya cache is larger than 16 MiB");
 }
 
 TEST(ReadMayaCache, reads_one_file) {
@@ -161,11 +161,11 @@ TEST(ReadMayaCache, a_missing_sample_is_an_error_that_names_its_file) {
   const test::TemporaryFolder folder;
   folder.write("c.xml", test::maya_xml("OneFilePerFrame", "mcc", 125, -250, 0));
   EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml")),
-            "c.xml: there is no file cFrame0.mc (or another number) beside it");
+            "c.xml: this file is missing: cFrame0.mc (or another number) beside it");
   folder.write("cFrame-1.mc", frame_bytes(false, -250, test::kTurning[0]));
   folder.write("cFrame0.mc", frame_bytes(false, 0, test::kTurning[1]));
   EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml")),
-            "c.xml: it declares a sample at tick -125, which is not there; its file would be cFrame-1Tick125.mc");
+            "c.xml: it declares a sample at tick -125, which is not there; that file should be cFrame-1Tick125.mc");
   folder.write("cFrame-1Tick125.mc", frame_bytes(false, -125, test::kTurning[0]));
   EXPECT_TRUE(read_maya_cache(folder / "c.xml").ok());
   folder.write("c.xml", test::maya_xml("OneFile", "mcc", 125, 250, 500));
@@ -207,7 +207,8 @@ TEST(ReadMayaCache, files_for_each_frame_are_not_found_in_memory) {
       read_maya_cache("c.xml", {1, 3, ""}, [&xml](const std::string&) { return Result<std::string_view>(xml); });
   ASSERT_FALSE(cache.ok());
   EXPECT_EQ(cache.error().code, ErrorCode::kUsage);
-  EXPECT_EQ(cache.error().text(), "c.xml: its files, one for each frame, can only be listed in a folder on disk");
+  EXPECT_EQ(cache.error().text(),
+            "c.xml: the cache has a file for each frame, and these can only be found in a folder on disk");
 }
 
 }  // namespace

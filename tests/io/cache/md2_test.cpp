@@ -60,8 +60,8 @@ TEST(ReadMd2, clips_are_apart) {
 }
 
 TEST(ReadMd2, errors_say_where_and_what) {
-  EXPECT_EQ(error_with(0, "IDP3"), "imp.md2, byte 0: this is not an MD2 file: its first word is not IDP2");
-  EXPECT_EQ(error_with(4, "\x0F"), "imp.md2, byte 4: version 15 of MD2 is unknown; there is only 8");
+  EXPECT_EQ(error_with(0, "IDP3"), "imp.md2, byte 0: this is not an MD2 file, since it does not begin with IDP2");
+  EXPECT_EQ(error_with(4, "\x0F"), "imp.md2, byte 4: version 15 of MD2 cannot be read; only version 8 can");
   EXPECT_EQ(error_with(16, "\x35"), "imp.md2, byte 16: a frame of 3 vertices has 52 bytes, but the header declares 53");
   EXPECT_EQ(error_with(24, "\0"s), "imp.md2, byte 24: the header declares 0 vertices");
   EXPECT_EQ(error_with(32, "\0"s), "imp.md2, byte 32: the header declares 0 triangles; a motion needs 1 or more");
@@ -71,9 +71,9 @@ TEST(ReadMd2, errors_say_where_and_what) {
   EXPECT_EQ(error_with(56, "\xFF\xFF\xFF\xFF"),
             "imp.md2, byte 56: the header declares 2 frames from byte -1 on, but the file has only 184 bytes");
   EXPECT_EQ(error_with(70, "\3"), "imp.md2, byte 70, triangle 0: corner 1 names vertex 3, but the file has 3");
-  EXPECT_EQ(error_with(80, "\0\0\x80\x7F"s),
-            "imp.md2, byte 120, frame 0, vertex 0: the coordinate is not a finite number");
-  EXPECT_EQ(error_with(132, "\xFF\xFF\x7F\x7F"), "imp.md2, byte 176, frame 1, vertex 1: the coordinate is too large");
+  EXPECT_EQ(error_with(80, "\0\0\x80\x7F"s), "imp.md2, byte 120, frame 0, vertex 0: the coordinate is NaN or infinite");
+  EXPECT_EQ(error_with(132, "\xFF\xFF\x7F\x7F"),
+            "imp.md2, byte 176, frame 1, vertex 1: the coordinate is too large for float32 for float32");
 }
 
 }  // namespace

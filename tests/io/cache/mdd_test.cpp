@@ -37,7 +37,8 @@ TEST(ReadMdd, errors_say_where_and_what) {
   const auto patched = [](std::size_t at, const std::string& raw) {
     return test::small_mdd(0, 1).replace(at, raw.size(), raw);
   };
-  EXPECT_EQ(error_of("abc"), "walk.mdd, byte 3: the file ends inside its header of 8 bytes");
+  EXPECT_EQ(error_of("abc"),
+            "walk.mdd, byte 3: the file is cut off inside its header of 8 bytes; copy or export it again");
   EXPECT_EQ(error_of(patched(4, "\x80\0\0\0"s)),
             "walk.mdd, byte 8: the header declares -2147483648 vertices and 2 samples");
   EXPECT_EQ(error_of(patched(4, "\x7F\xFF\xFF\xFF")),
@@ -50,10 +51,11 @@ TEST(ReadMdd, errors_say_where_and_what) {
     return find_mdd_layout(std::string_view(bytes).substr(0, count), bytes.size(), "walk.mdd", {});
   };
   EXPECT_TRUE(layout(16).ok());
-  EXPECT_EQ(layout(15).error().text(), "walk.mdd, byte 15: the times are not here");
-  EXPECT_EQ(error_of(patched(12, "\x7F\x80\0\0"s)), "walk.mdd, byte 12, sample 1: the time is not a finite number");
+  EXPECT_EQ(layout(15).error().text(),
+            "walk.mdd, byte 15: the file is cut off inside the times of its samples; copy or export it again");
+  EXPECT_EQ(error_of(patched(12, "\x7F\x80\0\0"s)), "walk.mdd, byte 12, sample 1: the time is NaN or infinite");
   EXPECT_EQ(error_of(patched(20, "\xFF\xC0\0\0"s)),
-            "walk.mdd, byte 20, sample 0, vertex 0: the coordinate is not a finite number");
+            "walk.mdd, byte 20, sample 0, vertex 0: the coordinate is NaN or infinite");
 }
 
 TEST(WriteMdd, writes_the_bytes_that_were_made_by_hand) {

@@ -138,11 +138,11 @@ TEST(ReadNpz, errors_name_array_and_element) {
   auto elements = test::turning_elements<double>(true);
   elements[1 + 2 * (2 + 3 * 1)] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(error_of(archive(npy(npy_header("<f8", "(2, 3, 3)", true), raw(elements)), kFaces)),
-            "walk.npz, positions[1, 2, 1]: the coordinate is not a finite number");
+            "walk.npz, positions[1, 2, 1]: the coordinate is NaN or infinite");
   elements = test::turning_elements<double>(false);
   elements[13] = -1e39;
   EXPECT_EQ(error_of(archive(npy(npy_header("<f8", "(2, 3, 3)"), raw(elements)), kFaces)),
-            "walk.npz, positions[1, 1, 1]: the coordinate is too large");
+            "walk.npz, positions[1, 1, 1]: the coordinate is too large for float32 for float32");
   EXPECT_EQ(
       error_of(archive(npy(npy_header("<i4", "(2, 3, 3)"), std::string(72, '\0')), kFaces)),
       "walk.npz, positions: positions must be (keyframes, vertices, 3) of float32 or float64, but are (2, 3, 3) of "
@@ -157,13 +157,13 @@ TEST(ReadNpz, errors_name_array_and_element) {
     EXPECT_EQ(error_of(archive(kPositions, npy(npy_header(type, "(1, 3)"), data))),
               "walk.npz, faces[0, 2]: the face names a vertex that is not there: vertices are counted from 0 to 2");
   EXPECT_EQ(error_of(archive(kPositions, npy(npy_header("<f4", "(1, 3)"), std::string(12, '\0')))),
-            "walk.npz, faces: faces must be (faces, 3) of integers, but are (1, 3) of '<f4'");
+            "walk.npz, faces: faces must be an array (faces, 3) of integers, but are (1, 3) of '<f4'");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f4", "(3,)"), std::string(12, '\0')))),
             "walk.npz, times: times must be a number for each of the 2 keyframes, but are (3,) of '<f4'");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f4", "(2,)"), std::string(8, '\0')))),
             "walk.npz, sample 1: its time, 0 s, is not after that of sample 0, 0 s");
   EXPECT_EQ(error_of(archive(kPositions, kFaces, npy(npy_header("<f8", "(2,)"), raw<double>({0, 1.0 / 0.0})))),
-            "walk.npz, times[1]: the time is not a finite number");
+            "walk.npz, times[1]: the time is NaN or infinite");
 }
 
 TEST(ReadNpz, missing_and_doubled_arrays_are_errors) {
@@ -184,7 +184,10 @@ TEST(ReadNpz, damaged_array_headers_are_errors) {
                                    "{'descr': '<f4', 'fortran_order': False, 'shape': (2 3, 3)}",
                                    "{'descr': '<f4', 'fortran_order': False, 'shape': (18446744073709551616, 3, 3)}",
                                    "{'descr': '<f4' 'fortran_order': False, 'shape': (2, 3, 3)}"})
-    EXPECT_EQ(error_with(header), "walk.npz, positions: the array header does not follow the form of NumPy") << header;
+    EXPECT_EQ(error_with(header),
+              "walk.npz, positions: the array header is not as NumPy writes it; save the array with numpy.save or "
+              "numpy.savez")
+        << header;
   EXPECT_NE(error_with(npy_header("<f2", "(2, 3, 3)")).find("elements of the type '<f2' are not supported"),
             std::string::npos);
   EXPECT_NE(error_with("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (2, 3, 3)}").find("are records"),
@@ -199,7 +202,8 @@ TEST(ReadNpz, damaged_array_headers_are_errors) {
 }
 
 TEST(ReadNpz, damaged_zip_files_are_errors) {
-  EXPECT_EQ(error_of(""), "walk.npz, byte 0: this is no zip file, or its end is missing");
+  EXPECT_EQ(error_of(""),
+            "walk.npz, byte 0: this is not a .npz (zip) file, or its end is missing; copy or save the file again");
   std::string bytes = test::small_npz(false);
   bytes[bytes.find("\x93NUMPY") + 128] ^= 1;
   EXPECT_NE(error_of(bytes).find("walk.npz, 'positions.npy': the data do not have the checksum"), std::string::npos);
@@ -320,10 +324,10 @@ TEST(ReadNpz, kind_is_a_string_of_numpy) {
   EXPECT_EQ(read_good(with_kind(text_array("|S9", "animation", 1))).kind, MotionKind::kAnimation);
   EXPECT_EQ(read_good(with_kind(text_array("|S9", "sequence"s + '\0', 1))).kind, MotionKind::kSequence);
   EXPECT_EQ(error_of(with_kind(text_array("<U4", "star", 4))),
-            "walk.npz, kind: it must be sequence, targets or animation, but is 'star'");
+            "walk.npz, kind: kind must be sequence, targets or animation, but is 'star'");
   EXPECT_EQ(error_of(with_kind(npy(npy_header("<i4", "()"), raw<std::int32_t>({1})))),
-            "walk.npz, kind: this must be one text, but it is () of '<i4'");
-  EXPECT_EQ(error_of(with_kind(text_array("<U4", "\xff\xff\xff\xff", 4))), "walk.npz, kind: the text is not ASCII");
+            "walk.npz, kind: the array must be a single text, but is () of '<i4'");
+  EXPECT_EQ(error_of(with_kind(text_array("<U4", "\xff\xff\xff\xff", 4))), "walk.npz, kind: the text must be ASCII");
   EXPECT_FALSE(error_of(with_kind(npy(npy_header("<U7", "()"), "targets"))).empty());
 }
 
@@ -355,7 +359,8 @@ TEST(Npy, no_keyframe_lies_in_one_piece_in_the_order_of_Fortran) {
     const Result<CacheLayout> layout = find_npy_layout(bytes, bytes.size(), "walk.npy", {});
     EXPECT_EQ(layout.ok(), !fortran);
     if (fortran) {
-      EXPECT_EQ(layout.error().text(), "walk.npy, positions: they are in the order of Fortran");
+      EXPECT_EQ(layout.error().text(),
+                "walk.npy, positions: positions are in Fortran order; save numpy.ascontiguousarray(positions)");
     }
   }
 }

@@ -48,8 +48,7 @@ TEST(MotionFromCache, errors_name_counts_and_samples) {
 TEST(MotionFromCache, refuses_what_is_not_finite_with_the_sample) {
   PositionCache cache = cache_at({0, 1});
   cache.samples[1].positions[4] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(error_of(3, std::move(cache)),
-            "walk.pc2, frame 1 (walk.pc2), vertex 1: the position is not a finite number");
+  EXPECT_EQ(error_of(3, std::move(cache)), "walk.pc2, frame 1 (walk.pc2), vertex 1: the position is NaN or infinite");
 }
 
 TEST(MotionFromCache, looks_at_positions_only_where_there_are_some) {
@@ -75,7 +74,7 @@ TEST(EachKeyframe, refuses_a_keyframe_of_another_number_of_vertices) {
   const Status status = each_keyframe(broken, std::endian::little, count_one);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kUsage);
-  EXPECT_EQ(status.error().text(), "a keyframe has another number of coordinates than the vertices need");
+  EXPECT_EQ(status.error().text(), "a keyframe has more or fewer coordinates than the mesh has vertices");
 }
 
 }  // namespace

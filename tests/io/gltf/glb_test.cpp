@@ -43,15 +43,17 @@ TEST(ReadGlb, finds_the_chunks_and_what_follows_them) {
 TEST(ReadGlb, errors_say_where_and_what) {
   const std::string json = chunk("JSON", "{}  ");
   EXPECT_EQ(error_of("{\"asset\": {\"version\": \"2.0\"}}"),
-            "a.glb, byte 0: this is not a GLB file: its first word is not glTF");
-  EXPECT_EQ(error_of(glb("")), "a.glb, byte 12: the file ends inside its header of 20 bytes");
-  EXPECT_EQ(error_of(glb(json + "1234")), "a.glb, byte 24: the file ends inside the header of a chunk");
+            "a.glb, byte 0: this is not a GLB file, since it does not begin with the word glTF");
+  EXPECT_EQ(error_of(glb("")),
+            "a.glb, byte 12: the file is cut off inside its header of 20 bytes; copy or export it again");
+  EXPECT_EQ(error_of(glb(json + "1234")),
+            "a.glb, byte 24: the file is cut off inside the header of a chunk; copy or export it again");
   EXPECT_EQ(error_of(glb(json + word(9) + kBin)), "a.glb, byte 24: chunk 1 declares 9 bytes, but only 0 are left");
   EXPECT_EQ(error_of(glb(chunk("JSON", "{} ") + " ")), "a.glb, byte 12: the length of chunk 0 is no multiple of 4");
   EXPECT_EQ(error_of(glb(chunk(kBin, "") + json)), "a.glb, byte 16: the first chunk is not JSON");
   EXPECT_EQ(error_of(glb(json + json)), "a.glb, byte 28: there is a second JSON chunk");
   EXPECT_EQ(error_of(glb(json + chunk("more", "") + chunk(kBin, ""))),
-            "a.glb, byte 36: the BIN chunk must be the second");
+            "a.glb, byte 36: the BIN chunk must be the second chunk, right after JSON");
 }
 
 }  // namespace

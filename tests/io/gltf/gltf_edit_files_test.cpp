@@ -184,7 +184,7 @@ TEST(GltfEditFiles, images_beside_the_source_are_taken_along) {
   }
   const std::vector<std::string> warnings = edit.warnings(folder / "out.glb");
   ASSERT_EQ(warnings.size(), 2U);
-  EXPECT_TRUE(warnings[0].starts_with("in.gltf, /images/5/uri: there is no file ")) << warnings[0];
+  EXPECT_TRUE(warnings[0].starts_with("in.gltf, /images/5/uri: this file is missing: ")) << warnings[0];
   EXPECT_TRUE(warnings[1].starts_with("in.gltf, /images/6/uri: ")) << warnings[1];
 
   const Json gltf = Json::parse(bytes_or_error(edit, elsewhere / "out.gltf"));
@@ -194,7 +194,8 @@ TEST(GltfEditFiles, images_beside_the_source_are_taken_along) {
 
   folder.write("c.webp", "no image");
   EXPECT_EQ(bytes_or_error(edit, folder / "out.glb"),
-            "in.gltf, /images/2/uri: the file is neither PNG, JPEG, WebP nor KTX2, so it can not be taken in");
+            "in.gltf, /images/2/uri: the image is not PNG, JPEG, WebP or KTX2, so it cannot be embedded; write a .gltf "
+            "file instead");
 }
 
 TEST(GltfEditFiles, an_image_that_a_change_took_away_is_not_taken_along) {
@@ -217,7 +218,7 @@ TEST(GltfEditFiles, path_that_names_no_gltf_file_is_refused) {
     const Status status = edit.write(folder / name, false);
     ASSERT_FALSE(status.ok());
     EXPECT_EQ(status.error().code, ErrorCode::kUsage);
-    EXPECT_EQ(status.error().text(), folder / name + ": the name of a glTF file ends with .glb, .gltf or .vrm");
+    EXPECT_EQ(status.error().text(), folder / name + ": the name of a glTF file must end with .glb, .gltf or .vrm");
   }
   EXPECT_EQ(folder.entry_count(), 0U);
 }
@@ -248,7 +249,8 @@ TEST(GltfEditFiles, buffer_outside_the_folder_is_not_taken_along_unless_allowed)
   const Result<GltfDocument> refused = GltfDocument::open(path);
   ASSERT_TRUE(refused.ok());
   EXPECT_EQ(bytes_or_error(GltfEdit(refused.value()), folder / "in/y.glb"),
-            "x.gltf, /buffers/0/uri: the URI leads out of the folder of the asset; --allow-external reads it");
+            "x.gltf, /buffers/0/uri: the uri leads out of the folder of the glTF file, which is refused for safety; "
+            "--allow-external reads it");
   GltfOptions options;
   options.allow_external = true;
   const Result<GltfDocument> allowed = GltfDocument::open(path, options);
@@ -271,7 +273,7 @@ TEST(GltfEditFiles, more_than_a_glb_can_hold_is_refused) {
   const Status status = GltfEdit(document.value()).write(folder / "a.glb", false);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kInvalidInput);
-  EXPECT_TRUE(status.error().text().starts_with(folder / "a.glb: the GLB file would have 4294967"))
+  EXPECT_TRUE(status.error().text().starts_with(folder / "a.glb: the result would have 4294967"))
       << status.error().text();
   EXPECT_EQ(folder.entry_count(), 2U);
 }
@@ -286,7 +288,7 @@ TEST(GltfEditFiles, failed_write_leaves_the_old_file_and_no_temporary) {
   for (std::size_t i = 0; i < many.size(); ++i) many[i] = static_cast<float>(i);
   (void)edit.add_vectors(many);
 
-  EXPECT_EQ(edit.write(path, false).error().text(), path + ": the file exists already; pass --force to overwrite it");
+  EXPECT_EQ(edit.write(path, false).error().text(), path + ": the file exists already; add --force to overwrite it");
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const rlimit small{100000, before.rlim_max};

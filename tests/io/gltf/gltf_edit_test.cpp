@@ -147,12 +147,14 @@ TEST(GltfEdit, number_beyond_double_is_kept_and_refused_where_it_is_read) {
   };
   EXPECT_EQ(error_with("/extras", {1, "?", nullptr}), "");
   EXPECT_EQ(error_with("/nodes/0/extras", "?"), "");
-  EXPECT_EQ(error_with("/meshes/0/weights", {0, "?"}), "a.gltf, /meshes/0/weights/1: the number is too large");
-  EXPECT_EQ(error_with("/nodes/0/scale", {1, "?", 1}), "a.gltf, /nodes/0/scale/1: the number is too large");
-  EXPECT_EQ(error_with("/accessors/0/count", "?"), "a.gltf, /accessors/0/count: the number is too large");
+  EXPECT_EQ(error_with("/meshes/0/weights", {0, "?"}),
+            "a.gltf, /meshes/0/weights/1: the number is too large for a double");
+  EXPECT_EQ(error_with("/nodes/0/scale", {1, "?", 1}),
+            "a.gltf, /nodes/0/scale/1: the number is too large for a double");
+  EXPECT_EQ(error_with("/accessors/0/count", "?"), "a.gltf, /accessors/0/count: the number is too large for a double");
   EXPECT_EQ(error_with("/meshes/0/primitives/0/attributes/POSITION", "?"),
-            "a.gltf, /meshes/0/primitives/0/attributes/POSITION: the number is too large");
-  EXPECT_EQ(error_with("/meshes/0/name", "?"), "a.gltf, /meshes/0/name: this must be a string, not a number");
+            "a.gltf, /meshes/0/primitives/0/attributes/POSITION: the number is too large for a double");
+  EXPECT_EQ(error_with("/meshes/0/name", "?"), "a.gltf, /meshes/0/name: the value must be a string, not a number");
 }
 
 // Returns the accessor of an array that was added to a file without arrays.
@@ -284,27 +286,29 @@ TEST(GltfEdit, change_that_is_not_possible_is_an_error_with_the_pointer) {
     EXPECT_FALSE(edit.pointers().ok());
     return bytes.error().message;
   };
-  EXPECT_EQ(error_of("/meshes/0/name/x", "1", false), "there is neither an object nor an array to take 'x' from");
+  EXPECT_EQ(error_of("/meshes/0/name/x", "1", false),
+            "only an object or an array can take a member, but none takes 'x' from");
   EXPECT_EQ(error_of("/meshes/1", "{}", false), "the array has 1 items, and no item 1");
-  EXPECT_EQ(error_of("/meshes/0/name", "1", true), "there is no array to which something could be added");
-  EXPECT_EQ(error_of("meshes", "1", false), "this is no JSON pointer");
-  EXPECT_EQ(error_of("", "{}", false), "the whole document can not be replaced");
+  EXPECT_EQ(error_of("/meshes/0/name", "1", true), "a value can only be added to an array, but this is not one");
+  EXPECT_EQ(error_of("meshes", "1", false), "this is not a JSON pointer; write one like /meshes/0/extras");
+  EXPECT_EQ(error_of("", "{}", false), "the whole document cannot be replaced; name a member of it");
   for (const char* const pointer : {"/accessors", "/bufferViews", "/buffers"})
-    EXPECT_EQ(error_of(pointer, "{}", true), "accessors, buffer views and buffers are added with arrays, not as JSON");
+    EXPECT_EQ(error_of(pointer, "{}", true),
+              "accessors, bufferViews and buffers cannot be changed as JSON; add an array instead");
   for (const char* const json : {"", "nothing", "1,2", "\"", "{\"a\":1", "1}", "\"\xFF\"", "\n"})
     EXPECT_TRUE(error_of("/extras", json, false).starts_with("what is to be written here is no JSON value")) << json;
-  EXPECT_TRUE(error_of("/extras", std::string("1\0", 2), false).ends_with("it has a zero byte"));
+  EXPECT_TRUE(error_of("/extras", std::string("1\0", 2), false).ends_with("the text has a zero byte"));
   EXPECT_TRUE(error_of("/extras",
                        "\xEF\xBB\xBF"
                        "1",
                        false)
-                  .ends_with("it has a byte order mark"));
+                  .ends_with("the text begins with a byte order mark"));
   EXPECT_EQ(GltfFixture("\xEF\xBB\xBF\xEF\xBB\xBF" + test::quad_document().gltf()).error(),
-            "a.gltf, byte 3: this is no JSON: a second byte order mark");
+            "a.gltf, byte 3: the JSON is not valid: it has a second byte order mark");
   EXPECT_TRUE(error_of("/extras/\xFF", "1", false).starts_with("what is to be written here is no JSON value"));
   const auto deep = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
-  EXPECT_EQ(error_of("/extras", deep(256), false), "what is to be written here is nested deeper than 256 levels");
-  EXPECT_EQ(error_of("/extras", deep(255), true), "what is to be written here is nested deeper than 256 levels");
+  EXPECT_EQ(error_of("/extras", deep(256), false), "the new value is nested deeper than 256 levels");
+  EXPECT_EQ(error_of("/extras", deep(255), true), "the new value is nested deeper than 256 levels");
   GltfEdit edit(*fixture);
   edit.set("/extras", deep(255));
   EXPECT_EQ(GltfFixture(bytes_or_error(edit)).error(), "");

@@ -365,7 +365,7 @@ TEST(GltfRefusals, of_json_name_a_byte) {
   EXPECT_TRUE(error_of("").starts_with("a.gltf, byte 0: ")) << error_of("");
   EXPECT_TRUE(error_of("{\"asset\": nothing}").starts_with("a.gltf, byte 11: ")) << error_of("{\"asset\": nothing}");
   EXPECT_TRUE(error_of("{} {}").starts_with("a.gltf, byte ")) << error_of("{} {}");
-  EXPECT_EQ(error_of("{\"asset\": 1e999}"), "a.gltf, /asset: this must be an object, not a number");
+  EXPECT_EQ(error_of("{\"asset\": 1e999}"), "a.gltf, /asset: the value must be an object, not a number");
   EXPECT_TRUE(error_of("{\"a\": \"\xFF\"}").starts_with("a.gltf, byte ")) << error_of("{\"a\": \"\xFF\"}");
   EXPECT_TRUE(error_of("[]").starts_with("a.gltf")) << error_of("[]");
   const std::string deep = "{\"asset\": " + std::string(256, '[');

@@ -172,8 +172,10 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
        [](Skinned& s) { s.builder.json["nodes"][0]["skin"] = "first"; }},
       {"a.gltf, /nodes/0/skin: this is none of the 0 skins of the file",
        [](Skinned& s) { s.builder.json["skins"] = Json::object(); }},
-      {"a.gltf, /skins/0: this must be an object, not a number", [](Skinned& s) { s.builder.json["skins"] = {5}; }},
-      {"a.gltf, /skins/0/joints: a skin has joints", [](Skinned& s) { s.builder.json["skins"][0].erase("joints"); }},
+      {"a.gltf, /skins/0: the value must be an object, not a number",
+       [](Skinned& s) { s.builder.json["skins"] = {5}; }},
+      {"a.gltf, /skins/0/joints: the skin has no joints",
+       [](Skinned& s) { s.builder.json["skins"][0].erase("joints"); }},
       {"a.gltf, /skins/0/joints/1: there is no 3 among the 3 nodes",
        [](Skinned& s) {
          s.builder.json["skins"][0]["joints"] = {1, 3};
@@ -188,13 +190,13 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
        [](Skinned& s) {
          s.binds({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2}, 2);
        }},
-      {"a.gltf, /accessors/6: element 0 has a number that is not finite",
+      {"a.gltf, /accessors/6: element 0 is NaN or infinite; export the file again",
        [](Skinned& s) {
          std::vector<float> numbers(32, 0);
          numbers[5] = INFINITY;
          s.binds(numbers, 2);
        }},
-      {attributes + ": there is no JOINTS_0 for the skin of the mesh",
+      {attributes + ": the mesh has a skin, but its vertices have no joints (JOINTS_0)",
        [](Skinned& s) {
          s.attributes().erase("JOINTS_0");
          s.attributes().erase("WEIGHTS_0");
@@ -206,10 +208,10 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
          s.joints(
              s.builder.add_accessor("VEC4", std::vector<std::uint8_t>{0, 1, 9, 9, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0}));
        }},
-      {attributes + "/JOINTS_0: accessor 5 has a component type that is not allowed here",
+      {attributes + "/JOINTS_0: accessor 5 has a componentType that is not allowed for this use",
        [](Skinned& s) { s.joints(5); }},
       {attributes + "/JOINTS_0: accessor 0 must be of type VEC4", [](Skinned& s) { s.joints(0); }},
-      {attributes + "/WEIGHTS_0: accessor 4 has a component type that is not allowed here",
+      {attributes + "/WEIGHTS_0: accessor 4 has a componentType that is not allowed for this use",
        [](Skinned& s) { s.weights(4); }},
       {attributes + "/WEIGHTS_0: there are 1 of these for 4 positions",
        [](Skinned& s) {
@@ -217,7 +219,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
        }},
       {attributes + "/WEIGHTS_0: accessor 5 ends beyond buffer view 5, which has 64 bytes",
        [](Skinned& s) { s.builder.json["accessors"][5]["count"] = std::uint64_t{1} << 52U; }},
-      {"a.gltf, /accessors/5: element 3 has a number that is not finite",
+      {"a.gltf, /accessors/5: element 3 is NaN or infinite; export the file again",
        [](Skinned& s) { s.builder.buffer.replace(s.builder.buffer.size() - 4, 4, "\xFF\xFF\xFF\x7F", 4); }},
   };
   for (const Case& spoilt : cases) {
@@ -242,7 +244,7 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
        [](Skinned& s) {
          s.animate("rotation", {1, 1, 1, 1, 1, 1}, "VEC3");
        }},
-      {sampler + "/interpolation: the interpolation is none of LINEAR, STEP, CUBICSPLINE",
+      {sampler + "/interpolation: interpolation must be LINEAR, STEP or CUBICSPLINE",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["samplers"][0]["interpolation"] = "CURVED";
@@ -263,7 +265,7 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["channels"][0]["target"]["node"] = 9;
        }},
-      {"a.gltf, /accessors/6: the time of key 1 is not after that of the one before",
+      {"a.gltf, /accessors/6: the time of key 1 is not later than the time of the key before",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["samplers"][0]["input"] = 6;
@@ -271,7 +273,7 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
          const std::size_t at = s.builder.json["bufferViews"][view]["byteOffset"];
          s.builder.buffer.replace(at + 4, 4, std::string(4, '\0'));
        }},
-      {"a.gltf, /accessors/7: element 0 has a number that is not finite",
+      {"a.gltf, /accessors/7: element 0 is NaN or infinite; export the file again",
        [](Skinned& s) {
          s.animate("scale", {INFINITY, 1, 1, 1, 1, 1}, "VEC3");
        }},
@@ -389,14 +391,16 @@ TEST(GltfSkin, faults_of_a_compressed_mesh_have_their_place) {
   const std::string extension = "a.gltf, /meshes/0/primitives/0/extensions/KHR_draco_mesh_compression";
   Compressed other;
   other.ids()["WEIGHTS_0"] = 7;
-  EXPECT_EQ(error_of(other.skinned), extension +
-                                         "/attributes/WEIGHTS_0: the compressed mesh has not the attribute that "
-                                         "the primitive declares");
+  EXPECT_EQ(
+      error_of(other.skinned),
+      extension +
+          "/attributes/WEIGHTS_0: the Draco data lack an attribute that the primitive declares; export the file again");
   Compressed swapped;
   std::swap(swapped.ids()["JOINTS_0"], swapped.ids()["WEIGHTS_0"]);
-  EXPECT_EQ(error_of(swapped.skinned), extension +
-                                           "/attributes/JOINTS_0: the compressed mesh has not the attribute "
-                                           "that the primitive declares");
+  EXPECT_EQ(
+      error_of(swapped.skinned),
+      extension +
+          "/attributes/JOINTS_0: the Draco data lack an attribute that the primitive declares; export the file again");
   Compressed no_id;
   no_id.ids()["JOINTS_0"] = "one";
   EXPECT_NE(error_of(no_id.skinned).find(extension + "/attributes/JOINTS_0: "), std::string::npos);
@@ -404,7 +408,8 @@ TEST(GltfSkin, faults_of_a_compressed_mesh_have_their_place) {
   const std::size_t view = no_mesh.builder.add_view("none of this is a mesh");
   no_mesh.builder.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
       {"bufferView", view}, {"attributes", {{"POSITION", 0}, {"JOINTS_0", 1}, {"WEIGHTS_0", 2}}}};
-  EXPECT_TRUE(error_of(no_mesh).starts_with(extension + ": the compressed mesh is broken: ")) << error_of(no_mesh);
+  EXPECT_TRUE(error_of(no_mesh).starts_with(extension + ": the Draco data cannot be decoded; the decoder says: "))
+      << error_of(no_mesh);
 }
 
 // Sets of weights that share one accessor take few bytes of the file, but much memory.

@@ -27,8 +27,8 @@ TEST(PosesFile, errors_say_where) {
            {"{}", "p: it must be a list of one pose at least"},
            {"[]", "p: it must be a list of one pose at least"},
            {"[3]", "p, /0: a pose must be an object of weights by the names of targets, or a list of weights"},
-           {R"([{}, {"smile": "1"}])", "p, /1/smile: this must be a number, not a string"},
-           {"[[1, 1e999]]", "p, /0/1: the number is too large"}}) {
+           {R"([{}, {"smile": "1"}])", "p, /1/smile: the value must be a number, not a string"},
+           {"[[1, 1e999]]", "p, /0/1: the number is too large for a double"}}) {
     const auto poses = parse_poses(text, "p");
     ASSERT_FALSE(poses.ok()) << text;
     EXPECT_EQ(poses.error().text(), message);

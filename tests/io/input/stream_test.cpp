@@ -331,7 +331,7 @@ TEST(InputFrames, from_to_and_every_choose_keyframes_and_keep_their_times) {
       }
       options.to = 9;
       EXPECT_EQ(test::read_motion(options).error().text(),
-                "--to: there is no such keyframe: keyframes are counted from 0 to 8");
+                "--to: there is no such keyframe; keyframes are counted from 0 to 8");
       options.to = 2;
       EXPECT_EQ(test::read_motion(options).error().code, ErrorCode::kUsage);
     }
@@ -344,16 +344,16 @@ TEST(InputFrames, only_sequences_have_keyframes_to_choose_among) {
   InputOptions options = test::targets_over(folder / "walk_00.obj", {folder / "walk_01.obj"});
   options.every = 2;
   EXPECT_EQ(open_input(options).error().text(),
-            "--every: it chooses among the keyframes of a sequence, which this is not");
+            "--every: this option is only for sequences of keyframes, and the input is not one; leave the option out");
   InputOptions still = test::files({folder / "walk_00.obj"});
   still.allow_mesh = true;
   still.from = 1;
   EXPECT_EQ(open_input(still).error().text(),
-            "--from: it chooses among the keyframes of a sequence, which this is not");
+            "--from: this option is only for sequences of keyframes, and the input is not one; leave the option out");
   InputOptions document = test::files({folder.write("face.glb", test::sparse_document().glb())});
   document.to = 1;
   EXPECT_EQ(open_input(document).error().text(),
-            "--to: it chooses among the keyframes of a sequence, which this is not");
+            "--to: this option is only for sequences of keyframes, and the input is not one; leave the option out");
 }
 
 TEST(InputFrames, a_step_of_zero_leads_nowhere) {
@@ -361,8 +361,7 @@ TEST(InputFrames, a_step_of_zero_leads_nowhere) {
   for (const auto& names : write_all(folder, wave(3))) {
     InputOptions options = test::files(names);
     options.every = 0;
-    EXPECT_EQ(test::read_motion(options).error().text(),
-              "--every: the step from one keyframe to the next must be 1 or more");
+    EXPECT_EQ(test::read_motion(options).error().text(), "--every: the step must be at least 1");
   }
 }
 

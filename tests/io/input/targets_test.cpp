@@ -123,7 +123,7 @@ TEST_F(Targets, base_may_lie_among_its_targets) {
   EXPECT_EQ(names_of(read_over(folder_ / "./base.obj", Names{folder_.path()})), expected);
   const Error alone = error_of(read({base_}));
   EXPECT_EQ(alone.code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(alone.text(), base_ + ": there is no target besides the base itself");
+  EXPECT_EQ(alone.text(), base_ + ": there is no target, only the base itself; name the files of the targets");
   // An OBJ base beside MakeHuman targets does not count as a second format in the folder.
   make_folder("mh");
   const std::string base = folder_.write("mh/base.obj", kSquareObj);
@@ -136,7 +136,7 @@ TEST_F(Targets, folder_without_targets_or_with_several_formats_is_an_error) {
   const Error none = error_of(read({folder_ / "t"}));
   EXPECT_EQ(none.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(none.text(),
-            folder_ / "t" + ": the folder has no targets (.obj, .ply, .target or .target.gz) besides the base");
+            folder_ / "t" + ": the folder has no targets but the base itself (.obj, .ply, .target or .target.gz)");
   folder_.write("t/a.obj", kRaisedObj);
   folder_.write("t/in/b.target", kLiftTarget);
   const Error both = error_of(read({folder_ / "t"}));
@@ -169,8 +169,7 @@ TEST_F(Targets, errors_have_the_file_as_their_place) {
   EXPECT_EQ(place_of("d.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n"), folder_ / "d.obj");
   EXPECT_EQ(place_of("e.stl", "solid\n"), folder_ / "e.stl");
   const Error faces = error_of(read({folder_.write("f.obj", kSquareObj.substr(0, 32) + "f 1 3 2\nf 1 3 4\n")}));
-  EXPECT_EQ(faces.text(),
-            folder_ / "f.obj" + ": face 0 differs from the base: topology must not change between keyframes");
+  EXPECT_EQ(faces.text(), folder_ / "f.obj" + ": face 0 differs from the base; all keyframes must have the same faces");
 
   const Error missing = error_of(read({folder_ / "no.target"}));
   EXPECT_EQ(missing.code, ErrorCode::kFailed);

@@ -99,20 +99,20 @@ TEST(MakeHumanTarget, target_without_deltas_moves_nothing_but_an_empty_file_is_a
 TEST(MakeHumanTarget, wrong_lines_are_errors_with_their_number_and_what_is_wrong) {
   const auto second_line = [](const std::string& line) { return error_text("0 0 0 0\n" + line + "\n2 1 1 1\n"); };
   const std::string at = "a.target, line 2: ";
-  EXPECT_EQ(second_line("x 1 1 1"), at + "'x' is not an index; a line is one index and three numbers");
-  EXPECT_EQ(second_line("1.5 1 1 1"), at + "'1.5' is not an index; a line is one index and three numbers");
-  EXPECT_EQ(second_line("1"), at + "x of the delta of vertex 1: a number is missing");
-  EXPECT_EQ(second_line("1 1 1"), at + "z of the delta of vertex 1: a number is missing");
-  EXPECT_EQ(second_line("1 1 1 # 1"), at + "z of the delta of vertex 1: a number is missing");
-  EXPECT_EQ(second_line("1 1 y 1"), at + "y of the delta of vertex 1: 'y' is not a number");
-  EXPECT_EQ(second_line("1 nan 1 1"), at + "x of the delta of vertex 1: 'nan' is not a finite number");
-  EXPECT_EQ(second_line("1 1 -inf 1"), at + "y of the delta of vertex 1: '-inf' is not a finite number");
-  EXPECT_EQ(second_line("1 1 1 1e39"), at + "z of the delta of vertex 1: '1e39' is too large");
+  EXPECT_EQ(second_line("x 1 1 1"), at + "'x' is not an index; a line must have an index and three numbers");
+  EXPECT_EQ(second_line("1.5 1 1 1"), at + "'1.5' is not an index; a line must have an index and three numbers");
+  EXPECT_EQ(second_line("1"), at + "x of vertex 1: a number is missing");
+  EXPECT_EQ(second_line("1 1 1"), at + "z of vertex 1: a number is missing");
+  EXPECT_EQ(second_line("1 1 1 # 1"), at + "z of vertex 1: a number is missing");
+  EXPECT_EQ(second_line("1 1 y 1"), at + "y of vertex 1: 'y' is not a number");
+  EXPECT_EQ(second_line("1 nan 1 1"), at + "x of vertex 1: 'nan' is NaN or infinite");
+  EXPECT_EQ(second_line("1 1 -inf 1"), at + "y of vertex 1: '-inf' is NaN or infinite");
+  EXPECT_EQ(second_line("1 1 1 1e39"), at + "z of vertex 1: '1e39' is too large");
   EXPECT_EQ(second_line("1 1 1 1 1"),
             at + "after the delta of vertex 1 stands '1', but a line is one index and three numbers");
-  EXPECT_EQ(second_line("0 1 1 1"), at + "vertex 0 has a delta already");
+  EXPECT_EQ(second_line("0 1 1 1"), at + "vertex 0 has two deltas in this file");
   EXPECT_EQ(error_text(gzip("0 0 0 0\n\nq")),
-            "a.target, line 3: 'q' is not an index; a line is one index and three numbers");
+            "a.target, line 3: 'q' is not an index; a line must have an index and three numbers");
 }
 
 TEST(MakeHumanTarget, indices_are_those_of_the_base_and_do_not_wrap_around) {
@@ -131,9 +131,9 @@ TEST(MakeHumanTarget, delta_must_not_take_a_coordinate_out_of_float32) {
   EXPECT_TRUE(check("0 3.4028234e38 0 0\n", {0, 0, 0}));
   EXPECT_TRUE(check("0 -3.4028234e38 0 1\n", {most, 0, most}));
   EXPECT_EQ(error_text("0 0 0 1e38\n", {0, 0, most}),
-            "a.target, line 1: z of the delta of vertex 0: base and delta together are too large");
+            "a.target, line 1: z of vertex 0: the sum of base and delta is too large for float32");
   EXPECT_EQ(error_text("0 0 -3e38 0\n", {0, -3e38F, 0}),
-            "a.target, line 1: y of the delta of vertex 0: base and delta together are too large");
+            "a.target, line 1: y of vertex 0: the sum of base and delta is too large for float32");
 }
 
 TEST(MakeHumanTarget, text_cut_off_anywhere_is_an_error_or_the_lines_before_it) {
@@ -154,7 +154,7 @@ TEST(MakeHumanTarget, gzip_cut_off_anywhere_is_an_error_with_its_byte) {
   const std::string bytes = gzip(kLiftTarget);
   for (std::size_t size = 2; size < bytes.size(); ++size)
     EXPECT_EQ(error_text(bytes.substr(0, size)),
-              "a.target, byte " + std::to_string(size) + ": the gzip data end early");
+              "a.target, byte " + std::to_string(size) + ": the gzip data are cut off; copy the file again");
   EXPECT_FALSE(check(bytes.substr(0, 1)));
   // The file may also be cut inside the second member of the gzip file.
   for (std::size_t size = 1; size < bytes.size(); ++size)
@@ -184,9 +184,10 @@ TEST(MakeHumanTarget, damaged_gzip_is_an_error_with_a_byte_or_damaged_where_nobo
   std::string checksum = bytes;
   checksum[bytes.size() - 8] = static_cast<char>(checksum[bytes.size() - 8] ^ 1);
   EXPECT_EQ(error_text(checksum), "a.target, byte " + std::to_string(bytes.size() - 4) +
-                                      ": the gzip data are damaged (incorrect data check)");
-  EXPECT_EQ(error_text(bytes + "more"), "a.target, byte " + std::to_string(bytes.size() + 2) +
-                                            ": the gzip data are damaged (incorrect header check)");
+                                      ": the gzip data are damaged; copy the file again (incorrect data check)");
+  EXPECT_EQ(error_text(bytes + "more"),
+            "a.target, byte " + std::to_string(bytes.size() + 2) +
+                ": the gzip data are damaged; copy the file again (incorrect header check)");
 }
 
 TEST(MakeHumanTarget, gzip_may_unpack_to_a_stated_size_and_not_a_byte_more) {

@@ -118,7 +118,7 @@ TEST(ReadObj, numbers_of_any_length_are_those_of_strtof) {
 }
 
 TEST(ReadObj, bad_coordinates_are_errors_with_line_and_vertex) {
-  EXPECT_EQ(error_of("v 0 0 0\n\nv 1 nan 0\n"), "walk.obj, line 3: y of vertex 1: 'nan' is not a finite number");
+  EXPECT_EQ(error_of("v 0 0 0\n\nv 1 nan 0\n"), "walk.obj, line 3: y of vertex 1: 'nan' is NaN or infinite");
   EXPECT_EQ(error_of("v 0 0\n"), "walk.obj, line 1: z of vertex 0: a number is missing");
   EXPECT_EQ(error_of("v 0 0 1.5x\n"), "walk.obj, line 1: z of vertex 0: '1.5x' is not a number");
   EXPECT_EQ(error_of("v 1e39 0 0\n"), "walk.obj, line 1: x of vertex 0: '1e39' is too large");
@@ -157,15 +157,15 @@ TEST(ReadObj, bad_indices_are_errors_with_line_face_and_corner) {
   EXPECT_EQ(error_of(three + "f 1 2 -4\nv 0 0 0"),
             "walk.obj, line 4: corner 2 of face 0 names vertex -4, but the file has 3 vertices so far");
   EXPECT_EQ(error_of(three + "f 1 0 2\n"),
-            "walk.obj, line 4: corner 1 of face 0: '0': vertices are counted from 1, not from 0");
+            "walk.obj, line 4: corner 1 of face 0: '0' is not allowed, since vertices are counted from 1");
   // Faces with fewer than three corners are skipped (see below), so a file with no other faces has none.
-  EXPECT_EQ(error_of(three + "f 1 2\n"), "walk.obj, line 4: the file ends without a face (a line that begins with f)");
+  EXPECT_EQ(error_of(three + "f 1 2\n"), "walk.obj, line 4: the file has no faces (lines that begin with f)");
   EXPECT_EQ(error_of(three + "f 1 5\nf 1 2 3\n"),
             "walk.obj, line 4: corner 1 of face 0 names vertex 5, but the file has 3 vertices");
   EXPECT_EQ(error_of(three + "f 1 2 4294967298\n"),
             "walk.obj, line 4: corner 2 of face 0 names vertex 4294967298, but the file has 3 vertices");
   EXPECT_EQ(error_of(three + "f 1 2 99999999999999999999\n"),
-            "walk.obj, line 4: corner 2 of face 0: '99999999999999999999' is more than a mesh can have");
+            "walk.obj, line 4: corner 2 of face 0: '99999999999999999999' is a larger index than a mesh can have");
   for (const char* const word : {"1.5", "1/x", "1/2/3/4", "/1", "//", "1//1x", "a", "1/2.5", "-", "1-2"})
     EXPECT_TRUE(error_of(three + "f 1 2 " + word + "\n").starts_with("walk.obj, line 4: corner 2 of face 0: ")) << word;
 }
@@ -176,8 +176,8 @@ TEST(ReadObj, place_of_a_statement_of_several_lines_is_its_first_line) {
 }
 
 TEST(ReadObj, file_without_vertices_or_faces_is_an_error) {
-  EXPECT_EQ(error_of(""), "walk.obj, line 1: the file ends without a vertex (a line that begins with v)");
-  EXPECT_EQ(error_of("v 0 0 0\nl 1 1\n"), "walk.obj, line 2: the file ends without a face (a line that begins with f)");
+  EXPECT_EQ(error_of(""), "walk.obj, line 1: the file has no vertices (lines that begin with v)");
+  EXPECT_EQ(error_of("v 0 0 0\nl 1 1\n"), "walk.obj, line 2: the file has no faces (lines that begin with f)");
 }
 
 TEST(ReadObj, strange_bytes_do_not_reach_the_message) {
@@ -219,7 +219,7 @@ TEST(ReadObj, faces_of_fewer_than_three_corners_are_left_out_and_counted) {
   const MeshFrame mesh = read_good(text);
   EXPECT_EQ(mesh.topology, Topology::triangles(3, {0, 1, 2, 2, 1, 0}).value());
   ASSERT_EQ(mesh.notes.size(), 1U);
-  EXPECT_EQ(mesh.notes[0], "2 faces have fewer than three corners: left out");
+  EXPECT_EQ(mesh.notes[0], "2 faces have fewer than three corners and cannot have a normal");
   const MeshFrame shading = shading_of("f 1//1 2\n" + text + "s 1\nf 1 2\nf 2 1 3\n");
   EXPECT_EQ(shading.normal_of_corner.size(), 27U);
   EXPECT_EQ(shading.normal_of_corner[2], 1);
@@ -271,7 +271,7 @@ TEST(ReadObjShading, is_empty_where_the_file_says_nothing) {
 
 TEST(ReadObjShading, bad_normals_are_errors_with_line_and_corner) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  EXPECT_EQ(shading_error_of("vn 0 nan 1\n" + three), "walk.obj, line 1: y of normal 0: 'nan' is not a finite number");
+  EXPECT_EQ(shading_error_of("vn 0 nan 1\n" + three), "walk.obj, line 1: y of normal 0: 'nan' is NaN or infinite");
   EXPECT_EQ(shading_error_of("vn 1 2 3\nvn 1 2\n"), "walk.obj, line 2: z of normal 1: a number is missing");
   EXPECT_EQ(shading_error_of(three + "f 1 2 4\n"), error_of(three + "f 1 2 4\n"));
   // Invalid normals are reported only if normals are requested.
@@ -295,7 +295,8 @@ TEST(ReadObjShading, normals_that_are_not_there_and_nameless_groups_are_counted)
   EXPECT_TRUE(notes_of("f 1 2 3//1\nvn 0 0 1\n").empty());
   const MeshFrame grouped = shading_of(three + "s 2\nf 1 2 3\ns\nf 1 2 3\n");
   EXPECT_EQ(grouped.group_of_face, (Corners{1, 0}));
-  EXPECT_EQ(grouped.notes, (std::vector<std::string>{"1 line has an s without a smoothing group: taken as s off"}));
+  EXPECT_EQ(grouped.notes,
+            (std::vector<std::string>{"1 line has an s without a smoothing group, which is read as s off"}));
 }
 
 TEST(ReadObjShading, damaged_bytes_give_an_error_or_what_belongs_to_the_mesh) {

@@ -110,7 +110,7 @@ TEST(ReadPly, velocity_that_is_not_whole_or_no_number_is_an_error_where_it_is_as
   const std::string half = moving_file("vx", "vy", "speed"),
                     list = replaced(moving_file("vx", "vy", "vz"), "float vx", "list uchar float vx"),
                     broken = replaced(moving_file("vx", "vy", "vz"), "3.5", "nan");
-  EXPECT_EQ(said(half), "walk.ply, header: the vertices have a part of a velocity, but no property vz");
+  EXPECT_EQ(said(half), "walk.ply, header: the velocity of the vertices is incomplete, since they have no property vz");
   EXPECT_EQ(said(list), "walk.ply, header: the velocity vx is a list");
   EXPECT_EQ(said(broken).find("walk.ply, line 15, vertex 0: "), 0U) << said(broken);
   EXPECT_EQ(error_of(half), "no error");
@@ -175,17 +175,19 @@ TEST(ReadPly, header_that_breaks_the_grammar_is_an_error_with_its_line) {
   const auto with = [](const std::string& what, const std::string& by) {
     return error_of(replaced(ascii_file(), what, by));
   };
-  EXPECT_EQ(error_of("plx\n"), "walk.ply, line 1: this is not a PLY file: its first line is not the word ply");
-  EXPECT_EQ(error_of("ply\nformat ascii 1.0\n"), "walk.ply, line 2: the file ends before the line end_header");
-  EXPECT_EQ(error_of("ply\ncomment a\nend_header\n"), "walk.ply, line 3: the header has no format");
-  EXPECT_EQ(with("ascii 1.0", "ascii 1.1"), "walk.ply, line 2: version '1.1' of PLY is unknown; there is only 1.0");
+  EXPECT_EQ(error_of("plx\n"), "walk.ply, line 1: this is not a PLY file, since its first line is not the word ply");
+  EXPECT_EQ(error_of("ply\nformat ascii 1.0\n"),
+            "walk.ply, line 2: the header does not end, since the line end_header is missing");
+  EXPECT_EQ(error_of("ply\ncomment a\nend_header\n"),
+            "walk.ply, line 3: the header has no line that begins with format");
+  EXPECT_EQ(with("ascii 1.0", "ascii 1.1"), "walk.ply, line 2: version '1.1' of PLY cannot be read; only 1.0 can");
   EXPECT_TRUE(with("ascii", "binary_mixed_endian").starts_with("walk.ply, line 2: the encoding 'binary_mixed_endian'"));
   EXPECT_TRUE(with("format ascii 1.0\n", "").starts_with("walk.ply, line 2: a line that begins with format"));
-  EXPECT_EQ(with("element vertex 4", "element vertex 4 5"), "walk.ply, line 3: this must read: element NAME COUNT");
+  EXPECT_EQ(with("element vertex 4", "element vertex 4 5"), "walk.ply, line 3: the line must be: element NAME COUNT");
   EXPECT_EQ(with("float y", "float16 y"), "walk.ply, line 5: the type 'float16' is unknown");
-  EXPECT_EQ(with("element face", "elements face"), "walk.ply, line 7: 'elements' is not a word of a PLY header");
+  EXPECT_EQ(with("element face", "elements face"), "walk.ply, line 7: 'elements' is not a keyword of a PLY header");
   EXPECT_TRUE(with("float z", "float z 1").starts_with("walk.ply, line 6: this must read: property TYPE NAME"));
-  EXPECT_TRUE(with("element vertex 4\n", "").starts_with("walk.ply, line 3: a property must follow its element"));
+  EXPECT_TRUE(with("element vertex 4\n", "").starts_with("walk.ply, line 3: a property must come after its element"));
   EXPECT_TRUE(with("list uchar int", "list float int").starts_with("walk.ply, line 8: the length of a list can not"));
   EXPECT_TRUE(with("list uchar int", "list uchar float").find("must be a list of integers") != std::string::npos);
   EXPECT_TRUE(with("list uchar int", "int").find("must be a list of integers") != std::string::npos);
@@ -198,9 +200,9 @@ TEST(ReadPly, what_is_declared_twice_or_is_missing_is_an_error) {
   EXPECT_EQ(with("float z", "float y"), "walk.ply, line 6: the property 'y' is declared twice");
   EXPECT_EQ(with("element face", "element vertex"), "walk.ply, line 7: the element 'vertex' is declared twice");
   EXPECT_EQ(with("format ascii 1.0", "format ascii 1.0\nformat ascii 1.0"),
-            "walk.ply, line 3: the format is declared twice");
+            "walk.ply, line 3: the header has two lines that begin with format");
   EXPECT_EQ(with("vertex_indices", "vertex_indices\nproperty list uchar int vertex_index"),
-            "walk.ply, line 9: both vertex_indices and vertex_index are declared");
+            "walk.ply, line 9: the faces have both vertex_indices and vertex_index; keep one of them");
   EXPECT_EQ(with("float z", "list char float z"), "walk.ply, line 6: the coordinate 'z' is a list");
   EXPECT_EQ(with("float z", "float w"), "walk.ply, line 9: the vertices have no property z");
   EXPECT_EQ(with("element vertex", "element point"), "walk.ply, line 9: the file has no vertices");
@@ -209,7 +211,7 @@ TEST(ReadPly, what_is_declared_twice_or_is_missing_is_an_error) {
   EXPECT_EQ(with("face 2", "face 0"), "walk.ply, line 9: the file has no faces");
   EXPECT_EQ(with("vertex_indices", "corners"), "walk.ply, line 9: the faces have no property vertex_indices");
   EXPECT_EQ(with("element face", "element tristrips"),
-            "walk.ply, line 9: the file has triangle strips, which are not supported; write it with faces");
+            "walk.ply, line 9: the file has triangle strips, which cannot be read; export it with faces");
 }
 
 TEST(ReadPly, absurd_counts_are_refused_before_memory_is_taken) {
@@ -228,7 +230,7 @@ TEST(ReadPly, absurd_counts_are_refused_before_memory_is_taken) {
   }
   for (const char* const count : {"-1", "18446744073709551616", "1e3", "0x4", "4.0", "+4"})
     EXPECT_EQ(error_of(test::ply_header("ascii", count, "1")),
-              std::string("walk.ply, line 3: '") + count + "' is not a possible number of 'vertex' elements");
+              std::string("walk.ply, line 3: '") + count + "' is not a valid number of 'vertex' elements");
   // The file declares one row more than its length allows.
   EXPECT_NE(error_of(test::ply_header("binary_little_endian", "3", "1") + std::string(35, '\0')).find("too short"),
             std::string::npos);
@@ -262,20 +264,23 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
   const auto with = [](const std::string& what, const std::string& by) {
     return error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, what, by));
   };
-  EXPECT_EQ(with("1 0 0", "1 nan 0"), "walk.ply, line 11, vertex 1: 'nan' is not a finite number");
+  EXPECT_EQ(with("1 0 0", "1 nan 0"), "walk.ply, line 11, vertex 1: 'nan' is NaN or infinite");
   // A row may continue in the next line, so a missing number is noticed only there.
-  EXPECT_EQ(with("1 0 0", "1 0"), "walk.ply, line 12, vertex 1: '1' is more than the header declares for a row");
-  EXPECT_EQ(with("1 0 0", "1 0 0 0"), "walk.ply, line 11, vertex 1: '0' is more than the header declares for a row");
+  EXPECT_EQ(with("1 0 0", "1 0"),
+            "walk.ply, line 12, vertex 1: '1' is one value more than the header declares for a row");
+  EXPECT_EQ(with("1 0 0", "1 0 0 0"),
+            "walk.ply, line 11, vertex 1: '0' is one value more than the header declares for a row");
   EXPECT_EQ(with("1 0 0", "1 0 1e39"), "walk.ply, line 11, vertex 1: '1e39' is too large");
   EXPECT_EQ(with("3 0 1 2", "3 0 1 4"),
             "walk.ply, line 14, face 0: corner 2 names vertex 4, but the file has 4 vertices");
   EXPECT_EQ(with("3 0 1 2", "3 0 -1 2"),
             "walk.ply, line 14, face 0: corner 1 names vertex -1, but the file has 4 vertices");
-  EXPECT_EQ(with("4 0 1", "2 0 1"), "walk.ply, line 15, face 1: '2' is more than the header declares for a row");
-  EXPECT_EQ(with("4 0 1", "-4 0 1"), "walk.ply, line 15, face 1: a list has the length -4");
+  EXPECT_EQ(with("4 0 1", "2 0 1"),
+            "walk.ply, line 15, face 1: '2' is one value more than the header declares for a row");
+  EXPECT_EQ(with("4 0 1", "-4 0 1"), "walk.ply, line 15, face 1: a list has a negative length, -4");
   EXPECT_EQ(with("3 0 1 2", "3 0 1.0 2"), "walk.ply, line 14, face 0: '1.0' is not a number");
   EXPECT_EQ(error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, "4 0 1 2 3\n", "          ")),
-            "walk.ply, line 15, face 1: the file ends here, before this row");
+            "walk.ply, line 15, face 1: the file is cut off here, before this row; copy or export it again");
 }
 
 TEST(ReadPly, ascii_rows_may_go_over_several_lines_and_faces_of_two_corners_are_left_out) {
@@ -285,7 +290,8 @@ TEST(ReadPly, ascii_rows_may_go_over_several_lines_and_faces_of_two_corners_are_
   ASSERT_TRUE(mesh.ok()) << mesh.error().text();
   EXPECT_EQ(mesh.value().positions, (std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}));
   EXPECT_EQ(mesh.value().topology, Topology::polygons(4, {0, 3, 7}, {0, 1, 2, 0, 1, 2, 3}).value());
-  EXPECT_EQ(mesh.value().notes, (std::vector<std::string>{"1 face has fewer than three corners: left out"}));
+  EXPECT_EQ(mesh.value().notes,
+            (std::vector<std::string>{"1 face has fewer than three corners and cannot have a normal"}));
 }
 
 TEST(ReadPly, double_positions_count_from_the_origin_before_they_are_rounded) {
@@ -310,14 +316,15 @@ TEST(ReadPly, bad_binary_values_are_errors_with_byte_element_and_index) {
     return error_of(bytes.replace(body + at, raw.size(), raw));
   };
   const auto place = [&](std::size_t at) { return "walk.ply, byte " + std::to_string(body + at); };
-  EXPECT_EQ(with(16, std::string("\0\0\xC0\x7F", 4)), place(16) + ", vertex 1: the coordinate is not a finite number");
-  EXPECT_EQ(with(32, std::string("\0\0\x80\xFF", 4)), place(32) + ", vertex 2: the coordinate is not a finite number");
+  EXPECT_EQ(with(16, std::string("\0\0\xC0\x7F", 4)), place(16) + ", vertex 1: the coordinate is NaN or infinite");
+  EXPECT_EQ(with(32, std::string("\0\0\x80\xFF", 4)), place(32) + ", vertex 2: the coordinate is NaN or infinite");
   EXPECT_EQ(with(41, std::string("\3\0\0\0", 4)),
             place(45) + ", face 0: corner 1 names vertex 3, but the file has 3 vertices");
   EXPECT_EQ(with(41, "\xFF\xFF\xFF\xFF"),
             place(45) + ", face 0: corner 1 names vertex -1, but the file has 3 vertices");
   // The only face has no corners, so it is skipped.
-  EXPECT_EQ(with(36, std::string("\0", 1)), place(37) + ": no face has three corners or more");
+  EXPECT_EQ(with(36, std::string("\0", 1)),
+            place(37) + ": no face has three or more corners, so the mesh has no normals");
   EXPECT_EQ(with(36, "\4"),
             place(49) + ", face 0: the file ends before the data that its header declares: 0 bytes are left");
 }
@@ -328,7 +335,8 @@ TEST(ReadPly, double_that_is_too_large_for_float_is_an_error) {
       "z\nelement face 1\nproperty list uchar uchar vertex_index\nend_header\n",
       false);
   writer.add(0.1).add(-1e39).add(0.0).add(0x03U).add(0U);
-  EXPECT_NE(error_of(writer.bytes()).find("vertex 0: the coordinate is too large"), std::string::npos);
+  EXPECT_NE(error_of(writer.bytes()).find("vertex 0: the coordinate is too large for float32 for float32"),
+            std::string::npos);
 }
 
 RC_GTEST_PROP(WritePly, what_was_written_reads_back_bit_for_bit_in_every_encoding, ()) {

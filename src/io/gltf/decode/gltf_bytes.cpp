@@ -89,15 +89,19 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
   const std::string pointer = pointer_to("buffers", index), uri_place = place(pointer + "/uri");
   if (!declared.uri) {
     if (index != 0 || !origin_.bin)
-      return invalid_input(place(pointer), index == 0 ? "the buffer has neither a uri nor a BIN chunk"
-                                                      : "the buffer has no uri; only buffer 0 may be the BIN chunk");
+      return invalid_input(
+          place(pointer),
+          index == 0 ? "the data of this buffer are missing, since the buffer has no uri and the file has no BIN chunk"
+                     : "the data of this buffer are missing, since the buffer has no uri and only buffer 0 may use the "
+                       "BIN chunk");
     if (origin_.bin->size() < declared.byte_length)
-      return invalid_input(place(pointer + "/byteLength"), "the BIN chunk has only " +
-                                                               std::to_string(origin_.bin->size()) + " bytes, not " +
-                                                               std::to_string(declared.byte_length));
+      return invalid_input(place(pointer + "/byteLength"),
+                           "the BIN chunk has only " + std::to_string(origin_.bin->size()) +
+                               " bytes, but byteLength is " + std::to_string(declared.byte_length));
     if (origin_.bin->size() - declared.byte_length > 3)
-      return invalid_input(place(pointer + "/byteLength"), "the BIN chunk has " + std::to_string(origin_.bin->size()) +
-                                                               " bytes; more than 3 of them are not in the buffer");
+      return invalid_input(place(pointer + "/byteLength"),
+                           "the BIN chunk has " + std::to_string(origin_.bin->size()) +
+                               " bytes, but may have at most 3 more than byteLength says");
     return origin_.bin->substr(0, declared.byte_length);
   }
   if (is_data_uri(*declared.uri)) {
@@ -151,11 +155,11 @@ Result<std::string> Bytes::decompress(std::size_t view_index, const Compression&
     return -1;
   };
   if (decode() != 0) {
-    return invalid_input(place(pointer), compression.is_khr
-                                             ? "these bytes are broken, or compressed by a version of the codec that "
-                                               "cannot be decoded here: compress the file with EXT_meshopt_compression "
-                                               "(gltfpack -c), or leave it uncompressed"
-                                             : "the compressed bytes are broken");
+    return invalid_input(place(pointer),
+                         compression.is_khr
+                             ? "the compressed data are damaged, or a newer version of the codec has compressed them; "
+                               "export the file uncompressed, or compress it with EXT_meshopt_compression (gltfpack -c)"
+                             : "the compressed data are damaged; export the file again");
   }
   switch (compression.filter) {
     case Compression::Filter::kNone:
@@ -224,8 +228,8 @@ Status Bytes::for_each_sparse(std::size_t index, const Put& put) {
         load_index(indices.value().bytes.data() + sparse.indices_offset + i * index_size, sparse.indices_component);
     if (element < least || element >= accessor.count)
       return invalid_input(accessor_place(index) + "/sparse/indices",
-                           "sparse index " + std::to_string(i) + " is " + std::to_string(element) +
-                               "; they must ascend and stay below " + std::to_string(accessor.count));
+                           "item " + std::to_string(i) + " is " + std::to_string(element) +
+                               ", but sparse indices must ascend and be less than " + std::to_string(accessor.count));
     least = element + 1;
     put(element, values.value().bytes.data() + sparse.values_offset + i * size);
   }
@@ -257,18 +261,20 @@ Result<std::vector<float>> Bytes::floats(std::size_t index) {
   if (Status status = for_each_sparse(index, read); !status) return status.error();
   if (first_fault < accessor.count)
     return invalid_input(accessor_place(index),
-                         "element " + std::to_string(first_fault) + " has a number that is not finite");
+                         "element " + std::to_string(first_fault) + " is NaN or infinite; export the file again");
   return result;
 }
 
 Result<std::vector<float>> Bytes::times(std::size_t index) {
   Result<std::vector<float>> times = floats(index);
   if (!times) return times;
-  if (times.value().front() < 0) return invalid_input(accessor_place(index), "the time of the first key is negative");
+  if (times.value().front() < 0)
+    return invalid_input(accessor_place(index),
+                         "the first key is before time 0; move the animation so that it starts at 0 or later");
   for (std::size_t k = 1; k < times.value().size(); ++k) {
     if (!(times.value()[k - 1] < times.value()[k]))
       return invalid_input(accessor_place(index),
-                           "the time of key " + std::to_string(k) + " is not after that of the one before");
+                           "the time of key " + std::to_string(k) + " is not later than the time of the key before");
   }
   return times;
 }
@@ -283,13 +289,12 @@ Result<std::vector<std::uint32_t>> Bytes::indices(std::size_t index, std::size_t
   const std::uint32_t restart = restart_index(accessor.component);
   for (std::size_t i = 0; i < result.size(); ++i) {
     if (result[i] == restart)
-      return invalid_input(accessor_place(index), "index " + std::to_string(i) +
-                                                      " is the value of primitive restart, " + std::to_string(restart) +
-                                                      ", which glTF does not allow");
+      return invalid_input(accessor_place(index), "index " + std::to_string(i) + " is " + std::to_string(restart) +
+                                                      ", which means primitive restart and is not allowed in glTF");
     if (result[i] >= vertex_count)
-      return invalid_input(accessor_place(index), "index " + std::to_string(i) + " names vertex " +
-                                                      std::to_string(result[i]) + ", but the primitive has " +
-                                                      std::to_string(vertex_count));
+      return invalid_input(accessor_place(index), "index " + std::to_string(i) + " refers to vertex " +
+                                                      std::to_string(result[i]) + ", but the primitive has only " +
+                                                      std::to_string(vertex_count) + " vertices");
   }
   return result;
 }

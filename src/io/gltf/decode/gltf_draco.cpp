@@ -51,7 +51,7 @@ Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& a
       static_cast<std::size_t>(attribute->num_components()) != components ||
       attribute->data_type() != data_type(accessor.component) ||
       (!attribute->is_mapping_identity() && attribute->indices_map_size() < mesh.num_points()))
-    return invalid_input(place, "the compressed mesh has not the attribute that the primitive declares");
+    return invalid_input(place, "the Draco data lack an attribute that the primitive declares; export the file again");
   const auto offset = static_cast<std::uint64_t>(attribute->byte_offset());
   const auto stride = static_cast<std::uint64_t>(attribute->byte_stride());
   const std::size_t available = attribute->buffer()->data_size();
@@ -66,7 +66,9 @@ Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& a
       ok = std::isfinite(number);
       result[v * components + c] = static_cast<float>(number);
     }
-    if (!ok) return invalid_input(place, "vertex " + std::to_string(v) + " of the compressed mesh is broken");
+    if (!ok)
+      return invalid_input(place,
+                           "vertex " + std::to_string(v) + " of the Draco data is damaged; export the file again");
   }
   return Success{};
 }
@@ -102,7 +104,7 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::unique_ptr<draco::Mesh> mesh;
-  std::string reason = "it holds no mesh";
+  std::string reason = "there is no triangle mesh in them";
   try {
     if (const auto faces = declared_faces(buffer)) {
       if (Status status = expansion.check(kBytesPerFace * *faces, place); !status) return status.error();
@@ -119,9 +121,10 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
   } catch (const std::exception& exception) {  // the decoder trusted lengths in the file
     reason = exception.what();
   }
-  if (!mesh) return invalid_input(place, std::string("the compressed mesh is broken: ").append(reason));
+  if (!mesh)
+    return invalid_input(place, std::string("the Draco data cannot be decoded; the decoder says: ").append(reason));
   if (mesh->num_points() != vertex_count)
-    return invalid_input(place, "the compressed mesh has " + std::to_string(mesh->num_points()) +
+    return invalid_input(place, "the Draco data have " + std::to_string(mesh->num_points()) +
                                     " vertices, but its accessors declare " + std::to_string(vertex_count));
   return mesh;
 }
@@ -139,7 +142,8 @@ Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model, co
   for (std::uint32_t f = 0; f < mesh.num_faces(); ++f) {
     for (const draco::PointIndex& corner : mesh.face(draco::FaceIndex(f))) {
       if (corner.value() >= vertex_count)
-        return invalid_input(place, "face " + std::to_string(f) + " of the compressed mesh names vertex " +
+        return invalid_input(place, "face " + std::to_string(f) +
+                                        " of the Draco data refers to a vertex that does not exist, vertex " +
                                         std::to_string(corner.value()));
       geometry.corners.push_back(corner.value());
     }

@@ -138,7 +138,8 @@ Status EditLayout::find_images() {
     if (is_data_uri(uri)) continue;
     const Result<std::string> path = origin.path_of(uri, place);
     if (!path) {
-      warnings_.push_back(path.error().text() + "; the image stays a reference to it");
+      warnings_.push_back(path.error().text() +
+                          "; the image is not embedded, and the result still refers to that file");
       continue;
     }
     Result<FileBytes> file = origin.open(path.value(), place);
@@ -146,7 +147,8 @@ Status EditLayout::find_images() {
     const std::string_view bytes = files_.emplace_back(std::move(file).value()).bytes();
     const char* const media_type = media_type_of(bytes);
     if (media_type == nullptr)
-      return invalid_input(place, "the file is neither PNG, JPEG, WebP nor KTX2, so it can not be taken in");
+      return invalid_input(
+          place, "the image is not PNG, JPEG, WebP or KTX2, so it cannot be embedded; write a .gltf file instead");
     images_.push_back({i, media_type, bytes});
   }
   return Success{};

@@ -19,31 +19,34 @@ Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
     return invalid_input(binary::place(name, at), std::move(message));
   };
   const auto word = [&](std::size_t at) { return binary::load<std::uint32_t>(bytes.data() + at, std::endian::little); };
-  if (!is_glb(bytes)) return error(0, "this is not a GLB file: its first word is not glTF");
+  if (!is_glb(bytes)) return error(0, "this is not a GLB file, since it does not begin with the word glTF");
   if (bytes.size() < kHeaderSize + kChunkHeaderSize)
-    return error(bytes.size(), "the file ends inside its header of 20 bytes");
-  if (word(4) != 2) return error(4, "version " + std::to_string(word(4)) + " of GLB is unknown; there is only 2");
+    return error(bytes.size(), "the file is cut off inside its header of 20 bytes; copy or export it again");
+  if (word(4) != 2)
+    return error(4, "version " + std::to_string(word(4)) + " of GLB cannot be read; export the file as glTF 2.0");
   if (word(8) != bytes.size())
-    return error(8, "the header declares " + std::to_string(word(8)) + " bytes, but the file has " +
+    return error(8, "the header says that the file has " + std::to_string(word(8)) + " bytes, but it has " +
                         std::to_string(bytes.size()));
 
   GlbChunks chunks;
   for (std::size_t at = kHeaderSize, chunk = 0; at < bytes.size(); ++chunk) {
-    if (bytes.size() - at < kChunkHeaderSize) return error(at, "the file ends inside the header of a chunk");
+    if (bytes.size() - at < kChunkHeaderSize)
+      return error(at, "the file is cut off inside the header of a chunk; copy or export it again");
     const std::size_t size = word(at), begin = at + kChunkHeaderSize;
     const std::uint32_t type = word(at + 4);
     if (size > bytes.size() - begin)
-      return error(at, "chunk " + std::to_string(chunk) + " declares " + std::to_string(size) + " bytes, but only " +
-                           std::to_string(bytes.size() - begin) + " are left");
-    if (size % 4 != 0) return error(at, "the length of chunk " + std::to_string(chunk) + " is no multiple of 4");
+      return error(at, "chunk " + std::to_string(chunk) + " should have " + std::to_string(size) + " bytes, but only " +
+                           std::to_string(bytes.size() - begin) + " are left in the file; copy or export it again");
+    if (size % 4 != 0) return error(at, "the length of chunk " + std::to_string(chunk) + " must be a multiple of 4");
     if ((chunk == 0) != (type == kJson))
-      return error(at + 4, chunk == 0 ? "the first chunk is not JSON" : "there is a second JSON chunk");
+      return error(at + 4, chunk == 0 ? "the first chunk must be JSON, but it is not"
+                                      : "the file has a second JSON chunk, but may have only one");
     if (type == kJson) {
       chunks.json = bytes.substr(begin, size);
       chunks.json_offset = begin;
       chunks.rest = bytes.substr(begin + size);
     } else if (type == kBin) {
-      if (chunk != 1) return error(at + 4, "the BIN chunk must be the second");
+      if (chunk != 1) return error(at + 4, "the BIN chunk must be the second chunk, right after JSON");
       chunks.bin = bytes.substr(begin, size);
       chunks.rest = bytes.substr(begin + size);
     }
@@ -60,8 +63,8 @@ Result<GlbFrame> frame_glb(std::uint64_t json_size, std::optional<std::uint64_t>
   frame.size = kHeaderSize + kChunkHeaderSize + json_size + json_padding +
                (bin_size ? kChunkHeaderSize + *bin_size + bin_padding : 0) + rest_size;
   if (frame.size > ~std::uint32_t{0})
-    return invalid_input(name, "the GLB file would have " + std::to_string(frame.size) +
-                                   " bytes, but its header can not say more than 4294967295; a .gltf file can");
+    return invalid_input(name, "the result would have " + std::to_string(frame.size) +
+                                   " bytes, but a GLB file can have at most 4294967295; write a .gltf file instead");
   const auto add_word = [](std::string& bytes, std::uint64_t word) {
     binary::append(bytes, static_cast<std::uint32_t>(word), std::endian::little);
   };

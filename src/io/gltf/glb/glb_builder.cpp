@@ -96,7 +96,7 @@ Result<std::size_t> GlbBuilder::finish(const Take& take) {
   if (!framed) return framed.error();
   const GlbFrame& frame = framed.value();
   if (frame.size > most_bytes_)
-    return invalid_input("", "the file would have " + std::to_string(frame.size) + " bytes, but may have " +
+    return invalid_input("", "the result would have " + std::to_string(frame.size) + " bytes, but may have at most " +
                                  std::to_string(most_bytes_));
   const auto size = static_cast<std::size_t>(frame.size);
   for (const std::string_view piece : {std::string_view(frame.before_json), std::string_view(text),

@@ -31,7 +31,7 @@ std::vector<JsonView> items_of(const JsonView& view, const Json& value, const ch
 // Returns true if a term is an array with this number of items, and complains otherwise.
 bool is_term(const JsonView& term, const Json& value, std::size_t size, const char* form) {
   if (value.is_array() && value.size() == size) return true;
-  term.complain(std::string("a term is ") + form);
+  term.complain(std::string("a term must be ") + form);
   return false;
 }
 
@@ -54,14 +54,14 @@ void read_terms(const JsonView& item, const Json& value, std::size_t target_coun
 void read_factors(const JsonView& item, const Json& value, std::size_t target_count,
                   const std::vector<std::size_t>& own, GltfExtraTarget& extra) {
   const std::optional<JsonView> factors = item.array("factors");
-  if (!factors || factors->size() != 2) return item.complain("factors", "there must be two factors");
+  if (!factors || factors->size() != 2) return item.complain("factors", "factors must be a list of two");
   std::array<std::optional<std::size_t>, 2> targets;  // none for the base
   for (std::size_t n = 0; n < 2; ++n) {
     const Json& factor = value["factors"][n];
     if (!factor.is_string())
       targets[n] = factors->item(n).as_index(target_count, "targets").value_or(0);
     else if (factor.get_ref<const std::string&>() != "base")
-      return factors->item(n).complain("a factor is the index of a target or \"base\"");
+      return factors->item(n).complain("a factor must be the index of a target or \"base\"");
   }
   if (targets[0] && targets[1]) {
     extra.quadratic.push_back({*targets[0], *targets[1], 1});
@@ -70,7 +70,7 @@ void read_factors(const JsonView& item, const Json& value, std::size_t target_co
     extra.linear.push_back({j, 1});
     for (const std::size_t i : own) extra.quadratic.push_back({i, j, -1});
   } else {
-    factors->complain("the base cannot be both factors");
+    factors->complain("both factors are \"base\", but one must be a target");
   }
 }
 
@@ -82,14 +82,16 @@ void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtra
     return found != extras.end() && found->target == i;
   };
   for (std::size_t n = 1; n < extras.size(); ++n) {
-    if (extras[n].target <= extras[n - 1].target) return list[n].complain("target", "the extra targets must ascend");
+    if (extras[n].target <= extras[n - 1].target)
+      return list[n].complain("target", "correction targets must be listed in ascending order");
   }
   for (std::size_t n = 0; n < extras.size(); ++n) {
     const bool follows_extras =
         std::any_of(extras[n].linear.begin(), extras[n].linear.end(), [&](const auto& t) { return is_extra(t.i); }) ||
         std::any_of(extras[n].quadratic.begin(), extras[n].quadratic.end(),
                     [&](const auto& t) { return is_extra(t.i) || is_extra(t.j); });
-    if (follows_extras) return list[n].complain("an extra target cannot follow from another one");
+    if (follows_extras)
+      return list[n].complain("a correction target must not be computed from another correction target");
   }
 }
 
@@ -114,16 +116,16 @@ GltfBakeMark read_mark(const JsonView& view, const Json& value, std::size_t targ
   GltfBakeMark mark;
   const std::size_t version = view.required_count("version", std::size_t{1} << 31);
   if (version != kVersion && version != kVersionOfFactors)
-    view.complain("version", "it was written by another version of chronormal");
+    view.complain("version", "another version of chronormal has baked this file; bake the original file again");
   const std::optional<BakeEncoding> encoding = find_bake_encoding(view.required_text("encode"));
-  if (!encoding) view.complain("encode", "it is none of harmless, exact, endpoint and smallest");
+  if (!encoding) view.complain("encode", "encode must be harmless, exact, endpoint or smallest");
   mark.encoding = encoding.value_or(BakeEncoding::kExact);
   mark.sequence = read_flag(view, value, "sequence");
   mark.animations_only = read_flag(view, value, "animations_only");
   mark.author = read_flag(view, value, "author");
   const std::vector<JsonView> extras = items_of(view, value, "extras");
   if (extras.size() > target_count) {
-    view.complain("extras", "there are more of them than targets");
+    view.complain("extras", "the list has more correction targets than the mesh has targets");
     return mark;
   }
   for (const JsonView& item : extras) {

@@ -44,7 +44,7 @@ std::optional<Component> read_component(const JsonView& object) {
   const std::size_t value = object.required_count("componentType", kMostBytes);
   const std::optional<Component> component = to_component(value);
   if (!component)
-    object.complain("componentType", "component type " + std::to_string(value) + " is unknown to glTF 2.0");
+    object.complain("componentType", "component type " + std::to_string(value) + " does not exist in glTF 2.0");
   return component;
 }
 
@@ -99,11 +99,13 @@ Result<Model> Parser::parse(const nlohmann::json& document) {
 
 void Parser::parse_asset(const JsonView& root) {
   const std::optional<JsonView> asset = root.object("asset");
-  if (!asset) return root.complain("asset", "there is no asset: this is not a glTF 2.0 file");
+  if (!asset) return root.complain("asset", "this is not a glTF 2.0 file, since it has no asset");
   // A file may require a later minor version than the one it was written for; only 2.0 is supported.
   const std::string version = asset->required_text("version"), least = asset->text("minVersion");
-  if (!version.starts_with("2.")) asset->complain("version", "only glTF 2.0 can be read");
-  if (!least.empty() && least != "2.0") asset->complain("minVersion", "only glTF 2.0 can be read");
+  if (!version.starts_with("2."))
+    asset->complain("version", "the file has another version of glTF; export it as glTF 2.0");
+  if (!least.empty() && least != "2.0")
+    asset->complain("minVersion", "the file has another version of glTF; export it as glTF 2.0");
   if (const std::optional<JsonView> used = root.array("extensionsUsed")) {
     for (std::size_t i = 0; i < used->size(); ++i) model_.extensions.push_back(used->item(i).as_text());
   }
@@ -141,9 +143,9 @@ void Parser::check_required(const JsonView& root) {
                          is_in_each("animations", "samplers", extension);
     const std::string message = std::string("the file requires the extension ").append(extension);
     if (changes)
-      required->item(i).complain(message + ", which cannot be read");
+      required->item(i).complain(message + ", which is not supported; export the file without it");
     else
-      note(required->item(i), message + ", which is not read, and moves no vertex of a mesh");
+      note(required->item(i), message + ", which is ignored here, since it moves no vertex of a mesh");
   }
 }
 
@@ -160,7 +162,7 @@ void Parser::parse_buffer(const JsonView& item) {
   Buffer buffer;
   if (item.has("uri")) buffer.uri = item.text("uri");
   buffer.byte_length = item.required_count("byteLength", kMostBytes);
-  if (buffer.byte_length == 0) item.complain("byteLength", "a buffer has at least one byte");
+  if (buffer.byte_length == 0) item.complain("byteLength", "byteLength of a buffer must be at least 1");
   model_.buffers.push_back(std::move(buffer));
 }
 
@@ -170,13 +172,13 @@ void Parser::parse_view(const JsonView& item, BufferView& view) {
   view.length = item.required_count("byteLength", kMostBytes);
   view.stride = item.find_count("byteStride", 252);
   if (view.stride && (*view.stride < 4 || *view.stride % 4 != 0))
-    item.complain("byteStride", "the stride must be a multiple of 4 from 4 to 252");
+    item.complain("byteStride", "byteStride must be a multiple of 4 from 4 to 252");
   if (complaint_.first()) return;
-  if (view.length == 0) return item.complain("byteLength", "a buffer view has at least one byte");
+  if (view.length == 0) return item.complain("byteLength", "byteLength of a buffer view must be at least 1");
   const std::size_t available = model_.buffers[view.buffer].byte_length;
   if (view.offset > available || view.length > available - view.offset)
-    return item.complain("the view ends at byte " + std::to_string(view.offset + view.length) + ", but buffer " +
-                         std::to_string(view.buffer) + " has " + std::to_string(available));
+    return item.complain("the buffer view ends at byte " + std::to_string(view.offset + view.length) + ", but buffer " +
+                         std::to_string(view.buffer) + " has only " + std::to_string(available));
   if (const std::optional<JsonView> extensions = item.object("extensions")) {
     for (const char* const name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
       const std::optional<JsonView> meshopt = extensions->object(name);
@@ -207,38 +209,40 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
   const auto* const found_mode = std::find_if(kModes.begin(), kModes.end(), [&](auto& m) { return m.first == mode; });
   const auto* const found_filter =
       std::find_if(kFilters.begin(), kFilters.end(), [&](auto& f) { return f.first == filter; });
-  if (found_mode == kModes.end()) item.complain("mode", "the mode is none of ATTRIBUTES, TRIANGLES, INDICES");
+  if (found_mode == kModes.end()) item.complain("mode", "mode must be ATTRIBUTES, TRIANGLES or INDICES");
   if (found_filter == kFilters.end())
-    item.complain("filter", "the filter is none of NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL");
+    item.complain("filter", "filter must be NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL");
   if (complaint_.first()) return std::nullopt;
   result.mode = found_mode->second;
   result.filter = found_filter->second;
 
   const std::size_t available = model_.buffers[result.buffer].byte_length;
   if (result.offset > available || result.length > available - result.offset)
-    item.complain("the compressed bytes end at byte " + std::to_string(result.offset + result.length) +
-                  ", but buffer " + std::to_string(result.buffer) + " has " + std::to_string(available));
+    item.complain("the compressed data end at byte " + std::to_string(result.offset + result.length) + ", but buffer " +
+                  std::to_string(result.buffer) + " has " + std::to_string(available));
   const bool of_attributes = result.mode == Mode::kAttributes;
   const bool stride_ok =
       of_attributes ? result.stride % 4 == 0 && result.stride > 0 : result.stride == 2 || result.stride == 4;
   if (view.stride && *view.stride != result.stride)
-    item.complain("byteStride", "the stride is not the " + std::to_string(*view.stride) + " of the view");
+    item.complain("byteStride", "byteStride must be " + std::to_string(*view.stride) + ", as in the buffer view");
   if (!stride_ok)
-    item.complain("byteStride", of_attributes ? "the stride of attributes must be a multiple of 4 from 4 to 256"
-                                              : "indices have 2 or 4 bytes");
+    item.complain("byteStride", of_attributes ? "byteStride of attributes must be a multiple of 4 from 4 to 256"
+                                              : "byteStride of indices must be 2 or 4");
   const bool filter_ok = result.filter == Filter::kNone ||
                          (of_attributes && (result.filter == Filter::kExponential || result.stride == 8 ||
                                             (result.filter == Filter::kOctahedral && result.stride == 4)));
-  if (!filter_ok) item.complain("filter", "the filter does not go with this mode and stride");
+  if (!filter_ok) item.complain("filter", "the filter is not allowed with this mode and byteStride");
   if (result.mode == Mode::kTriangles && result.count % 3 != 0)
-    item.complain("count", "the indices of triangles come in threes");
+    item.complain("count", "count must be a multiple of 3 for triangles");
   if (complaint_.first()) return std::nullopt;
   if (result.count > view.length / result.stride || result.count * result.stride != view.length)
     item.complain("count", std::to_string(result.count) + " elements of " + std::to_string(result.stride) +
-                               " bytes are not the " + std::to_string(view.length) + " bytes of the view");
+                               " bytes do not fill the buffer view, which has " + std::to_string(view.length) +
+                               " bytes");
   // The encoding spends at least a bit per 8 bytes; a little file must not ask for a lot of memory.
   if (view.length / 256 > result.length)
-    item.complain("byteLength", "the compressed bytes are too few for " + std::to_string(view.length) + " bytes");
+    item.complain("byteLength", "the compressed data are too short for the " + std::to_string(view.length) +
+                                    " bytes that they should hold");
   return result;
 }
 
@@ -252,15 +256,16 @@ void Parser::parse_accessor(const JsonView& item, Accessor& accessor) {
   const auto* const found =
       std::find_if(kElementTypes.begin(), kElementTypes.end(), [&](const auto& t) { return t.name == type; });
   if (found == kElementTypes.end()) {
-    item.complain("type", "the type is none of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4");
+    item.complain("type", "type must be SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4");
   } else {
     accessor.components = found->components;
     accessor.is_matrix = found->is_matrix;
   }
-  if (accessor.count == 0) item.complain("count", "an accessor has at least one element");
-  if (item.has("byteOffset") && !item.has("bufferView")) item.complain("byteOffset", "an offset needs a buffer view");
+  if (accessor.count == 0) item.complain("count", "count of an accessor must be at least 1");
+  if (item.has("byteOffset") && !item.has("bufferView"))
+    item.complain("byteOffset", "byteOffset is not allowed without bufferView");
   if (accessor.normalized && (accessor.component == Component::kFloat || accessor.component == Component::kUint32))
-    item.complain("normalized", "only integers of 8 and 16 bits can be normalised");
+    item.complain("normalized", "normalized is only allowed for integers of 8 and 16 bits");
   if (const std::optional<JsonView> sparse = item.object("sparse")) parse_sparse(*sparse, accessor);
 }
 
@@ -268,16 +273,16 @@ void Parser::parse_sparse(const JsonView& item, Accessor& accessor) {
   Sparse sparse;
   sparse.count = item.required_count("count", kMostBytes);
   if (sparse.count == 0 || sparse.count > accessor.count)
-    item.complain("count", "a sparse accessor replaces from 1 to all of its " + std::to_string(accessor.count) +
-                               " elements, not " + std::to_string(sparse.count));
+    item.complain("count", "count is " + std::to_string(sparse.count) + ", but must be from 1 to " +
+                               std::to_string(accessor.count) + ", the elements of the accessor");
   const std::optional<JsonView> indices = item.object("indices"), values = item.object("values");
-  if (!indices || !values) return item.complain("a sparse accessor has indices and values");
+  if (!indices || !values) return item.complain("a sparse accessor must have indices and values");
   sparse.indices_view = indices->required_index("bufferView", model_.views.size(), "buffer views").value_or(0);
   sparse.indices_offset = indices->count("byteOffset", kMostBytes, 0);
   sparse.indices_component = read_component(*indices).value_or(Component::kUint16);
   if (sparse.indices_component != Component::kUint8 && sparse.indices_component != Component::kUint16 &&
       sparse.indices_component != Component::kUint32)
-    indices->complain("componentType", "indices are unsigned integers");
+    indices->complain("componentType", "componentType of indices must be an unsigned integer");
   sparse.values_view = values->required_index("bufferView", model_.views.size(), "buffer views").value_or(0);
   sparse.values_offset = values->count("byteOffset", kMostBytes, 0);
   accessor.sparse = sparse;
@@ -287,7 +292,7 @@ void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
   constexpr std::size_t kMostNodes = ~std::uint32_t{0};
   if (complaint_.first()) return;
   const JsonView item(value, node_pointer(index), complaint_);
-  if (index >= kMostNodes) return item.complain("there are too many nodes");
+  if (index >= kMostNodes) return item.complain("the file has more nodes than can be read");
   GltfNode& node = model_.nodes.emplace_back();
   node.name = item.text("name");
   node.has_skin = item.has("skin");
@@ -318,7 +323,8 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
     const std::optional<JsonView> array = item.array(key);
     if (!array) return false;
     if (array->size() != count) {
-      array->complain("this must be " + std::to_string(count) + " numbers, not " + std::to_string(array->size()));
+      array->complain("the array must have " + std::to_string(count) + " numbers, but has " +
+                      std::to_string(array->size()));
       return false;
     }
     for (std::size_t i = 0; i < count; ++i) result[i] = array->item(i).as_number();
@@ -334,13 +340,15 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
   const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
   if (has_matrix) {
     if (has_translation || has_rotation || has_scale)
-      return item.complain("matrix", "a node has either a matrix or translation, rotation and scale");
+      return item.complain(
+          "matrix", "the node has a matrix beside translation, rotation or scale, but only one of both is allowed");
     const double* m = matrix.data();
     model_.placements.emplace_back(index, AffineTransform{{vector(m), vector(m + 4), vector(m + 8)}, vector(m + 12)});
   } else if (has_translation || has_rotation || has_scale) {
     const double length = std::sqrt(rotation[0] * rotation[0] + rotation[1] * rotation[1] +
                                     (rotation[2] * rotation[2] + rotation[3] * rotation[3]));
-    if (!(std::fabs(length - 1) < 1e-2)) return item.complain("rotation", "the quaternion is not of length 1");
+    if (!(std::fabs(length - 1) < 1e-2))
+      return item.complain("rotation", "the rotation must be a quaternion of length 1");
     for (double& component : rotation) component /= length;
     model_.placements.emplace_back(index, NodeTransform{vector(translation.data()), rotation, vector(scale.data())});
   }
@@ -351,14 +359,15 @@ void Parser::check_nodes(const JsonView& root) {
   const std::size_t count = model_.nodes.size();
   // Items that are left in the array were no objects.
   if (const nlohmann::json& rest = (*document_)["nodes"]; count == 0 || !rest.is_array() || !rest.empty())
-    return root.complain("nodes", "this must be an array of one object or more");
+    return root.complain("nodes", "nodes must be an array of at least one object");
   for (std::size_t i = 0; i < count && !complaint_.first(); ++i) {
     const GltfNode& node = model_.nodes[i];
     if (!node.mesh && node.weights.empty()) continue;
     const std::size_t mesh = node.mesh.value_or(0);
     if (node.mesh && mesh >= model_.meshes.size())
-      complaint_.add(node_pointer(i) + "/mesh", "there is no " + std::to_string(mesh) + " among the " +
-                                                    std::to_string(model_.meshes.size()) + " meshes");
+      complaint_.add(node_pointer(i) + "/mesh", "the node refers to mesh " + std::to_string(mesh) +
+                                                    ", but the file has " + std::to_string(model_.meshes.size()) +
+                                                    " meshes");
     else if (!node.weights.empty())
       check_weights(node_pointer(i), node.weights, node.mesh ? model_.meshes[mesh].target_count : 0);
   }
@@ -400,10 +409,10 @@ void Parser::connect_nodes() {
   for (const auto& [parent, child] : children_) {
     const std::string pointer = node_pointer(parent) + "/children";
     if (child >= count)
-      return complaint_.add(pointer,
-                            "there is no " + std::to_string(child) + " among the " + std::to_string(count) + " nodes");
+      return complaint_.add(pointer, "the node refers to node " + std::to_string(child) + ", but the file has " +
+                                         std::to_string(count) + " nodes");
     if (model_.nodes[child].parent)
-      return complaint_.add(pointer, "node " + std::to_string(child) + " has a parent already");
+      return complaint_.add(pointer, "node " + std::to_string(child) + " is a child of two nodes");
     model_.nodes[child].parent = parent;
   }
   // Parents form a forest: a walk that meets its own path again is in a circle. Every node is walked over once.
@@ -414,7 +423,8 @@ void Parser::connect_nodes() {
       seen_from[at] = mark;
       if (!model_.nodes[at].parent) break;
       at = *model_.nodes[at].parent;
-      if (seen_from[at] == mark) return complaint_.add(node_pointer(at), "the node is its own ancestor");
+      if (seen_from[at] == mark)
+        return complaint_.add(node_pointer(at), "the node is its own parent, directly or by other nodes");
     }
   }
 }
@@ -444,8 +454,9 @@ std::vector<double> Parser::parse_weights(const JsonView& item) {
 
 void Parser::check_weights(const std::string& pointer, const std::vector<double>& weights, std::size_t target_count) {
   if (weights.size() != target_count)
-    complaint_.add(pointer + "/weights", "there are " + std::to_string(weights.size()) + " weights for " +
-                                             std::to_string(target_count) + " morph targets");
+    complaint_.add(pointer + "/weights", "the list has " + std::to_string(weights.size()) +
+                                             " weights, but the mesh has " + std::to_string(target_count) +
+                                             " morph targets");
 }
 
 Placement placement_of(const Model& model, std::size_t node) noexcept {

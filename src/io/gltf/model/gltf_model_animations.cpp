@@ -54,7 +54,7 @@ Parser::Driven Parser::pointed_to(const JsonView& target) {
   };
   const std::optional<std::size_t> node = index_in("/nodes/"), mesh = index_in("/meshes/");
   if (is_unknown || (node && *node >= model_.nodes.size()) || (mesh && *mesh >= model_.meshes.size())) {
-    target.complain("there is no " + pointer);
+    target.complain("the channel drives " + pointer + ", which the file does not have");
     return {};
   }
   if (node) return {{*node}, driven.target};
@@ -73,13 +73,13 @@ void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std:
   std::set<std::string> known;
   std::map<std::size_t, std::vector<LoneWeight>> lone;  // channels of single weights of each node
   const std::optional<JsonView> channels = item.array("channels"), samplers = item.array("samplers");
-  if (!channels || !samplers) return item.complain("an animation has channels and samplers");
+  if (!channels || !samplers) return item.complain("an animation must have channels and samplers");
   animation.channel_count = channels->size();
   const auto read = [&](std::size_t c) {
     const JsonView channel = channels->item(c);
     if (!channel.is_object()) return;
     const std::optional<JsonView> target = channel.object("target");
-    if (!target) return channel.complain("target", "a channel has a target");
+    if (!target) return channel.complain("target", "the channel has no target");
     const std::string path = target->required_text("path");
     Driven driven = path == "pointer" ? pointed_to(*target) : Driven{};
     if (path == "weights" && target->has("node")) {
@@ -87,7 +87,7 @@ void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std:
     }
     if (driven.nodes.empty()) return;
     const std::string weights = path == "pointer" ? pointer_of(*target) : node_weights(driven.nodes.front());
-    if (known.contains(weights)) return target->complain("the animation has two channels for these weights");
+    if (known.contains(weights)) return target->complain("another channel of this animation drives the same weights");
     for (const std::size_t node : driven.nodes) {
       if (driven.target)
         lone[node].push_back({c, *driven.target});
@@ -145,7 +145,8 @@ void Parser::parse_track(const JsonView& animation, std::size_t channel_index, s
   const std::optional<std::uint32_t> mesh = model_.nodes[node].mesh;
   const std::size_t target_count = mesh ? model_.meshes[*mesh].target_count : 0;
   if (target_count == 0)
-    return channel.object("target")->complain("node", "the node has no mesh with morph targets to give weights to");
+    return channel.object("target")->complain(
+        "node", "the channel drives weights of a node that has no mesh with morph targets");
   if (!parse_sampler(animation, channel_index, Use::kWeights, target_count, track, source)) return;
   result.tracks.push_back(track);
   sources.push_back(std::move(source));
@@ -164,9 +165,10 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
     const JsonView channel = animation.array("channels")->item(weight.channel), target = *channel.object("target");
     const bool is_known = std::any_of(result.tracks.begin(), result.tracks.end(),
                                       [&](const GltfTrack& other) { return other.node == node; });
-    if (weight.target >= target_count) return target.complain("there is no " + pointer_of(target));
+    if (weight.target >= target_count)
+      return target.complain("the channel drives " + pointer_of(target) + ", which the file does not have");
     if (is_known || (!source.elements.empty() && source.elements.back().target == weight.target))
-      return target.complain("the animation has two channels for these weights");
+      return target.complain("another channel of this animation drives the same weights");
     GltfTrack of_weight;
     TrackSource read;
     if (!parse_sampler(animation, weight.channel, Use::kWeights, 1, of_weight, read)) return;
@@ -180,8 +182,9 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
     // A line is a cubic, too. A step is neither.
     const bool is_step = of_weight.interpolation == GltfInterpolation::kStep;
     if (is_step != (track.interpolation == GltfInterpolation::kStep))
-      return target.complain("some channels of single weights of node " + std::to_string(node) +
-                             " step while others are LINEAR or CUBICSPLINE, which cannot be put together as one track");
+      return target.complain(
+          "the weights of node " + std::to_string(node) +
+          " are partly STEP and partly LINEAR or CUBICSPLINE; give all of them the same interpolation");
     if (of_weight.interpolation == GltfInterpolation::kCubicSpline) track.interpolation = of_weight.interpolation;
     source.elements.push_back({weight.target, read.input, read.output, of_weight.interpolation});
   }
@@ -219,9 +222,10 @@ void Parser::parse_node_channels(const JsonView& animation, std::vector<NodeChan
         std::find_if(kPaths.begin(), kPaths.end(), [&](const auto& known_path) { return known_path.first == path; });
     if (!node || found == kPaths.end()) continue;
     if (!known.emplace(*node, found->second).second)
-      return target->complain("the animation has two channels for the " + path + " of this node");
+      return target->complain("another channel of this animation drives the " + path + " of the same node");
     if (!std::holds_alternative<NodeTransform>(placement_of(model_, *node)))
-      return target->complain("the node stands by a matrix, whose " + path + " cannot be animated");
+      return target->complain("the channel drives the " + path +
+                              " of a node that has a matrix; give the node translation, rotation and scale instead");
     GltfTrack track;
     TrackSource source;
     const Use use = found->second == Path::kRotation ? Use::kTurnedNode : Use::kMovedNode;
@@ -245,9 +249,9 @@ bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index,
   else if (interpolation == "CUBICSPLINE")
     track.interpolation = GltfInterpolation::kCubicSpline;
   else if (!interpolation.empty() && interpolation != "LINEAR")
-    sampler.complain("interpolation", "the interpolation is none of LINEAR, STEP, CUBICSPLINE");
+    sampler.complain("interpolation", "interpolation must be LINEAR, STEP or CUBICSPLINE");
   for (const char* key : {"input", "output"}) {
-    if (!sampler.has(key)) sampler.complain(std::string("there is no ").append(key));
+    if (!sampler.has(key)) sampler.complain(std::string("the sampler has no ").append(key));
   }
   const std::optional<std::size_t> input = parse_use(sampler, "input", Use::kTimes);
   const std::optional<std::size_t> output = parse_use(sampler, "output", use);
@@ -257,12 +261,13 @@ bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index,
   if (track.interpolation == GltfInterpolation::kCubicSpline) per_key *= 3;
   const std::size_t given = model_.accessors[*output].count;
   if (given % per_key != 0 || given / per_key != track.key_count) {
-    sampler.complain("output", "there are " + std::to_string(given) + (use == Use::kWeights ? " weights" : " values") +
-                                   " for " + std::to_string(track.key_count) + " keys of " + std::to_string(per_key));
+    sampler.complain("output", "the output has " + std::to_string(given) +
+                                   (use == Use::kWeights ? " weights" : " values") + ", but " +
+                                   std::to_string(track.key_count) + " keys need " + std::to_string(per_key) + " each");
     return false;
   }
   if (track.interpolation == GltfInterpolation::kCubicSpline && track.key_count < 2) {
-    sampler.complain("input", "a cubic spline has two keys or more");
+    sampler.complain("input", "a cubic spline needs at least two keys");
     return false;
   }
   source.input = *input;

@@ -34,7 +34,7 @@ void Parser::parse_mesh(const JsonView& item) {
   std::vector<PrimitiveSource> sources;
   mesh.name = item.text("name");
   const std::optional<JsonView> primitives = item.array("primitives");
-  if (!primitives) item.complain("a mesh has primitives");
+  if (!primitives) item.complain("the mesh has no primitives");
   for (std::size_t p = 0; primitives && p < primitives->size() && !complaint_.first(); ++p) {
     const JsonView primitive = primitives->item(p);
     if (primitive.is_object()) parse_primitive(primitive, mesh, sources);
@@ -69,14 +69,14 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
   PrimitiveSource source;
   primitive.mode = static_cast<int>(item.count("mode", 6, 4));
   const std::optional<JsonView> attributes = item.object("attributes");
-  if (!attributes) return item.complain("attributes", "a primitive has attributes");
-  if (attributes->size() == 0) return attributes->complain("a primitive has at least one attribute");
+  if (!attributes) return item.complain("attributes", "the primitive has no attributes");
+  if (attributes->size() == 0) return attributes->complain("attributes of a primitive must not be empty");
 
   source.draco = parse_draco(item, *attributes);
   if (complaint_.first()) return;
   primitive.has_draco = source.draco.has_value();
   if (primitive.has_draco && primitive.mode == 6)
-    return item.complain("mode", "only triangles and strips can be compressed by KHR_draco_mesh_compression");
+    return item.complain("mode", "the primitive is a triangle fan, which KHR_draco_mesh_compression does not allow");
   const Attributes compressed = source.draco ? source.draco->attributes : Attributes();
   source.base.position = parse_use(*attributes, "POSITION", Use::kPosition, primitive.has_draco);
   if (source.base.position) {
@@ -86,8 +86,9 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
     if (complaint_.first()) return;
     for (const auto& [key, index] : {std::pair("NORMAL", source.base.normal), {"TANGENT", source.base.tangent}}) {
       if (index && model_.accessors[*index].count != primitive.vertex_count)
-        attributes->complain(key, "there are " + number(model_.accessors[*index].count) + " of these for " +
-                                      number(primitive.vertex_count) + " positions");
+        attributes->complain(key, "the accessor has " + number(model_.accessors[*index].count) +
+                                      " elements, but the primitive has " + number(primitive.vertex_count) +
+                                      " positions");
     }
   }
   source.indices = parse_use(item, "indices", Use::kIndices, primitive.has_draco);
@@ -96,7 +97,7 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
   primitive.has_tangents = source.base.tangent.has_value();
   primitive.element_count = source.indices ? model_.accessors[*source.indices].count : primitive.vertex_count;
   if (primitive.element_count > kAnyId || primitive.vertex_count > kAnyId)
-    item.complain("indices of 32 bits cannot name so many vertices");
+    item.complain("the primitive has more vertices or indices than 32 bits can count; split the mesh");
 
   parse_targets(item, primitive, source);
   if (complaint_.first()) return;
@@ -113,7 +114,8 @@ void Parser::fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vecto
     if (own < mesh.target_count) {
       (void)understands([&] {
         item.complain("targets", "the primitive has " + number(own) + " targets, but another one of its mesh has " +
-                                     number(mesh.target_count) + ": those that it lacks move nothing of it");
+                                     number(mesh.target_count) +
+                                     "; the missing targets are read as if they moved nothing here");
       });
       sources[p].targets.resize(mesh.target_count);
       mesh.primitives[p].targets.resize(mesh.target_count);
@@ -132,13 +134,14 @@ std::optional<Draco> Parser::parse_draco(const JsonView& item, const JsonView& a
   draco.view = view.value_or(0);
   const std::optional<JsonView> ids = found->object("attributes");
   if (!ids) {
-    found->complain("attributes", "a compressed primitive has attributes");
+    found->complain("attributes", "the Draco data of the primitive have no attributes");
     return std::nullopt;
   }
   for (const std::string& key : ids->keys()) {
-    if (!attributes.has(key.c_str())) ids->complain(key.c_str(), "the primitive does not have this attribute");
+    if (!attributes.has(key.c_str()))
+      ids->complain(key.c_str(), "the Draco data have this attribute, but the primitive does not");
   }
-  if (attributes.has("POSITION") && !ids->has("POSITION")) ids->complain("there is no POSITION");
+  if (attributes.has("POSITION") && !ids->has("POSITION")) ids->complain("the Draco data have no POSITION");
   draco.attributes.position = ids->find_index("POSITION", kAnyId, "attributes");
   draco.attributes.normal = ids->find_index("NORMAL", kAnyId, "attributes");
   draco.attributes.tangent = ids->find_index("TANGENT", kAnyId, "attributes");
@@ -150,8 +153,8 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
   for (std::size_t k = 0; targets && k < targets->size() && !complaint_.first(); ++k) {
     const JsonView target = targets->item(k);
     if (!target.is_object()) return;
-    if (target.size() == 0) note(target, "a target moves at least one attribute: this one moves nothing");
-    if (target.size() == 0 || !source.base.position) {  // nothing of this target is read
+    if (target.size() == 0) note(target, "the target is empty, and is read as one that moves nothing");
+    if (target.size() == 0 || !source.base.position) {  // none of it is read
       source.targets.emplace_back();
       primitive.targets.emplace_back();
       continue;
@@ -160,11 +163,11 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
     const auto read = [&](const char* key, Use use, const std::optional<std::size_t>& base,
                           std::optional<std::size_t>& result) {
       if (!target.has(key)) return;
-      if (!base) return target.complain(key, "the target moves an attribute that the primitive does not have");
+      if (!base) return target.complain(key, "the target has this attribute, but the primitive does not");
       result = parse_use(target, key, use);
       if (result && model_.accessors[*result].count != primitive.vertex_count)
-        target.complain(key, "the target has " + number(model_.accessors[*result].count) + " of these, but the base " +
-                                 number(primitive.vertex_count));
+        target.complain(key, "the target has " + number(model_.accessors[*result].count) +
+                                 " elements, but the primitive has " + number(primitive.vertex_count) + " vertices");
     };
     read("POSITION", Use::kMovedPosition, source.base.position, moved.position);
     read("NORMAL", Use::kMovedNormal, source.base.normal, moved.normal);
@@ -184,7 +187,7 @@ void Parser::parse_influences(const JsonView& item, PrimitiveSource& source) {
     const bool has_joints = attributes.has(joints_key.c_str()), has_weights = attributes.has(weights_key.c_str());
     if (!has_joints && !has_weights) return;
     if (!has_joints || !has_weights) {
-      return attributes.complain("there are " + (has_joints ? joints_key : weights_key) + " and no " +
+      return attributes.complain("the primitive has " + (has_joints ? joints_key : weights_key) + " but no " +
                                  (has_joints ? weights_key : joints_key));
     }
     const auto read = [&](const std::string& key, Use use) {
@@ -193,7 +196,8 @@ void Parser::parse_influences(const JsonView& item, PrimitiveSource& source) {
       const std::optional<std::size_t> index = parse_use(attributes, key.c_str(), use, id.has_value());
       if (index && source.base.position &&
           model_.accessors[*index].count != model_.accessors[*source.base.position].count)
-        attributes.complain(key.c_str(), "there are " + number(model_.accessors[*index].count) + " of these for " +
+        attributes.complain(key.c_str(), "the accessor has " + number(model_.accessors[*index].count) +
+                                             " elements, but the primitive has " +
                                              number(model_.accessors[*source.base.position].count) + " positions");
       return AttributeSource{index.value_or(0), id};
     };
@@ -214,7 +218,7 @@ void Parser::parse_skins() {
 void Parser::parse_skin(const JsonView& item, SkinSource& skin) {
   if (!item.is_object()) return;
   const std::optional<JsonView> joints = item.array("joints");
-  if (!joints) return item.complain("joints", "a skin has joints");
+  if (!joints) return item.complain("joints", "the skin has no joints");
   for (std::size_t j = 0; j < joints->size(); ++j) {
     const std::optional<std::size_t> joint = joints->item(j).as_index(model_.nodes.size(), "nodes");
     if (!joint) return;
@@ -222,8 +226,8 @@ void Parser::parse_skin(const JsonView& item, SkinSource& skin) {
   }
   skin.inverse_binds = parse_use(item, "inverseBindMatrices", Use::kInverseBinds);
   if (skin.inverse_binds && model_.accessors[*skin.inverse_binds].count < skin.joints.size())
-    item.complain("inverseBindMatrices", "there are " + number(model_.accessors[*skin.inverse_binds].count) +
-                                             " matrices for " + number(skin.joints.size()) + " joints");
+    item.complain("inverseBindMatrices", "the accessor has " + number(model_.accessors[*skin.inverse_binds].count) +
+                                             " matrices, but the skin has " + number(skin.joints.size()) + " joints");
 }
 
 std::optional<std::size_t> Parser::parse_use(const JsonView& object, const char* key, Use use, bool compressed) {
@@ -286,15 +290,16 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
       fits = is_one_of(accessor.component, {kUint8, kUint16, kUint32}) && !accessor.normalized;
       break;
   }
-  if (!fits) return complain("has a component type that is not allowed here");
+  if (!fits) return complain("has a componentType that is not allowed for this use");
 
   if (compressed) return;  // the decoded result is checked later
   if (accessor.view) check_inside_view(object, key, index, use);
   const bool moved = use == Use::kMovedPosition || use == Use::kMovedNormal || use == Use::kMovedTangent;
   constexpr std::size_t kPlausible = 65536;
   if (!accessor.view && !moved && accessor.count > file_bytes_ + kPlausible)
-    return complain("has " + number(accessor.count) + " elements without a buffer view, in a file of " +
-                    number(file_bytes_) + " bytes");
+    return complain("has " + number(accessor.count) +
+                    " elements but no data (bufferView), which is more than a file of " + number(file_bytes_) +
+                    " bytes may declare");
   if (accessor.sparse) check_sparse(object, key, index);
 }
 
@@ -312,9 +317,9 @@ void Parser::check_inside_view(const JsonView& object, const char* key, std::siz
   const std::size_t size = accessor.element_size(), stride = view.stride.value_or(size);
   const std::size_t alignment = component_size(accessor.component);
   if (accessor.offset % alignment != 0 || (view.offset + accessor.offset) % alignment != 0)
-    return complain("is not aligned to its components of " + number(alignment) + " bytes");
+    return complain("must begin at a multiple of " + number(alignment) + " bytes, the size of its components");
   if (is_attribute && (accessor.offset % 4 != 0 || stride % 4 != 0))
-    return complain("is an attribute, whose elements must be aligned to 4 bytes");
+    return complain("must have its elements at multiples of 4 bytes, as an attribute of vertices");
   if (stride < size)
     return complain("has elements of " + number(size) + " bytes, more than the byteStride of " + number(stride));
   if (accessor.offset > view.length || view.length - accessor.offset < size ||
@@ -333,7 +338,8 @@ void Parser::check_sparse(const JsonView& object, const char* key, std::size_t i
     check_unstrided(object, key, view, "a sparse accessor");
     const std::size_t alignment = component_size(component);
     if ((view.offset + offset) % alignment != 0)
-      object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) + " are not aligned");
+      object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) +
+                               " must begin at a multiple of " + number(alignment) + " bytes");
     if (offset > view.length || !binary::fits(sparse.count, size, view.length - offset))
       object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) +
                                " end beyond buffer view " + number(view_index) + ", which has " + number(view.length) +
@@ -351,7 +357,8 @@ const BufferView& Parser::view_of(std::size_t index) {
 }
 
 void Parser::check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what) {
-  if (view.stride) object.complain(key, std::string("the buffer view of ").append(what) + " has a byteStride");
+  if (view.stride)
+    object.complain(key, std::string("the buffer view of ").append(what) + " must not have a byteStride");
 }
 
 namespace {

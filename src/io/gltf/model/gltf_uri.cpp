@@ -85,8 +85,12 @@ bool is_inside(const fs::path& path, const fs::path& folder) {
 
 Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place) {
   const std::optional<std::string> relative = decode_percent(uri);
-  if (!relative || relative->empty()) return invalid_input(place, "the URI names no file");
-  if (has_scheme(uri)) return invalid_input(place, "only files beside the asset can be read, not other schemes");
+  if (!relative || relative->empty())
+    return invalid_input(place, "the uri is empty or has a broken % code, so it names no file");
+  if (has_scheme(uri))
+    return invalid_input(
+        place,
+        "the uri is a web address or another scheme; copy the file beside the glTF file and refer to it by name");
   return fs::path(*relative);
 }
 
@@ -112,11 +116,11 @@ Result<std::string> decode_data_uri(std::string_view uri, std::size_t least, con
     if (!uri.starts_with(prefix)) continue;
     const std::string_view text = uri.substr(prefix.size());
     if (text.size() / 4 * 3 + 3 < least)
-      return invalid_input(place, "the data URI holds fewer than the " + std::to_string(least) + " bytes declared");
+      return invalid_input(place, "the data URI has fewer than the " + std::to_string(least) + " bytes of byteLength");
     std::optional<std::string> bytes = decode_base64(text);
-    if (!bytes) return invalid_input(place, "the data URI is not base64");
+    if (!bytes) return invalid_input(place, "the data URI is not valid base64");
     if (bytes->size() < least)
-      return invalid_input(place, "the data URI holds " + std::to_string(bytes->size()) + " bytes, but byteLength is " +
+      return invalid_input(place, "the data URI has " + std::to_string(bytes->size()) + " bytes, but byteLength is " +
                                       std::to_string(least));
     return std::move(*bytes);
   }
@@ -132,10 +136,10 @@ Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<s
   const fs::path& path_in_uri = relative.value();
   if (!allow_external && !folder)
     return invalid_input(place,
-                         "the asset came from standard input, so there is no folder for its files; "
-                         "--allow-external takes the current one");
+                         "the glTF file came from standard input, so the folder of its other files is unknown; "
+                         "--allow-external looks in the current folder");
   if (!allow_external && path_in_uri.is_absolute())
-    return invalid_input(place, "the URI is an absolute path; --allow-external reads it");
+    return invalid_input(place, "the uri is an absolute path, which is refused for safety; --allow-external reads it");
 
   const fs::path base = folder && !folder->empty() ? fs::path(*folder) : fs::path(".");
   const fs::path path = existing(base / path_in_uri, base / fs::path(uri));
@@ -143,9 +147,11 @@ Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<s
   const fs::path real_base = fs::canonical(base, code);
   const fs::path real = code ? fs::path() : fs::weakly_canonical(path, code);
   if (!allow_external && (code || !is_inside(real, real_base)))
-    return invalid_input(place, "the URI leads out of the folder of the asset; --allow-external reads it");
+    return invalid_input(
+        place,
+        "the uri leads out of the folder of the glTF file, which is refused for safety; --allow-external reads it");
   const fs::file_status status = fs::status(path, code);
-  if (!fs::exists(status)) return invalid_input(place, std::string("there is no file ").append(path.string()));
+  if (!fs::exists(status)) return invalid_input(place, std::string("this file is missing: ").append(path.string()));
   if (!fs::is_regular_file(status))
     return invalid_input(place, std::string(path.string()).append(" is not a regular file"));
   return path.string();
@@ -157,7 +163,7 @@ Result<std::string> name_file_uri(std::string_view uri, const std::optional<std:
   if (!relative) return relative.error();
   const fs::path path = relative.value().lexically_normal();
   if (path.is_absolute() || *path.begin() == "..")
-    return invalid_input(place, "the URI leads out of the folder of the asset");
+    return invalid_input(place, "the uri leads out of the folder of the glTF file");
   return (fs::path(folder.value_or("")) / path).string();
 }
 
