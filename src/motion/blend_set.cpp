@@ -38,14 +38,15 @@ Result<BlendSet> blend_set_of(const Motion& star) {
     const auto place = [k] { return std::string("target ").append(std::to_string(k)); };
     if (segment.from != 0)
       return Error{ErrorCode::kUsage, place(),
-                   std::string("it begins at keyframe ").append(std::to_string(segment.from)) + " and not at the base"};
+                   std::string("the target must begin at the base, keyframe 0, but begins at keyframe ")
+                       .append(std::to_string(segment.from))};
     const Motion::Keyframe& end = star.keyframes[segment.to];
     std::vector<float> deltas(end.positions);
     const std::vector<double>&of_end = end.residuals, &of_base = star.keyframes.front().residuals;
     for (std::size_t i = 0; i < deltas.size(); ++i)
       deltas[i] = static_cast<float>(
           difference(end.positions[i], of_end.empty() ? 0 : of_end[i], set.base[i], of_base.empty() ? 0 : of_base[i]));
-    if (!all_finite(deltas)) return invalid_input(place(), "a delta is beyond the range of float32");
+    if (!all_finite(deltas)) return invalid_input(place(), "a delta of the target is too large for float32");
     set.targets.push_back(BlendTarget::from_dense(deltas, end.name));
   }
   return set;
@@ -54,28 +55,30 @@ Result<BlendSet> blend_set_of(const Motion& star) {
 Status validate(const BlendTarget& target, const Topology& topology, std::size_t k) {
   const auto place = [k](std::size_t n) { return "target " + std::to_string(k) + ", entry " + std::to_string(n); };
   if (target.deltas.size() != 3 * target.vertices.size())
-    return invalid_input("target " + std::to_string(k), "there are " + std::to_string(target.deltas.size()) +
-                                                            " components of deltas for " +
+    return invalid_input("target " + std::to_string(k), "the target has " + std::to_string(target.deltas.size()) +
+                                                            " numbers of deltas, but must have 3 for each of its " +
                                                             std::to_string(target.vertices.size()) + " vertices");
   for (std::size_t n = 0; n < target.vertices.size(); ++n) {
     if (target.vertices[n] >= topology.vertex_count())
-      return invalid_input(place(n), "there is no vertex " + std::to_string(target.vertices[n]) + "; the mesh has " +
-                                         std::to_string(topology.vertex_count()));
+      return invalid_input(place(n), "the target moves vertex " + std::to_string(target.vertices[n]) +
+                                         ", but the mesh has only " + std::to_string(topology.vertex_count()) +
+                                         " vertices");
     if (n > 0 && target.vertices[n] <= target.vertices[n - 1])
-      return invalid_input(place(n), "the vertices must ascend");
+      return invalid_input(place(n), "the vertices of a target must be in ascending order, each once");
     if (!all_finite(std::span(target.deltas).subspan(3 * n, 3)))
-      return invalid_input(place(n), "the delta is not finite");
+      return invalid_input(place(n), "the delta is NaN or infinite");
   }
   return Success{};
 }
 
 Status validate(const BlendSet& set) {
   if (set.base.size() != 3 * set.topology.vertex_count())
-    return invalid_input("base", "there are " + std::to_string(set.base.size()) + " components of positions for " +
+    return invalid_input("base", "the base has " + std::to_string(set.base.size()) +
+                                     " coordinates, but must have 3 for each of the " +
                                      std::to_string(set.topology.vertex_count()) + " vertices");
   for (std::size_t v = 0; v < set.topology.vertex_count(); ++v) {
     if (!all_finite(std::span(set.base).subspan(3 * v, 3)))
-      return invalid_input("base, vertex " + std::to_string(v), "the position is not finite");
+      return invalid_input("base, vertex " + std::to_string(v), "the position is NaN or infinite");
   }
   for (std::size_t k = 0; k < set.targets.size(); ++k)
     if (Status status = validate(set.targets[k], set.topology, k); !status) return status;

@@ -96,8 +96,9 @@ LocalTime LocalTime::between(double start, double time, double end) noexcept {
 }
 
 Result<Instant> find_instant(const Motion& motion, double time) {
-  if (motion.segments.empty()) return misuse("the mesh stands still: it has no times");
-  if (motion.kind == MotionKind::kTargets) return misuse("blend shapes have no times, but a weight for each target");
+  if (motion.segments.empty()) return misuse("the mesh does not move, so it has no times");
+  if (motion.kind == MotionKind::kTargets)
+    return misuse("blend shapes have no times; give a weight for each target instead");
   const auto start_of = [&](std::size_t s) { return motion.keyframes[motion.segments[s].from].time; };
   const auto end_of = [&](std::size_t s) { return motion.keyframes[motion.segments[s].to].time; };
   double first = std::numeric_limits<double>::infinity(), last = -first;
@@ -108,7 +109,7 @@ Result<Instant> find_instant(const Motion& motion, double time) {
     if (start_of(s) <= time && time <= end_of(s)) found = s;
   }
   if (!found)
-    return misuse("there is no motion at time " + rounded_text(time, {first, last}) + ": it goes from " +
+    return misuse("time " + rounded_text(time, {first, last}) + " is outside of the motion, which goes from " +
                   rounded_text(first, {time, last}) + " to " + rounded_text(last, {time, first}));
   return Instant{*found, LocalTime::between(start_of(*found), time, end_of(*found))};
 }

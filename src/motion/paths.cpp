@@ -255,7 +255,7 @@ struct Cutter {
     const auto outside = std::find_if_not(positions.begin(), positions.end(), [](float x) { return std::isfinite(x); });
     if (outside != positions.end())
       return wrong_path("this path moves vertex " + std::to_string((outside - positions.begin()) / 3) +
-                        " out of the range of float32");
+                        " so far that float32 cannot hold its position; choose another --path");
     std::copy(positions.begin(), positions.end(), result.begin());
     return Success{};
   }
@@ -294,26 +294,27 @@ Result<Path> make_path(std::string_view text) {
     const char* const end = text.data() + text.size();
     const auto [last, code] = from_chars(text.data() + colon + 1, end, path.tolerance);
     if (code != std::errc{} || last != end || !(path.tolerance > 0 && path.tolerance <= 45) || !path.is_curved())
-      return wrong_path(std::string("'").append(text) +
-                        "': what follows the name of a curve is a tolerance in degrees, above 0 and up to 45");
+      return wrong_path(
+          std::string("'").append(text) +
+          "' must be the name of a curve, a colon, and a tolerance in degrees, greater than 0 and at most 45");
     return path;
   }
-  return wrong_path(std::string("there is no path '").append(name).append("'; there are linear, catmull-rom, hermite"));
+  return wrong_path(std::string("there is no path '").append(name).append("'; choose linear, catmull-rom or hermite"));
 }
 
 Status check_path(const Motion& motion, PathKind kind) {
   if (kind == PathKind::kLinear) return Success{};
   if (motion.kind != MotionKind::kSequence)
     return wrong_path(
-        "only the keyframes of a sequence have curved paths between them: weights of targets move vertices "
-        "straight");
-  if (motion.segments.empty()) return wrong_path("a mesh that stands still has no path");
+        "curved paths are only for sequences of keyframes, since targets move vertices on straight lines");
+  if (motion.segments.empty()) return wrong_path("the mesh does not move, so it has no path");
   const bool has_velocities =
       std::any_of(motion.keyframes.begin(), motion.keyframes.end(),
                   [](const Motion::Keyframe& keyframe) { return !keyframe.velocities.empty(); });
   if (kind == PathKind::kHermite && !has_velocities)
     return wrong_path(
-        "no keyframe has velocities, which hermite paths need: catmull-rom takes them from the positions");
+        "hermite paths need velocities, but no keyframe has them; use catmull-rom, which computes them from the "
+        "positions");
   return Success{};
 }
 

@@ -17,11 +17,11 @@ Status check_corners(std::size_t vertex_count, std::span<const std::uint32_t> of
     const std::size_t first = offsets.empty() ? 3 * f : offsets[f];
     const std::size_t end = offsets.empty() ? 3 * f + 3 : offsets[f + 1];
     if (end > corners.size() || end < first || end - first < 3)
-      return invalid_input("face " + std::to_string(f), "a face needs three or more corners");
+      return invalid_input("face " + std::to_string(f), "a face must have at least three corners");
     for (std::size_t c = first; c < end; ++c) {
       if (corners[c] >= vertex_count)
         return invalid_input("face " + std::to_string(f) + ", corner " + std::to_string(c - first),
-                             "the corner names vertex " + std::to_string(corners[c]) + ", but the mesh has " +
+                             "the corner refers to vertex " + std::to_string(corners[c]) + ", but the mesh has only " +
                                  std::to_string(vertex_count) + " vertices");
     }
   }
@@ -33,7 +33,7 @@ Status check_corners(std::size_t vertex_count, std::span<const std::uint32_t> of
 Result<Topology> Topology::polygons(std::size_t vertex_count, std::vector<std::uint32_t> offsets,
                                     std::vector<std::uint32_t> corners) {
   if (offsets.empty() || offsets.front() != 0 || offsets.back() != corners.size())
-    return invalid_input("", "the offsets of the faces must run from 0 to the number of corners");
+    return invalid_input("", "the offsets of the faces must begin with 0 and end with the number of corners");
   if (Status status = check_corners(vertex_count, offsets, corners); !status) return status.error();
 
   Topology topology;
@@ -46,7 +46,8 @@ Result<Topology> Topology::polygons(std::size_t vertex_count, std::vector<std::u
 }
 
 Result<Topology> Topology::triangles(std::size_t vertex_count, std::vector<std::uint32_t> corners) {
-  if (corners.size() % 3 != 0) return invalid_input("", "the corners of triangles must come in threes");
+  if (corners.size() % 3 != 0)
+    return invalid_input("", "the number of corners of a mesh of triangles must be a multiple of 3");
   if (Status status = check_corners(vertex_count, {}, corners); !status) return status.error();
 
   Topology topology;

@@ -19,13 +19,14 @@ std::string keyframe_place(const Motion& motion, std::size_t k) {
 const char* fault_of_kind(MotionKind kind, std::size_t segment, const Motion::SegmentKeys& keys) {
   switch (kind) {
     case MotionKind::kSequence:
-      return keys.from == segment && keys.to == segment + 1 ? nullptr
-                                                            : "a segment of a sequence joins the next two keyframes";
+      return keys.from == segment && keys.to == segment + 1
+                 ? nullptr
+                 : "a segment of a sequence must go from its keyframe to the next one";
     case MotionKind::kTargets:
       return keys.from == 0 && keys.to == segment + 1 ? nullptr
-                                                      : "a target starts at keyframe 0, and each has a keyframe";
+                                                      : "a target must go from keyframe 0 to a keyframe of its own";
     case MotionKind::kAnimation:
-      return keys.to == keys.from + 1 ? nullptr : "a segment of an animation joins neighbouring keyframes";
+      return keys.to == keys.from + 1 ? nullptr : "a segment of an animation must go from a keyframe to the next one";
   }
   return nullptr;
 }
@@ -33,8 +34,9 @@ const char* fault_of_kind(MotionKind kind, std::size_t segment, const Motion::Se
 Status check_mesh(const Motion& motion) {
   if (motion.topology.face_count() == 0) return invalid_input("", "the mesh has no faces");
   if (!motion.body_of_vertex.empty() && motion.body_of_vertex.size() != motion.topology.vertex_count())
-    return invalid_input("", "there are " + std::to_string(motion.body_of_vertex.size()) + " bodies for " +
-                                 std::to_string(motion.topology.vertex_count()) + " vertices");
+    return invalid_input("", "the list of bodies has " + std::to_string(motion.body_of_vertex.size()) +
+                                 " entries, but the mesh has " + std::to_string(motion.topology.vertex_count()) +
+                                 " vertices");
   return Success{};
 }
 
@@ -42,11 +44,11 @@ Status check_residuals(const Motion& motion, std::size_t k) {
   const Motion::Keyframe& keyframe = motion.keyframes[k];
   if (keyframe.residuals.empty()) return Success{};
   if (keyframe.residuals.size() != keyframe.positions.size())
-    return invalid_input(keyframe_place(motion, k), "there is not one residual for each coordinate");
+    return invalid_input(keyframe_place(motion, k), "the keyframe must have one residual for each coordinate");
   for (std::size_t i = 0; i < keyframe.residuals.size(); ++i) {
     if (static_cast<float>(double{keyframe.positions[i]} + keyframe.residuals[i]) != keyframe.positions[i])
       return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
-                           "the residual is more than rounding to float32 leaves");
+                           "the residual is larger than the rounding of its position to float32");
   }
   return Success{};
 }
@@ -58,33 +60,34 @@ Status check_rest(const Motion& motion, std::size_t k) {
     return velocities.empty() || velocities.size() == 3 * motion.topology.vertex_count();
   };
   if (!fits(keyframe.velocities) || !fits(keyframe.end_velocities))
-    return invalid_input(keyframe_place(motion, k), "there is not one velocity for each vertex");
+    return invalid_input(keyframe_place(motion, k), "the keyframe must have one velocity for each vertex");
   for (const std::vector<float>* velocities : {&keyframe.velocities, &keyframe.end_velocities}) {
     for (std::size_t i = 0; i < velocities->size(); ++i) {
       if (!std::isfinite((*velocities)[i]))
         return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
-                             "the velocity is not a finite number");
+                             "the velocity is NaN or infinite");
     }
   }
   if (!std::isfinite(motion.keyframes[k].time))
-    return invalid_input(keyframe_place(motion, k), "the time is not finite");
+    return invalid_input(keyframe_place(motion, k), "the time is NaN or infinite");
   return Success{};
 }
 
 Status check_segments(const Motion& motion) {
-  if (motion.segments.empty()) return invalid_input("", "there is no motion: it takes two keyframes or more");
+  if (motion.segments.empty()) return invalid_input("", "a motion needs at least two keyframes");
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
     const auto [from, to] = motion.segments[s];
     const std::string place = "segment " + std::to_string(s);
     if (from >= motion.keyframes.size() || to >= motion.keyframes.size())
-      return invalid_input(place, "the segment names a keyframe that does not exist");
+      return invalid_input(place, "the segment refers to a keyframe that does not exist");
     if (!(motion.keyframes[from].time < motion.keyframes[to].time))
-      return invalid_input(place, "the time of its end is not after the time of its start");
+      return invalid_input(place, "the keyframe at the end of the segment must be later than the one at its start");
     if (const char* const fault = fault_of_kind(motion.kind, s, motion.segments[s])) return invalid_input(place, fault);
   }
   if (motion.kind != MotionKind::kAnimation && motion.segments.size() + 1 != motion.keyframes.size())
-    return invalid_input("", "there are " + std::to_string(motion.segments.size()) + " segments for " +
-                                 std::to_string(motion.keyframes.size()) + " keyframes");
+    return invalid_input("", "the motion has " + std::to_string(motion.segments.size()) +
+                                 " segments, which does not fit its " + std::to_string(motion.keyframes.size()) +
+                                 " keyframes");
   return Success{};
 }
 
@@ -99,7 +102,7 @@ Status internal::validate_positions(const Motion& motion, std::size_t k, std::sp
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!std::isfinite(positions[i]))
       return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),
-                           "the position is not a finite number");
+                           "the position is NaN or infinite");
   }
   return Success{};
 }

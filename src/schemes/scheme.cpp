@@ -12,14 +12,14 @@ namespace chronormal {
 namespace {
 
 constexpr std::array kDescriptions = {
-    SchemeDescription{"recompute", "cross product of the edges at t, in float32"},
-    SchemeDescription{"polynomial", "the exact quadratic (t-variant cross product), then normalised"},
-    SchemeDescription{"rational", "the exact quadratic over the root of its squared length"},
+    SchemeDescription{"recompute", "compute positions at t and their cross product, in float32"},
+    SchemeDescription{"polynomial", "the exact normal, a quadratic in t, then normalised"},
+    SchemeDescription{"rational", "the exact normal, divided by the square root of its squared length"},
     SchemeDescription{"linear", "straight line between the unit end normals"},
     SchemeDescription{"quadratic", "parabola through 3 exact unit normals"},
     SchemeDescription{"cubic", "cubic through 4 exact unit normals"},
     SchemeDescription{"lagrange:K", "degree K through K + 1 exact normals, K = 1 to 64 (float32 limits it from 16 on)"},
-    SchemeDescription{"linear:scaled", "straight line with the best length of one end"},
+    SchemeDescription{"linear:scaled", "straight line, with the length of one end chosen to err least"},
     SchemeDescription{"slerp", "shortest arc between the end normals"},
     SchemeDescription{"decasteljau:K", "spherical de Casteljau over K exact normals, K = 2 to 32 (default 4)"},
     SchemeDescription{"quaternion:matrix", "quaternion slerp, frames by the matrix of the paper"},
@@ -51,7 +51,7 @@ std::optional<std::uint64_t> number_in(std::string_view text, std::uint64_t smal
 }
 
 Error unknown_scheme(std::string_view name) {
-  std::string message = "there is no scheme '" + std::string(name) + "'; there are";
+  std::string message = "there is no scheme '" + std::string(name) + "'; choose one of";
   const char* separator = " ";
   for (const SchemeDescription& description : kDescriptions) {
     message += separator + std::string(description.name);

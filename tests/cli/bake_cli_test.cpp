@@ -399,14 +399,14 @@ TEST_F(BakeCli, what_cannot_be_had_ends_in_exit_code_4_only_where_somebody_asked
   EXPECT_EQ(plain.err.find(sentence), std::string::npos) << "nobody asked";
   const ProcessResult asked = run("still.glb -o asked.glb --tolerance 0.5");
   EXPECT_EQ(asked.exit_code, 4);
-  expect_words(asked.err, {sentence, "take a larger --tolerance"});
+  expect_words(asked.err, {sentence, "choose a larger --tolerance"});
   EXPECT_EQ(bytes_of("asked.glb"), bytes_of("plain.glb"));
   const ProcessResult in_three = run("still.glb -o three.glb --tolerance 5 --for three");
   EXPECT_EQ(in_three.exit_code, 0);
   EXPECT_EQ(in_three.err.find("no candidate"), std::string::npos);
   const ProcessResult few = run("moving.glb -o few.glb --for three --max-bytes 100");
   EXPECT_EQ(few.exit_code, 4);
-  expect_words(few.err, {"allow more by --max-targets and --max-bytes"});
+  expect_words(few.err, {"allow more with --max-targets or --max-bytes"});
   EXPECT_EQ(bytes_of("few.glb"), bytes_of("moving.glb"));
 }
 

@@ -67,10 +67,11 @@ TEST_F(InspectCli, mesh_without_trouble_says_so) {
 }
 
 TEST_F(InspectCli, trouble_says_what_where_and_what_it_means) {
-  expect_words(text_of("a.obj over.obj"),
-               {"1 face turning over inside a segment, through no area (face 0 in segment 0 at t = 0.5000)\n"
-                "    the normal jumps to its opposite at that instant\n",
-                "90 degrees"});
+  expect_words(
+      text_of("a.obj over.obj"),
+      {"1 face turning over between two keyframes, at an instant without area (face 0 in segment 0 at t = 0.5000)\n"
+       "    the normal flips to the opposite direction at that instant\n",
+       "90 degrees"});
   expect_words(text_of("a.obj line.obj"), {"1 face has no area at a keyframe (face 0 at keyframe 1 (line.obj))\n"});
   expect_words(text_of("line.obj"), {"1 face has no area (face 0)\n", "there is no normal to give"});
   EXPECT_EQ(kinds_of(json_of("line.obj line.obj")), (std::vector<std::string>{"no_normal", "no_area_at_keyframe"}));
@@ -104,9 +105,9 @@ TEST_F(InspectCli, gltf_shows_primitives_targets_and_tracks) {
   builder.add_track(animation, 0, {0.5F, 2}, std::vector<float>{0, 0.25F, 1.5F, 0});
   folder_.write("wave.glb", builder.glb());
   const std::string text = text_of("wave.glb");
-  expect_words(text,
-               {"4 vertices, 2 triangles, 2 targets", "quad / 0", "lift", "shift", "wave", "LINEAR", "1.50",
-                "1 primitive has no normals (quad, primitive 0)", "1 track with weights beyond 0 to 1: 0 to 1.5"});
+  expect_words(text, {"4 vertices, 2 triangles, 2 targets", "quad / 0", "lift", "shift", "wave", "LINEAR", "1.50",
+                      "1 primitive has no normals (quad, primitive 0)",
+                      "1 track with weights outside of 0 to 1, from 0 to 1.5"});
   const Json json = json_of("wave.glb");
   EXPECT_EQ(json["kind"], "targets");
   EXPECT_EQ(json["segments"][0]["name"], "lift");

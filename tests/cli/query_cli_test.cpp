@@ -151,7 +151,7 @@ TEST_F(QueryCli, people_get_a_table) {
   const ProcessResult result = run("collapse a.obj b.obj c.obj");
   EXPECT_EQ(result.exit_code, 0);
   for (const char* const word :
-       {"a.obj ... c.obj\n", "2  collapses\n", "2  of them turn the face over", "turns over", "0 0 -1"})
+       {"a.obj ... c.obj\n", "2  collapses\n", "2  times the face turns over there", "turns over", "0 0 -1"})
     EXPECT_NE(result.out.find(word), std::string::npos) << word << " in " << result.out;
 }
 
@@ -163,10 +163,10 @@ TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
   expect_misuse("facing a.obj b.obj", "--direction: say who looks");
   expect_misuse("facing a.obj b.obj --eye 1,2", "--eye: it must be X,Y,Z or");
   expect_misuse("facing a.obj b.obj --eye 1,2,x", "--eye: 'x' is not a number");
-  expect_misuse("facing a.obj b.obj --direction 0,0,0", "--direction: it must not be 0,0,0");
+  expect_misuse("facing a.obj b.obj --direction 0,0,0", "--direction: the direction must not be 0,0,0");
   expect_misuse("collapse a.obj b.obj --from 1", "--from: there is no motion after 1: it goes from 0 to 1");
   expect_misuse("collapse a.obj b.obj --to 0", "--to: there is no motion before 0");
-  expect_misuse("collapse a.obj b.obj --from .5 --to .5", "--to: it must be later than --from");
+  expect_misuse("collapse a.obj b.obj --from .5 --to .5", "--to: the time must be later than --from");
   EXPECT_EQ(run("collapse a.obj").exit_code, 3) << "a mesh that stands still is no motion";
 }
 

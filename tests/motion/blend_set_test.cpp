@@ -70,7 +70,7 @@ TEST(BlendSet, a_star_of_segments_gives_a_target_for_each) {
   star.segments = {{0, 1}};
   star.keyframes[0].positions[0] = 3e38F;
   star.keyframes[1].positions[0] = -3e38F;
-  EXPECT_EQ(blend_set_of(star).error().text(), "target 0: a delta is beyond the range of float32");
+  EXPECT_EQ(blend_set_of(star).error().text(), "target 0: a delta of the target is too large for float32");
 }
 
 TEST(BlendSet, valid_sets_pass_whatever_is_empty) {
@@ -90,10 +90,10 @@ TEST(BlendSet, everything_that_is_relied_on_is_checked_and_named) {
   for (const float bad : {nan, infinity, -infinity}) {
     set = small_set();
     set.base[7] = bad;
-    EXPECT_EQ(error_of(validate(set)), "base, vertex 2: the position is not finite");
+    EXPECT_EQ(error_of(validate(set)), "base, vertex 2: the position is NaN or infinite");
     set = small_set();
     set.targets[1].deltas[5] = bad;
-    EXPECT_EQ(error_of(validate(set)), "target 1, entry 1: the delta is not finite");
+    EXPECT_EQ(error_of(validate(set)), "target 1, entry 1: the delta is NaN or infinite");
   }
   set = small_set();
   set.targets[1].deltas.pop_back();
@@ -104,8 +104,10 @@ TEST(BlendSet, everything_that_is_relied_on_is_checked_and_named) {
   for (const std::vector<std::uint32_t>& vertices : {std::vector<std::uint32_t>{2, 0}, {2, 2}}) {
     set = small_set();
     set.targets[1].vertices = vertices;
-    EXPECT_EQ(error_of(validate(set)), "target 1, entry 1: the vertices must ascend");
-    EXPECT_EQ(error_of(validate(set.targets[1], set.topology, 7)), "target 7, entry 1: the vertices must ascend");
+    EXPECT_EQ(error_of(validate(set)),
+              "target 1, entry 1: the vertices of a target must be in ascending order, each once");
+    EXPECT_EQ(error_of(validate(set.targets[1], set.topology, 7)),
+              "target 7, entry 1: the vertices of a target must be in ascending order, each once");
   }
 }
 

@@ -309,14 +309,13 @@ Result<Containment> Containment::make(const Topology& topology, const Points& po
                                       VectorView<const float> positions) {
   assert(points.point_of_vertex.size() == topology.vertex_count() && positions.count == topology.vertex_count());
   if (const EdgeFaults faults = find_edge_faults(topology, points); faults.boundary + faults.unbalanced > 0) {
-    std::string message = "the mesh is not closed: ";
+    std::string message = "the mesh is not closed, so points cannot be inside it; ";
     if (faults.boundary > 0)
-      message +=
-          counted(faults.boundary, "edge is a boundary", "edges are boundaries") + ", with a face on one side only";
+      message += counted(faults.boundary, "edge has a face on one side only", "edges have a face on one side only");
     if (faults.boundary > 0 && faults.unbalanced > 0) message += ", and ";
     if (faults.unbalanced > 0)
-      message += counted(faults.unbalanced, "edge is", "edges are") +
-                 " passed more often one way than the other by faces that are wound inconsistently";
+      message += counted(faults.unbalanced, "edge lies", "edges lie") +
+                 " between faces whose corners run in opposite orders (flip such faces)";
     return invalid_input("face " + std::to_string(faults.first_face), std::move(message));
   }
   const Triangles triangles = triangles_of(topology, points, positions);

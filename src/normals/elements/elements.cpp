@@ -22,7 +22,7 @@ Result<ElementKind> make_element_kind(std::string_view name) {
     if (kNames[i] == name) return static_cast<ElementKind>(i);
   }
   return Error{ErrorCode::kUsage, "",
-               std::string("there are no elements '").append(name).append("'; there are faces, vertices, corners")};
+               std::string("there are no elements '").append(name).append("'; choose faces, vertices or corners")};
 }
 
 Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options) {

@@ -38,12 +38,13 @@ constexpr std::size_t kElementsOfManyTimes = 8192;
 Status check_positions(const Topology& topology, VectorView<const float> positions, std::size_t keyframe) {
   const std::string place = "keyframe " + std::to_string(keyframe);
   if (positions.count != topology.vertex_count()) {
-    return invalid_input(place, "there are " + std::to_string(positions.count) + " positions for " +
-                                    std::to_string(topology.vertex_count()) + " vertices");
+    return invalid_input(place, "the keyframe has " + std::to_string(positions.count) +
+                                    " positions, but the mesh has " + std::to_string(topology.vertex_count()) +
+                                    " vertices");
   }
   for (std::size_t i = 0; i < positions.count; ++i) {
     if (!is_finite(to_double(positions[i])))
-      return invalid_input(place + ", vertex " + std::to_string(i), "the position is not finite");
+      return invalid_input(place + ", vertex " + std::to_string(i), "the position is NaN or infinite");
   }
   return Success{};
 }
@@ -462,7 +463,8 @@ MeshNormals::~MeshNormals() = default;
 Result<MeshNormals> MeshNormals::make(Topology topology, const MeshNormalsOptions& options) {
   if (topology.face_count() == 0) return invalid_input("", "the mesh has no faces");
   if (options.elements.kind == ElementKind::kFaces && options.weighting != Weighting::kArea)
-    return Error{ErrorCode::kUsage, "weighting", "a face has one normal; weightings are for vertices and corners"};
+    return Error{ErrorCode::kUsage, "weighting",
+                 "a weighting has no meaning for normals of faces; choose vertices or corners"};
   return MeshNormals(std::make_unique<Parts>(std::move(topology), options));
 }
 
@@ -560,12 +562,13 @@ std::size_t MeshNormals::unit_normals(const LocalTime& t, VectorView<float> resu
 Status MeshNormals::fill_vertex_buffer(ControlFormat format, std::span<std::byte> bytes) const {
   const Parts& parts = *parts_;
   if (!parts.curves.keeps_lengths || parts.curves.size == 0)
-    return Error{ErrorCode::kUsage, "", "vertex buffers are filled from a segment of tolerance 1e-6"};
+    return Error{ErrorCode::kUsage, "",
+                 "a vertex buffer can only be filled after set_segment() with a tolerance of 1e-6"};
   const std::size_t each = bytes_of(format);
   if (bytes.size() != size() * each)
     return Error{ErrorCode::kUsage, "bytes",
-                 "there are " + std::to_string(bytes.size()) + " bytes, and " + std::to_string(size()) +
-                     " outputs of " + std::to_string(each) + " bytes"};
+                 "the buffer has " + std::to_string(bytes.size()) + " bytes, but must have " + std::to_string(each) +
+                     " for each of the " + std::to_string(size()) + " normals"};
   for (std::size_t i = 0; i < size(); ++i) {
     const std::size_t element = parts.shares ? parts.groups->element_of_output()[i] : i;
     write_control_normals(control_normals_of(parts.curves, element), format, bytes.data() + each * i);
@@ -576,8 +579,8 @@ Status MeshNormals::fill_vertex_buffer(ControlFormat format, std::span<std::byte
 Status MeshNormals::set_targets(BlendSet set, const BlendNormalsOptions& options) {
   Parts& parts = *parts_;
   if (parts.options.weighting != Weighting::kArea)
-    return Error{ErrorCode::kUsage, "weighting", "blend shapes are weighted by area"};
-  if (!(set.topology == parts.topology())) return invalid_input("", "the blend shapes are those of another mesh");
+    return Error{ErrorCode::kUsage, "weighting", "normals of blend shapes can only be weighted by area"};
+  if (!(set.topology == parts.topology())) return invalid_input("", "the blend shapes belong to another mesh");
   if (Status status = validate(set); !status) return status;
   if (!parts.knows_elements()) {
     if (Status status = parts.share(star_of(set)); !status) return status;

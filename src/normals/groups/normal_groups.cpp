@@ -150,7 +150,7 @@ NormalGroups NormalGroups::of_vertices(const Topology& topology, const Points& p
 
 Result<NormalGroups> NormalGroups::by_crease_angle(const Motion& motion, const Points& points, double degrees) {
   if (!(0 <= degrees && degrees <= 180))
-    return Error{ErrorCode::kUsage, "", "the crease angle must lie between 0 and 180 degrees"};
+    return Error{ErrorCode::kUsage, "", "the crease angle must be from 0 to 180 degrees"};
   const Topology& topology = motion.topology;
   assert(!motion.keyframes.empty());
   assert(points.point_of_vertex.size() == topology.vertex_count());
@@ -202,8 +202,8 @@ Result<NormalGroups> NormalGroups::by_smoothing_group(const Topology& topology, 
                                                       std::span<const std::uint32_t> group_of_face) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
   if (group_of_face.size() != topology.face_count())
-    return invalid_input("", "there are " + std::to_string(group_of_face.size()) + " smoothing groups for " +
-                                 std::to_string(topology.face_count()) + " faces");
+    return invalid_input("", "the list of smoothing groups has " + std::to_string(group_of_face.size()) +
+                                 " entries for " + std::to_string(topology.face_count()) + " faces");
   CornerSets sets(topology.corner_count());
   const Listing around = corners_of_points(topology, points);
   const std::vector<std::uint32_t> face_of_corner = face_of_each_corner(topology);
@@ -225,14 +225,14 @@ Result<NormalGroups> NormalGroups::by_split_normals(const Topology& topology, co
                                                     VectorView<const float> normal_of_corner, double degrees) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
   if (!(0 <= degrees && degrees <= 45))
-    return Error{ErrorCode::kUsage, "", "the tolerance of stored normals must lie between 0 and 45 degrees"};
+    return Error{ErrorCode::kUsage, "", "the tolerance of stored normals must be from 0 to 45 degrees"};
   if (normal_of_corner.count != topology.corner_count())
-    return invalid_input("", "there are " + std::to_string(normal_of_corner.count) + " normals for " +
+    return invalid_input("", "the list of normals has " + std::to_string(normal_of_corner.count) + " entries for " +
                                  std::to_string(topology.corner_count()) + " corners");
   for (std::size_t c = 0; c < normal_of_corner.count; ++c) {
     const Vec3f n = normal_of_corner[c];
     if (!std::isfinite(n.x) || !std::isfinite(n.y) || !std::isfinite(n.z))
-      return invalid_input("corner " + std::to_string(c), "the normal is not finite");
+      return invalid_input("corner " + std::to_string(c), "the normal is NaN or infinite");
   }
 
   CornerSets sets(topology.corner_count());

@@ -49,7 +49,7 @@ Result<Weighting> make_weighting(std::string_view name) {
   }
   std::string message = "there is no weighting '";
   message += name;
-  message += "'; there are";
+  message += "'; choose one of";
   for (const WeightingInfo& info : kAllWeightings) {
     message += info.weighting == kAllWeightings.front().weighting ? " " : ", ";
     message += info.name;

@@ -73,8 +73,9 @@ std::string_view audit_rule_name(AuditRule rule) noexcept { return kRules[static
 Result<AuditRule> make_audit_rule(std::string_view name) {
   for (std::size_t i = 0; i < kRules.size(); ++i)
     if (kRules[i] == name) return static_cast<AuditRule>(i);
-  return Error{ErrorCode::kUsage, "",
-               std::string("there is no rule '").append(name) + "'; there are gltf, lerp, nlerp, slerp, step, flat"};
+  return Error{
+      ErrorCode::kUsage, "",
+      std::string("there is no rule '").append(name) + "'; choose one of gltf, lerp, nlerp, slerp, step, flat"};
 }
 
 MotionError error_of_mesh(const Audit& audit, std::size_t mesh) {
@@ -246,7 +247,7 @@ std::size_t samples_per_segment(const AuditOptions& options, std::size_t segment
 
 Status check_samples(const AuditOptions& options) {
   if (options.samples && (*options.samples < 2 || *options.samples > kMostAuditSamples))
-    return Error{ErrorCode::kUsage, "", "there must be from 2 to " + std::to_string(kMostAuditSamples) + " samples"};
+    return Error{ErrorCode::kUsage, "", "the number of samples must be from 2 to " + std::to_string(kMostAuditSamples)};
   return Success{};
 }
 

@@ -544,7 +544,7 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
                                       const AuditWatch& watch) {
   if (const Status status = check_samples(options); !status) return status.error();
   if (!(options.weights[0] < options.weights[1] && std::isfinite(options.weights[1] - options.weights[0])))
-    return Error{ErrorCode::kUsage, "", "targets are judged from a weight to a larger one"};
+    return Error{ErrorCode::kUsage, "", "the second weight must be larger than the first, such as 0:1"};
   if (const Status status = check_poses(options.poses, document); !status) return status.error();
   std::optional<std::size_t> only;
   if (!options.animation.empty()) {
@@ -556,7 +556,7 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
   result.weighting = options.weighting.value_or(Weighting::kArea);
   result.rule = options.rule.value_or(AuditRule::kGltf);
   if (!options.viewers.empty() && result.rule != AuditRule::kGltf)
-    return Error{ErrorCode::kUsage, "", "viewers go with the rule gltf, which they stand for"};
+    return Error{ErrorCode::kUsage, "", "viewers can only be chosen with the rule gltf"};
   for (const Viewer& viewer : options.viewers) result.viewers.emplace_back().viewer = viewer;
   for (const Error& note : document.notes()) result.notes.push_back(note.text());
   const std::size_t total = count_segments(document, options, only);

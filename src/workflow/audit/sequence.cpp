@@ -146,15 +146,16 @@ std::uint32_t checksum_of_flags(const std::vector<bool>& flags) {
 Status check_normals(const Motion& motion, const StoredNormals& normals) {
   const std::size_t count = normals.of_keyframes.size(), corners = motion.topology.corner_count();
   if (count > 1 && count != motion.keyframes.size())
-    return invalid_input("", "there are normals of " + std::to_string(count) + " keyframes for " +
+    return invalid_input("", "the normals belong to " + std::to_string(count) + " keyframes, but the motion has " +
                                  std::to_string(motion.keyframes.size()));
   for (std::size_t k = 0; k < count; ++k) {
     const std::vector<float>& values = normals.of_keyframes[k];
     const std::string place = "keyframe " + std::to_string(k);
     if (values.size() != 3 * corners)
-      return invalid_input(place, "there is not one normal for each of " + std::to_string(corners) + " corners");
+      return invalid_input(place,
+                           "the keyframe must have one normal for each of its " + std::to_string(corners) + " corners");
     if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
-      return invalid_input(place, "a normal is not finite");
+      return invalid_input(place, "a normal is NaN or infinite");
   }
   return Success{};
 }
@@ -271,15 +272,16 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   result.weighting = options.weighting.value_or(Weighting::kArea);
   result.rule = options.rule.value_or(AuditRule::kNlerp);
   if (result.rule == AuditRule::kGltf)
-    return Error{ErrorCode::kUsage, "", "the rule gltf adds up the deltas of a glTF file; this input has none"};
+    return Error{ErrorCode::kUsage, "",
+                 "the rule gltf is only for glTF files, and this input is not one; choose another --rule"};
   if (!options.viewers.empty())
-    return Error{ErrorCode::kUsage, "", "viewers are known for what they make of glTF files; this input is none"};
+    return Error{ErrorCode::kUsage, "",
+                 "viewers can only be chosen for glTF files, and this input is not one; leave --for out"};
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.span = {motion.keyframes.front().time, motion.keyframes.back().time};
   if (run.is_divided() && (motion.kind == MotionKind::kTargets || options.keep_errors))
-    return Error{
-        ErrorCode::kUsage, "",
-        "a shard, or a run that goes on, is of the segments of a sequence, and keeps sums and no single errors"};
+    return Error{ErrorCode::kUsage, "",
+                 "a run with --shard or --resume needs a sequence of keyframes, and cannot write single errors"};
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   KeyframeChecksums seen(stream);
   if (run.shard) {
@@ -345,8 +347,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
     if (run.shard) {
       NumberChecksum sharing;
       sharing.add(groups.value().element_of_output());
-      run.checksums["who shares a normal"] = sharing.value();
-      run.checksums["which vertices move"] = checksum_of_flags(moves.value());
+      run.checksums["the hard edges"] = sharing.value();
+      run.checksums["the vertices that move"] = checksum_of_flags(moves.value());
     }
     const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
     if (!is_targets) groups = NormalGroups();  // the part has copied all that it needs of the groups

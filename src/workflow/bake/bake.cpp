@@ -76,8 +76,9 @@ bool any_shaded(const GltfShading& shading) {
 Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::size_t mesh) {
   const std::string extras = std::string("/meshes/").append(std::to_string(mesh)).append("/extras");
   if (!edit.has(extras) || edit.text(extras).starts_with("{")) return Success{};
-  return invalid_input(document.name() + ", " + extras,
-                       "it is no object, so that there is no place to say what was baked");
+  return invalid_input(
+      document.name() + ", " + extras,
+      "extras is not an object, so the bake cannot be recorded there; remove extras, or make it an object");
 }
 
 // Returns which parts get new base normals.
@@ -363,7 +364,8 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& asked, Gl
   if (options.bytes_of_file == 0) options.bytes_of_file = document.expansion().bytes_read();
   assert(options.tolerance.value_or(0) >= 0 && options.crease_angle >= 0 && options.crease_angle <= 180);
   if (options.encoding == BakeEncoding::kKeys)
-    return Error{ErrorCode::kUsage, "", "keys are for sequences: the weights of a glTF file may go anywhere"};
+    return Error{ErrorCode::kUsage, "",
+                 "the encoding keys is only for sequences of keyframes, not for glTF files; choose another --encode"};
   if (const Status poses = check_poses(options.poses, document); !poses) return poses.error();
   const std::vector<std::size_t> candidates = candidate_meshes(document);
   Course course(document, candidates, options.progress);
@@ -408,9 +410,9 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& asked, Gl
   result.changed = !result.pointers.empty();
   result.added_bytes = edit.added_bytes();
   if (options.most_bytes && result.added_bytes > *options.most_bytes) {
-    return invalid_input(document.name(), "the new arrays take " + std::to_string(result.added_bytes) +
-                                              " bytes, and at most " + std::to_string(*options.most_bytes) +
-                                              " are allowed");
+    return invalid_input(document.name(), "the new normals need " + std::to_string(result.added_bytes) +
+                                              " bytes, but --max-bytes allows only " +
+                                              std::to_string(*options.most_bytes));
   }
   result.warnings = said_once(warnings);
   result.drivers = drivers_file(document, result.meshes);

@@ -276,9 +276,10 @@ class BlendMeter {
 };
 
 Status check(const BlendCompareOptions& options) {
-  if (options.rows < 1 || options.rows > kMostBlendRows) return misuse("", "it takes 1 to 10,000 weight vectors");
+  if (options.rows < 1 || options.rows > kMostBlendRows)
+    return misuse("", "the number of poses must be from 1 to 10,000");
   if (options.active > 0 && !options.animation.empty())
-    return misuse("", "an animation says itself which targets are active");
+    return misuse("", "the number of active targets cannot be chosen for an animation");
   return Success{};
 }
 
@@ -297,7 +298,8 @@ std::size_t fitted_rows(std::size_t rows, std::size_t targets) { return std::max
 Status check_memory(const std::string& place, std::size_t rows, std::size_t targets) {
   // The left side cannot overflow: a list of targets that fits in memory is far too short.
   if (targets == 0 || fitted_rows(rows, targets) <= kMostWeights / targets) return Success{};
-  return invalid_input(place, std::to_string(targets).append(" targets are too many for that many weight vectors"));
+  return invalid_input(place,
+                       std::to_string(targets).append(" targets are too many for so many poses; compare fewer poses"));
 }
 
 // Draws random weights for some targets, in rows for all of them, and fills in the weights of correction targets.
@@ -385,13 +387,14 @@ std::string_view name_of(BlendDeltas deltas) noexcept { return kNames[static_cas
 
 Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options) {
   if (const Status status = check(options); !status) return status.error();
-  if (!options.animation.empty()) return misuse("", "only a glTF file has animations");
-  if (star.kind != MotionKind::kTargets) return misuse("", "the motion is a sequence: it has no targets to blend");
+  if (!options.animation.empty()) return misuse("", "this input has no animations; only glTF files do");
+  if (star.kind != MotionKind::kTargets)
+    return misuse("", "this input has no morph targets to blend, since it is a sequence of keyframes");
   Result<BlendSet> set = blend_set_of(star);
   if (!set) return set.error();
   const std::size_t targets = set.value().targets.size();
   if (options.active > targets)
-    return misuse("", std::string("there are only ").append(std::to_string(targets)).append(" targets"));
+    return misuse("", std::string("the input has only ").append(std::to_string(targets)).append(" targets"));
   if (const Status status = check_memory("", options.rows, targets); !status) return status.error();
 
   Subject subject;
@@ -453,7 +456,9 @@ Result<BlendComparison> compare_blends(const GltfDocument& document, const Blend
       const auto drives = [&](const GltfTrack& track) { return document.nodes()[track.node].mesh == m; };
       if (std::none_of(tracks.begin(), tracks.end(), drives)) continue;
     } else if (meshes[m].mark && meshes[m].mark->sequence) {
-      return misuse(place, "its targets are the keyframes of a baked sequence: name its --animation");
+      return misuse(
+          place,
+          "the targets of this mesh are the keyframes of a baked sequence; choose its animation with --animation");
     }
     if (const Status status = check_memory(place, options.rows, meshes[m].target_count); !status) return status.error();
     const std::size_t own = own_targets(meshes[m]).size();
@@ -462,8 +467,9 @@ Result<BlendComparison> compare_blends(const GltfDocument& document, const Blend
     compared.push_back(m);
   }
   if (compared.empty()) {
-    if (animation) return misuse("", "the animation drives no mesh that has targets and stores normals");
-    return invalid_input(document.name(), "no mesh has targets and stores normals");
+    if (animation)
+      return misuse("", "the animation drives no mesh with morph targets and normals; choose another animation");
+    return invalid_input(document.name(), "the file has no mesh with both morph targets and normals");
   }
   if (options.active > most)
     return misuse("", std::string("no mesh has more than ").append(std::to_string(most)).append(" targets"));

@@ -353,19 +353,19 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
 
 Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions& options, CompareRun& run) {
   const Motion& motion = stream.motion();
-  if (options.samples < 2) return Error{ErrorCode::kUsage, "", "it takes 2 samples or more, the ends of a segment"};
+  if (options.samples < 2) return Error{ErrorCode::kUsage, "", "the number of samples must be at least 2"};
   const ElementKind kind = options.elements.kind;
   const bool certified = options.certify || options.tolerance;
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
-    return Error{ErrorCode::kUsage, "", "the tolerance must be an angle in degrees, 0 or more"};
+    return Error{ErrorCode::kUsage, "", "the tolerance must be an angle in degrees, at least 0"};
   if (certified && options.access == Access::kSequential)
-    return Error{ErrorCode::kUsage, "", "certificates are of normals at random access, not of those that are played"};
+    return Error{ErrorCode::kUsage, "", "bounds can only be computed for random access, not for sequential access"};
 
   const bool by_area = options.weighting == Weighting::kArea;
   if (!by_area && kind == ElementKind::kFaces)
-    return Error{ErrorCode::kUsage, "", "faces are not weighted: compare vertices or corners"};
+    return Error{ErrorCode::kUsage, "", "a weighting has no meaning for normals of faces; choose vertices or corners"};
   if (!by_area && certified)
-    return Error{ErrorCode::kUsage, "", "certificates are of area-weighted normals, which are polynomials"};
+    return Error{ErrorCode::kUsage, "", "bounds can only be computed for normals weighted by area"};
 
   // Errors are compared with the error of linear, so linear is computed even if it is not a row.
   std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
@@ -401,8 +401,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
     each.assign(rows.size(), std::vector<float>(samples * all->count()));
   }
   if (run.is_divided() && (options.keep_errors || options.keep_samples))
-    return Error{ErrorCode::kUsage, "",
-                 "a shard keeps sums, and so does a run that goes on: the rest is of a whole motion"};
+    return Error{ErrorCode::kUsage, "", "a run with --shard or --resume cannot keep single errors or samples"};
   if (options.keep_samples)
     for (SchemeComparison& row : rows) row.samples.resize(motion.segments.size() * options.samples);
   std::vector<SchemeTally> totals(names.size());
@@ -488,7 +487,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
     NumberChecksum sharing;
     sharing.add(all->element_of_output());
     run.checksums["the options"] = checksum_of_options(options, names);
-    run.checksums["who shares a normal"] = sharing.value();
+    run.checksums["the hard edges"] = sharing.value();
     const Status status = seen.finish(keyframes_of_shard(motion, *run.shard), run.checksums);
     if (!status) return status.error();
   }

@@ -171,21 +171,18 @@ std::string ordinal(std::size_t n) {
 
 Status check(const Motion& motion, const TruthOptions& options) {
   const auto refuse = [](const std::string& message) { return Error{ErrorCode::kUsage, "", message}; };
-  if (options.every < 2)
-    return refuse("with every keyframe kept, none is left to compare with: keep every 2nd or fewer");
+  if (options.every < 2) return refuse("no keyframe would be left out to compare with; give --truth 2 or more");
   if (motion.kind != MotionKind::kSequence)
     return refuse(
-        "vertices of blend shapes move straight between their weights: the exact normals are the truth there, and "
-        "compare without --truth holds schemes against them");
+        "--truth is only for a sequence of keyframes, and this input is not one; leave --truth out to compare with "
+        "exact normals");
   const std::size_t count = motion.keyframes.size();
   if (count < 3)
-    return refuse(
-        "a motion of two keyframes has none to leave out: its normals are interpolated between these two, and "
-        "nothing is known about what happened there");
+    return refuse("the motion has only two keyframes, so none can be left out to compare with; leave --truth out");
   if (count <= options.every)
-    return refuse("of " + std::to_string(count) + " keyframes, keeping every " + ordinal(options.every) +
-                  " one keeps the first alone, and normals are interpolated between two: keep every " +
-                  ordinal(count - 1) + " or more of them");
+    return refuse("only the first of " + std::to_string(count) +
+                  " keyframes would be kept, but at least two are needed; give --truth " + std::to_string(count - 1) +
+                  " or less");
   return Success{};
 }
 

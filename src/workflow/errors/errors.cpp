@@ -55,9 +55,10 @@ Result<std::string> ply_of(std::span<const ErrorTable> tables, const std::string
   for (const ErrorTable& table : tables)
     if (largest(table.degrees) > largest(worst->degrees)) worst = &table;
   if (worst->kind == ElementKind::kCorners)
-    return Error{ErrorCode::kUsage, path, "PLY has no place for the errors of corners: write .npz"};
+    return Error{ErrorCode::kUsage, path, "PLY cannot store errors of corners; write .npz instead"};
   if (tables.size() > 1 && worst->primitives.empty())
-    return Error{ErrorCode::kUsage, path, "PLY shows the errors of one scheme: choose it, or write .npz"};
+    return Error{ErrorCode::kUsage, path,
+                 "PLY can only store the errors of one scheme; choose one with --schemes, or write .npz instead"};
   std::vector<float> quality = worst->worst();
   std::replace_if(
       quality.begin(), quality.end(), [](float value) { return std::isnan(value); }, 0.0F);
@@ -83,13 +84,13 @@ std::vector<float> ErrorTable::worst() const {
 Status check_errors_output(const std::string& path, bool force) {
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension != ".npz" && extension != ".ply")
-    return Error{ErrorCode::kUsage, path, "errors are written as .npz or .ply"};
+    return Error{ErrorCode::kUsage, path, "the name of a file of errors must end in .npz or .ply"};
   return check_output(path, force);
 }
 
 Status write_errors(std::span<const ErrorTable> tables, const std::string& path, bool force) {
   if (const Status status = check_errors_output(path, force); !status) return status.error();
-  if (tables.empty()) return invalid_input(path, "there are no errors to write: nothing was judged");
+  if (tables.empty()) return invalid_input(path, "there are no errors to write, since nothing could be judged");
   const Result<std::string> bytes = is_ply(path) ? ply_of(tables, path) : npz_of(tables);
   if (!bytes) return bytes.error();
   return write_output(path, bytes.value(), force);
@@ -101,7 +102,7 @@ Status internal::reserve_rows(ErrorTable& table, std::size_t rows, const Expansi
     return Error{ErrorCode::kUsage, table.name,
                  "the errors of " + grouped(rows) + " samples of " + grouped(columns) + ' ' +
                      std::string(element_kind_name(table.kind)) +
-                     " take more than 1 GiB: ask for fewer samples, or for less of the input"};
+                     " take more than 1 GiB; ask for fewer samples, or for a part of the input"};
   earlier += std::uint64_t{sizeof(float)} * rows * columns;  // at most 1 GiB for each mesh in a file
   if (Status status = expansion.check(earlier, "the errors of every sample"); !status) return status;
   table.degrees.reserve(rows * columns);

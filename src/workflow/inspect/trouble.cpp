@@ -71,25 +71,25 @@ class Troubles {
 void add_motion_trouble(const Inspection& found, Troubles& troubles) {
   const bool moves = !found.segments.empty();
   if (!moves) {
-    troubles.at_keyframes("no_area", found.no_area, " no area", "there is no normal to give: (0, 0, 0)");
+    troubles.at_keyframes("no_area", found.no_area, " no area", "there is no normal, so the result is (0, 0, 0)");
   } else {
     troubles.in_segments("no_normal", found.without_normals, " without area in a whole segment", false,
-                         "there is no normal to give: (0, 0, 0)");
+                         "there is no normal, so the result is (0, 0, 0)");
     troubles.at_keyframes("no_area_at_keyframe", found.no_area, " no area at a keyframe",
-                          "the normal there is the limit from inside the segment, where there is one");
+                          "the normal there is that of the moments just before or after, if they have one");
   }
-  troubles.in_segments("turns_over", found.turned_over, " turning over inside a segment, through no area", true,
-                       "the normal jumps to its opposite at that instant");
+  troubles.in_segments("turns_over", found.turned_over,
+                       " turning over between two keyframes, at an instant without area", true,
+                       "the normal flips to the opposite direction at that instant");
   Places others = found.collapses;
   if (found.turned_over.pairs == others.pairs) others.pairs = 0;  // all of them were reported
-  troubles.in_segments("collapses", others, " losing all area inside a segment", true,
-                       found.turned_over.pairs > 0 ? "the normal jumps or comes back, the ones that turn over included"
-                                                   : "the normal is lost for an instant, and comes back");
-  troubles.in_segments(
-      "turns_far", found.turned_far, " turning by more than 90 degrees in a segment", false,
-      "normals interpolated from keyframes err the most there: hold them against exact ones (compare)");
-  troubles.at_keyframes("sliver", found.slivers, " hardly more area than the rounding of positions at a keyframe",
-                        "the direction of the normal there is that of the rounding");
+  troubles.in_segments("collapses", others, " losing all area between two keyframes", true,
+                       found.turned_over.pairs > 0 ? "the normal flips, or is lost for an instant and comes back"
+                                                   : "the normal is lost for an instant and comes back");
+  troubles.in_segments("turns_far", found.turned_far, " turning by more than 90 degrees between two keyframes", false,
+                       "interpolated normals have their largest errors there; compare shows how large");
+  troubles.at_keyframes("sliver", found.slivers, " almost no area at a keyframe",
+                        "positions are rounded so much there that the normal points anywhere");
 }
 
 void add_surface_trouble(const Inspected& input, Troubles& troubles) {
@@ -98,35 +98,36 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
   troubles.on_surface(
       "non_manifold_edge", surface.non_manifold_edges,
       have(edges(surface.non_manifold_edges.count), surface.non_manifold_edges.count) + " more than two faces",
-      "a normal per vertex is the sum over all sheets that meet there");
+      "a vertex normal there mixes all sheets that meet");
   troubles.on_surface("turned_edge", surface.turned_edges,
-                      edges(surface.turned_edges.count) + " between faces that are wound against each other",
-                      "their normals point to opposite sides, and cancel in a normal per vertex");
+                      edges(surface.turned_edges.count) + " between faces whose corners run in opposite orders",
+                      "their normals point to opposite sides and cancel in vertex normals; flip such faces");
   troubles.on_surface(
       "back_to_back", surface.back_to_back,
       counted(surface.back_to_back.count, "pair of faces", "pairs of faces") + " on the same vertices, back to back",
-      "their normals cancel in a normal per vertex, unless the two sides are kept apart");
+      "their normals cancel in vertex normals; give each side vertices of its own");
   troubles.on_surface(
       "doubled_face", surface.doubled_faces,
       have(faces(surface.doubled_faces.count), surface.doubled_faces.count) + " the vertices of another face",
-      "they count twice in a normal per vertex");
-  troubles.on_surface("repeating_face", surface.repeating_faces,
-                      have(faces(surface.repeating_faces.count), surface.repeating_faces.count) + " a point twice",
-                      "a triangle has no area then; a larger face counts with both corners in a normal per vertex");
+      "they count twice in vertex normals");
+  troubles.on_surface(
+      "repeating_face", surface.repeating_faces,
+      have(faces(surface.repeating_faces.count), surface.repeating_faces.count) + " the same point at two corners",
+      "a triangle then has no area, and a larger face counts twice in the vertex normal");
   troubles.on_surface("concave_face", found.cut, counted(found.cut.count, "face is", "faces are") + " not convex",
-                      "where triangles are needed, as in glTF, ears are cut off, so that they cover it once");
-  std::string meaning = "a normal per vertex breaks there, unless such vertices are taken as one point";
+                      "they are cut into triangles that cover them once, where triangles are needed");
+  std::string meaning = "vertex normals have a seam there, unless such vertices are taken as one point";
   if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
     meaning =
-        "a normal per vertex breaks there; at " + grouped(split) + " of them so do the stored normals: hard edges";
+        "vertex normals have a seam there; " + grouped(split) + " of them are hard edges in the stored normals too";
   troubles.add("doubled_vertex", found.doubled.count,
-               have(vertices(found.doubled.count), found.doubled.count) + " the place of another throughout, along " +
-                   edges(surface.seam_edges.count),
+               have(vertices(found.doubled.count), found.doubled.count) +
+                   " the same place as another vertex at all times, along " + edges(surface.seam_edges.count),
                "", std::move(meaning));
   const std::size_t parting = found.doubled_at_start.count - found.doubled.count;
   troubles.add("parting_vertex", parting,
-               have(vertices(parting), parting) + " the place of another at the first keyframe only", "",
-               "they come apart: they must not be welded by their first positions");
+               have(vertices(parting), parting) + " the same place as another vertex at the first keyframe only", "",
+               "they separate later, so they must not be merged by their first positions");
 }
 
 // Returns "Head, primitive 1", and adds the node if several nodes have the mesh.
@@ -160,15 +161,15 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
   }
   troubles.add("normals_stay", left,
                have(counted(left, "primitive", "primitives"), left) + " targets that move positions and not normals",
-               left_at, "the shading stays that of the base while the shape changes");
+               left_at, "the shading stays as in the base while the shape changes; bake writes the missing normals");
   troubles.add(
       "tangents_stay", tangents,
       have(counted(tangents, "primitive", "primitives"), tangents) + " targets that move positions and not tangents",
-      tangents_at, "normal maps are put on as if the base stood still");
+      tangents_at, "normal maps are applied as if the base did not move");
   troubles.add("no_normals", flat, have(counted(flat, "primitive", "primitives"), flat) + " no normals", flat_at,
-               "shown flat, by the specification: a normal per face, from the positions");
+               "viewers show them flat, with a normal for each face");
   troubles.add("off_length", lengths, counted(lengths, "stored normal is", "stored normals are") + " not of length 1",
-               length_at, "engines differ in what they make of them");
+               length_at, "viewers show such normals differently");
 
   std::size_t beyond = 0;
   double lowest = 0, highest = 1;
@@ -179,23 +180,23 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
     highest = std::max(highest, track.highest);
   }
   troubles.add("weights_beyond", input.has_targets() ? beyond : 0,
-               counted(beyond, "track", "tracks") + " with weights beyond 0 to 1: " + with_digits(lowest, 4) + " to " +
-                   with_digits(highest, 4),
-               "", "targets go farther than what is looked at here, w from 0 to 1");
+               counted(beyond, "track", "tracks") + " with weights outside of 0 to 1, from " + with_digits(lowest, 4) +
+                   " to " + with_digits(highest, 4),
+               "", "targets are only examined here for weights from 0 to 1");
   const std::size_t skinned = gltf.inspection.skinned_nodes;
   troubles.add("skin", skinned, have(counted(skinned, "node", "nodes"), skinned) + " a skin", "",
-               "audit judges its normals through the skin; everything else applies no skeleton");
+               "only audit, bake and report apply the skeleton; all other results are before skinning");
   const std::size_t without_faces = gltf.inspection.without_faces;
   troubles.add("no_faces", without_faces,
                counted(without_faces, "primitive is", "primitives are") + " points, lines or empty", "",
-               "no faces, no normals: passed over");
+               "they have no faces, so they are ignored");
   std::size_t unused = 0;
   std::string unused_at;
   for (std::size_t m = 0; m < gltf.inspection.instances.size(); ++m) {
     if (gltf.inspection.instances[m] == 0 && unused++ == 0) unused_at = mesh_label(document, m);
   }
   troubles.add("unused_mesh", unused, counted(unused, "mesh is", "meshes are") + " in no node", unused_at,
-               "no scene shows it, it is looked at all the same");
+               "no scene shows them, but they are examined too");
 }
 
 }  // namespace
@@ -210,7 +211,7 @@ std::vector<Trouble> find_trouble(const Inspected& input) {
     troubles.add("unreferenced_vertex", unreferenced.count,
                  counted(unreferenced.count, "vertex is", "vertices are") + " in no face",
                  unreferenced.count > 0 ? vertex_label(input, unreferenced.first) : "",
-                 "they have no normal: (0, 0, 0)");
+                 "they have no normal, so the result is (0, 0, 0)");
   }
   return troubles.take();
 }

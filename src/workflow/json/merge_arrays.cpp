@@ -34,7 +34,7 @@ struct ShardRows {
 
 Result<ShardRows> open_rows(const std::string& path) {
   std::optional<PositionedFile> file = PositionedFile::open(path);
-  if (!file) return Error{ErrorCode::kFailed, path, "there is no such file, or it can not be read"};
+  if (!file) return Error{ErrorCode::kFailed, path, "the file does not exist, or cannot be read"};
   std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), npy::kLongestHeader + 12)), '\0');
   if (Status status = file->read(0, start); !status) return status.error();
   Result<npy::Array> array = npy::read_header(start, file->size(), path, true);
@@ -44,7 +44,7 @@ Result<ShardRows> open_rows(const std::string& path) {
   const bool is_array = !found.is_fortran && found.shape.size() == 3 && found.kind == npy::Kind::kFloat &&
                         found.item_size == sizeof(float) && found.order == std::endian::little;
   if (!is_array || end == file->size())
-    return invalid_input(path, "this is no part that sample --shard has left, but " + found.text());
+    return invalid_input(path, "this file was not written by sample --shard, but is " + found.text());
   if (file->size() - end > kLongestEndOfPart) return invalid_input(path, std::string(kDamagedPart));
   std::string text(static_cast<std::size_t>(file->size() - end), '\0');
   if (Status status = file->read(end, text); !status) return status.error();
@@ -52,7 +52,7 @@ Result<ShardRows> open_rows(const std::string& path) {
   if (!place) return place.error();
   const auto [first, total] = std::pair(place.value().first, place.value().total);
   if (first > total || found.shape.front() > total - first)
-    return invalid_input(path, "its rows are beyond the last one");
+    return invalid_input(path, "the file is damaged, since its rows lie beyond the last one");
   return ShardRows{std::move(*file), std::move(array).value(), std::move(place).value(), path};
 }
 
@@ -65,7 +65,8 @@ Status check_rows(const std::vector<ShardRows>& all) {
     if (first != next)
       return Error{ErrorCode::kUsage, "",
                    "row " + std::to_string(std::min(first, next)) +
-                       (first < next ? " is in two of the shards" : " is in none of the shards")};
+                       (first < next ? " is in two of the files; give each file once"
+                                     : " is missing; give the files of all shards")};
     if (i < all.size()) next = all[i].end();
   }
   return Success{};
@@ -81,7 +82,7 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
     if (!rows) return rows.error();
     if (const Status status = known.add(path, rows.value().place.checksums); !status) return status;
     if (!all.empty() && !rows.value().is_like(all.front()))
-      return Error{ErrorCode::kUsage, path, "its rows are no rows of the array of " + all.front().name};
+      return Error{ErrorCode::kUsage, path, "this file belongs to another array than " + all.front().name};
     all.push_back(std::move(rows).value());
   }
   std::stable_sort(all.begin(), all.end(), [](const ShardRows& a, const ShardRows& b) {

@@ -122,9 +122,9 @@ MotionError read_error(const JsonView& list) {
   while (!numbers.at_end()) {
     const std::size_t bin = numbers.count(), count = numbers.count();
     if (bin >= kAuditFineBins)
-      list.complain("there is no bin " + std::to_string(bin));
+      list.complain("the file has a bin that does not exist, " + std::to_string(bin));
     else if (count > FineBins::kMostCount - error.counts[bin])
-      list.complain("bin " + std::to_string(bin) + " counts more than there can be");
+      list.complain("bin " + std::to_string(bin) + " has a count that is too large");
     else
       error.counts.add(bin, count);
   }
@@ -146,7 +146,7 @@ Json authored_offset_json(const AuthoredOffset& offset) {
 
 Weighting read_weighting(std::size_t number, const JsonView& view) {
   if (number < kAllWeightings.size()) return static_cast<Weighting>(number);
-  view.complain("there is no weighting " + std::to_string(number));
+  view.complain("the file has a weighting that does not exist, " + std::to_string(number));
   return Weighting::kArea;
 }
 
@@ -277,7 +277,7 @@ ComparisonShard read_comparison(const JsonView& part) {
   c.span = read_span(part);
   c.cut = read_cut(part);
   shard.checksums = read_task_checksums(part);
-  if (c.segments == 0) part.complain("segment_count", "there are no segments");
+  if (c.segments == 0) part.complain("segment_count", "the shard has no segments");
   const bool is_sequential = part.flag("sequential"), is_certified = part.flag("certified");
   bool has_linear = false;
   each_item(part, "schemes", [&](const JsonView& name) {
@@ -295,11 +295,11 @@ ComparisonShard read_comparison(const JsonView& part) {
   const std::size_t tallies = c.schemes.size() + (has_linear ? 0 : 1);
   each_item(part, "segments", [&](const JsonView& segment) {
     ComparedSegment found = read_compared(segment);
-    if (found.schemes.size() != tallies) segment.complain("there must be a tally for each scheme, and for linear");
+    if (found.schemes.size() != tallies) segment.complain("the segment must have sums for each scheme, and for linear");
     shard.found.push_back(std::move(found));
   });
-  if (c.schemes.empty()) part.complain("there are no schemes");
-  if (c.tolerance && !is_certified) part.complain("tolerance_degrees", "there is a tolerance without certificates");
+  if (c.schemes.empty()) part.complain("the shard has no schemes");
+  if (c.tolerance && !is_certified) part.complain("tolerance_degrees", "the shard has a tolerance, but no bounds");
   return shard;
 }
 
@@ -355,7 +355,7 @@ Result<ReadParts> read_parts(std::span<const Part> parts) {
     JsonComplaint complaint(part.name);
     const JsonView view(json.value(), "", complaint);
     if (!view.is_object() || !view.has("chronormal_part"))
-      return invalid_input(part.name, "this is no part that a --shard has left");
+      return invalid_input(part.name, "this file was not written with --shard, so it cannot be merged");
     check_part_version(view);
     if (!complaint.first() && !has_its_checksum(part.text)) return invalid_input(part.name, std::string(kDamagedPart));
     const std::string command = view.required_text("command");
@@ -366,11 +366,11 @@ Result<ReadParts> read_parts(std::span<const Part> parts) {
     else if (command == "audit")
       read.audits.push_back(read_audit(view));
     else
-      view.complain("command", "there are parts of compare and of audit");
+      view.complain("command", "the command of a shard must be compare or audit");
     const TaskChecksums checksums = checksums_of(view);
     if (complaint.first()) return *complaint.first();
     if (!read.comparisons.empty() && !read.audits.empty())
-      return Error{ErrorCode::kUsage, "", "there are parts of comparisons and of audits: merge either"};
+      return Error{ErrorCode::kUsage, "", "the files are shards of both compare and audit; merge them separately"};
     if (const Status known = known_parts.add(part.name, checksums); !known) return known.error();
   }
   return read;
@@ -432,7 +432,8 @@ Result<SegmentErrors> read_measured_segment(std::string_view text, const std::st
 Result<NamedComparison> merge_compare_parts(std::span<const Part> parts) {
   Result<ReadParts> read = read_parts(parts);
   if (!read) return read.error();
-  if (read.value().comparisons.empty()) return Error{ErrorCode::kUsage, "", "these are parts of an audit"};
+  if (read.value().comparisons.empty())
+    return Error{ErrorCode::kUsage, "", "the files are shards of audit, not of compare"};
   Result<Comparison> all = merge(std::move(read.value().comparisons));
   if (!all) return all.error();
   return NamedComparison{read.value().name, std::move(all).value(), {}};
@@ -441,7 +442,7 @@ Result<NamedComparison> merge_compare_parts(std::span<const Part> parts) {
 Result<Audit> merge_audit_parts(std::span<const Part> parts) {
   Result<ReadParts> read = read_parts(parts);
   if (!read) return read.error();
-  if (read.value().audits.empty()) return Error{ErrorCode::kUsage, "", "these are parts of a comparison"};
+  if (read.value().audits.empty()) return Error{ErrorCode::kUsage, "", "the files are shards of compare, not of audit"};
   return merge(std::move(read.value().audits));
 }
 

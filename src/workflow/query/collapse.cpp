@@ -71,13 +71,13 @@ Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span, 
   }
   const auto count = [](std::size_t value) { return static_cast<double>(value); };
   return QueryAnswer{"collapse",
-                     {{"segments", "segments looked at", count(parts.value().size())},
-                      {"faces", "faces in each", count(motion.topology.face_count())},
-                      {"collapses", "collapses", count(faces.size())},
-                      {"turns_over", "of them turn the face over", count(turned)},
+                     {{"segments", "segments examined", count(parts.value().size())},
+                      {"faces", "faces in each segment", count(motion.topology.face_count())},
+                      {"collapses", "times a face loses all area at an instant", count(faces.size())},
+                      {"turns_over", "times the face turns over there", count(turned)},
                       {"always", "times a face has no area in a whole segment", count(always_faces.size())}},
                      {{"",
-                       "collapses, at t in [lower, upper]",
+                       "instants at which a face has no area, at t in [lower, upper]",
                        {{"segment", std::move(segments)},
                         {"face", std::move(faces)},
                         {"lower", std::move(lower)},
@@ -87,7 +87,7 @@ Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span, 
                         {"before", std::move(before), 3},
                         {"after", std::move(after), 3}}},
                       {"always",
-                       "no area in the whole segment",
+                       "faces without area in a whole segment",
                        {{"segment", std::move(always_segments)}, {"face", std::move(always_faces)}}}}};
 }
 

@@ -100,7 +100,7 @@ QueryTable meshlet_table(const Motion& motion, const Meshlets& meshlets, std::sp
     }
   }
   return {"meshlet",
-          "bounds of meshlets, as meshoptimizer has them",
+          "bounds of meshlets, in the format of meshoptimizer",
           {{"segment", std::move(segments)},
            {"index", std::move(numbers)},
            {"center", std::move(centers), 3},
@@ -121,9 +121,10 @@ QueryTable member_table(const Meshlets& meshlets) {
 
 Status check_meshlets(const Motion& motion, std::size_t most_triangles) {
   if (most_triangles < 4 || most_triangles > kMostTriangles || most_triangles % 4 != 0)
-    return Error{ErrorCode::kUsage, "--meshlets", "it must be a multiple of 4, from 4 to 512 triangles"};
+    return Error{ErrorCode::kUsage, "--meshlets", "the number of triangles must be a multiple of 4, from 4 to 512"};
   if (!motion.topology.all_triangles())
-    return Error{ErrorCode::kUsage, "--meshlets", "meshlets are made of triangles, and this mesh has larger faces"};
+    return Error{ErrorCode::kUsage, "--meshlets",
+                 "meshlets need a mesh of triangles, but this mesh has larger faces; triangulate it first"};
   return Success{};
 }
 
@@ -172,12 +173,12 @@ Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t>
   const std::size_t narrow = faces.size() - whole - empty;
   QueryAnswer answer{
       "cones",
-      {{"segments", "segments looked at", number(parts.value().size())},
-       {"faces", "faces in each", number(count)},
-       {"whole_sphere", "cones that are the whole sphere", number(whole)},
-       {"empty", "that are empty: no area at any time", number(empty)},
-       {"mean_half_angle", "degrees: half-angle of the others, mean", narrow == 0 ? 0 : sum / number(narrow)},
-       {"largest_half_angle", "degrees: largest of them", largest}},
+      {{"segments", "segments examined", number(parts.value().size())},
+       {"faces", "faces in each segment", number(count)},
+       {"whole_sphere", "cones that cover the whole sphere", number(whole)},
+       {"empty", "empty cones, of faces that never have an area", number(empty)},
+       {"mean_half_angle", "degrees, average half-angle of all other cones", narrow == 0 ? 0 : sum / number(narrow)},
+       {"largest_half_angle", "degrees, largest half-angle of these", largest}},
       {{"",
         "cones that contain every normal of a face, half-angles in degrees",
         {{"segment", std::move(segments)},

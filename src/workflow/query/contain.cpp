@@ -62,21 +62,22 @@ QueryAnswer answer_of(std::size_t segments, const std::vector<std::int32_t>& win
     normals.insert(normals.end(), {crossing.normal.x, crossing.normal.y, crossing.normal.z});
   }
   const auto count = [](auto value) { return static_cast<double>(value); };
-  return {"contain",
-          {{"segments", "segments looked at", count(segments)},
-           {"points", "points", count(inside.size())},
-           {"inside", "of them inside at the first instant", count(std::count(inside.begin(), inside.end(), 1))},
-           {"crossings", "crossings of the surface", count(all.size())},
-           {"inward", "of them inward", count(std::count(inward.begin(), inward.end(), 1))}},
-          {{"crossing",
-            "crossings, by point and time",
-            {{"point", std::move(points)},
-             {"time", std::move(times)},
-             {"segment", std::move(of_segments)},
-             {"face", std::move(faces)},
-             {"inward", std::move(inward)},
-             {"normal", std::move(normals), 3}}},
-           {"", "points at the first instant", {{"inside", std::move(inside)}}}}};
+  return {
+      "contain",
+      {{"segments", "segments examined", count(segments)},
+       {"points", "points", count(inside.size())},
+       {"inside", "points that are inside at the first instant", count(std::count(inside.begin(), inside.end(), 1))},
+       {"crossings", "times a point crosses the surface", count(all.size())},
+       {"inward", "times it goes inward", count(std::count(inward.begin(), inward.end(), 1))}},
+      {{"crossing",
+        "crossings, by point and time",
+        {{"point", std::move(points)},
+         {"time", std::move(times)},
+         {"segment", std::move(of_segments)},
+         {"face", std::move(faces)},
+         {"inward", std::move(inward)},
+         {"normal", std::move(normals), 3}}},
+       {"", "points at the first instant", {{"inside", std::move(inside)}}}}};
 }
 
 }  // namespace
@@ -125,10 +126,8 @@ Result<QueryAnswer> query_contain(const Motion& motion, const PointPaths& points
   QueryAnswer answer = answer_of(parts.value().size(), windings, all);
   const std::size_t at_start = motion.segments[parts.value().empty() ? 0 : parts.value().front().segment].from;
   if (is_inside_out(motion.topology, motion.keyframes[at_start].positions))
-    answer.facts.push_back({"inside_out",
-                            "mesh is inside out: its faces look inwards, and so do all normals; what is called inward "
-                            "goes out of it",
-                            1});
+    answer.facts.push_back(
+        {"inside_out", "mesh is inside out, so its normals point inward, and crossings called inward go out", 1});
   return answer;
 }
 

@@ -136,7 +136,7 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
                                  const QueryProgress& progress, const ElementOptions& elements) {
   const bool are_faces = elements.kind == ElementKind::kFaces;
   if (silhouettes && !are_faces)
-    return Error{ErrorCode::kUsage, "--silhouettes", "silhouettes are edges between faces: ask --elements faces"};
+    return Error{ErrorCode::kUsage, "--silhouettes", "silhouettes can only be listed for faces; leave --elements out"};
   // The eye is relative to the origin of the motion, like vertices.
   View view = placed;
   const Vec3d origin = {motion.origin[0], motion.origin[1], motion.origin[2]};
@@ -147,9 +147,9 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
   const std::string option = view.is_eye ? "--eye" : "--direction";
   for (const Vec3d& v : {view.from, view.to}) {
     if (!is_finite(v) || max_abs(v) > std::numeric_limits<float>::max())
-      return Error{ErrorCode::kUsage, option, "a coordinate is beyond the range of float32"};
+      return Error{ErrorCode::kUsage, option, "a coordinate is NaN, infinite or too large for float32"};
   }
-  if (!view.is_eye && view.from == Vec3d{}) return Error{ErrorCode::kUsage, option, "it must not be 0,0,0"};
+  if (!view.is_eye && view.from == Vec3d{}) return Error{ErrorCode::kUsage, option, "the direction must not be 0,0,0"};
   const Result<std::vector<SegmentPart>> parts = segment_parts(motion, span);
   if (!parts) return parts.error();
   double first = std::numeric_limits<double>::infinity(), last = -first;
@@ -200,15 +200,15 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
   const std::string one(one_element(elements.kind)), all(element_kind_name(elements.kind));
   QueryAnswer answer{
       "facing",
-      {{"segments", "segments looked at", count(parts.value().size())},
-       {all, all + " in each", count(asked)},
-       {"always_front", "times a " + one + " shows its front throughout a segment", count(always_front)},
-       {"always_back", "times it never does", count(always_back)},
-       {"changing", "times it changes, or is edge-on at an instant", count(pairs - always_front - always_back)}},
+      {{"segments", "segments examined", count(parts.value().size())},
+       {all, all + " in each segment", count(asked)},
+       {"always_front", "times a " + one + " shows its front during a whole segment", count(always_front)},
+       {"always_back", "times it shows its back during a whole segment", count(always_back)},
+       {"changing", "times it changes, or is seen edge-on at an instant", count(pairs - always_front - always_back)}},
       {}};
   answer.tables.push_back(table_of("", "intervals that show the front", {{one, std::move(numbers)}}, std::move(when)));
   if (!silhouettes) return answer;
-  answer.facts.push_back({"silhouettes", "intervals in which an edge is a silhouette", count(edge_faces.size() / 2)});
+  answer.facts.push_back({"silhouettes", "times an edge is a silhouette", count(edge_faces.size() / 2)});
   answer.tables.push_back(table_of("silhouette", "silhouette edges",
                                    {{"vertices", std::move(edge_vertices), 2}, {"faces", std::move(edge_faces), 2}},
                                    std::move(silhouette_when)));

@@ -39,8 +39,8 @@ double t_towards(const Segment& segment, double time, double end) {
 
 Error no_motion(const char* option, double time, double first, double last) {
   return Error{ErrorCode::kUsage, option,
-               "there is no motion " + std::string(option == std::string("--from") ? "after " : "before ") +
-                   rounded_text(time, {first, last}) + ": it goes from " + rounded_text(first, {time, last}) + " to " +
+               "the motion has nothing " + std::string(option == std::string("--from") ? "after " : "before ") +
+                   rounded_text(time, {first, last}) + "; it goes from " + rounded_text(first, {time, last}) + " to " +
                    rounded_text(last, {time, first})};
 }
 
@@ -53,7 +53,7 @@ std::size_t QueryColumn::rows() const noexcept {
 Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const QuerySpan& span) {
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   const double from = span.from.value_or(-kEndless), to = span.to.value_or(kEndless);
-  if (!(from < to)) return Error{ErrorCode::kUsage, "--to", "it must be later than --from"};
+  if (!(from < to)) return Error{ErrorCode::kUsage, "--to", "the time must be later than --from"};
   std::vector<SegmentPart> parts;
   double first = kEndless, last = -kEndless;
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
@@ -88,7 +88,8 @@ std::uint64_t json_bytes_of_query(const QueryAnswer& answer) noexcept {
 
 Status check_query_output(const std::string& path, bool force) {
   if (std::filesystem::path(path).extension() != ".npz")
-    return Error{ErrorCode::kUsage, path, "arrays are written as .npz; --json is for programs, and a table for people"};
+    return Error{ErrorCode::kUsage, path,
+                 "the name of a file of arrays must end in .npz; leave -o out for a table, or add --json for JSON"};
   return check_output(path, force);
 }
 

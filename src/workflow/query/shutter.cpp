@@ -164,20 +164,23 @@ Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, c
   const std::string all(element_kind_name(elements.kind));
   QueryAnswer answer{
       "shutter",
-      {{"segments", "segments looked at", number(parts.value().size())},
-       {all, all + " in each", number(asked)},
-       {"largest_error", "bound of the error of any mean", *std::max_element(rows.error.begin(), rows.error.end())},
-       {"mean_ends_off", "degrees: lerp or nlerp of the ends is off, mean", mean_off(rows)},
-       {"largest_ends_off", "degrees: largest", rows.largest_off}},
+      {{"segments", "segments examined", number(parts.value().size())},
+       {all, all + " in each segment", number(asked)},
+       {"largest_error", "largest possible error of a mean normal, in its own units",
+        *std::max_element(rows.error.begin(), rows.error.end())},
+       {"mean_ends_off", "degrees, average error of the normal half way between both ends", mean_off(rows)},
+       {"largest_ends_off", "degrees, largest error of it", rows.largest_off}},
       {}};
   answer.tables.push_back(std::move(rows).table(
       "", "mean normals while the shutter is open, and those half way between the ends", elements.kind, true));
   if (parts.value().size() > 1 && motion.kind != MotionKind::kTargets) {
     Rows whole;
     whole.add(whole_of(motion, parts.value(), found), 0);
-    answer.facts.push_back({"span_mean_ends_off", "degrees: the same over the whole span, mean", mean_off(whole)});
-    answer.facts.push_back({"span_largest_ends_off", "degrees: largest", whole.largest_off});
-    answer.tables.push_back(std::move(whole).table("span", "mean normals over the whole span", elements.kind, false));
+    answer.facts.push_back(
+        {"span_mean_ends_off", "degrees, average of this error over the whole time", mean_off(whole)});
+    answer.facts.push_back(
+        {"span_largest_ends_off", "degrees, largest of this error over the whole time", whole.largest_off});
+    answer.tables.push_back(std::move(whole).table("span", "mean normals over the whole time", elements.kind, false));
   }
   return answer;
 }

@@ -170,9 +170,9 @@ Result<Report> report(Input& input, const ReportOptions& options) {
   }
   if (model.parts.empty()) {
     constexpr const char* kStillDocument =
-        "no morph target of it moves anything that has normals, so there is nothing to show; a report needs shape keys "
-        "(blend shapes), exported as morph targets with normals";
-    constexpr const char* kStillMotion = "nothing in it moves that could be judged, so there is nothing to show";
+        "the file has no morph target that moves a surface with normals, so there is nothing to show; export shape "
+        "keys (blend shapes) as morph targets with normals";
+    constexpr const char* kStillMotion = "nothing moves in this input, so there is nothing to show";
     return invalid_input(input.name(), input.document() != nullptr ? kStillDocument : kStillMotion);
   }
   model.worst = find_worst_places(model.parts);

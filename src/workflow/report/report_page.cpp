@@ -12,7 +12,7 @@ Status check_report_template(std::string_view page_template) {
   if (at != std::string_view::npos && page_template.find(kReportMark, at + 1) == std::string_view::npos)
     return Success{};
   return invalid_input("", std::string("the template of the page must hold the text ").append(kReportMark) +
-                               " exactly once, where the report goes: ./run report makes one");
+                               " exactly once, where the report goes; ./run report makes such a template");
 }
 
 Result<std::string> report_page(const Report& report, std::string_view page_template) {

@@ -159,7 +159,7 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
     if (after < before)
       note((is_sequence ? grouped(after) + " of " + counted(before, "keyframe", "keyframes")
                         : grouped(after - 1) + " of " + counted(before - 1, "target", "targets")) +
-           " can be shown, those of the worst places among them; the errors of all are plotted.");
+           " can be shown here, among them the worst; the plot has the errors of all.");
   }
   if (const std::size_t all = bytes_of(model), of_samples = sum(model, bytes_of_samples);
       all > most_bytes && of_samples > 0) {
@@ -167,7 +167,7 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
     const std::size_t step = (of_samples + most - 1) / most;
     if (step > 1) {
       thin_samples(model, step);
-      note("Of " + grouped(step) + " samples of a motion one is shown, and those of the worst places.");
+      note("Only one of " + grouped(step) + " samples of a motion can be shown here, and those of the worst places.");
     }
   }
   if (const std::size_t all = bytes_of(model); all > most_bytes) {
@@ -180,7 +180,7 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
       note((part.name.empty() ? std::string("The mesh") : printable(part.name)) + " is shown with " +
            grouped((part.triangles.size() + part.coarse.size()) / 3) + " of " +
            counted(before, "triangle", "triangles") + "; " + grouped(part.triangles.size() / 3) +
-           " of them, around the worst places, are as in the file, and the normals there are judged.");
+           " of them, around the worst places, are as in the file and have errors.");
     }
   }
 }

@@ -49,7 +49,7 @@ std::vector<float> positions_at(const Segment& segment, double t) {
 Result<Motion::Keyframe> pose_of(const LongSums& positions, const std::string& mover) {
   for (std::size_t i = 0; i < positions.high().size(); ++i) {
     if (!(std::fabs(positions.high()[i]) <= kLargestFloat))
-      return misuse(mover + " vertex " + std::to_string(i / 3) + " out of the range of float32");
+      return misuse(mover + " vertex " + std::to_string(i / 3) + " so far that float32 cannot hold its position");
   }
   Motion::Keyframe pose;
   pose.set_positions(positions.high(), positions.low());
@@ -71,15 +71,15 @@ Result<TargetWeight> internal::one_target_of(std::span<const double> weights) {
   for (std::size_t i = 0; i < weights.size(); ++i) {
     if (weights[i] == 0) continue;
     if (own.weight != 0 || !(weights[i] > 0 && weights[i] <= 1))
-      return misuse("a scheme goes from the base to one target: give it a weight from 0 to 1, and the others 0");
+      return misuse("with a scheme only one target may be active; give it a weight from 0 to 1, and all others 0");
     own = {i, weights[i]};
   }
   return own;
 }
 
 Result<Moments> step_moments(const Motion& motion, std::size_t steps) {
-  if (motion.segments.empty()) return misuse("a mesh that does not move takes no steps");
-  if (steps == 0) return misuse("a segment takes a step or more");
+  if (motion.segments.empty()) return misuse("the mesh does not move, so there are no steps");
+  if (steps == 0) return misuse("the number of steps must be at least 1");
   Moments moments;
   const bool are_targets = motion.kind == MotionKind::kTargets;
   for (std::size_t s = 0; s < motion.segments.size(); ++s) {
@@ -101,13 +101,13 @@ Result<Moments> step_moments(const Motion& motion, std::size_t steps) {
 
 Status check_weights(const Motion& motion, std::span<const double> weights) {
   if (motion.kind != MotionKind::kTargets)
-    return misuse("only blend shapes have weights; give times, where there is motion");
+    return misuse("weights are only for blend shapes; give times for this motion");
   const std::size_t targets = motion.segments.size();
   if (weights.size() != targets)
-    return misuse(std::string("a pose needs a weight for each target: there ") + (targets == 1 ? "is " : "are ") +
-                  counted(targets, "target") + ", but " + counted(weights.size(), "weight"));
+    return misuse("the input has " + counted(targets, "target") + ", but the pose has " +
+                  counted(weights.size(), "weight") + "; give one weight for each target");
   for (std::size_t i = 0; i < targets; ++i) {
-    if (!std::isfinite(weights[i])) return misuse("the weight of target " + std::to_string(i) + " is not finite");
+    if (!std::isfinite(weights[i])) return misuse("the weight of target " + std::to_string(i) + " is NaN or infinite");
   }
   return Success{};
 }
@@ -123,22 +123,22 @@ Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOpti
   assert(!stream.motion().keyframes.empty());
   const bool by_area = options.weighting == Weighting::kArea;
   if (options.length == NormalLength::kArea && !by_area)
-    return misuse("only sums of areas have a length that means something: weigh by area, or take unit normals");
-  if (options.stepping && options.scheme.empty()) return misuse("steps are those of a scheme: name one");
+    return misuse("the length area needs the weighting area; choose that weighting, or the length unit");
+  if (options.stepping && options.scheme.empty()) return misuse("steps need a scheme; name one");
   if (!options.scheme.empty()) {
     const auto scheme = scheme_for(options.scheme, options.elements.kind);
     if (!scheme) return scheme.error();
     if (options.length == NormalLength::kArea || !by_area)
-      return misuse("schemes interpolate area-weighted unit normals");
+      return misuse("a scheme can only be used with the weighting area and the length unit");
     if (stream.motion().segments.empty())
-      return misuse("a mesh that does not move has nothing to interpolate between: leave out the scheme");
-    if (options.stepping && options.stepping->steps == 0) return misuse("a segment takes a step or more");
+      return misuse("the mesh does not move, so a scheme has nothing to interpolate; leave the scheme out");
+    if (options.stepping && options.stepping->steps == 0) return misuse("the number of steps must be at least 1");
     if (options.stepping && !scheme.value()->sequential_operations())
-      return misuse(options.scheme + " has no sequential form: every normal is computed on its own");
+      return misuse(options.scheme + " cannot go step by step, since it computes every normal on its own");
   }
   NormalSampler sampler(stream, options);
   if (options.elements.kind == ElementKind::kFaces) {
-    if (!by_area) return misuse("faces are not weighted: they have one normal");
+    if (!by_area) return misuse("a weighting has no meaning for normals of faces; choose vertices or corners");
     return sampler;
   }
   Result<NormalGroups> groups = make_groups(stream, options.elements);
@@ -196,7 +196,7 @@ Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment,
   const auto& [steps, anchor_interval] = *options_.stepping;
   const auto index = static_cast<std::size_t>(std::llround(t * static_cast<double>(steps)));
   if (!(std::fabs(t - static_cast<double>(index) / static_cast<double>(steps)) <= kLargestStepError))
-    return misuse("no step leads to " + rounded_text(time, {0, 1}));
+    return misuse("the steps do not include t = " + rounded_text(time, {0, 1}));
   std::vector<float> at_random(normals.size());
   const auto expected = VectorView<float>::packed(at_random.data(), element_count());
   scheme_normals_->unit_normals(static_cast<double>(index) * (1 / static_cast<double>(steps)), expected);

@@ -290,7 +290,7 @@ Result<std::string> end_of_part(const Motion& motion, const SampleOptions& optio
   NumberChecksum sharing;
   sharing.add(sampler.element_of_output());
   part.checksums["the options"] = checksum_of_options(options, moments);
-  part.checksums["who shares a normal"] = sharing.value();
+  part.checksums["the hard edges"] = sharing.value();
   const Status status = seen.finish(keyframes_of_moments(motion, moments, *run.shard), part.checksums);
   if (!status) return status.error();
   return part.text();
@@ -302,7 +302,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
                                               const Moments& moments, const SampleOutput& output, SegmentRun& run) {
   Journal* const journal = run.journal;
   if (journal != nullptr && output.format != SampleFormat::kNpy)
-    return Error{ErrorCode::kUsage, output.path, "only a .npy file can be continued by a later run"};
+    return Error{ErrorCode::kUsage, output.path, "a later run can only go on with a .npy file"};
   const Motion& motion = stream.motion();
   const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
   const ElementKind kind = options.elements.kind;
@@ -335,7 +335,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
     const bool is_gathered = output.format == SampleFormat::kNpz && is_stream(output.path);
     if (is_gathered && count > kMostSampleBytes / sizeof(float) / 3 / per_moment)
       return Error{ErrorCode::kUsage, output.path,
-                   "the arrays would take more than 4 GiB, and a stream gets them at once: write to a file"};
+                   "the arrays are too large for a stream (more than 4 GiB); write to a file"};
     const std::size_t outputs = sampler.output_count(), row_bytes = 3 * sizeof(float) * outputs;
     const std::string header = npy::write_header("<f4", {run.peers != nullptr ? count : share.count, outputs, 3});
     if (journal != nullptr) {
@@ -422,7 +422,7 @@ Result<SampleFormat> make_sample_format(std::string_view name) {
     names += format.name;
   }
   return Error{ErrorCode::kUsage, "",
-               std::string("there is no format '").append(name).append("'; there are ").append(names)};
+               std::string("there is no format '").append(name).append("'; choose one of ").append(names)};
 }
 
 Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times) {
@@ -455,11 +455,12 @@ Result<std::vector<std::string>> sample_files(const SampleOutput& output, Elemen
 Result<std::vector<std::string>> internal::sample_files(const SampleOutput& output, ElementKind kind, std::size_t count,
                                                         const SegmentRun& run) {
   if (output.format == SampleFormat::kPly && kind == ElementKind::kCorners)
-    return Error{ErrorCode::kUsage, output.path, "PLY has no place for normals of corners: write .obj, .npy or .npz"};
+    return Error{ErrorCode::kUsage, output.path,
+                 "PLY cannot store normals of corners; write .obj, .npy or .npz instead"};
   if (output.format == SampleFormat::kNpz && run.shard && !run.shard->is_all() && run.peers == nullptr)
-    return Error{ErrorCode::kUsage, output.path, "a shard is an array of its own: write .npy"};
+    return Error{ErrorCode::kUsage, output.path, "a shard can only be written as .npy, .ply or .obj"};
   if (run.peers != nullptr && is_stream(output.path))
-    return Error{ErrorCode::kUsage, output.path, "several processes can not write to one stream: name a file"};
+    return Error{ErrorCode::kUsage, output.path, "several processes cannot write to one stream; name a file"};
   std::vector<std::string> names = {output.path};
   if (!is_array(output.format) && output.path != "-") {
     Result<std::vector<std::string>> numbered = numbered_names(output.path, count);
@@ -467,7 +468,8 @@ Result<std::vector<std::string>> internal::sample_files(const SampleOutput& outp
     names = std::move(numbered).value();
   } else if (!is_array(output.format) && count > 1) {
     return Error{ErrorCode::kUsage, output.path,
-                 "there are " + std::to_string(count) + " meshes, and the standard output can take one"};
+                 "the result is " + std::to_string(count) +
+                     " meshes, but the standard output can only take one; name a file with %d"};
   }
   // Files of the other shards may exist.
   const IndexRange own = names.size() == count ? run.share_of(count) : IndexRange{0, names.size()};

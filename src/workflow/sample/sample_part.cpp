@@ -23,7 +23,7 @@ std::string SamplePart::text() const {
 }
 
 Result<SamplePart> SamplePart::read(std::string_view text, const std::string& name) {
-  if (text.empty()) return invalid_input(name, "this is no part that sample --shard has left, but a whole array");
+  if (text.empty()) return invalid_input(name, "this file was not written by sample --shard, but is a whole array");
   if (!has_its_checksum(text)) return invalid_input(name, std::string(kDamagedPart));
   const Result<nlohmann::json> json = parse_json(text, name, 0, {});
   if (!json) return json.error();
@@ -31,7 +31,7 @@ Result<SamplePart> SamplePart::read(std::string_view text, const std::string& na
   const JsonView view(json.value(), "", complaint);
   SamplePart part;
   check_part_version(view);
-  if (view.required_text("command") != "sample") view.complain("command", "this must be a part of sample");
+  if (view.required_text("command") != "sample") view.complain("command", "the file must be a shard of sample");
   part.first = view.required_count("first", kMostRows);
   part.total = view.required_count("total", kMostRows);
   part.array = static_cast<std::uint32_t>(view.required_count("array", 0xFFFFFFFF));

@@ -18,7 +18,8 @@ Result<std::unique_ptr<Scheme>> scheme_for(const std::string& name, ElementKind 
   auto scheme = make_scheme(name);
   if (scheme && kind != ElementKind::kFaces && scheme.value()->needs_faces())
     return Error{ErrorCode::kUsage, "",
-                 name + " looks at the edges of faces; it has no meaning for " + std::string(element_kind_name(kind))};
+                 name + " needs the edges of faces, so it cannot be used for " + std::string(element_kind_name(kind)) +
+                     "; use --elements faces"};
   return scheme;
 }
 

@@ -163,7 +163,7 @@ struct RecordedRun : SegmentRun {
       are_first = are_first && known[i].segment == own.first + i && fits(known[i]);
     if (!are_first)
       return Error{ErrorCode::kUsage, "",
-                   std::string("the segments that are known already are those of another ") + task};
+                   std::string("the segments that were computed before belong to another ") + task};
     for (const Found& one : known) {
       add(one);
       if (shard) found.push_back(one);
@@ -207,16 +207,17 @@ template <class Whole, class Found, class AreOfOne>
     ShardOf<Whole, Found>& shard = shards[i];
     if (const Status known = parts.add("shard " + std::to_string(i), shard.checksums); !known) return known.error();
     if (!are_of_one(shard.whole, shards.front().whole))
-      return Error{ErrorCode::kUsage, "", std::string("these are shards of two different ") + tasks};
+      return Error{ErrorCode::kUsage, "", std::string("the shards belong to two different ") + tasks};
     std::move(shard.found.begin(), shard.found.end(), std::back_inserter(all));
   }
   std::stable_sort(all.begin(), all.end(), [](const Found& a, const Found& b) { return a.segment < b.segment; });
   for (std::size_t s = 0; s < std::max(total, all.size()); ++s) {
     if (s < all.size() && all[s].segment == s) continue;
     const bool is_twice = s < all.size() && all[s].segment < s;
-    return Error{ErrorCode::kUsage, "",
-                 "segment " + std::to_string(is_twice ? all[s].segment : s) +
-                     (is_twice ? " is in two of the shards" : " is in none of the shards")};
+    return Error{
+        ErrorCode::kUsage, "",
+        "segment " + std::to_string(is_twice ? all[s].segment : s) +
+            (is_twice ? " is in two of the files; give each file once" : " is missing; give the files of all shards")};
   }
   return all;
 }

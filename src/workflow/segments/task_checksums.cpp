@@ -65,8 +65,9 @@ Status KeyframeChecksums::take(std::size_t keyframe, std::span<const float> posi
   const std::lock_guard lock(mutex_);
   const auto [known, is_new] = of_keyframe_.emplace(keyframe, sum.value());
   if (is_new || known->second == sum.value()) return Success{};
-  return Error{ErrorCode::kFailed, stream_.motion().keyframes[keyframe].name,
-               std::string(kKeyframe) + std::to_string(keyframe) + " has changed since it was read first"};
+  return Error{
+      ErrorCode::kFailed, stream_.motion().keyframes[keyframe].name,
+      std::string(kKeyframe) + std::to_string(keyframe) + " has changed while it was read; run the command again"};
 }
 
 Status KeyframeChecksums::finish(std::set<std::size_t> needed, TaskChecksums& result) {
@@ -90,13 +91,13 @@ Status KeyframeChecksums::finish(std::set<std::size_t> needed, TaskChecksums& re
 
 void check_part_version(const JsonView& part) {
   if (part.required_count("chronormal_part", std::numeric_limits<std::size_t>::max() >> 1U) != kPartVersion)
-    part.complain("chronormal_part", "the part is of another version");
+    part.complain("chronormal_part", "another version of chronormal wrote this shard; run all shards with one version");
 }
 
 TaskChecksums read_task_checksums(const JsonView& part) {
   TaskChecksums checksums;
   const std::optional<JsonView> object = part.object("checksums");
-  if (!object) part.complain("checksums", "there are no checksums");
+  if (!object) part.complain("checksums", "checksums are missing");
   for (const std::string& name : object ? object->keys() : std::vector<std::string>())
     checksums[name] = static_cast<std::uint32_t>(object->required_count(name.c_str(), 0xFFFFFFFF));
   return checksums;
@@ -109,7 +110,7 @@ Status KnownParts::add(const std::string& part, const TaskChecksums& checksums) 
     const auto [known, is_new] = first_.try_emplace(name, checksum, parts_.size() - 1);
     if (is_new || known->second.first == checksum) continue;
     Error error{ErrorCode::kUsage, part,
-                "it does not belong to " + parts_[known->second.second] + ": they differ in " + name};
+                "this shard does not belong to " + parts_[known->second.second] + ", since they differ in " + name};
     if (!name.starts_with(kKeyframe)) return error;
     if (!keyframe) keyframe = std::move(error);
   }

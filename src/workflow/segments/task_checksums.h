@@ -51,7 +51,7 @@ class KeyframeChecksums {
 /// The version of all parts, and the message for a part that does not end with its checksum.
 inline constexpr std::size_t kPartVersion = 6;
 inline constexpr std::string_view kDamagedPart =
-    "the part is damaged: its bytes do not have the checksum that it ends with";
+    "the shard is damaged, since its checksum is wrong; run this shard again";
 
 /// Complains about a part of another version.
 void check_part_version(const JsonView& part);

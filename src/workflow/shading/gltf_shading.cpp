@@ -76,7 +76,7 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
     GltfGeometry& geometry = read.value();
     const std::size_t count = geometry.positions.size() / 3;
     if (vertices + count >= std::numeric_limits<std::uint32_t>::max() / 3)
-      return invalid_input(mesh_place(document, shading.mesh), "indices of 32 bits cannot name so many vertices");
+      return invalid_input(mesh_place(document, shading.mesh), "the mesh has more vertices than can be read");
     shading.parts.push_back(
         {std::nullopt, shading.mesh, p, vertices, count, corners.size() / 3, geometry.corners.size() / 3});
     if (vertices == 0) {
@@ -106,7 +106,7 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
     vertices += count;
   }
   if (shading.parts.empty())
-    return invalid_input(mesh_place(document, shading.mesh), "the mesh has no primitive with faces");
+    return invalid_input(mesh_place(document, shading.mesh), "the mesh has no faces, so it has no normals");
   shading.normals.resize(3 * vertices);
   if (has_tangents) shading.tangents.resize(4 * vertices);
   Result<Topology> topology = Topology::triangles(vertices, std::move(corners));
@@ -422,7 +422,8 @@ Status check_mark(const GltfDocument& document, const GltfShading& shading) {
     if (!shading.set.targets[shading.mark->extras[n].target].vertices.empty())
       return invalid_input(
           mesh_place(document, shading.mesh) + "/extras/chronormal/extras/" + std::to_string(n) + "/target",
-          "an extra target moves no vertex, but this one does");
+          "a correction target must not move vertices, but this one does; another program has changed the file, so "
+          "bake the original again");
   }
   return Success{};
 }

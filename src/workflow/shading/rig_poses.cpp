@@ -169,8 +169,8 @@ Status check_poses(std::span<const RigPose> poses, const GltfDocument& document)
                                             (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
     }
     if (!pose.named.empty() || std::find(counts.begin(), counts.end(), pose.in_order.size()) != counts.end()) continue;
-    return invalid_input(pose.place, counted(pose.in_order.size(), "weight stands", "weights stand") +
-                                         " here, and no mesh has so many targets");
+    return invalid_input(pose.place, "the pose has " + counted(pose.in_order.size(), "weight", "weights") +
+                                         ", but no mesh has as many targets; give weights by the names of targets");
   }
   return Success{};
 }

@@ -133,7 +133,7 @@ Error no_such_viewer(std::string_view name) {
   }
   std::string message = std::string("there is no viewer '").append(name) + "'";
   const std::string nearest = nearest_name(name, names);
-  message.append(nearest.empty() ? "; there are " : "; did you mean " + nearest + "? There are ");
+  message.append(nearest.empty() ? "; choose from " : "; did you mean " + nearest + "? Choose from ");
   return Error{ErrorCode::kUsage, "", message.append(list).append("and all")};
 }
 

@@ -434,7 +434,8 @@ TEST(BlendCompare, files_without_anything_to_compare_say_so) {
   ShadedMesh flat = random_sheet(2, 4, 1, 0.1);
   flat.normals.clear();
   flat.targets[0].normals.clear();
-  expect_error(try_comparing(flat.file(), {}), ErrorCode::kInvalidInput, "no mesh has targets and stores normals");
+  expect_error(try_comparing(flat.file(), {}), ErrorCode::kInvalidInput,
+               "the file has no mesh with both morph targets and normals");
   GltfBuilder undriven = random_sheet(2, 4, 1, 0.1).file();
   undriven.add_node(undriven.add_mesh(flat.primitive(undriven)));
   undriven.add_track<float>(undriven.add_animation("turn"), 1, {0, 1}, {0, 1});
@@ -449,7 +450,7 @@ TEST(BlendCompare, files_without_anything_to_compare_say_so) {
 
 TEST(BlendCompare, an_animation_and_a_number_of_active_targets_are_not_both_taken) {
   expect_error(try_comparing(random_sheet(2, 4, 1, 0.1).file(), {.active = 1, .animation = "walk"}), ErrorCode::kUsage,
-               "an animation says itself which targets are active");
+               "the number of active targets cannot be chosen for an animation");
 }
 
 TEST(BlendCompare, so_many_targets_that_their_weights_do_not_fit_are_refused_before_anything_is_read) {

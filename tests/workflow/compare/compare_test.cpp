@@ -191,7 +191,7 @@ TEST(Compare, refuses_what_makes_no_table) {
   CompareRun run;
   run.shard = Shard{};
   EXPECT_EQ(compare(stream, each_sample, run).error().text(),
-            "a shard keeps sums, and so does a run that goes on: the rest is of a whole motion");
+            "a run with --shard or --resume cannot keep single errors or samples");
 }
 
 // The elements of the oracle: the corners of each, and the first vertex or corner that belongs to it.

@@ -227,7 +227,7 @@ TEST(KnownSegments, those_of_another_run_are_refused) {
   CompareRun untallied;
   untallied.known.resize(1);
   EXPECT_EQ(compare(stream, {}, untallied).error().text(),
-            "the segments that are known already are those of another comparison");
+            "the segments that were computed before belong to another comparison");
   CompareRun second_half, first_half;
   second_half.shard = Shard{1, 2};
   ASSERT_TRUE(compare(stream, {}, second_half).ok());
@@ -237,7 +237,7 @@ TEST(KnownSegments, those_of_another_run_are_refused) {
   AuditRun too_many;
   too_many.known.resize(9);
   EXPECT_EQ(audit(stream, {}, {}, too_many).error().text(),
-            "the segments that are known already are those of another audit");
+            "the segments that were computed before belong to another audit");
   EXPECT_EQ(read_compared_segment("{\"segment\": 1, \"tallies\": [[1]]}", "journal").error().place,
             "journal, /tallies/0");
 }
@@ -267,7 +267,7 @@ TEST(MergeParts, refuses_shards_that_do_not_make_a_whole) {
   stepping.rule = AuditRule::kStep;
   EXPECT_EQ(merged({audits[0], audit_parts(motion, {}, stepping, 3)[1]}),
             "part_0: it does not belong to part_1: they differ in the options");
-  EXPECT_EQ(merged({three[0], audits[1]}), "there are parts of comparisons and of audits: merge either");
+  EXPECT_EQ(merged({three[0], audits[1]}), "the files are shards of both compare and audit; merge them separately");
 }
 
 TEST(MergeParts, refuses_shards_of_other_inputs_and_of_other_times) {
@@ -286,8 +286,9 @@ TEST(MergeParts, refuses_shards_of_other_inputs_and_of_other_times) {
 
 TEST(MergeParts, refuses_parts_that_no_shard_writes) {
   std::string text = compare_parts(bending(), {}, 1)[0].text;
-  EXPECT_NE(merged({{"a", edited(text, "\"segment_count\":8", "\"segment_count\":0")}}).find("there are no segments"),
-            std::string::npos);
+  EXPECT_NE(
+      merged({{"a", edited(text, "\"segment_count\":8", "\"segment_count\":0")}}).find("the shard has no segments"),
+      std::string::npos);
   CompareOptions options;
   options.certify = true;
   options.tolerance = 90;
@@ -324,7 +325,7 @@ TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
       EXPECT_TRUE(cut.error().place.starts_with("cut")) << cut.error().text();
     }
   }
-  EXPECT_EQ(merged({{"a", "{}"}}), "a: this is no part that a --shard has left");
+  EXPECT_EQ(merged({{"a", "{}"}}), "a: this file was not written with --shard, so it cannot be merged");
   EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "compare"})"}}).find("another version"),
             std::string::npos);
   EXPECT_NE(merged({{"a", R"({"chronormal_part": 6, "command": "bake"})"}}).find("the part is damaged"),
@@ -579,7 +580,8 @@ TEST(Parts, are_not_written_of_a_keyframe_that_changes_while_it_is_read) {
         return Success{};
       },
       0);
-  EXPECT_EQ(audited_part(stream, {}, {}, Shard{1, 2}), "keyframe 5 has changed since it was read first");
+  EXPECT_EQ(audited_part(stream, {}, {}, Shard{1, 2}),
+            "keyframe 5 has changed while it was read; run the command again");
 }
 
 }  // namespace

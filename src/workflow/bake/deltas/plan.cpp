@@ -106,9 +106,10 @@ Result<Pairs> find_pairs(const GltfDocument& document, const MeshUse& mesh) {
     for (std::size_t j = i; j < mesh.use.targets(); ++j) {
       if (!moves(mesh.shading, j) || !mesh.together(i, j) || (i != j && !mesh.terms.overlap(i, j))) continue;
       if (pairs.size() == kMostExtras) {
-        return invalid_input(place_of(document, mesh.shading.mesh),
-                             "there are more than " + std::to_string(kMostExtras) +
-                                 " pairs of targets that move the same normals at once: use --encode endpoint");
+        return invalid_input(
+            place_of(document, mesh.shading.mesh),
+            "the result would need more than " + std::to_string(kMostExtras) +
+                " correction targets, since so many pairs of targets move the same normals; use --encode endpoint");
       }
       pairs.emplace_back(i, j);
     }

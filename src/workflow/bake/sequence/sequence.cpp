@@ -69,7 +69,9 @@ Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const B
 // Returns the times as the file stores them: float32, and none before 0.
 Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::string>& warnings) {
   const double shift = std::max(-motion.keyframes[0].time, 0.0);
-  if (shift > 0) warnings.push_back("time starts at 0 in the file, and not before it");
+  if (shift > 0)
+    warnings.push_back(
+        "the motion starts before time 0, which glTF does not allow; its times are moved so that it starts at 0");
   std::vector<float> times;
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
     const auto time = static_cast<float>(keyframe.time + shift);
@@ -77,8 +79,9 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
     constexpr double kShortest = 1 / static_cast<double>(std::numeric_limits<float>::max());
     const bool is_after = times.empty() || double{time} - double{times.back()} > kShortest;
     if (!is_after || !std::isfinite(time))
-      return invalid_input("keyframe " + std::to_string(times.size()),
-                           "its time is not after that of the one before in float32, by 1e-38 seconds or more");
+      return invalid_input(
+          "keyframe " + std::to_string(times.size()),
+          "this keyframe is so close to the one before that glTF cannot tell their times apart; leave one of them out");
     times.push_back(time);
   }
   return times;
@@ -128,8 +131,8 @@ void report_elements(const std::vector<SequenceElement>& elements, BakeEncoding 
   report.without_normals = static_cast<std::size_t>(without);
   if (encoding == BakeEncoding::kExact && freed > 0)
     report.warnings.push_back(std::to_string(freed) +
-                              " normals cannot start from those of keyframe 0 (no area there, or much less later), so "
-                              "that keyframe 0 has a target too, whose weight is 1 at rest");
+                              " normals need a target of their own for keyframe 0, since their faces have no area "
+                              "there, or much less later; its weight is 1 at rest");
 }
 
 // Adds the targets of exact to the file, and notes which segments bend. Returns false if the elements are not final,
@@ -280,7 +283,7 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
     times.push_back(static_cast<float>((1 - t) * double{keyframes[s]} + t * double{keyframes[s + 1]}));
     if (k > 0 && !(times[k] > times[k - 1]))
       return invalid_input("keyframe " + std::to_string(s),
-                           "float32 has no time for a key between it and the next one");
+                           "the next keyframe is so close in time that no key fits between them in float32");
     if (at % kKeySteps != 0) ++report.keys->in_between;
     if (k == 0) continue;
     const Result<KeyPose> pose = key_pose(normals, at);
@@ -291,9 +294,9 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
   }
   report.keys->left_out = segments + 1 + report.keys->in_between - report.keys->count;
   if (keys.beyond > 0)
-    report.warnings.push_back(std::to_string(keys.beyond) +
-                              " pairs of a normal and a segment are beyond the tolerance whatever the keys: the normal "
-                              "vanishes on the way, or turns too fast");
+    report.warnings.push_back(
+        std::to_string(keys.beyond) +
+        " times a normal vanishes or turns too fast between two keyframes, and exceeds the tolerance there");
   return times;
 }
 
@@ -307,17 +310,15 @@ std::string titles_of_others(std::span<const Viewer> viewers) {
 void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std::size_t targets,
                      std::size_t without_room, std::vector<std::string>& warnings) {
   if (const std::string titles = titles_of_others(viewers); encoding != BakeEncoding::kHarmless && !titles.empty())
-    warnings.push_back(
-        "by --encode " + std::string(name_of(encoding)) +
-        " its normals are made for viewers that add up deltas as they are stored; they can be far off in " + titles +
-        ": --encode harmless is for all of these");
+    warnings.push_back("--encode " + std::string(name_of(encoding)) + " can look wrong in " + titles +
+                       "; use --encode harmless for these viewers");
   if (without_room > 0)
     warnings.push_back(std::to_string(without_room) +
-                       " normals turn so far from those of keyframe 0 that compressors cut their deltas");
+                       " normals turn so far from keyframe 0 that compressors change them");
   for (const Viewer& viewer : viewers)
     if (viewer.most_targets > 0 && targets > viewer.most_targets)
-      warnings.push_back(std::to_string(targets) + " targets are more than " + std::string(viewer.title) +
-                         " takes: " + std::string(viewer.beyond));
+      warnings.push_back(std::to_string(targets) + " targets are too many for " + std::string(viewer.title) + "; " +
+                         std::string(viewer.beyond));
 }
 
 // Moves all viewers to the named ones: a sequence has no choice of candidates, and is made for the named viewers, or
@@ -339,9 +340,9 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   const double tolerance = options.tolerance.value_or(kHarmlessTolerance);
   if (encoding == BakeEncoding::kKeys) {
     if (options.weighting.value_or(Weighting::kArea) != Weighting::kArea)
-      return Error{ErrorCode::kUsage, "", "keys are certified for normals weighted by area, and for no others"};
+      return Error{ErrorCode::kUsage, "", "--encode keys can only be used with --weighting area"};
     if (!(tolerance >= kLeastKeyTolerance))
-      return Error{ErrorCode::kUsage, "", "the tolerance of keys must be 0.001 degrees or more"};
+      return Error{ErrorCode::kUsage, "", "the tolerance of --encode keys must be at least 0.001 degrees"};
   }
   const Result<NormalGroups> groups = groups_of(stream, options);
   if (!groups) return groups.error();
@@ -356,7 +357,7 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
       report.weighting = weighting;
     else
       report.warnings.push_back("the stored normals are weighted by " + std::string(weighting_name(weighting)) +
-                                ", which cannot be followed here (" + made.error().text() + "): area weighs faces");
+                                ", but the result is weighted by area, since at " + made.error().text());
   }
   if (!made) made = SequenceNormals::make(stream, groups.value(), options.weighting.value_or(Weighting::kArea), stored);
   if (!made) return made.error();
@@ -384,9 +385,10 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   report_elements(elements, encoding, report);
   report.largest_error = largest_bound(normals);
   if (const std::size_t crossing = count_crossing(motion.topology, normals.base()); crossing > 0)
-    report.warnings.push_back(std::to_string(crossing) +
-                              (crossing == 1 ? " polygon crosses itself: its" : " polygons cross themselves: their") +
-                              " triangles overlap in the file");
+    report.warnings.push_back(
+        std::to_string(crossing) +
+        (crossing == 1 ? " polygon crosses itself, so its" : " polygons cross themselves, so their") +
+        " triangles overlap in the file");
   report.keyframes = normals.keys();
   report.vertices = file.vertex_count();
   if (encoding == BakeEncoding::kKeys) {

@@ -75,7 +75,7 @@ Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> del
     if (!any_far) continue;
     const auto at = static_cast<std::size_t>(std::find_if(some.begin(), some.end(), is_far) - some.begin());
     return invalid_input("keyframe " + std::to_string(key) + ", vertex " + std::to_string((first + at) / 3),
-                         "it is too far from where it was in keyframe 0 for float32");
+                         "the vertex is so far from its place in keyframe 0 that float32 cannot hold the difference");
   }
   return Success{};
 }
@@ -94,8 +94,8 @@ Status SequenceNormals::fit(Weighting weighting) {
       bends[e] = (n.n0 - n.m) + (n.n1 - n.m);
       if (s > 0 && length(from[e] - fitted_keys_[s][e]) > kSame * std::max(length(from[e]), length(fitted_keys_[s][e])))
         return Error{ErrorCode::kUsage, "keyframe " + std::to_string(s) + ", element " + std::to_string(e),
-                     "the normal by " + std::string(weighting_name(weighting)) +
-                         " jumps there, where a face has no area; weight by area"};
+                     "a face has no area, so the normal weighted by " + std::string(weighting_name(weighting)) +
+                         " jumps; use --weighting area"};
     }
     if (s == 0) fitted_keys_.push_back(std::move(from));
     fitted_keys_.push_back(std::move(to));

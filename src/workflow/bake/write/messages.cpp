@@ -78,29 +78,27 @@ void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<Mesh
   if (baked.left_flat == 0) return;
   warnings.push_back({label_of(mesh, baked),
                       baked.left_flat == 1
-                          ? "1 primitive has no normals and stays flat, as viewers shade it by the specification "
-                            "(--smooth gives it normals)"
+                          ? "1 primitive has no normals and stays flat; add --smooth to give it smooth normals"
                           : std::to_string(baked.left_flat) +
-                                " primitives have no normals and stay flat, as viewers shade them by the specification "
-                                "(--smooth gives them normals)"});
+                                " primitives have no normals and stay flat; add --smooth to give them smooth normals"});
 }
 
 void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, std::vector<MeshWarning>& warnings) {
   if (error < std::numbers::pi) return;
   warnings.push_back({label_of(mesh, baked),
-                      "keys of a track are so near to each other, or weights so large, that float32 cannot hold the "
-                      "products of weights between them: normals may be anything there"});
+                      "normals may be wrong between some keys of an animation, since these keys are too close or their "
+                      "weights too large for float32"});
 }
 
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,
                     std::vector<MeshWarning>& warnings) {
   const std::string tolerance = rounded_text(options.tolerance.value_or(kHarmlessTolerance));
   if (baked.left_tangents > 0) {
-    warnings.push_back(
-        {label_of(mesh, baked),
-         (baked.left_tangents == 1 ? std::string("the tangents of 1 target lean")
-                                   : "the tangents of " + std::to_string(baked.left_tangents) + " targets lean") +
-             " on the right normals and stay as they are, because --max-bytes has no room for new ones"});
+    warnings.push_back({label_of(mesh, baked),
+                        (baked.left_tangents == 1
+                             ? std::string("the tangents of 1 target no longer fit")
+                             : "the tangents of " + std::to_string(baked.left_tangents) + " targets no longer fit") +
+                            " the new normals, because --max-bytes leaves no room for new tangents"});
   }
   const auto chosen =
       std::find_if(baked.candidates.begin(), baked.candidates.end(), [](const auto& c) { return c.chosen; });
@@ -113,30 +111,30 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
         names.append(names.empty() ? "" : ", ")
             .append(viewer.title)
             .append(" (" + std::to_string(viewer.bits) + " bits)");
-    warnings.push_back({label_of(mesh, baked), "its normals are within " + tolerance + " degrees, but up to " +
-                                                   rounded_text(rounded_up(chosen->rounded)) +
-                                                   " degrees off where compression rounds them: " + names});
+    warnings.push_back({label_of(mesh, baked),
+                        "the errors are within " + tolerance + " degrees before compression, but reach " +
+                            rounded_text(rounded_up(chosen->rounded)) + " degrees after compression by " + names});
     return;
   }
   if (baked.already_baked) {
-    warnings.push_back({label_of(mesh, baked), "it was baked before, and its normals are up to " +
+    warnings.push_back({label_of(mesh, baked), "this mesh was baked before, and errors reach " +
                                                    rounded_text(rounded_up(chosen->played.worst)) +
-                                                   " degrees off along its animations, beyond the tolerance of " +
-                                                   tolerance + ": bake the original file with this tolerance"});
+                                                   " degrees in its animations, beyond the tolerance of " + tolerance +
+                                                   "; bake the ORIGINAL file with this tolerance"});
     return;
   }
   // If nothing was asked for, the report states the remaining error.
   if (!options.tolerance && !options.most_targets && !options.most_delta_bytes) return;
   std::vector<std::string> remedies;
   if (options.most_targets || options.most_delta_bytes)
-    remedies.emplace_back("allow more by --max-targets and --max-bytes");
+    remedies.emplace_back("allow more with --max-targets or --max-bytes");
   if (options.viewers.size() > 1 && std::any_of(options.viewers.begin(), options.viewers.end(),
                                                 [](const Viewer& h) { return h.normals != NormalRule::kSum; }))
-    remedies.emplace_back("name the viewers that count by --for");
-  remedies.emplace_back("take a larger --tolerance");
-  std::string text = "no candidate is within " + tolerance +
-                     (chosen->skinned ? " degrees throughout, as its skin shows it" : " degrees throughout") +
-                     ", and the nearest was taken (--plan lists them all): ";
+    remedies.emplace_back("if some viewers are enough, name them with --for");
+  remedies.emplace_back("choose a larger --tolerance");
+  std::string text = "could not reach " + tolerance +
+                     (chosen->skinned ? " degrees everywhere under its skin" : " degrees everywhere") +
+                     ", so the closest result was written; ";
   for (std::size_t n = 0; n < remedies.size(); ++n)
     text += (n == 0 ? "" : n + 1 < remedies.size() ? ", " : ", or ") + remedies[n];
   warnings.push_back({label_of(mesh, baked), std::move(text)});
@@ -148,18 +146,21 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   const std::size_t targets = mesh.target_count + baked.extras.size();
   const bool is_harmless = plan.encoding == BakeEncoding::kHarmless || plan.encoding == BakeEncoding::kSmallest;
   if (!plan.is_driven && is_harmless && baked.extras.empty() && !baked.has_lone_weight) {
-    warn(options.is_posed
-             ? "no animation drives its targets, and no extra target that a program could drive brings its poses "
-               "nearer: each is right at weight 1"
-             : "no animation drives its targets, so that the file can hold the rest pose and each slider alone; where "
-               "several are up, a program has to drive correction targets, which --poses writes (chronormal/three, "
-               "/babylon and /playcanvas do)");
+    warn(options.is_posed ? "no animation drives the targets, and correction targets would not improve the given "
+                            "poses; each target is right at weight 1"
+                          : "no animation drives the targets, so the file is only right at rest and with one slider at "
+                            "a time; add --poses if a program mixes several sliders, which then has to drive "
+                            "correction targets (chronormal/three, /babylon and /playcanvas do)");
   }
   if (plan.is_driven && !plan.products_fit && is_harmless) {
-    warn("weights of its animations are so large that float32 cannot hold their products: there are no extra targets");
+    warn(
+        "weights of the animations are so large that float32 cannot hold their products, so there are no correction "
+        "targets");
   }
   if (baked.has_lone_weight && (is_harmless || plan.encoding == BakeEncoding::kSmallest)) {
-    warn("KHR_animation_pointer drives a weight alone, so that nothing could drive extra targets: the mesh gets none");
+    warn(
+        "KHR_animation_pointer drives a single weight, so the animation cannot drive correction targets, and the mesh "
+        "gets none; let it drive all weights to get them");
   }
   if (plan.encoding == BakeEncoding::kExact || plan.encoding == BakeEncoding::kEndpoint) {
     std::string names;
@@ -167,56 +168,57 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
       for (const Viewer& viewer : *viewers)
         if (viewer.normals != NormalRule::kSum) names.append(names.empty() ? "" : ", ").append(viewer.title);
     if (!names.empty()) {
-      warn("by --encode " + std::string(name_of(plan.encoding)) +
-           " its normals are made for viewers that add up deltas as they are stored; they can be far off in " + names +
-           ": leave --encode out for these");
+      warn("--encode " + std::string(name_of(plan.encoding)) + " can look wrong in " + names +
+           "; leave --encode out for these viewers");
     }
   }
   if (baked.undriven > 0) {
     warn(std::to_string(baked.undriven) + (baked.undriven == 1 ? " target is" : " targets are") +
-         " driven by no animation and got the best single delta");
+         " not driven by any animation, and only right on average when set by hand");
   }
   if (!baked.unmarked_nodes.empty()) {
     warn("extras of node " + std::to_string(baked.unmarked_nodes.front()) +
          (baked.unmarked_nodes.size() == 1
               ? " is"
               : " and of " + std::to_string(baked.unmarked_nodes.size() - 1) + " more are") +
-         " no object: what drives the extra targets stands in the mesh alone");
+         " not an object, so only the mesh says how to drive the correction targets");
   }
   if (baked.rescaled > 0) {
     warn(std::to_string(baked.rescaled) +
-         " stored base normals are longer than 1e10 or shorter than 1e-10, which no viewer can add to: they were "
-         "brought "
-         "to length 1");
+         " stored base normals are longer than 1e10 or shorter than 1e-10, which viewers cannot add to; their length "
+         "is now 1");
   }
   if (baked.stilled > 0) {
     warn(std::to_string(baked.stilled) + (baked.stilled == 1 ? " target turns" : " targets turn") +
-         " normals and move no position: where the surface stays its normals stay, and these deltas are zero now");
+         " normals without moving positions; these normals now stay as they are, since the surface does not change");
   }
   if (baked.without_stored > 0) {
     warn(std::to_string(baked.without_stored) +
-         " stored base normals are zero, or nearly, and stay wrong: add --recompute-base");
+         " stored base normals are zero, or nearly, and stay wrong; add --recompute-base to replace them");
   }
   if (plan.encoding == BakeEncoding::kSmallest && options.bytes_of_file > 0) {
     const double times = 1 + static_cast<double>(baked.bytes) / static_cast<double>(options.bytes_of_file);
     if (times > kLargeTimes || (times > kLargeTimesOfMany && baked.extras.size() > kFewExtras)) {
       warn(std::to_string(baked.extras.size()) + " correction targets make the file " +
            rounded_text(rounded_up(times)) +
-           " times as large: without --tolerance it stays smaller, and --plan lists the smaller ones");
+           " times as large; for a smaller file leave --tolerance out, or choose from --plan");
     }
   }
   if (baked.without_base > 0) {
-    warn(std::to_string(baked.without_base) +
-         " vertices have no area around them in the base: their normals are right but for weights near 0");
+    warn(
+        std::to_string(baked.without_base) +
+        " vertices have faces without area in the base; their normals are wrong at weights near 0 and right otherwise");
   }
   // All viewers that can be named have more room, but others have only this.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
-    warn(std::to_string(targets) + " targets of positions and normals are " + std::to_string(2 * targets) +
-         " morphed attributes; viewers that have room for 8 leave out those of the smallest weights");
+    warn(std::to_string(targets) +
+         " morph targets are in the result; viewers limited to 4 or 8 of them drop the weakest, which --max-targets "
+         "avoids");
   }
   if (shading.split_by_crease > 0) {
     warn(std::to_string(shading.split_by_crease) +
-         " vertices lie on edges sharper than the crease angle and got one normal all the same");
+         " vertices lie on edges sharper than --crease, but can only have one normal; split these edges in the file to "
+         "make them hard");
   }
 }
 

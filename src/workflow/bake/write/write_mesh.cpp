@@ -80,7 +80,8 @@ Status MeshWriter::write_base(const std::vector<bool>& is_replaced, std::span<co
     const GltfPrimitive& primitive = mesh_.primitives[part.primitive];
     if (primitive.has_normals && primitive.has_draco) {
       return invalid_input(document_.name() + ", " + pointer,
-                           "the base normals are compressed by Draco and cannot be replaced");
+                           "the base normals are compressed by Draco and cannot be replaced; leave --recompute-base "
+                           "out, or decompress the file first");
     }
     const std::size_t accessor =
         edit_.add_vectors(normals.subspan(3 * part.first_vertex, 3 * part.vertex_count), {false, true});

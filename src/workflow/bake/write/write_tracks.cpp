@@ -99,8 +99,8 @@ Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> m
     const std::optional<std::string> pointer = find_lone_weight(document, mesh.mesh, edit);
     if (!pointer) continue;
     return invalid_input(std::string(document.name()).append(", ").append(*pointer),
-                         "KHR_animation_pointer drives a weight alone, so that nothing could drive extra targets: "
-                         "let it drive all weights, or use another encoding");
+                         "KHR_animation_pointer drives a single weight, so the animation cannot drive correction "
+                         "targets; let it drive all weights, or use another --encode");
   }
   return Success{};
 }
